@@ -286,23 +286,19 @@ fn function(table: &mut Table) -> FunctionTest {
         }
         listed.push(case(table));
     });
-    let cases = match &source {
-        Some(source) => {
-            if !listed.is_empty() {
-                let help = "remove `cases`, or all [[function.case]]";
-                table.reject(source.span, "`cases` cannot be used with [[function.case]]", help);
-            }
-            FunctionCases::Stress
+    let cases = if let Some(source) = &source {
+        if !listed.is_empty() {
+            let help = "remove `cases`, or all [[function.case]]";
+            table.reject(source.span, "`cases` cannot be used with [[function.case]]", help);
         }
-        None => {
-            if listed.is_empty() && table.is_valid() {
-                let help = format!(
-                    "add [[function.case]] with `{EXAMPLE_CASE}` and `result`, or `cases = \"stress\"`"
-                );
-                table.reject(table.span(), "the function has no cases", &help);
-            }
-            FunctionCases::Listed(listed)
+        FunctionCases::Stress
+    } else {
+        if listed.is_empty() && table.is_valid() {
+            let help =
+                format!("add [[function.case]] with `{EXAMPLE_CASE}` and `result`, or `cases = \"stress\"`");
+            table.reject(table.span(), "the function has no cases", &help);
         }
+        FunctionCases::Listed(listed)
     };
     FunctionTest {
         name: name.map_or_else(String::new, |name| name.value),

@@ -127,8 +127,8 @@ fn code_lines(text: &str) -> u64 {
         let length = if let Some(comment) = rest.strip_prefix("//") {
             // The line break is not part of the comment.
             2 + line_comment_length(comment)
-        } else if rest.starts_with("/*") {
-            let end = rest[2..].find("*/").map_or(rest.len(), |end| end + 4);
+        } else if let Some(comment) = rest.strip_prefix("/*") {
+            let end = comment.find("*/").map_or(rest.len(), |end| end + 4);
             if rest[..end].contains('\n') {
                 lines += u64::from(has_code);
                 has_code = false;

@@ -329,21 +329,21 @@ fn errors(assignment: &str, expected: &Expect) {
 fn errors_in_an_assignment_have_their_place() {
     errors(
         "",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:1:1: error[E0506]: the assignment has neither a scene nor a reference
-    "#]],
+    "]],
     );
     errors(
         "scene = 4",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:1:9: error[E0505]: `scene` must be a string, found 4
-    "#]],
+    "]],
     );
     errors(
         "scene = \"scene.toml\"\nreference = \"solution.glsl\"",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:13: error[E0506]: `reference` cannot be used with `scene`
-    "#]],
+    "]],
     );
     errors(
         "scene = \"solution.glsl\"",
@@ -359,28 +359,32 @@ fn errors_in_an_assignment_have_their_place() {
     );
     errors(
         "scene = \"scene.toml\"\ntolerance = 1",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:13: error[E0506]: `tolerance` cannot be used with `scene`
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\ntolerance = 256",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:13: error[E0506]: `tolerance` must be a number of 8-bit levels from 0 to 255, found 256
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\n[[frames]]\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:3: error[E0505]: unknown table [[frames]]
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\n[frame]\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:1: error[E0505]: [frame] must be written [[frame]]
-    "#]],
+    "]],
     );
+}
+
+#[test]
+fn errors_in_frames_and_points_have_their_place() {
     errors(
         "reference = \"solution.glsl\"\n[[frame]]\nsize = [0, 4]\ntime = inf\nframe = -1\nmouse = [1, 2, 3]\n\
          date = [2026, 12, 1, 0]\nchannel0 = \"wood.png\"\nchannel4 = \"noise\"\n",
@@ -396,42 +400,41 @@ fn errors_in_an_assignment_have_their_place() {
     );
     errors(
         "reference = \"solution.glsl\"\n[[frame]]\n[[frame]]\ntime = 0.0\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:3:1: error[E0506]: this frame is listed twice
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\n[[frame]]\nmouse = 3\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:3:9: error[E0505]: `mouse` must be a list of numbers, found 3
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\n[rubric.algorithm]\npoint = 4\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:3:1: error[E0505]: unknown key `point` in [algorithm]
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\n[rubric]\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:1:1: error[E0506]: the rubric gives no points
-    "#]],
+    "]],
     );
     errors(
         "reference = \"solution.glsl\"\n[[frame]\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:9: error[E0505]: missing `]]` at the end of a table header
-    "#]],
+    "]],
     );
-    let frames: String = (0..65)
-        .map(|time| format!("[[frame]]\ntime = {time}\n"))
-        .collect();
+    let frames = (0..65).map(|time| format!("[[frame]]\ntime = {time}\n"));
+    let frames = frames.collect::<Vec<_>>().concat();
     errors(
         &format!("reference = \"solution.glsl\"\n{frames}"),
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:130:1: error[E0506]: an assignment has at most 64 frames
-    "#]],
+    "]],
     );
 }
 
@@ -609,14 +612,14 @@ fn violated_rules_are_listed_with_their_lines() {
     let flags = ["--out", "out", "--search", "0"];
     let run = check(folder.path(), &[&TASK[..], &flags].concat());
     assert_eq!(run.code, 1);
-    expect![[r#"
+    expect![[r"
         correct      hw/a.glsl  all 144 pixels agree with the reference
                      rule: the function `intersectSphere` must be defined
                      rule: line 4: `pow` must not be called
                      rule: line 6: `helper` must not be called
                      rule: line 4: textures must not be read
                      function: there is no function `intersectSphere`; expected `float intersectSphere(vec3, vec3, vec3, float)`
-    "#]].assert_eq(&run.stdout);
+    "]].assert_eq(&run.stdout);
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let page = read("report.html");
     assert!(
@@ -669,25 +672,25 @@ fn errors_in_rules_and_functions_have_their_place() {
         |text: &str, expected: &Expect| errors(&format!("reference = \"solution.glsl\"\n{text}"), expected);
     errors(
         "[rules]\nmust_define = \"f\"\nmust_not_call = [\"a b\"]\ntextures = 0\nmax_lines = 0\npoints = -1\n",
-        &expect![[r#"
+        &expect![[r"
             assignment.toml:3:15: error[E0505]: `must_define` must be a list of strings, found a string
             assignment.toml:4:17: error[E0506]: `must_not_call` must list names of functions; `a b` is not a name
             assignment.toml:5:12: error[E0505]: `textures` must be `true` or `false`, found 0
             assignment.toml:6:13: error[E0506]: `max_lines` must be from 1 to 1,000,000, found 0
             assignment.toml:7:10: error[E0506]: `points` must be from 0 to 1,000,000, found -1
-        "#]],
+        "]],
     );
     errors(
         "[rules]\nmax_line = 4\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:3:1: error[E0505]: unknown key `max_line` in [rules]
-    "#]],
+    "]],
     );
     errors(
         "[[function]]\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:1: error[E0505]: missing key `name` in [[function]]
-    "#]],
+    "]],
     );
     errors(
         "[[function]]\nname = \"f()\"\ncases = \"many\"\n",
@@ -698,47 +701,47 @@ fn errors_in_rules_and_functions_have_their_place() {
     );
     errors(
         "[[function]]\nname = \"f\"\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:2:1: error[E0506]: the function has no cases
-    "#]],
+    "]],
     );
     errors(
         "[[function]]\nname = \"f\"\n[[function.case]]\n",
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:4:1: error[E0505]: missing key `arguments` in [[case]]
-    "#]],
+    "]],
     );
     errors(
         "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [1.0]\n",
-        &expect![[r#"
+        &expect![[r"
             assignment.toml:4:1: error[E0506]: the case has neither a `result` nor `outputs`
-        "#]],
+        "]],
     );
     errors(
         "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [\"1.0\"]\nresult = \"yes\"\n",
-        &expect![[r#"
+        &expect![[r"
             assignment.toml:5:14: error[E0505]: `arguments` must be a list of values, found a string
             assignment.toml:6:10: error[E0505]: `result` must be a number, `true`, `false` or a list of these, found a string
-        "#]],
+        "]],
     );
     errors(
         "[[function]]\nname = \"f\"\n[[function.case]]\narguments = [1e39]\nresult = 1\ntolerance = -1\n",
-        &expect![[r#"
+        &expect![[r"
             assignment.toml:5:13: error[E0506]: `arguments` must have finite numbers that float32 can hold, found [1e39]
             assignment.toml:7:13: error[E0506]: `tolerance` must be finite and at least 0, found -1
-        "#]],
+        "]],
     );
     errors(
         "[[function]]\nname = \"f\"\ncases = \"stress\"\n[[function.case]]\narguments = []\nresult = 1\n",
-        &expect![[r#"
+        &expect![[r"
             assignment.toml:4:9: error[E0506]: `cases` cannot be used with [[function.case]]
-        "#]],
+        "]],
     );
     errors(
         &format!("{CASES}{CASES}"),
-        &expect![[r#"
+        &expect![[r"
         assignment.toml:11:1: error[E0506]: there are two tests of `intersectSphere`
-    "#]],
+    "]],
     );
 }
 

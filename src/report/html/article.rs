@@ -198,10 +198,9 @@ fn details(details: &[String]) -> String {
 fn assigned(record: &Record) -> String {
     let faults = record.faults().into_iter();
     let right = record.right_functions().map(|sentence| ("function", sentence));
-    let items: String = faults
-        .chain(right)
-        .map(|(label, text)| format!("<li>{}</li>\n", sentence(&format!("{label}: {text}"))))
-        .collect();
+    let items = faults.chain(right);
+    let items = items.map(|(label, text)| format!("<li>{}</li>\n", sentence(&format!("{label}: {text}"))));
+    let items = items.collect::<Vec<_>>().concat();
     if items.is_empty() {
         return items;
     }
@@ -227,7 +226,7 @@ fn frames(record: &Record) -> String {
     });
     format!(
         "<h3>Frames</h3>\n<ol class=\"frames\">\n{}</ol>\n",
-        items.collect::<String>()
+        items.collect::<Vec<_>>().concat()
     )
 }
 
