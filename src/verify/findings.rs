@@ -8,7 +8,6 @@ use toyproof_eval::{self as eval, Places, Program};
 use toyproof_image::{Image, Rgb8Image};
 
 use crate::alternative::{Alternative, Alternatives, WrongShader};
-use crate::alternative::WrongShader;
 use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus, Regions};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
@@ -235,7 +234,7 @@ impl Findings {
     ) {
         let is_symptom = |mistake: &Diagnosis| mistake.mistakes.iter().all(|mistake| mistake.is_symptom);
         if let (Some(alternatives), Some(algorithm)) = (case.alternatives, &self.algorithm)
-            && matches!(self.reason, Reason::AlgorithmDiffers(_))
+            && matches!(self.reason, Reason::AlgorithmDiffers { .. })
             && self.mistake.as_ref().is_none_or(is_symptom)
         {
             let found = contain(Part::Mistake, || {

@@ -124,7 +124,7 @@ impl<'a> WrongShader<'a> {
     ) -> Option<Alternative> {
         let [width, height] = frame.size;
         let mut mixed = Mixed::of(u64::from(width) * u64::from(height));
-        let mut summary = CheckSummary::default();
+        let mut check = CheckResult::default();
         for rows in frame.bands() {
             let band = expected.rows(&rows).ok()?;
             let mut places = Places::spread(frame.size, frame.size);
@@ -141,9 +141,9 @@ impl<'a> WrongShader<'a> {
                 compare::algorithm(&band.image, &actual, &undefined, &from_row, &mut mixed, |_, _| {
                     None
                 });
-            summary.extend(&CheckSummary::new(&band.image, &actual, &statuses), rows.start);
+            check.extend(&band.image, &actual, &statuses, rows.start);
         }
-        self.accepted(summary, mistake)
+        self.accepted(check.with_regions(width), mistake)
     }
 
     /// Compares the image with another one, which a hypothesis expects; `agrees` decides for each pixel that is
@@ -165,15 +165,14 @@ impl<'a> WrongShader<'a> {
                 status => status,
             });
         let statuses: Vec<_> = statuses.collect();
-        self.accepted(CheckSummary::new(other, &self.actual, &statuses), mistake)
+        let mut check = CheckResult::default();
+        check.extend(other, &self.actual, &statuses, 0);
+        self.accepted(check.with_regions(self.frame().size[0]), mistake)
     }
 
     /// Accepts a hypothesis if the shader is not wrong under it, and almost no wrong pixel is left.
-    fn accepted(
-        &self,
-        algorithm: CheckSummary,
-        mistake: impl FnOnce() -> KnownMistake,
-    ) -> Option<Alternative> {
+    fn accepted(&self, check: CheckResult, mistake: impl FnOnce() -> KnownMistake) -> Option<Alternative> {
+        let algorithm = check.summary;
         let checks = Checks {
             algorithm: Some(algorithm.clone()),
             ..self.checks.clone()
