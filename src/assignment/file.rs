@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, FileId, Files};
 use toyproof_image::{Channel, Frame, FrameInputs};
-use toyproof_scene::toml_reader::{self, Format, Literal, Located, Table};
+use toyproof_toml::{Format, Literal, Located, Table};
 
 use super::{
     Assignment, DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, MAX_FRAMES, Reference,
@@ -30,7 +30,7 @@ impl Assignment {
     /// # Errors
     /// The first syntax error of the TOML, or all other errors.
     pub fn parse(files: &Files, file: FileId, folder: &Path) -> Result<Self, Diagnostics> {
-        toml_reader::read(&FORMAT, files, file, |document| {
+        toyproof_toml::read(&FORMAT, files, file, |document| {
             let reference = reference(document, folder);
             let mut frames = Vec::new();
             document.tables("frame", |table| {

@@ -10,7 +10,7 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
 use toyproof_lab::stress::Failure;
 use toyproof_lab::stress::function::{self, RoleMap, Signature, with_main};
-use toyproof_scene::toml_reader::Literal;
+use toyproof_toml::Literal;
 
 use crate::report::FunctionRecord;
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 use toyproof_diagnostic::{Diagnostics, FileId, Files, grouped};
-use toyproof_scene::toml_reader::{self, Format, Located, Table};
+use toyproof_toml::{Format, Located, Table};
 use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
 
@@ -82,7 +82,7 @@ impl Rubric {
     /// # Errors
     /// The first syntax error of the TOML, or all other errors.
     pub fn parse(files: &Files, file: FileId) -> Result<Self, Diagnostics> {
-        toml_reader::read(&FORMAT, files, file, |document| {
+        toyproof_toml::read(&FORMAT, files, file, |document| {
             let rubric = Self::read(document);
             document.report_unknown_keys();
             if document.is_valid() && rubric.check_points() == 0.0 {

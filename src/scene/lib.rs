@@ -24,7 +24,6 @@ mod perturb;
 mod requirements;
 mod shape;
 mod template;
-pub mod toml_reader;
 
 use std::ops::Range;
 

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use toyproof_diagnostic::Span;
+use toyproof_toml::Table;
 
 use super::super::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
-use crate::toml_reader::Table;
+use super::checks::Checks;
 
 /// The maximum number of samples per pixel.
 const MAX_SAMPLES: u32 = 65_536;

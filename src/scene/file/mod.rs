@@ -7,11 +7,12 @@ mod surface;
 mod tests;
 
 use toyproof_diagnostic::{Diagnostics, FileId, Files, Span};
+use toyproof_toml::{Format, Table};
 
+use self::checks::Checks;
 use self::film::{DEFAULT_CAMERA, DEFAULT_FILM, FilmTable};
 use self::surface::MotionNames;
 use super::{Background, Film, Integrator, Light, Model, Object, Scattered, Scene, Shape};
-use crate::toml_reader::{self, Format, Table};
 
 /// Scene files.
 static FORMAT: Format = Format {
@@ -26,7 +27,7 @@ static FORMAT: Format = Format {
 /// # Errors
 /// Diagnostics for the first error of the TOML syntax, or for all other errors.
 pub fn parse(files: &Files, file: FileId) -> Result<Scene, Diagnostics> {
-    toml_reader::read(&FORMAT, files, file, scene)
+    toyproof_toml::read(&FORMAT, files, file, scene)
 }
 
 /// The default of `max_offset` in scene units, as in most shaders.

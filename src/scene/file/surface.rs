@@ -1,14 +1,15 @@
 //! The tables of the scene file for surfaces (`[[sphere]]` and others), for their materials, and for motions.
 
+use glam::{DQuat, DVec3};
 use toyproof_diagnostic::{Span, grouped, nearest};
+use toyproof_toml::{Table, list_of};
 
 use super::super::shape::IDENTITY;
 use super::super::{
     Cuboid, Disney, Fresnel, Material, Model, Motion, Object, Pattern, PatternKind, Period, Point, Quadric,
     QuadricKind, Scatter, Shape, Space,
 };
-use crate::toml_reader::{Table, list_of};
-use glam::{DQuat, DVec3};
+use super::checks::Checks;
 
 /// The maximum number of spheres of one scatter.
 const MAX_SCATTER: u64 = 65_536;

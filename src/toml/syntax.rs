@@ -5,12 +5,8 @@ use std::ops::Range;
 use toyproof_diagnostic::{Diagnostic, FileId, Span};
 
 /// Returns the diagnostic for an error of the TOML parser.
-pub(super) fn diagnostic(
-    code: &'static str,
-    error: &toml::de::Error,
-    text: &str,
-    file: FileId,
-) -> Diagnostic {
+#[must_use]
+pub fn diagnostic(code: &'static str, error: &toml::de::Error, text: &str, file: FileId) -> Diagnostic {
     let bytes = error.span().unwrap_or_default();
     let bytes = bytes.start.min(text.len())..bytes.end.min(text.len());
     let (bytes, message, help) = Site::of(text, bytes).explain(error.message());

@@ -1,5 +1,16 @@
 //! TOML files with a fixed set of keys, such as scenes and rubrics. Every error has a span, a message in
 //! terms of the file, and advice.
+//!
+//! ```
+//! use toyproof_diagnostic::{File, Files};
+//! use toyproof_toml::{Format, read};
+//!
+//! static FORMAT: Format = Format { form_code: "E0501", value_code: "E0502", aliases: &[], renamed: &[] };
+//! let mut files = Files::default();
+//! let file = files.add(File::new("a.toml", "radius = \"1\""));
+//! let errors = read(&FORMAT, &files, file, |table| table.required::<f64>("radius")).unwrap_err();
+//! assert!(errors.to_string().starts_with("a.toml:1:10: error[E0501]: `radius` must be a number"));
+//! ```
 
 mod syntax;
 mod value;
@@ -10,7 +21,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
+use toyproof_image::{MAX_PIXELS, MAX_SIDE, check_size};
 
+pub use self::syntax::diagnostic as syntax_error;
 use self::value::describe;
 pub use self::value::{Literal, Value};
 
@@ -192,6 +205,12 @@ impl<'r, 't> Table<'r, 't> {
             .report(self.reader.format.value_code, span, message.into(), help);
     }
 
+    /// Rejects the value of a key; `problem` follows the key in the message.
+    pub fn reject_value<T>(&self, key: &str, located: &Located<T>, problem: &str) {
+        let found = self.excerpt(located.span);
+        self.reject(located.span, format!("`{key}` {problem}, found {found}"), "");
+    }
+
     fn reject_form(&self, span: Span, message: String, help: &str) {
         self.reader
             .report(self.reader.format.form_code, span, message, help);
@@ -270,6 +289,42 @@ impl<'r, 't> Table<'r, 't> {
     fn report_missing(&mut self, key: &'static str, help: String) {
         self.missing.push((key, help));
         self.reader.error_count.set(self.reader.error_count.get() + 1);
+    }
+
+    /// Returns a whole number in a range, or a default if it is missing or rejected, which is reported.
+    pub fn count_or(&mut self, key: &'static str, [min, max]: [u32; 2], default: u32) -> u32 {
+        let Some(located) = self.optional::<i64>(key) else {
+            return default;
+        };
+        match u32::try_from(located.value) {
+            Ok(count) if (min..=max).contains(&count) => count,
+            _ => {
+                let max = grouped(u64::from(max));
+                self.reject_value(key, &located, &format!("must be from {min} to {max}"));
+                default
+            }
+        }
+    }
+
+    /// Returns the size of an image in pixels, or a default if it is missing or rejected, which is reported.
+    pub fn size_or(&mut self, key: &'static str, default: [u32; 2]) -> [u32; 2] {
+        let Some(located) = self.optional::<[i64; 2]>(key) else {
+            return default;
+        };
+        if located.value.iter().any(|side| *side < 1) {
+            self.reject_value(key, &located, "must be at least 1 pixel in each direction");
+            return default;
+        }
+        let [width, height] = located.value.map(|side| side as u64);
+        check_size(width, height).unwrap_or_else(|_| {
+            let problem = format!(
+                "must be at most {} pixels in each direction and {} pixels in all",
+                grouped(u64::from(MAX_SIDE)),
+                grouped(MAX_PIXELS)
+            );
+            self.reject_value(key, &located, &problem);
+            default
+        })
     }
 
     /// Returns the choice that a string names; `what` is the noun for it. None if the key is missing, or is

@@ -1,0 +1,389 @@
+//! Reading and writing projects in all forms.
+
+use toyproof_diagnostic::{File, FileId, Files};
+
+use super::*;
+
+const IMAGE: &str =
+    "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }\r\n// \u{e9}\t\"\\";
+const BUFFER: &str = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }";
+
+/// The same project in the variants of the API, of a page, and of the editor.
+pub(crate) fn variants() -> [String; 3] {
+    let [image, buffer] = [IMAGE, BUFFER].map(|code| serde_json::to_string(code).unwrap());
+    let sampler = r#"{"filter":"linear","wrap":"clamp","vflip":"true","srgb":"false","internal":"byte"}"#;
+    let api = format!(
+        r#"{{"Shader":{{"ver":"0.1","info":{{"id":"a","date":"1","likes":3,"tags":["x","y"],"note":null}},"renderpass":[
+        {{"inputs":[{{"id":257,"src":"/media/previz/buffer00.png","ctype":"buffer","channel":0,"sampler":{sampler},"published":1}}],
+        "outputs":[{{"id":37,"channel":0}}],"code":{image},"name":"Image","description":"","type":"image"}},
+        {{"inputs":[],"outputs":[{{"id":257,"channel":0}}],"code":{buffer},"name":"Buf A","description":"","type":"buffer"}}]}}}}"#
+    );
+    let page = format!(
+        r#"[{{"ver":"0.1","info":{{"id":"a"}},"renderpass":[{{"inputs":[{{"id":"4dXGR8","filepath":"/media/previz/buffer00.png",
+        "previewfilepath":"/media/previz/buffer00.png","type":"buffer","channel":0,"sampler":{sampler},"published":1}}],
+        "outputs":[],"code":{image},"name":"","description":"d","type":"image"}},{{"inputs":[],
+        "outputs":[{{"id":"4dXGR8","channel":0}}],"code":{buffer},"name":"Buffer A","description":"","type":"buffer"}}]}}]"#
+    );
+    let editor = format!(
+        r#"{{"ver":"0.1","renderpass":[{{"outputs":[{{"channel":0,"id":"4dfGRr"}}],"inputs":[{{"channel":0,"type":"buffer",
+        "id":"4dXGR8","filepath":"/media/previz/buffer00.png","sampler":{sampler}}},{{"channel":2,"type":"musicstream","id":"x",
+        "filepath":"https://example.com","sampler":{sampler}}}],"code":{image},"name":"Image","description":"","type":"image"}},
+        {{"outputs":[{{"channel":0,"id":"4dXGR8"}}],"inputs":[],"code":{buffer},"name":"Buffer A","description":"","type":"buffer"}}],
+        "flags":{{"mFlagVR":false}},"info":{{"id":"-1","description":"a\nb"}}}}"#
+    );
+    [api, page, editor]
+}
+
+fn from_json(files: &mut Files, text: &str) -> Result<Project, String> {
+    let file = files.add(File::new("x.json", text));
+    Project::from_json(files, file).map_err(|errors| errors.to_string())
+}
+
+/// The project that is read from the files that it is written as.
+fn through_folder(project: &Project, files: &mut Files) -> Project {
+    let toml = files.add(File::new(PROJECT_FILE, project.to_toml()));
+    let tabs: Vec<_> = project.tabs().iter().rev().copied().collect();
+    match Project::from_folder(files, Some(toml), &tabs) {
+        Ok(project) => project,
+        Err(errors) => panic!("{errors}\n{}", project.to_toml()),
+    }
+}
+
+#[test]
+fn every_variant_survives_the_way_through_a_folder() {
+    for text in variants() {
+        let mut files = Files::default();
+        let project = from_json(&mut files, &text).unwrap();
+        assert_eq!(
+            project.image().inputs[0].as_ref().unwrap().source,
+            Source::Buffer(Buffer::A)
+        );
+        assert_eq!(files.get(project.image().file).text(), IMAGE);
+        assert_eq!(files.get(project.image().file).name(), "x.json/image.glsl");
+        let again = through_folder(&project, &mut files);
+        assert_eq!(again.passes.len(), 2);
+        let json = again.to_json(&files);
+        assert_eq!(json, project.to_json(&files), "the order of keys is kept as well");
+        let [before, after] =
+            [&text, &json].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap());
+        assert_eq!(before, after);
+        assert!(project.to_toml().contains(if text.contains("257") {
+            "src = "
+        } else {
+            "source = \"buffer-a\""
+        }));
+    }
+}
+
+#[test]
+fn order_samplers_and_media_are_read() {
+    let mut files = Files::default();
+    let sampler =
+        r#""sampler":{"filter":"mipmap","wrap":"repeat","vflip":false,"srgb":"false","internal":"byte"}"#;
+    let text = format!(
+        r#"{{"renderpass":[{{"type":"buffer","outputs":[{{"id":"XsXGR8"}}],"code":""}},{{"type":"common","code":"// c"}},
+        {{"type":"buffer","outputs":[{{"id":"257"}}],"code":""}},{{"type":"cubemap","code":""}},{{"type":"sound","code":""}},
+        {{"type":"image","code":"","inputs":[{{"channel":3,"type":"texture","id":"Xsf3zn",{sampler}}},
+        {{"channel":1,"type":"cubemap","id":"4dX3Rr"}},{{"channel":0,"ctype":"keyboard","id":33}}]}}]}}"#
+    );
+    let project = from_json(&mut files, &text).unwrap();
+    let kinds: Vec<_> = project.passes.iter().map(|pass| pass.kind.to_string()).collect();
+    assert_eq!(kinds, ["Buffer B", "Buffer A", "Cube A", "Sound", "Image"]);
+    assert_eq!(files.get(project.common.unwrap()).text(), "// c");
+    let [keyboard, cube, none, noise] = &project.image().inputs;
+    assert_eq!(keyboard.as_ref().unwrap().source, Source::Keyboard);
+    assert_eq!(cube.as_ref().unwrap().source, Source::CubeA);
+    assert_eq!(cube.as_ref().unwrap().sampler.wrap, Wrap::Clamp);
+    assert!(none.is_none());
+    let noise = noise.as_ref().unwrap();
+    assert_eq!(noise.source.medium().unwrap().name, "RGBA Noise Medium");
+    assert_eq!(
+        (noise.sampler.filter, noise.sampler.wrap),
+        (Filter::Mipmap, Wrap::Repeat)
+    );
+    assert!(!noise.sampler.vflip);
+}
+
+#[test]
+fn errors_of_json_have_a_line_and_a_column() {
+    for (text, expected) in [
+        (
+            "[]",
+            "1:1: error[E0506]: a project must be an object, found a list",
+        ),
+        (
+            r#"{"Error": "Shader not found"}"#,
+            "1:11: error[E0506]: ShaderToy's API answered with an error instead of a shader: Shader not found",
+        ),
+        (
+            r#"{"ver": "0.1"}"#,
+            "1:1: error[E0506]: missing key `renderpass`, the list of the passes",
+        ),
+        (
+            r#"{"renderpass": {}}"#,
+            "1:16: error[E0506]: `renderpass` must be a list of passes, found an object",
+        ),
+        (
+            r#"{"renderpass": []}"#,
+            "1:16: error[E0506]: there is no pass of the type `image`",
+        ),
+        (
+            "{\"ver\": \"0.2\",\n\"renderpass\": [{\"type\": \"image\", \"code\": \"\"}]}",
+            "1:9: error[E0506]: unknown version of ShaderToy's JSON",
+        ),
+        (
+            r#"{"renderpass": [1]}"#,
+            "1:17: error[E0506]: a pass must be an object, found a number",
+        ),
+        (
+            r#"{"renderpass": [{"code": ""}]}"#,
+            "1:17: error[E0506]: missing key `type` in a pass",
+        ),
+        (
+            r#"{"renderpass": [{"type": "imag", "code": ""}]}"#,
+            "1:26: error[E0506]: unknown type `imag` of a pass",
+        ),
+        (
+            r#"{"renderpass": [{"type": 1, "code": ""}]}"#,
+            "1:26: error[E0506]: `type` must be a string, found a number",
+        ),
+        (
+            "{\"renderpass\": [\n {\"type\": \"image\"}]}",
+            "2:2: error[E0506]: missing key `code` in a pass",
+        ),
+        (
+            r#"{"renderpass": [{"type": "image", "code": []}]}"#,
+            "1:43: error[E0506]: `code` must be a string, found a list",
+        ),
+        (
+            r#"{"renderpass": [{"type": "image", "code": ""}, {"type": "image", "code": ""}]}"#,
+            "1:48: error[E0506]: there are two passes for Image",
+        ),
+        (
+            r#"{"renderpass": [{"type": "buffer", "code": ""}]}"#,
+            "1:17: error[E0506]: missing key `outputs` of a buffer",
+        ),
+        (
+            r#"{"renderpass": [{"type": "buffer", "code": "", "outputs": [{"id": "x"}]}]}"#,
+            "1:67: error[E0506]: this is not the id of a buffer",
+        ),
+        (
+            r#"{"renderpass": [{"type": "buffer", "code": "", "outputs": []}]}"#,
+            "1:59: error[E0506]: `outputs` of a buffer must be a list with an object that has an `id`",
+        ),
+        (
+            r#"{"renderpass": [{"type": "image", "code": "", "inputs": 1}]}"#,
+            "1:57: error[E0506]: `inputs` must be a list, found a number",
+        ),
+    ] {
+        let error = from_json(&mut Files::default(), text).unwrap_err();
+        assert_eq!(error, format!("x.json:{expected}"), "{text}");
+    }
+    for (input, expected) in [
+        ("1", "an input must be an object, found a number"),
+        (
+            r#"{"type": "buffer", "id": "4dXGR8"}"#,
+            "missing key `channel` in an input",
+        ),
+        (
+            r#"{"channel": 4, "type": "buffer", "id": "4dXGR8"}"#,
+            "`channel` must be 0, 1, 2 or 3",
+        ),
+        (
+            r#"{"channel": "0", "type": "buffer", "id": "4dXGR8"}"#,
+            "`channel` must be 0, 1, 2 or 3",
+        ),
+        (
+            r#"{"channel": 0, "id": "4dXGR8"}"#,
+            "missing key `type` in an input",
+        ),
+        (
+            r#"{"channel": 0, "ctype": "bufer", "id": "4dXGR8"}"#,
+            "unknown type `bufer` of an input",
+        ),
+        (
+            r#"{"channel": 0, "type": "buffer"}"#,
+            "missing key `id` in an input",
+        ),
+        (
+            r#"{"channel": 0, "type": "buffer", "id": []}"#,
+            "`id` must be a string or a number, found a list",
+        ),
+        (
+            r#"{"channel": 0, "type": "buffer", "id": 7}"#,
+            "this is not the id of a buffer",
+        ),
+        (
+            r#"{"channel": 0, "type": "mic", "id": 7, "sampler": 1}"#,
+            "`sampler` must be an object, found a number",
+        ),
+        (
+            r#"{"channel": 0, "type": "mic", "id": 7, "sampler": {"filter": "best"}}"#,
+            "unknown `filter` of a sampler",
+        ),
+        (
+            r#"{"channel": 0, "type": "mic", "id": 7, "sampler": {"vflip": "yes"}}"#,
+            "`vflip` must be \"true\" or \"false\"",
+        ),
+        (
+            r#"{"channel": 0, "type": "mic", "id": 7}, {"channel": 0, "type": "mic", "id": 7}"#,
+            "iChannel0 has two inputs",
+        ),
+    ] {
+        let text = format!(r#"{{"renderpass": [{{"type": "image", "code": "", "inputs": [{input}]}}]}}"#);
+        let error = from_json(&mut Files::default(), &text).unwrap_err();
+        assert!(error.contains(&format!("E0506]: {expected}")), "{text}: {error}");
+    }
+}
+
+#[test]
+fn a_tab_has_a_limit() {
+    let text = format!(
+        r#"{{"renderpass": [{{"type": "image", "code": "{}"}}]}}"#,
+        "x".repeat(MAX_TAB_BYTES + 1)
+    );
+    let error = from_json(&mut Files::default(), &text).unwrap_err();
+    assert!(
+        error.contains("1:43: error[E0506]: the code of this tab is larger than 1 MiB"),
+        "{error}"
+    );
+}
+
+/// The files of a folder with these tabs.
+fn folder(files: &mut Files, names: &[&str]) -> Vec<(Tab, FileId)> {
+    let tab = |name: &&str| Tab::ALL.into_iter().find(|tab| tab.name() == *name).unwrap();
+    names
+        .iter()
+        .map(|name| (tab(name), files.add(File::new(name, *name))))
+        .collect()
+}
+
+#[test]
+fn a_folder_without_a_project_file_reads_buffers_by_index() {
+    let mut files = Files::default();
+    let tabs = folder(&mut files, &["image", "buffer-a", "buffer-c", "common", "sound"]);
+    let project = Project::from_folder(&files, None, &tabs).unwrap();
+    assert!(project.has_assumed_inputs);
+    let kinds: Vec<_> = project.passes.iter().map(|pass| pass.kind.to_string()).collect();
+    assert_eq!(kinds, ["Buffer A", "Buffer C", "Image", "Sound"]);
+    let sources = |kind| {
+        let pass = project.pass(kind).unwrap();
+        pass.inputs
+            .each_ref()
+            .map(|input| input.as_ref().map(|input| input.source.clone()))
+    };
+    let buffers = [
+        Some(Source::Buffer(Buffer::A)),
+        None,
+        Some(Source::Buffer(Buffer::C)),
+        None,
+    ];
+    assert_eq!(sources(PassKind::Image), buffers);
+    assert_eq!(sources(PassKind::Buffer(Buffer::C)), buffers);
+    assert_eq!(sources(PassKind::Sound), [const { None }; 4]);
+    // What is exported is complete, and is read as the same project.
+    let json = project.to_json(&files);
+    let again = from_json(&mut files, &json).unwrap();
+    assert_eq!(again.to_json(&files), json);
+    assert!(
+        json.contains("\"previewfilepath\": \"/media/previz/buffer02.png\""),
+        "{json}"
+    );
+    let image = folder(&mut files, &["image"]);
+    assert!(
+        !Project::from_folder(&files, None, &image)
+            .unwrap()
+            .has_assumed_inputs
+    );
+}
+
+#[test]
+fn a_project_file_may_be_short() {
+    let mut files = Files::default();
+    let tabs = folder(&mut files, &["image", "buffer-b", "buffer-a"]);
+    let text = "[info]\nname = \"Waves\"\n\n[[pass]]\ntab = \"buffer-b\"\n\n[[pass]]\ntab = \"buffer-a\"\n\n[[pass]]\ntab = \"image\"\n\
+        inputs = [{ channel = 1, source = \"Buffer-B\", sampler = { filter = \"nearest\" } }, { channel = 0, source = \"rgba noise small\" }]\n";
+    let toml = files.add(File::new(PROJECT_FILE, text));
+    let project = Project::from_folder(&files, Some(toml), &tabs).unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(project.name(), Some("Waves"));
+    assert_eq!(project.passes[0].kind, PassKind::Buffer(Buffer::B));
+    let [noise, buffer, ..] = &project.image().inputs;
+    assert_eq!(noise.as_ref().unwrap().source.medium().unwrap().id, "XdXGzn");
+    assert_eq!(buffer.as_ref().unwrap().sampler.filter, Filter::Nearest);
+    assert_eq!(buffer.as_ref().unwrap().sampler.wrap, Wrap::Clamp);
+    let json = project.to_json(&files);
+    let again = from_json(&mut files, &json).unwrap();
+    assert_eq!(again.to_json(&files), json);
+}
+
+#[test]
+fn errors_of_a_project_file_have_a_line_and_a_column() {
+    for (text, expected) in [
+        (
+            "[[pass]\n",
+            "1:8: error[E0505]: missing `]]` at the end of a table header",
+        ),
+        ("[[pass]]\n", "1:1: error[E0506]: missing key `tab` in [[pass]]"),
+        (
+            "[[pass]]\ntab = \"buffer-e\"\n",
+            "2:7: error[E0506]: `tab` must be the name of a tab",
+        ),
+        (
+            "[[pass]]\ntab = \"sound\"\n",
+            "2:7: error[E0506]: there is no file sound.glsl in the folder of the project",
+        ),
+        (
+            "[[pass]]\ntab = \"image\"\ninput = []\n",
+            "3:9: error[E0506]: unknown key `input`",
+        ),
+        (
+            "[[pass]]\ntab = \"image\"\ntype = \"buffer\"\noutputs = [{ id = 258 }]\n",
+            "2:7: error[E0506]: `tab` names Image, but `type` and `outputs` are those of Buffer B",
+        ),
+        (
+            "[[pass]]\ntab = \"image\"\ninputs = [{ channel = 0, source = \"buffer-x\" }]\n",
+            "3:35: error[E0506]: unknown source `buffer-x`",
+        ),
+        (
+            "[[pass]]\ntab = \"image\"\ninputs = [{ channel = 0x9, source = \"buffer-a\" }]\n",
+            "3:23: error[E0506]: `channel` must be 0, 1, 2 or 3",
+        ),
+        ("format = \"pages\"\n", "1:10: error[E0506]: unknown `format`"),
+        ("titel = 1\n", "1:9: error[E0506]: unknown key `titel`"),
+        (
+            "[info]\ndate = 2020-01-01\n",
+            "2:8: error[E0506]: a value that JSON does not have",
+        ),
+        (
+            "[info]\nx = inf\n",
+            "2:5: error[E0506]: a value that JSON does not have",
+        ),
+        (
+            "[info]\nx = { json = \"{\" }\n",
+            "2:5: error[E0506]: `json` must be JSON: expected a key in double quotes",
+        ),
+        (
+            "pass = 1\n",
+            "1:8: error[E0506]: `renderpass` must be a list of passes, found a number",
+        ),
+    ] {
+        let mut files = Files::default();
+        let tabs = folder(&mut files, &["image"]);
+        let toml = files.add(File::new(PROJECT_FILE, text));
+        let errors = Project::from_folder(&files, Some(toml), &tabs)
+            .unwrap_err()
+            .to_string();
+        let first = errors.lines().next().unwrap();
+        assert_eq!(first, format!("project.toml:{expected}"), "{text}");
+    }
+    let mut files = Files::default();
+    let tabs = folder(&mut files, &["image", "buffer-a"]);
+    let toml = files.add(File::new(PROJECT_FILE, "[[pass]]\ntab = \"image\"\n"));
+    let errors = Project::from_folder(&files, Some(toml), &tabs)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        errors,
+        "error[E0506]: buffer-a.glsl is not listed in project.toml"
+    );
+}
