@@ -18,6 +18,8 @@ pub struct File {
     /// The text with control characters masked, if it contains any.
     display_text: Option<String>,
     line_starts: Vec<usize>,
+    /// The files that the text is made of, for a joined file: each with the byte at which it starts.
+    parts: Vec<(FileId, u32)>,
 }
 
 /// A position: line and column from 1, columns in characters.
@@ -50,6 +52,7 @@ impl File {
             display_text: mask_controls(&text),
             text,
             line_starts,
+            parts: Vec::new(),
         }
     }
 
@@ -119,6 +122,42 @@ impl Files {
         FileId(id)
     }
 
+    /// Adds a file that consists of others, each on lines of its own. Spans in it are reported as spans of those files.
+    pub fn join(&mut self, name: impl AsRef<str>, parts: &[FileId]) -> FileId {
+        let mut text = String::new();
+        let mut starts = Vec::with_capacity(parts.len());
+        for &part in parts {
+            if !starts.is_empty() {
+                text.push('\n');
+            }
+            starts.push((part, text.len() as u32));
+            text += self.get(part).text();
+        }
+        let mut file = File::new(name, text);
+        file.parts = starts;
+        self.add(file)
+    }
+
+    /// The span in the file that the user knows: for a span in a joined file, the one in the part where it starts, up to
+    /// the end of that part.
+    #[must_use]
+    pub fn origin(&self, span: Span) -> Span {
+        let parts = &self.get(span.file).parts;
+        let after = parts.partition_point(|&(_, start)| start <= span.start);
+        let Some(&(file, start)) = after.checked_sub(1).and_then(|at| parts.get(at)) else {
+            return span;
+        };
+        let end = self.get(file).text().len() as u32;
+        let within = |byte: u32| (byte - start).min(end);
+        Span::new(file, within(span.start), within(span.end))
+    }
+
+    /// The name of the file that a span is in.
+    #[must_use]
+    pub fn name(&self, span: Span) -> &str {
+        self.get(self.origin(span).file).name()
+    }
+
     /// The file with that id.
     #[must_use]
     pub fn get(&self, id: FileId) -> &File {
@@ -128,12 +167,14 @@ impl Files {
     /// The position at which a span begins.
     #[must_use]
     pub fn position(&self, span: Span) -> Position {
+        let span = self.origin(span);
         self.get(span.file).position(span.start as usize)
     }
 
     /// The position after the last character of a span.
     #[must_use]
     pub fn end_position(&self, span: Span) -> Position {
+        let span = self.origin(span);
         self.get(span.file).position(span.end as usize)
     }
 
@@ -242,6 +283,26 @@ mod tests {
             .map(|place| (place.line, place.column))
             .collect();
         assert_eq!(lines, [(1, 1), (2, 1), (3, 1), (5, 1)]);
+    }
+
+    #[test]
+    fn spans_in_a_joined_file_are_those_of_its_parts() {
+        let mut files = Files::default();
+        let [first, second] =
+            [("first", "a\nbc"), ("second", "d\ne")].map(|(name, text)| files.add(File::new(name, text)));
+        let joined = files.join("joined", &[first, second]);
+        assert_eq!(files.get(joined).text(), "a\nbc\nd\ne");
+        let at = |needle: &str| files.get(joined).text().find(needle).unwrap() as u32;
+        let c = Span::new(joined, at("c"), at("c") + 1);
+        assert_eq!((files.origin(c), files.text(c)), (Span::new(first, 3, 4), "c"));
+        assert_eq!(files.position(c), Position { line: 2, column: 2 });
+        let e = Span::new(joined, at("e"), at("e") + 1);
+        assert_eq!((files.name(e), files.position(e).line), ("second", 2));
+        let across = Span::new(joined, at("b"), at("e"));
+        assert_eq!(files.origin(across), Span::new(first, 2, 4));
+        assert_eq!(files.end_position(across), Position { line: 2, column: 3 });
+        let empty = files.join("empty", &[]);
+        assert_eq!(files.origin(Span::new(empty, 0, 0)), Span::new(empty, 0, 0));
     }
 
     #[test]

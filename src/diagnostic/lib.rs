@@ -211,6 +211,23 @@ impl Diagnostic {
         self
     }
 
+    /// The diagnostic with all spans in the files that the user knows ([`Files::origin`]).
+    #[must_use]
+    pub fn in_origin(&self, files: &Files) -> Self {
+        let mut moved = self.clone();
+        let fixes = moved.fixes.iter_mut().flat_map(|fix| &mut fix.edits);
+        let related = moved.related.iter_mut().map(|(span, _)| span);
+        for span in moved
+            .span
+            .iter_mut()
+            .chain(related)
+            .chain(fixes.map(|edit| &mut edit.span))
+        {
+            *span = files.origin(*span);
+        }
+        moved
+    }
+
     /// The fixes whose messages are not part of the diagnostic's message.
     fn shown_fixes(&self) -> impl Iterator<Item = &Fix> {
         let fixes = self.fixes.iter();

@@ -17,6 +17,7 @@ const MAX_SHOWN_LINE_BYTES: usize = 400;
 /// any; with ANSI colors if `color`.
 #[must_use]
 pub fn human(diagnostic: &Diagnostic, files: &Files, width: Option<usize>, color: bool) -> String {
+    let diagnostic = &diagnostic.in_origin(files);
     let level = match diagnostic.severity {
         Severity::Error => Level::Error,
         Severity::Warning => Level::Warning,
@@ -161,6 +162,7 @@ impl Json {
 /// Converts a diagnostic to its JSON form, with all spans resolved.
 #[must_use]
 pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
+    let diagnostic = &diagnostic.in_origin(files);
     let name = |span: Span| files.get(span.file).name().to_owned();
     let start = diagnostic.span.map(|span| files.position(span));
     let end = diagnostic.span.map(|span| files.end_position(span));

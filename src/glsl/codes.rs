@@ -85,6 +85,7 @@ codes! {
     NoMainImage "E0409" "A missing or invalid `mainImage`",
     TooSlow "E0410" "A shader that takes too long to compile",
     TooDeepToRun "E0411" "Control flow nested too deeply for drivers",
+    InputOfOtherTab "E0412" "An input that the tab of a project does not have",
     // Warnings.
     ReservedName "W0001" "A reserved name",
     UnknownExtension "W0002" "An unsupported extension that is enabled",

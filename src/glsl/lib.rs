@@ -60,12 +60,14 @@ mod keywords;
 mod parse;
 mod preprocess;
 mod single_edit;
+mod stage;
 mod token;
 pub mod tree;
 
 pub use codes::{Code, IN_MACRO, MAX_REPORTED, overdue};
 pub use preprocess::ControlComment;
 pub use single_edit::{single_edit, with_single_edit};
+pub use stage::Stage;
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
 use tree::{FunctionId, SamplerShape, Tree};
 
@@ -84,6 +86,8 @@ pub struct Options {
     /// `mainImage`, in order), implicit conversions from integers to floats, arrays of arrays, `?:` of arrays
     /// and structures, and user functions named like built-in ones.
     pub lenient: bool,
+    /// The tab of a project that the text is.
+    pub stage: Stage,
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
     /// `sampler2D`, or the shape that the first lookup that does not fit a `sampler2D` requires.
     pub channels: [Option<SamplerShape>; 4],
@@ -97,7 +101,7 @@ pub struct Options {
 pub struct Checked {
     /// The shader.
     pub tree: Tree,
-    /// `void mainImage(out vec4, in vec2)`.
+    /// `void mainImage(out vec4, in vec2)`, or the function that ShaderToy calls in another [`Stage`].
     pub main_image: FunctionId,
     /// The shapes of `iChannel0` to `iChannel3`, as given in the options or inferred from use.
     pub channels: [SamplerShape; 4],
@@ -138,7 +142,44 @@ impl Checked {
 ///
 /// # Errors
 /// If the shader breaks a rule: at least one error, possibly among warnings.
+///
+/// # Panics
+/// For [`Stage::Common`], which has no entry point: see [`check_declarations`].
 pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Diagnostics> {
+    let text = parse(files, file, options)?;
+    Ok(Checked {
+        tree: text.tree,
+        main_image: text.entry.expect("every stage but Common has an entry point"),
+        channels: text.channels,
+        warnings: text.warnings,
+        control_comments: text.control_comments,
+    })
+}
+
+/// Checks a text without an entry point, such as Common of a project, which ShaderToy compiles alone
+/// ([`Stage::Common`]). Returns its warnings, or its diagnostics, in source order.
+///
+/// # Errors
+/// If the text breaks a rule.
+pub fn check_declarations(
+    files: &Files,
+    file: FileId,
+    options: &Options,
+) -> Result<Vec<Diagnostic>, Diagnostics> {
+    parse(files, file, options).map(|text| text.warnings)
+}
+
+/// A text without errors.
+struct Text {
+    tree: Tree,
+    /// The entry point, unless the stage has none.
+    entry: Option<FunctionId>,
+    channels: [SamplerShape; 4],
+    warnings: Vec<Diagnostic>,
+    control_comments: Vec<ControlComment>,
+}
+
+fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnostics> {
     let deadline = &options.deadline;
     let too_slow = |overdue| Diagnostics::from(vec![codes::overdue(overdue)]);
     let mut text = preprocess::preprocess(files, file, deadline);
@@ -160,31 +201,26 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
             channels = checker.channels().clone();
             continue;
         }
-        let main_image = checker.finish();
+        let entry = checker.finish();
         let mut all = reported;
         all.append(&mut checker.warnings);
         all.append(&mut checker.errors);
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
-        return match main_image {
-            Some(main_image) if !all.iter().any(is_error) => {
-                all.sort_by_key(|warning| warning.span.map(|span| span.start));
-                Ok(Checked {
-                    tree: checker.tree,
-                    main_image,
-                    channels: channels.shapes,
-                    warnings: all,
-                    control_comments: text.control_comments,
-                })
-            }
-            _ => {
-                all.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
-                let mut reported = Vec::new();
-                for diagnostic in all {
-                    codes::push_limited(&mut reported, diagnostic);
-                }
-                Err(Diagnostics::new(reported, files))
-            }
-        };
+        all.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
+        if (entry.is_some() || options.stage.entry().is_none()) && !all.iter().any(is_error) {
+            return Ok(Text {
+                tree: checker.tree,
+                entry,
+                channels: channels.shapes,
+                warnings: all,
+                control_comments: text.control_comments,
+            });
+        }
+        let mut reported = Vec::new();
+        for diagnostic in all {
+            codes::push_limited(&mut reported, diagnostic);
+        }
+        return Err(Diagnostics::new(reported, files));
     }
 }
 

@@ -367,7 +367,7 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
     if completes {
         report_unknown(&root, &KEYS, errors);
     }
-    let has_assumed_inputs = root.get("pass").is_none();
+    let knows_inputs = root.get("pass").is_some();
     let members = root.members_mut()?;
     match members.iter_mut().find(|member| member.key == "pass") {
         Some(passes) => "renderpass".clone_into(&mut passes.key),
@@ -400,9 +400,8 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
             errors.push(root.error(message).help(help));
         }
     }
-    let uses_buffers = |pass: &crate::Pass| pass.inputs.iter().any(Option::is_some);
     Some(Project {
-        has_assumed_inputs: has_assumed_inputs && passes.iter().any(uses_buffers),
+        knows_inputs,
         common,
         passes,
         document: Document {

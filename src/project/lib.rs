@@ -22,6 +22,7 @@
 //! }
 //! ```
 
+mod check;
 mod folder;
 mod json;
 mod media;
@@ -30,8 +31,9 @@ mod read;
 
 use std::fmt;
 
-use toyproof_diagnostic::FileId;
+use toyproof_diagnostic::{FileId, Span};
 
+pub use self::check::{CheckedPass, CheckedProject, check};
 use self::folder::Format;
 pub use self::folder::PROJECT_FILE;
 pub use self::media::{Medium, SourceType};
@@ -52,8 +54,9 @@ pub struct Project {
     pub common: Option<FileId>,
     /// The passes in the order of the file. Buffers run in this order; Cube A runs after them, and the image last.
     pub passes: Vec<Pass>,
-    /// Whether the inputs were not given, but assumed: channel *n* of every pass reads the *n*th buffer.
-    pub has_assumed_inputs: bool,
+    /// Whether the inputs are given. Otherwise channel *n* of every pass but Sound is assumed to read the *n*th buffer,
+    /// if there is one.
+    pub knows_inputs: bool,
     document: Document,
 }
 
@@ -130,6 +133,8 @@ pub struct Input {
     pub source: Source,
     /// How it is sampled.
     pub sampler: Sampler,
+    /// Where it stands in the project's JSON or TOML; none if it is assumed.
+    pub span: Option<Span>,
 }
 
 /// What an input reads.
@@ -274,6 +279,16 @@ impl fmt::Display for PassKind {
 }
 
 impl Source {
+    /// The pass that is read, if it is one of the project's.
+    #[must_use]
+    pub fn pass(&self) -> Option<PassKind> {
+        match self {
+            Self::Buffer(buffer) => Some(PassKind::Buffer(*buffer)),
+            Self::CubeA => Some(PassKind::CubeA),
+            _ => None,
+        }
+    }
+
     /// The type of the input.
     #[must_use]
     pub fn source_type(&self) -> SourceType {

@@ -40,7 +40,7 @@ impl Project {
         Ok(Self {
             common,
             passes,
-            has_assumed_inputs: false,
+            knows_inputs: true,
             document: Document {
                 root,
                 format,
@@ -161,7 +161,7 @@ pub(crate) fn read(
         return None;
     };
     let wrong = renderpass.error(format!(
-        "`renderpass` must be a list of passes, found {}",
+        "the passes must be a list, found {}",
         renderpass.describe()
     ));
     let no_image = renderpass.error("there is no pass of the type `image`");
@@ -335,7 +335,15 @@ fn input(node: &Node) -> Result<(usize, Input), Box<Diagnostic>> {
         Some(sampler) => self::sampler(sampler, source_type)?,
         None => default_sampler(source_type),
     };
-    Ok((number, Input { source, sampler }))
+    let span = node.span;
+    Ok((
+        number,
+        Input {
+            source,
+            sampler,
+            span,
+        },
+    ))
 }
 
 fn missing(node: &Node, key: &str) -> Box<Diagnostic> {

@@ -121,7 +121,7 @@ fn errors_of_json_have_a_line_and_a_column() {
         ),
         (
             r#"{"renderpass": {}}"#,
-            "1:16: error[E0506]: `renderpass` must be a list of passes, found an object",
+            "1:16: error[E0506]: the passes must be a list, found an object",
         ),
         (
             r#"{"renderpass": []}"#,
@@ -263,7 +263,7 @@ fn a_folder_without_a_project_file_reads_buffers_by_index() {
     let mut files = Files::default();
     let tabs = folder(&mut files, &["image", "buffer-a", "buffer-c", "common", "sound"]);
     let project = Project::from_folder(&files, None, &tabs).unwrap();
-    assert!(project.has_assumed_inputs);
+    assert!(!project.knows_inputs);
     let kinds: Vec<_> = project.passes.iter().map(|pass| pass.kind.to_string()).collect();
     assert_eq!(kinds, ["Buffer A", "Buffer C", "Image", "Sound"]);
     let sources = |kind| {
@@ -288,12 +288,6 @@ fn a_folder_without_a_project_file_reads_buffers_by_index() {
     assert!(
         json.contains("\"previewfilepath\": \"/media/previz/buffer02.png\""),
         "{json}"
-    );
-    let image = folder(&mut files, &["image"]);
-    assert!(
-        !Project::from_folder(&files, None, &image)
-            .unwrap()
-            .has_assumed_inputs
     );
 }
 
@@ -364,7 +358,7 @@ fn errors_of_a_project_file_have_a_line_and_a_column() {
         ),
         (
             "pass = 1\n",
-            "1:8: error[E0506]: `renderpass` must be a list of passes, found a number",
+            "1:8: error[E0506]: the passes must be a list, found a number",
         ),
     ] {
         let mut files = Files::default();
@@ -385,5 +379,154 @@ fn errors_of_a_project_file_have_a_line_and_a_column() {
     assert_eq!(
         errors,
         "error[E0506]: buffer-a.glsl is not listed in project.toml"
+    );
+}
+
+/// The project with these tabs, and its diagnostics, each on a line.
+fn checked(tabs: &[(&str, &str)]) -> (Project, Files, Result<CheckedProject, String>) {
+    let mut files = Files::default();
+    let tab = |name: &str| Tab::ALL.into_iter().find(|tab| tab.name() == name).unwrap();
+    let tabs: Vec<_> = tabs
+        .iter()
+        .map(|(name, text)| (tab(name), files.add(File::new(tab(name).file_name(), *text))))
+        .collect();
+    let project = Project::from_folder(&files, None, &tabs).unwrap();
+    let checked = check(&project, &mut files, &Default::default());
+    (project, files, checked.map_err(|errors| errors.to_string()))
+}
+
+const PLAIN: &str = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); }";
+
+#[test]
+fn common_precedes_every_tab_and_errors_are_in_the_tab_s_own_lines() {
+    let common = "#define T iTime\nfloat f(float x) { return x * iSampleRate; }";
+    let image = "\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(f(T)); }";
+    let sound = "vec2 mainSound(int samp, float time) { return vec2(f(time)); }";
+    let cube = "void mainCubemap(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = vec4(d, f(1.0)); }";
+    let tabs = [
+        ("common", common),
+        ("image", image),
+        ("sound", sound),
+        ("cube-a", cube),
+        ("buffer-b", PLAIN),
+    ];
+    let (_, _, result) = checked(&tabs);
+    let kinds: Vec<_> = result
+        .unwrap()
+        .passes
+        .iter()
+        .map(|pass| pass.kind.to_string())
+        .collect();
+    assert_eq!(kinds, ["Buffer B", "Cube A", "Image", "Sound"]);
+    for (tabs, expected) in [
+        (
+            vec![
+                ("common", "float a;\nfloat b = x;"),
+                ("image", "\n\nvoid mainImage(out vec4 c, in vec2 p) { c = y; }"),
+                ("buffer-a", PLAIN),
+            ],
+            "common.glsl:2:11: error[E0200]: `x` is not declared\nimage.glsl:3:45: error[E0200]: `y` is not declared",
+        ),
+        (
+            vec![("common", "float g() { return iTime; }"), ("image", PLAIN)],
+            "common.glsl:1:20: error[E0412]: `iTime` is not an input of Common",
+        ),
+        (
+            vec![
+                ("common", "float g() { return texture(iChannel0, vec2(0)).x; }"),
+                ("image", PLAIN),
+            ],
+            "common.glsl:1:28: error[E0412]: `iChannel0` is not an input of Common",
+        ),
+        (
+            vec![("common", "/* c"), ("image", PLAIN)],
+            "common.glsl:1:1: error[E0002]: unterminated comment",
+        ),
+        (
+            vec![
+                ("sound", "vec2 mainSound(int s, float t) { return iMouse.xy; }"),
+                ("image", PLAIN),
+            ],
+            "sound.glsl:1:41: error[E0412]: `iMouse` is not an input of Sound",
+        ),
+        (
+            vec![
+                ("sound", "vec2 mainSound(vec2 s) { return s; }"),
+                ("image", PLAIN),
+            ],
+            "sound.glsl:1:6: error[E0409]: `mainSound` has the wrong signature",
+        ),
+        (
+            vec![("cube-a", PLAIN), ("image", PLAIN)],
+            "cube-a.glsl:1:54: error[E0409]: missing function `mainCubemap`",
+        ),
+    ] {
+        assert_eq!(checked(&tabs).2.unwrap_err(), expected, "{tabs:?}");
+    }
+}
+
+#[test]
+fn older_sound_has_no_number_of_the_sample() {
+    let (_, _, result) = checked(&[
+        ("image", PLAIN),
+        ("sound", "vec2 mainSound(float t) { return vec2(sin(t)); }"),
+    ]);
+    assert!(result.is_ok(), "{result:?}");
+    let both = "vec2 mainSound(float t) { return vec2(sin(t)); } vec2 mainSound(in int s, float t) { return mainSound(t); }";
+    let checked = checked(&[("image", PLAIN), ("sound", both)]).2.unwrap();
+    let sound = &checked.passes[1].checked;
+    assert_eq!(sound.tree[sound.main_image].parameters.len(), 2);
+}
+
+#[test]
+fn warnings_about_common_are_reported_once_and_allowed_by_each_pass() {
+    let common = "float g(float x) { x + 1.0; return x; } // toyproof: allow(W0010)\nfloat h(float x) { x + 1.0; return x; }";
+    let [calls_g, calls_h, calls_both] = ["g(1.0)", "h(1.0)", "g(1.0) + h(1.0)"]
+        .map(|call| format!("void mainImage(out vec4 c, in vec2 p) {{ c = vec4({call}); }}"));
+    let tabs = [
+        ("common", common),
+        ("buffer-a", calls_g.as_str()),
+        ("buffer-b", &calls_h),
+        ("image", &calls_both),
+    ];
+    let (_, files, result) = checked(&tabs);
+    let warnings = result.unwrap().warnings;
+    let lines: Vec<_> = warnings
+        .iter()
+        .map(|warning| toyproof_diagnostic::short(warning, &files))
+        .collect();
+    assert_eq!(
+        lines,
+        ["common.glsl:2:20: warning[W0010]: this expression has no effect: its value is unused"]
+    );
+    let (_, files, result) = checked(&[("common", common), ("image", &calls_h)]);
+    let warnings = result.unwrap().warnings;
+    let unused = toyproof_diagnostic::short(&warnings[0], &files);
+    assert_eq!(unused, "common.glsl:1:60: warning[W0015]: unused `allow(W0010)`");
+}
+
+#[test]
+fn the_image_tab_has_assertions() {
+    let image = "void mainImage(out vec4 c, in vec2 p) { st_assert(p.x > 1.0); st_assert(p.y > 1.0, 2); c = vec4(1); }";
+    let (_, _, result) = checked(&[("image", image)]);
+    let checked = result.unwrap();
+    let tree = &checked.passes[0].checked.tree;
+    assert_eq!(tree[checked.passes[0].checked.main_image].name, "mainImage");
+    let (_, _, result) = checked_in_buffer(image);
+    assert!(result.unwrap_err().contains("unknown function `st_assert`"));
+}
+
+fn checked_in_buffer(buffer: &str) -> (Project, Files, Result<CheckedProject, String>) {
+    checked(&[("image", PLAIN), ("buffer-a", buffer)])
+}
+
+#[test]
+fn the_image_needs_what_it_reads_through_buffers() {
+    let (project, ..) = checked(&[("image", PLAIN), ("sound", PLAIN), ("cube-a", PLAIN)]);
+    assert_eq!(project.needed_by_image(), []);
+    let (project, ..) = checked(&[("image", PLAIN), ("buffer-a", PLAIN), ("buffer-c", PLAIN)]);
+    assert_eq!(
+        project.needed_by_image(),
+        [Buffer::A, Buffer::C].map(PassKind::Buffer)
     );
 }

@@ -109,7 +109,7 @@ impl Repair {
         let first = *edits.first()?;
         Some(Self {
             id: repair.mistake.id.to_owned(),
-            file: files.get(first.span.file).name().to_owned(),
+            file: files.name(first.span).to_owned(),
             range: SourceRange::of(first.span, files),
             replacement: Some(first.replacement.clone()),
             text: Some(repair.fix.message.clone()),

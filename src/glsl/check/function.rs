@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::scope::Entity;
 use super::{Checker, Specifier};
 use crate::codes::Code;
+use crate::stage::Entry;
 use crate::token::Symbol;
 use crate::tree::{
     Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
@@ -233,7 +234,7 @@ impl Checker<'_> {
 
 impl Checker<'_> {
     /// Checks, once all functions are parsed, that every called function has a body and that none is
-    /// recursive (§6.1.2). Returns `mainImage`.
+    /// recursive (§6.1.2). Returns the entry point; none also for Common.
     pub(crate) fn finish(&mut self) -> Option<FunctionId> {
         self.find_late_declarations();
         // A missing definition may be in unparsable text.
@@ -274,8 +275,9 @@ impl Checker<'_> {
         {
             return None;
         }
-        if complete || (!self.lacks_names && self.interner.find("mainImage").is_none()) {
-            return self.main_image();
+        let entry = self.stage.entry()?;
+        if complete || (!self.lacks_names && self.interner.find(entry.name).is_none()) {
+            return self.find_entry(&entry);
         }
         None
     }
@@ -322,43 +324,31 @@ impl Checker<'_> {
         }
     }
 
-    /// Finds `void mainImage(out vec4, in vec2)`, which `ShaderToy` calls.
-    fn main_image(&mut self) -> Option<FunctionId> {
-        use crate::tree::Scalar::Float;
+    /// Finds the function that ShaderToy calls.
+    fn find_entry(&mut self, entry: &Entry) -> Option<FunctionId> {
         let mut near = None;
+        let mut found: Option<(usize, FunctionId)> = None;
         for (id, function) in self.tree.functions.iter() {
-            if function.name != "mainImage" || function.body.is_none() {
+            if function.name != entry.name || function.body.is_none() {
                 continue;
             }
             near = Some(function.at);
-            let parameters = function
-                .parameters
-                .iter()
-                .map(|&id| (self.tree[id].ty, self.tree[id].kind));
-            let fits = matches!(
-                parameters.collect::<Vec<_>>()[..],
-                [
-                    (
-                        Type::Vector(Float, 4),
-                        VariableKind::Parameter(Direction::Out | Direction::InOut)
-                    ),
-                    (
-                        Type::Vector(Float, 2),
-                        VariableKind::Parameter(Direction::In | Direction::ConstIn)
-                    ),
-                ]
-            );
-            if fits && function.return_type == Type::Void {
-                return Some(id);
-            }
+            let form = entry.form(function, &self.tree);
+            found = found
+                .into_iter()
+                .chain(form.map(|form| (form, id)))
+                .min_by_key(|(form, _)| *form);
         }
+        if let Some((_, id)) = found {
+            return Some(id);
+        }
+        let name = entry.name;
         let (at, message) = match near {
-            Some(_) => (near, "`mainImage` has the wrong signature"),
-            None => (self.end, "missing function `mainImage`"),
+            Some(_) => (near, format!("`{name}` has the wrong signature")),
+            None => (self.end, format!("missing function `{name}`")),
         };
         let diagnostic = Code::NoMainImage.at(at?, message);
-        let help = "define `void mainImage(out vec4 fragColor, in vec2 fragCoord)`, which ShaderToy calls for each pixel";
-        let mut diagnostic = diagnostic.help(help);
+        let mut diagnostic = diagnostic.help(entry.help);
         if near.is_none() && !self.tree.functions.is_empty() {
             diagnostic = diagnostic
                 .help("put the text of a tab without it, such as Common, in front of the tab that has it");

@@ -32,6 +32,7 @@ use crate::codes::{Code, IN_MACRO, MAX_REPORTED, push_limited};
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
 use crate::preprocess::Preprocessed;
+use crate::stage::Stage;
 use crate::token::Symbol;
 use crate::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
 
@@ -39,6 +40,7 @@ use crate::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, St
 pub(crate) struct Checker<'a> {
     interner: &'a Interner,
     lenient: bool,
+    stage: Stage,
     pub(crate) tree: Tree,
     scopes: Scopes,
     channels: Channels,
@@ -74,6 +76,7 @@ impl<'a> Checker<'a> {
             // The last token is `End`, which may be lines below the last visible token.
             end: text.tokens.iter().rev().take(2).next_back().map(|token| token.at),
             lenient: options.lenient,
+            stage: options.stage,
             tree: Tree::default(),
             scopes: Scopes::default(),
             channels,

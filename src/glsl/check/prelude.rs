@@ -70,6 +70,19 @@ impl Checker<'_> {
         }
     }
 
+    /// Whether another tab has an input of this name.
+    pub(super) fn is_input_of_other_tabs(&self, name: &str) -> bool {
+        let mut variables = self
+            .tree
+            .variables
+            .iter()
+            .map_while(|(_, variable)| match variable.kind {
+                VariableKind::Input(_) => Some(&variable.name),
+                _ => None,
+            });
+        !self.stage.has_input(name) && variables.any(|input| input == name)
+    }
+
     fn built_in(&mut self, name: &str, ty: Type, kind: VariableKind, value: Option<i32>) {
         let variable = self.tree.variables.push(Variable {
             name: name.to_owned(),
@@ -80,7 +93,8 @@ impl Checker<'_> {
             at: None,
         });
         // A name that does not occur in the text need not be in scope.
-        if let Some(symbol) = self.interner.find(name) {
+        let is_declared = !matches!(kind, VariableKind::Input(_)) || self.stage.has_input(name);
+        if let Some(symbol) = self.interner.find(name).filter(|_| is_declared) {
             self.scopes.declare(symbol, Entity::Variable(variable));
         }
     }

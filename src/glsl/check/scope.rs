@@ -8,6 +8,7 @@ use super::Checker;
 use crate::codes::Code;
 use crate::foreign::Foreign;
 use crate::keywords::Word;
+use crate::stage::Stage;
 use crate::token::Symbol;
 use crate::tree::{BuiltIn, ExprId, FunctionId, Place, StructId, Type, VariableId};
 
@@ -167,6 +168,10 @@ impl Checker<'_> {
         if known || self.is_maybe_declared(name) {
             return self.error_expr(at);
         }
+        if self.is_input_of_other_tabs(self.text(name)) {
+            self.report(self.input_of_other_tabs(name, at));
+            return self.error_expr(at);
+        }
         let diagnostic = match Foreign::named(self.text(name)) {
             Some(foreign) => {
                 let diagnostic = Code::Undeclared.at(at, message);
@@ -187,6 +192,21 @@ impl Checker<'_> {
             is_call: call.is_some(),
         });
         self.error_expr(at)
+    }
+
+    /// The error about an input that this tab does not have.
+    fn input_of_other_tabs(&self, name: Symbol, at: Place) -> Diagnostic {
+        let (input, tab) = (self.text(name), self.stage.tab());
+        let diagnostic = Code::InputOfOtherTab.at(at, format!("`{input}` is not an input of {tab}"));
+        if self.stage == Stage::Common {
+            diagnostic
+                .note("ShaderToy also compiles Common alone, with the inputs `iDate` and `iSampleRate` only")
+                .help("pass it to the function as an argument, or use it in a macro")
+        } else {
+            diagnostic.note(format!(
+                "{tab} has the inputs `iDate`, `iSampleRate`, `iChannelTime`, `iChannelResolution` and `iChannel0` to `iChannel3`"
+            ))
+        }
     }
 
     /// After parsing: changes the errors about names that are declared later in the text accordingly. The first

@@ -346,7 +346,7 @@ fn fully_undefined(proof: &Proof, files: &Files) -> Option<Unproved> {
         .filter(|_| proof.undefined() == proof.pixels())?;
     let span = by.site.at.span;
     let place = files.position(span);
-    let name = files.get(span.file).name();
+    let name = files.name(span);
     Some(Unproved::FullyUndefined {
         fault: by.site.fault,
         at: format!("{name}:{}:{}", place.line, place.column),

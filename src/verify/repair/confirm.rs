@@ -70,6 +70,7 @@ impl<'a> Judge<'a> {
             lenient: self.options.lenient,
             channels: self.case.checked.channels.map(Some),
             deadline: Deadline::after(self.case.timeout),
+            ..glsl::Options::default()
         };
         let checked = glsl::check(&files, file, &options).ok()?;
         Some((text, checked))

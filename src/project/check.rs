@@ -1,0 +1,190 @@
+//! Compiles all tabs of a project, as the site does: every pass with Common in front, and Common alone.
+
+use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files};
+use toyproof_glsl::tree::SamplerShape;
+use toyproof_glsl::{self as glsl, Checked, Code, Options, Stage};
+use toyproof_lint::{Lints, lint};
+
+use crate::{Pass, PassKind, Project, SourceType, Tab};
+
+/// A project all of whose tabs compile.
+#[derive(Debug)]
+pub struct CheckedProject {
+    /// The passes, in the order of the project.
+    pub passes: Vec<CheckedPass>,
+    /// The warnings about all tabs, each once, however many passes contain Common.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A pass without errors.
+#[derive(Debug)]
+pub struct CheckedPass {
+    /// What it renders.
+    pub kind: PassKind,
+    /// Its tree. The text that its spans are of is joined from those of the tabs.
+    pub checked: Checked,
+    /// The lints' findings.
+    pub lints: Lints,
+}
+
+/// The lints may take one part in this many of the time limit.
+const LINT_TIME_SHARE: u32 = 4;
+
+/// Checks all tabs of a project, and adds the texts that the compiler sees to `files`. The stage and the shapes of
+/// channels in `options` are those of the passes.
+///
+/// # Errors
+/// The diagnostics of all tabs, if one of them has an error; those about Common are reported once.
+pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<CheckedProject, Diagnostics> {
+    let mut reported = Reported::default();
+    let mut is_valid = true;
+    if let Some(common) = project.common {
+        let options = Options {
+            stage: Stage::Common,
+            ..options.clone()
+        };
+        if let Err(errors) = glsl::check_declarations(files, common, &options) {
+            is_valid = false;
+            reported.add(files, errors);
+        }
+    }
+    let mut passes = Vec::new();
+    for pass in &project.passes {
+        let options = Options {
+            stage: stage(pass.kind),
+            channels: channels(project, pass),
+            ..options.clone()
+        };
+        let file = joined(project, pass, files);
+        match glsl::check(files, file, &options) {
+            Ok(checked) => {
+                let lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
+                passes.push(CheckedPass {
+                    kind: pass.kind,
+                    checked,
+                    lints,
+                });
+            }
+            Err(errors) => {
+                is_valid = false;
+                reported.add(files, glsl::with_single_edit(files, file, errors, &options));
+            }
+        }
+    }
+    if !is_valid {
+        return Err(Diagnostics::new(reported.0, files));
+    }
+    let common = project.common;
+    let warnings = passes.iter().map(|pass| in_origin(files, &pass.lints.warnings));
+    let warnings: Vec<_> = warnings.collect();
+    // An `allow` in Common may serve the warning of one pass only.
+    let is_used_elsewhere = |warning: &Diagnostic| {
+        let is_in_common = warning.span.is_some_and(|span| Some(span.file) == common);
+        let is_unused = warning.code == Code::UnusedAllow.as_str();
+        is_unused && is_in_common && !warnings.iter().all(|of_pass| of_pass.contains(warning))
+    };
+    for warning in warnings
+        .iter()
+        .flatten()
+        .filter(|warning| !is_used_elsewhere(warning))
+    {
+        reported.add(files, [warning.clone()]);
+    }
+    Ok(CheckedProject {
+        passes,
+        warnings: reported.0,
+    })
+}
+
+fn in_origin(files: &Files, diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
+    diagnostics.iter().map(|one| one.in_origin(files)).collect()
+}
+
+/// Diagnostics, each once.
+#[derive(Default)]
+struct Reported(Vec<Diagnostic>);
+
+impl Reported {
+    fn add(&mut self, files: &Files, diagnostics: impl IntoIterator<Item = Diagnostic>) {
+        for diagnostic in diagnostics {
+            let diagnostic = diagnostic.in_origin(files);
+            let mut others = self.0.iter();
+            // Another pass may suggest another fix.
+            if !others.any(|other| {
+                (&other.code, &other.message, other.span)
+                    == (&diagnostic.code, &diagnostic.message, diagnostic.span)
+            }) {
+                self.0.push(diagnostic);
+            }
+        }
+    }
+}
+
+fn stage(kind: PassKind) -> Stage {
+    match kind {
+        PassKind::Image | PassKind::Buffer(_) => Stage::Image,
+        PassKind::CubeA => Stage::Cubemap,
+        PassKind::Sound => Stage::Sound,
+    }
+}
+
+/// The shapes of the channels: an unbound one is a `sampler2D`, unless the project does not say what is bound.
+fn channels(project: &Project, pass: &Pass) -> [Option<SamplerShape>; 4] {
+    pass.inputs.each_ref().map(|input| match input {
+        None if project.knows_inputs => Some(SamplerShape::D2),
+        None => None,
+        Some(input) => Some(match input.source.source_type() {
+            SourceType::Cubemap => SamplerShape::Cube,
+            // The Sound tab declares volumes as pictures.
+            SourceType::Volume if pass.kind != PassKind::Sound => SamplerShape::D3,
+            _ => SamplerShape::D2,
+        }),
+    })
+}
+
+/// What stands before an Image tab that uses `st_assert`. The site declares these functions in this tab only.
+const ASSERTIONS: &str = include_str!("st_assert.glsl");
+
+/// What follows such a tab: a failed assertion replaces the color.
+const ASSERTED: &str = include_str!("st_asserted.glsl");
+
+/// Adds the text that is compiled for a pass: Common, a line feed, and the tab.
+fn joined(project: &Project, pass: &Pass, files: &mut Files) -> FileId {
+    let mut parts: Vec<_> = project.common.into_iter().chain([pass.file]).collect();
+    let uses_assertions = |part: &FileId| files.get(*part).text().contains("st_assert");
+    if pass.kind == PassKind::Image && parts.iter().any(uses_assertions) {
+        parts.insert(0, files.add(File::new("<st_assert>", ASSERTIONS)));
+        parts.push(files.add(File::new("<st_assert>", ASSERTED)));
+    }
+    let name = files.get(pass.file).name().to_owned();
+    match parts[..] {
+        [only] => only,
+        _ => files.join(name, &parts),
+    }
+}
+
+impl Project {
+    /// The passes that the image needs and that are rendered before it: the buffers and the cube map that it reads, and
+    /// those that these read.
+    #[must_use]
+    pub fn needed_by_image(&self) -> Vec<PassKind> {
+        let mut needed = vec![PassKind::Image];
+        let mut next = 0;
+        while let Some(&kind) = needed.get(next) {
+            next += 1;
+            let inputs = self
+                .pass(kind)
+                .into_iter()
+                .flat_map(|pass| pass.inputs.iter().flatten());
+            for read in inputs.filter_map(|input| input.source.pass()) {
+                if !needed.contains(&read) && self.pass(read).is_some() {
+                    needed.push(read);
+                }
+            }
+        }
+        needed.remove(0);
+        let order = |kind: &PassKind| Tab::ALL.iter().position(|tab| *tab == Tab::Pass(*kind));
+        needed.sort_by_key(order);
+        needed
+    }
+}
