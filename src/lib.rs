@@ -35,6 +35,7 @@
 //! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision) |
 //! | `gpu` | rendering on a Vulkan driver, in a worker process |
 //! | `lab` | measurements of stability, and of accuracy against time |
+//! | `project` | projects of several tabs, as folders and as the site's JSON |
 //! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope; with `lab`, assignments |
 //! | `cli` | the command line |
 //!
@@ -79,6 +80,8 @@ pub use toyproof_image as image;
 pub use toyproof_lab as lab;
 pub use toyproof_lint as lint;
 pub use toyproof_math as math;
+#[cfg(feature = "project")]
+pub use toyproof_project as project;
 #[cfg(feature = "tracer")]
 pub use toyproof_scene as scene;
 #[cfg(feature = "tracer")]

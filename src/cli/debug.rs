@@ -80,7 +80,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             terminal.diagnostics(diagnostics, &shader.files);
             Exit::ShaderFault
         }
-        Err(Unusable::Unreadable(error)) => {
+        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
             terminal.error(error);
             Exit::Error
         }

@@ -9,6 +9,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostic, File, Files, Span, path_name};
+use toyproof_project::{PROJECT_FILE, PassKind, Project, Tab};
 use walkdir::{DirEntry, WalkDir};
 
 use crate::cli::scenes::builtin_name;
@@ -18,6 +19,9 @@ pub(super) const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
 
 /// The maximum size of a text in bytes. ShaderToy's own editor takes 65,536 characters a tab.
 pub(super) const MAX_BYTES: u64 = 1 << 20;
+
+/// The maximum size of a project's JSON in bytes: eight tabs.
+const MAX_JSON_BYTES: u64 = 8 << 20;
 
 /// The source of an input's text.
 #[derive(Debug, Clone)]
@@ -29,8 +33,43 @@ pub(crate) enum InputSource {
         /// The content.
         bytes: Vec<u8>,
     },
-    /// A file.
+    /// A file, or the folder of a project.
     File(PathBuf),
+}
+
+/// The texts of an input.
+#[derive(Debug)]
+pub(crate) enum Texts {
+    /// A shader.
+    Shader(File),
+    /// A project of several tabs.
+    Project(ProjectTexts),
+}
+
+/// The texts of a project.
+#[derive(Debug)]
+pub(crate) enum ProjectTexts {
+    /// The site's JSON.
+    Json(File),
+    /// A folder.
+    Folder {
+        /// `project.toml`.
+        toml: Option<File>,
+        /// The tabs.
+        tabs: Vec<(Tab, File)>,
+    },
+}
+
+impl Texts {
+    /// All files.
+    pub(crate) fn files(&self) -> Vec<&File> {
+        match self {
+            Self::Shader(file) | Self::Project(ProjectTexts::Json(file)) => vec![file],
+            Self::Project(ProjectTexts::Folder { toml, tabs }) => {
+                toml.iter().chain(tabs.iter().map(|(_, file)| file)).collect()
+            }
+        }
+    }
 }
 
 /// An input: the source of its text, and the path of its outputs below an output folder.
@@ -80,7 +119,7 @@ pub(crate) enum ReadError {
         /// The operating system's error.
         error: io::Error,
     },
-    /// More than [`MAX_BYTES`].
+    /// More than [`MAX_BYTES`], or for JSON [`MAX_JSON_BYTES`].
     TooLarge {
         /// The file.
         name: String,
@@ -143,8 +182,8 @@ impl fmt::Display for ReadError {
 
 /// The message on a file that is too large.
 pub(crate) const TOO_LARGE: &str =
-    "the file is larger than 1 MiB, the most that a shader or a scene may have";
-const _: () = assert!(MAX_BYTES == 1 << 20);
+    "the file is larger than 1 MiB, the most that a shader or a scene may have (8 MiB for ShaderToy's JSON)";
+const _: () = assert!(MAX_BYTES == 1 << 20 && MAX_JSON_BYTES == 8 << 20);
 /// The message on a file that is not UTF-8.
 pub(crate) const NOT_UTF8: &str = "this is not UTF-8 text; save the file as UTF-8";
 
@@ -166,7 +205,7 @@ pub(crate) fn find(argument: &Path) -> Search {
     };
     if argument == Path::new("-") {
         let name = "<stdin>".to_owned();
-        let bytes = read_limited(io::stdin().lock(), &name);
+        let bytes = read_limited(io::stdin().lock(), &name, MAX_BYTES);
         return only(stream(bytes, name, OsStr::new("stdin")));
     }
     if !argument.is_dir() {
@@ -175,7 +214,7 @@ pub(crate) fn find(argument: &Path) -> Search {
             if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
                 Err(ReadError::Scene(argument.to_owned()))
             } else if argument.exists() && !argument.is_file() {
-                stream(read_file(argument), path_name(argument), name)
+                stream(read_file(argument, MAX_BYTES), path_name(argument), name)
             } else if argument.exists() {
                 Ok(named(InputSource::File(argument.to_owned()), name))
             } else {
@@ -190,6 +229,34 @@ pub(crate) fn find(argument: &Path) -> Search {
     search
 }
 
+/// Returns whether a folder is a project.
+#[must_use]
+pub(crate) fn is_project(folder: &Path) -> bool {
+    folder.join(Tab::Pass(PassKind::Image).file_name()).is_file()
+}
+
+/// Returns whether a file is a tab of the project in whose folder it lies.
+fn is_tab(path: &Path) -> bool {
+    let is_named = |name: &OsStr| Tab::ALL.iter().any(|tab| name == OsStr::new(&tab.file_name()));
+    path.file_name().is_some_and(is_named) && path.parent().is_some_and(is_project)
+}
+
+/// Returns whether a file has the extension of JSON.
+#[must_use]
+pub(crate) fn is_json(path: &Path) -> bool {
+    has_extension(path, "json")
+}
+
+/// Returns whether a file is the site's JSON.
+fn is_project_json(path: &Path) -> bool {
+    is_json(path) && read_text(path).is_ok_and(|file| Project::is_json(file.text()))
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|actual| actual.eq_ignore_ascii_case(extension))
+}
+
 /// Returns whether a file has a shader's extension.
 #[must_use]
 pub(crate) fn is_shader(path: &Path) -> bool {
@@ -198,38 +265,70 @@ pub(crate) fn is_shader(path: &Path) -> bool {
         .is_some_and(|extension| EXTENSIONS.contains(&extension))
 }
 
-/// Reads the text of an input, without a byte order mark.
+/// Reads the texts of an input, without byte order marks. JSON is recognized by its content.
 ///
 /// # Errors
-/// Those of [`ReadError`]; no more than [`MAX_BYTES`] + 1 bytes are ever read.
-pub(crate) fn read(found: &Input) -> Result<File, ReadError> {
-    match &found.source {
-        InputSource::Stream { name, bytes } => decode(bytes.clone(), name.clone()),
-        InputSource::File(path) => read_text(path),
+/// Those of [`ReadError`]; no more than one byte above the limit of a file is ever read.
+pub(crate) fn read(found: &Input) -> Result<Texts, ReadError> {
+    let file = match &found.source {
+        InputSource::Stream { name, bytes } => decode(bytes.clone(), name.clone(), MAX_BYTES)?,
+        InputSource::File(path) if path.is_dir() => return read_folder(path).map(Texts::Project),
+        InputSource::File(path) => read_text(path)?,
+    };
+    Ok(if Project::is_json(file.text()) {
+        Texts::Project(ProjectTexts::Json(file))
+    } else {
+        Texts::Shader(file)
+    })
+}
+
+/// Reads the files of a project; links that lead out of the folder are errors.
+fn read_folder(folder: &Path) -> Result<ProjectTexts, ReadError> {
+    let read = |name: &str| -> Option<Result<File, ReadError>> {
+        let path = folder.join(name);
+        if !path.is_file() {
+            return None;
+        }
+        Some(match Skipped::of(&path, folder) {
+            Some(skipped) => Err(ReadError::Unreadable {
+                name: path_name(&path),
+                error: io::Error::other(skipped.to_string()),
+            }),
+            None => read_text(&path),
+        })
+    };
+    let mut tabs = Vec::new();
+    for tab in Tab::ALL {
+        if let Some(file) = read(&tab.file_name()) {
+            tabs.push((tab, file?));
+        }
     }
+    let toml = read(PROJECT_FILE).transpose()?;
+    Ok(ProjectTexts::Folder { toml, tabs })
 }
 
 /// Reads the text of a file, without a byte order mark.
 ///
 /// # Errors
-/// Those of [`ReadError`]; no more than [`MAX_BYTES`] + 1 bytes are ever read.
+/// Those of [`ReadError`]; no more than one byte above the limit is ever read.
 pub(crate) fn read_text(path: &Path) -> Result<File, ReadError> {
-    decode(read_file(path)?, path_name(path))
+    let limit = if is_json(path) { MAX_JSON_BYTES } else { MAX_BYTES };
+    decode(read_file(path, limit)?, path_name(path), limit)
 }
 
-fn read_file(path: &Path) -> Result<Vec<u8>, ReadError> {
+fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
     let name = path_name(path);
     match OsFile::open(path) {
-        Ok(file) => read_limited(file, &name),
+        Ok(file) => read_limited(file, &name, limit),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),
         Err(error) => Err(ReadError::Unreadable { name, error }),
     }
 }
 
 /// Reads all bytes, but at most one more than the maximum.
-fn read_limited(input: impl Read, name: &str) -> Result<Vec<u8>, ReadError> {
+fn read_limited(input: impl Read, name: &str, limit: u64) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
-    match input.take(MAX_BYTES + 1).read_to_end(&mut bytes) {
+    match input.take(limit + 1).read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
         Err(error) => Err(ReadError::Unreadable {
             name: name.to_owned(),
@@ -238,8 +337,8 @@ fn read_limited(input: impl Read, name: &str) -> Result<Vec<u8>, ReadError> {
     }
 }
 
-fn decode(bytes: Vec<u8>, name: String) -> Result<File, ReadError> {
-    if bytes.len() as u64 > MAX_BYTES {
+fn decode(bytes: Vec<u8>, name: String, limit: u64) -> Result<File, ReadError> {
+    if bytes.len() as u64 > limit {
         return Err(ReadError::TooLarge { name });
     }
     match String::from_utf8(bytes) {
@@ -384,7 +483,10 @@ impl Walk<'_> {
             self.follow(entry.into_path());
         } else if kind.is_dir() || entry.depth() == 0 {
             self.folders.extend(entry.path().canonicalize());
-        } else if kind.is_file() && is_shader(entry.path()) {
+            if is_project(entry.path()) {
+                self.add(entry.into_path());
+            }
+        } else if kind.is_file() && is_input(entry.path()) {
             self.add(entry.into_path());
         }
     }
@@ -394,7 +496,7 @@ impl Walk<'_> {
             Ok(metadata) => metadata,
             Err(error) => return self.fail(link, error),
         };
-        let matters = metadata.is_dir() || metadata.is_file() && is_shader(&link);
+        let matters = metadata.is_dir() || metadata.is_file() && is_input(&link);
         match Skipped::of(&link, self.folder) {
             _ if !matters => {}
             Some(skipped) => self.skipped.push(skipped),
@@ -404,9 +506,16 @@ impl Walk<'_> {
     }
 
     fn add(&mut self, path: PathBuf) {
+        let is_folder = path == self.folder;
+        let relative = if is_folder {
+            let canonical = path.canonicalize().unwrap_or_else(|_| path.clone());
+            PathBuf::from(canonical.file_name().unwrap_or_else(|| "project".as_ref()))
+        } else {
+            path.strip_prefix(self.folder).unwrap_or(&path).to_owned()
+        };
         let found = Input {
-            relative: path.strip_prefix(self.folder).unwrap_or(&path).to_owned(),
-            folder: Some(self.folder.to_owned()),
+            relative,
+            folder: (!is_folder).then(|| self.folder.to_owned()),
             source: InputSource::File(path.clone()),
         };
         self.found.push((path, Ok(found)));
@@ -417,6 +526,11 @@ impl Walk<'_> {
         self.found
             .push((path, Err(ReadError::Unreadable { name, error })));
     }
+}
+
+/// Returns whether a file is an input of its own.
+fn is_input(path: &Path) -> bool {
+    is_shader(path) && !is_tab(path) || is_project_json(path)
 }
 
 /// Returns whether a file or folder is hidden, as `.git` is, or is the `__MACOSX` folder that macOS adds to
@@ -482,15 +596,15 @@ mod tests {
 
     #[test]
     fn endless_files_are_too_large_and_not_read_completely() {
-        let endless = read_limited(io::repeat(b' '), "x").unwrap();
+        let endless = read_limited(io::repeat(b' '), "x", MAX_BYTES).unwrap();
         assert_eq!(endless.len() as u64, MAX_BYTES + 1);
-        let endless = decode(endless, "x".to_owned());
+        let endless = decode(endless, "x".to_owned(), MAX_BYTES);
         assert!(matches!(endless, Err(ReadError::TooLarge { .. })));
     }
 
     #[test]
     fn invalid_utf8_is_reported_by_line_and_column() {
-        let error = decode(b"ok\nab\xffc".to_vec(), "x".to_owned()).unwrap_err();
+        let error = decode(b"ok\nab\xffc".to_vec(), "x".to_owned(), MAX_BYTES).unwrap_err();
         assert_eq!(
             error.to_string(),
             "x:2:3: this is not UTF-8 text; save the file as UTF-8"
@@ -499,7 +613,7 @@ mod tests {
 
     #[test]
     fn a_byte_order_mark_is_not_part_of_the_text() {
-        let file = decode("\u{feff}void".into(), "x".to_owned()).unwrap();
+        let file = decode("\u{feff}void".into(), "x".to_owned(), MAX_BYTES).unwrap();
         assert_eq!(file.text(), "void");
     }
 

@@ -12,6 +12,7 @@ mod inputs;
 mod names;
 mod new;
 mod pool;
+mod project;
 mod reference;
 mod render;
 mod run;
@@ -94,6 +95,7 @@ enum Command {
     Trade(trade::Args),
     Stress(stress::Args),
     Export(render::ExportArgs),
+    Import(project::ImportArgs),
     New(new::Args),
     Scenes(scenes::Args),
     Doctor(doctor::Args),
@@ -192,6 +194,7 @@ impl Command {
             Self::Trade(args) => trade::run(args, terminal),
             Self::Stress(args) => stress::run(args, terminal),
             Self::Export(args) => render::export(args, terminal),
+            Self::Import(args) => project::import(args, terminal),
             Self::New(args) => new::run(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),

@@ -11,7 +11,7 @@ use toyproof_verify::Expected;
 use super::inputs::{LanguageArgs, parse_time_limit};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::scenes::read_scene;
-use super::{Exit, Terminal};
+use super::{Exit, Terminal, project};
 use crate::assignment::{FILE_NAME, Model};
 use crate::cli::files;
 
@@ -42,6 +42,11 @@ enum What {
                            toyproof check homework --assignment shadows/assignment.toml"
     )]
     Assignment(AssignmentArgs),
+    /// Create a project: an image whose pixels Buffer A refines from frame to frame
+    #[command(
+        after_long_help = "Example:\n  toyproof new project waves\n  toyproof export waves -o waves.json"
+    )]
+    Project(ProjectArgs),
 }
 
 #[derive(Debug, clap::Args)]
@@ -72,6 +77,16 @@ struct AssignmentArgs {
     language: LanguageArgs,
 }
 
+#[derive(Debug, clap::Args)]
+struct ProjectArgs {
+    /// The name of the project, which is also the name of its folder
+    #[arg(value_parser = parse_name)]
+    name: String,
+    /// The folder to create [default: NAME]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
 /// Parses a name that is also the name of a file.
 fn parse_name(text: &str) -> Result<String, String> {
     let name = text.strip_suffix(".toml").unwrap_or(text);
@@ -92,7 +107,27 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Ok(()) => Exit::Success,
             Err(()) => Exit::Error,
         },
+        What::Project(args) => new_project(args, terminal),
     }
+}
+
+fn new_project(args: &ProjectArgs, terminal: &Terminal) -> Exit {
+    let folder = args.output.clone().unwrap_or_else(|| PathBuf::from(&args.name));
+    let files =
+        project::template().map(|(name, text)| (folder.join(name), text.replacen("NAME", &args.name, 1)));
+    if !project::create(&folder, &files, terminal) {
+        return Exit::Error;
+    }
+    let name = path_name(&folder);
+    terminal.note(&format!("created {name} with {} files", files.len()));
+    terminal.note("next:");
+    terminal.note(&format!("  toyproof check {}", quoted(&name)));
+    terminal.note(&format!(
+        "  toyproof export {} -o {}",
+        quoted(&name),
+        quoted(&format!("{name}.json"))
+    ));
+    Exit::Success
 }
 
 fn new_scene(args: &SceneArgs, terminal: &Terminal) -> Exit {

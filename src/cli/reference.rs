@@ -332,7 +332,7 @@ fn read(
             ));
             Err(())
         }
-        Err(Unusable::Unreadable(error)) => {
+        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
             terminal.error(error);
             Err(())
         }

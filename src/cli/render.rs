@@ -18,7 +18,7 @@ use super::run::{Precision, default_image, encode, has_image_extension};
 use super::scenes::read_scene;
 use super::sequence::{self, Frames, Sequence};
 use super::terminal::file_size;
-use super::{Exit, Terminal, inputs};
+use super::{Exit, Terminal, inputs, project};
 use crate::cli::files;
 
 /// Render a scene with the reference tracer
@@ -268,22 +268,24 @@ fn trace<T: Real>(
     rendered
 }
 
-/// Write a ShaderToy shader that renders a scene
+/// Write the ShaderToy shader that renders a scene, or a project as ShaderToy's JSON
 ///
-/// The shader is written to standard output unless -o is given.
+/// The text is written to standard output unless -o is given.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   toyproof export 04-many-objects -o mine.glsl
-  toyproof check mine.glsl --scene 04-many-objects")]
+  toyproof check mine.glsl --scene 04-many-objects
+  toyproof export waves -o waves.json")]
 pub(super) struct ExportArgs {
-    /// The scene: a file, or a name listed by `toyproof scenes`
-    scene: PathBuf,
-    /// The shader (.glsl), or - for standard output
+    /// The scene (a file, or a name listed by `toyproof scenes`), or the project (a folder, JSON or shader)
+    #[arg(value_name = "SCENE|PROJECT")]
+    input: PathBuf,
+    /// The shader (.glsl) or JSON (.json), or - for standard output
     #[arg(
         short,
         long,
-        value_name = "SHADER",
+        value_name = "SHADER|JSON",
         default_value = "-",
         hide_default_value = true
     )]
@@ -291,10 +293,13 @@ pub(super) struct ExportArgs {
 }
 
 pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Exit {
-    if !may_write(&args.output, &iter::once(&*args.scene).collect(), terminal) {
+    if files::is_project(&args.input) || files::is_shader(&args.input) || files::is_json(&args.input) {
+        return project::export(&args.input, &args.output, terminal);
+    }
+    if !may_write(&args.output, &iter::once(&*args.input).collect(), terminal) {
         return Exit::Error;
     }
-    let Some(scene) = load_scene(&args.scene, terminal) else {
+    let Some(scene) = load_scene(&args.input, terminal) else {
         return Exit::Error;
     };
     match scene::export::shader(&scene) {
@@ -304,7 +309,7 @@ pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Exit {
         }
         Ok(_) => Exit::Error,
         Err(error) => {
-            terminal.error(format_args!("{}: {error}", path_name(&args.scene)));
+            terminal.error(format_args!("{}: {error}", path_name(&args.input)));
             Exit::Error
         }
     }

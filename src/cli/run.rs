@@ -266,7 +266,7 @@ impl Runner<'_> {
                 self.terminal.diagnostics(diagnostics, &shader.files);
                 return Err(Exit::ShaderFault);
             }
-            Err(Unusable::Unreadable(error)) => {
+            Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
                 self.terminal.error(error);
                 return Err(Exit::Error);
             }

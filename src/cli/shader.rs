@@ -10,13 +10,13 @@ use toyproof_lint::{Lints, lint};
 
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
-use crate::cli::files;
-use crate::cli::files::{Input, ReadError, content_diagnostic};
+use crate::cli::files::{self, Input, ReadError, Texts, content_diagnostic};
+use crate::cli::project;
 
 /// The lints may take one part in this many of a shader's time limit.
 const LINT_TIME_SHARE: u32 = 4;
 
-/// A shader's text, and its tree or the reason why there is none.
+/// A shader's text, and its tree or the reason why there is none. The shader of a project is its image.
 pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
@@ -30,6 +30,8 @@ pub(super) enum Unusable {
     Invalid(Vec<Diagnostic>),
     /// It cannot be read.
     Unreadable(Unreadable),
+    /// It is valid, but reads passes of a project that cannot be rendered yet.
+    Unrendered(Unreadable),
 }
 
 impl Unusable {
@@ -45,7 +47,7 @@ impl Unusable {
 /// A file that cannot be read.
 #[derive(Debug, Clone)]
 pub(super) struct Unreadable {
-    name: String,
+    pub(super) name: String,
     /// What is wrong with it.
     pub(super) reason: String,
 }
@@ -76,17 +78,14 @@ impl Shader {
         let (name, checked) = match found {
             Err(error) => (error.name(), Err(Unusable::Unreadable(error.into()))),
             Ok(found) => {
-                let share = deadline.share(LINT_TIME_SHARE);
-                let checked = read(found, &mut files, &language.options(deadline));
-                let checked = checked.and_then(|checked| {
-                    lints = lint(&files, &checked, &share);
-                    let denied = denied(&mut lints.warnings, language.denied());
-                    if denied.is_empty() {
-                        Ok(checked)
-                    } else {
+                let checked = read(found, &mut files, &mut lints, &language.options(deadline));
+                let denied = denied(&mut lints.warnings, language.denied());
+                let checked = match checked {
+                    Ok(_) | Err(Unusable::Unrendered(_)) if !denied.is_empty() => {
                         Err(Unusable::Invalid(denied))
                     }
-                });
+                    checked => checked,
+                };
                 (found.name(), checked)
             }
         };
@@ -118,13 +117,21 @@ pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Dia
     errors
 }
 
-fn read(found: &Input, files: &mut Files, options: &glsl::Options) -> Result<Checked, Unusable> {
+fn read(
+    found: &Input,
+    files: &mut Files,
+    lints: &mut Lints,
+    options: &glsl::Options,
+) -> Result<Checked, Unusable> {
     match files::read(found) {
-        Ok(text) => {
+        Ok(Texts::Shader(text)) => {
             let file = files.add(text);
-            glsl::check(files, file, options)
-                .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, options)))
+            let checked = glsl::check(files, file, options)
+                .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, options)))?;
+            *lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
+            Ok(checked)
         }
+        Ok(Texts::Project(texts)) => project::check_image(texts, &found.name(), files, lints, options),
         Err(error) => Err(Unusable::of(error, files)),
     }
 }

@@ -136,7 +136,7 @@ fn examine(
             terminal.diagnostics(diagnostics, &shader.files);
             return Exit::ShaderFault;
         }
-        Err(Unusable::Unreadable(error)) => {
+        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
             terminal.error(error);
             return Exit::Error;
         }

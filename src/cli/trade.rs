@@ -149,7 +149,7 @@ fn load_shader(path: &Path, args: &Args, deadline: &Deadline, terminal: &Termina
             terminal.diagnostics(diagnostics, &shader.files);
             Err(Exit::ShaderFault)
         }
-        Err(Unusable::Unreadable(error)) => {
+        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
             terminal.error(error);
             Err(Exit::Error)
         }

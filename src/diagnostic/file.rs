@@ -122,6 +122,12 @@ impl Files {
         FileId(id)
     }
 
+    /// Whether there is more than one file.
+    #[must_use]
+    pub fn is_several(&self) -> bool {
+        self.files.len() > 1
+    }
+
     /// Adds a file that consists of others, each on lines of its own. Spans in it are reported as spans of those files.
     pub fn join(&mut self, name: impl AsRef<str>, parts: &[FileId]) -> FileId {
         let mut text = String::new();

@@ -298,9 +298,11 @@ fn without_image(failure: &Failure, files: &Files) -> String {
         }
         Failure::LoopTruncated(pixels) => loop_truncated(*pixels),
         Failure::Cpu(failure) => format!("{failure}{}", failure_position(failure, files)),
-        Failure::Unreadable(_) | Failure::Reference(_) | Failure::Gpu(_) | Failure::Panic(_) => {
-            failure.to_string()
-        }
+        Failure::Unreadable(_)
+        | Failure::Unrendered(_)
+        | Failure::Reference(_)
+        | Failure::Gpu(_)
+        | Failure::Panic(_) => failure.to_string(),
     }
 }
 
@@ -310,8 +312,17 @@ fn first_error(diagnostics: &[Diagnostic], files: &Files) -> String {
     let errors: Vec<_> = errors.collect();
     match errors[..] {
         [] => "the shader does not compile".to_owned(),
-        [only] => match only.span.map(|span| files.position(span)) {
-            Some(at) => format!("{} (line {}, column {})", only.message, at.line, at.column),
+        [only] => match only.span {
+            Some(span) => {
+                let at = files.position(span);
+                // The file of a project is a tab.
+                let tab = if files.is_several() {
+                    format!("{}, ", files.name(span).rsplit('/').next().unwrap_or_default())
+                } else {
+                    String::new()
+                };
+                format!("{} ({tab}line {}, column {})", only.message, at.line, at.column)
+            }
             None => only.message.clone(),
         },
         _ => format!("{} errors", grouped(errors.len() as u64)),

@@ -364,6 +364,7 @@ fn without_image(failure: &Failure) -> Verdict {
         Failure::Cpu(TooOften { .. } | Timeout { .. } | TimeUp)
         | Failure::Overdue(_)
         | Failure::LoopTruncated(_) => Verdict::Timeout,
+        Failure::Unrendered(_) => Verdict::Inconclusive,
         Failure::Unreadable(_)
         | Failure::InvalidScene(_)
         | Failure::Reference(_)
@@ -718,6 +719,10 @@ mod tests {
         );
         assert_eq!(of(Failure::InvalidScene(error("E0501"))), Verdict::Error);
         assert_eq!(of(Failure::LoopTruncated(1)), Verdict::Timeout);
+        assert_eq!(
+            of(Failure::Unrendered("buffers".to_owned())),
+            Verdict::Inconclusive
+        );
         #[cfg(feature = "gpu")]
         assert_eq!(
             of(Failure::Gpu(toyproof_gpu::Failure::Device(String::new()))),

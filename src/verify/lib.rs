@@ -193,6 +193,9 @@ pub enum Failure {
     /// The shader, or its scene, cannot be read.
     #[error("{0}")]
     Unreadable(String),
+    /// The shader is part of a project that cannot be rendered yet.
+    #[error("{0}")]
+    Unrendered(String),
     /// The shader does not compile.
     #[error("the shader does not compile")]
     Invalid(Vec<Diagnostic>),

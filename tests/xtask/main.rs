@@ -5,6 +5,7 @@
 mod corpus;
 mod faults;
 mod page;
+mod projects;
 mod references;
 mod repairs;
 mod sensitivity;
@@ -57,6 +58,20 @@ enum Task {
         #[arg(long)]
         screenshots: Option<PathBuf>,
     },
+    /// Measure how many projects of a git repository are exported as they were imported, and how many compile
+    Projects {
+        /// The git directory of a repository with ShaderToy's JSON files
+        repository: PathBuf,
+        /// The maximum number of projects, chosen at random
+        #[arg(long, default_value_t = usize::MAX)]
+        limit: usize,
+        /// The seed of the choice
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Compile all tabs of each project as well, and print the first error of those that do not compile
+        #[arg(long)]
+        check: bool,
+    },
     /// Measure how many wrong shaders are repaired, and at which lines
     Repairs {
         /// A file with a line of JSON for each shader: `file`, `scene`, `group`, `lines`; the planted faults if none
@@ -100,6 +115,12 @@ fn main() -> ExitCode {
         Task::Corpus { folder, limit } => corpus::compare_bits(&folder, limit),
         Task::Conversions { shaders, converted } => corpus::compare_conversions(&shaders, &converted),
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
+        Task::Projects {
+            repository,
+            limit,
+            seed,
+            check,
+        } => projects::measure(&repository, limit, seed, check),
         Task::Repairs {
             manifest,
             only,

@@ -81,19 +81,16 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
         hash.update(part);
     };
     let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
-    let settings = (
-        &inputs,
-        &args.language,
-        &args.driver,
-        args.search,
-        &args.permit,
-    );
+    let settings = (&inputs, &args.language, &args.driver, args.search, &args.permit);
     add(format!("{:?}", build()?).as_bytes());
     let named = (&plan.reference.scene, &plan.reference.reference);
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
     let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
     add(assignment.unwrap_or_default());
-    add(files::read(found).ok()?.text().as_bytes());
+    for file in files::read(found).ok()?.files() {
+        add(file.name().as_bytes());
+        add(file.text().as_bytes());
+    }
     if let Some(content) = references.content(found) {
         add(&content.ok()?);
     }
@@ -414,6 +411,7 @@ impl<'a> Checker<'a> {
     ) -> Result<Findings, Failure> {
         let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
             Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
+            Unusable::Unrendered(error) => Failure::Unrendered(error.reason.clone()),
             Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
         })?;
         let cached = reference.map(|reference| self.cached(reference, index, frame));

@@ -105,7 +105,8 @@ fn subsampled_gallery(submissions: &[&Submission], step: u32) -> Gallery {
 fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
     let mut exhibit = Exhibit::default();
     if let Ok(found) = &submission.input
-        && let Ok(file) = files::read(found)
+        && let Ok(texts) = files::read(found)
+        && let [file] = texts.files()[..]
     {
         exhibit.source = Some(file.text().to_owned());
     }

@@ -36,7 +36,7 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
     };
     rubric.map(Some).map_err(|unusable| match unusable {
         Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
-        Unusable::Unreadable(error) => terminal.error(error),
+        Unusable::Unreadable(error) | Unusable::Unrendered(error) => terminal.error(error),
     })
 }
 

@@ -115,7 +115,9 @@ impl Settings<'_> {
             (Err(Unusable::Invalid(diagnostics)), _) => {
                 Err(Refusal::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
             }
-            (Err(Unusable::Unreadable(error)), _) => Err(Refusal::Unreadable(error.reason.clone())),
+            (Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)), _) => {
+                Err(Refusal::Unreadable(error.reason.clone()))
+            }
         };
         (shader, converted)
     }

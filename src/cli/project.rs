@@ -1,0 +1,204 @@
+//! Projects of several tabs: their images, `toyproof import`, and `toyproof export` of a project.
+
+use std::path::{Path, PathBuf};
+
+use toyproof_diagnostic::{Diagnostics, Files, path_name};
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_lint::Lints;
+use toyproof_project::{self as project, PROJECT_FILE, PassKind, Project, Tab};
+use toyproof_toml::list_of;
+
+use super::files::{self, Input, InputSource, ProjectTexts, ReadError, Texts};
+use super::inputs::may_write;
+use super::shader::{Unreadable, Unusable};
+use super::terminal::file_size;
+use super::{Exit, Terminal};
+
+/// Reads a project from its texts, which are added to `files`.
+fn parse(texts: ProjectTexts, files: &mut Files) -> Result<Project, Diagnostics> {
+    match texts {
+        ProjectTexts::Json(file) => {
+            let file = files.add(file);
+            Project::from_json(files, file)
+        }
+        ProjectTexts::Folder { toml, tabs } => {
+            let toml = toml.map(|file| files.add(file));
+            let tabs: Vec<_> = tabs
+                .into_iter()
+                .map(|(tab, file)| (tab, files.add(file)))
+                .collect();
+            Project::from_folder(files, toml, &tabs)
+        }
+    }
+}
+
+/// Checks all tabs of a project, and returns its image. The warnings are those about all tabs.
+pub(super) fn check_image(
+    texts: ProjectTexts,
+    name: &str,
+    files: &mut Files,
+    lints: &mut Lints,
+    options: &glsl::Options,
+) -> Result<Checked, Unusable> {
+    let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());
+    let project = parse(texts, files).map_err(invalid)?;
+    let checked = project::check(&project, files, options).map_err(invalid)?;
+    let mut passes = checked.passes.into_iter();
+    let image = passes.find(|pass| pass.kind == PassKind::Image);
+    let image = image.expect("every project has an image");
+    *lints = Lints {
+        warnings: checked.warnings,
+        ..image.lints
+    };
+    let needed = project.needed_by_image();
+    if needed.is_empty() {
+        return Ok(image.checked);
+    }
+    let needed: Vec<_> = needed.iter().map(ToString::to_string).collect();
+    let assumed = if project.knows_inputs {
+        String::new()
+    } else {
+        format!("; without {PROJECT_FILE}, iChannel0 to iChannel3 are assumed to read Buffers A to D")
+    };
+    Err(Unusable::Unrendered(Unreadable {
+        name: name.to_owned(),
+        reason: format!(
+            "all tabs compile, but the image reads {}, and passes other than the image are not rendered yet{assumed}",
+            needed.join(", "),
+        ),
+    }))
+}
+
+/// Import a project from ShaderToy's JSON into a folder
+///
+/// The folder gets a file for each tab (image.glsl, common.glsl, buffer-a.glsl to buffer-d.glsl, cube-a.glsl,
+/// sound.glsl), and project.toml with everything else. `toyproof export` makes the same JSON of it again.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Example:
+  toyproof import waves.json -o waves
+  toyproof check waves
+  toyproof export waves -o waves.json")]
+pub(super) struct ImportArgs {
+    /// ShaderToy's JSON: of its API, of its page data, or of the editor's export
+    #[arg(value_name = "JSON")]
+    input: PathBuf,
+    /// The folder to create [default: the name of the JSON without its extension]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+pub(super) fn import(args: &ImportArgs, terminal: &Terminal) -> Exit {
+    let folder = args
+        .output
+        .clone()
+        .unwrap_or_else(|| args.input.with_extension(""));
+    let mut files = Files::default();
+    let Some(project) = load(&args.input, &mut files, terminal) else {
+        return Exit::Error;
+    };
+    let mut written = vec![(folder.join(PROJECT_FILE), project.to_toml())];
+    written.extend(project.tabs().iter().map(|&(tab, file)| {
+        let text = files.get(file).text().to_owned();
+        (folder.join(tab.file_name()), text)
+    }));
+    if !create(&folder, &written, terminal) {
+        return Exit::Error;
+    }
+    let tabs = project.tabs().iter().map(|(tab, _)| tab.to_string());
+    terminal.confirm(&folder, &tabs.collect::<Vec<_>>().join(", "));
+    Exit::Success
+}
+
+/// Writes the files of a new project; nothing is overwritten.
+pub(super) fn create(folder: &Path, files: &[(PathBuf, String)], terminal: &Terminal) -> bool {
+    let known = Tab::ALL.map(|tab| folder.join(tab.file_name()));
+    let mut taken = files.iter().map(|(path, _)| path).chain(&known);
+    if let Some(path) = taken.find(|path| path.symlink_metadata().is_ok()) {
+        terminal.error(format_args!(
+            "{} already exists; nothing was written",
+            path_name(path)
+        ));
+        terminal.help("choose another folder with -o");
+        return false;
+    }
+    if folder.exists() && !folder.is_dir() {
+        terminal.error(format_args!("{} is not a folder", path_name(folder)));
+        terminal.help("choose another folder with -o");
+        return false;
+    }
+    files
+        .iter()
+        .all(|(path, text)| terminal.write_output(folder, path, text.as_bytes()))
+}
+
+/// Reads a project, or a shader as a project of one tab; prints what is wrong with it.
+fn load(path: &Path, files: &mut Files, terminal: &Terminal) -> Option<Project> {
+    let found = match &files::find(path).inputs.into_iter().next()? {
+        Err(error) => {
+            terminal.error(error);
+            return None;
+        }
+        Ok(input) => read(input),
+    };
+    let texts = found.map_err(|error| terminal.error(error)).ok()?;
+    match parse(texts, files) {
+        Ok(project) => Some(project),
+        Err(errors) => {
+            terminal.diagnostics(&errors, files);
+            None
+        }
+    }
+}
+
+/// Reads the texts of a project; those of a shader are its Image tab.
+fn read(input: &Input) -> Result<ProjectTexts, ReadError> {
+    let is_json = matches!(&input.source, InputSource::File(path) if files::is_json(path));
+    Ok(match files::read(input)? {
+        Texts::Project(texts) => texts,
+        Texts::Shader(file) if is_json => ProjectTexts::Json(file),
+        Texts::Shader(file) => ProjectTexts::Folder {
+            toml: None,
+            tabs: vec![(Tab::Pass(PassKind::Image), file)],
+        },
+    })
+}
+
+/// Writes a project, or a shader as a project of one tab, as ShaderToy's JSON.
+pub(super) fn export(input: &Path, output: &Path, terminal: &Terminal) -> Exit {
+    if !may_write(output, &std::iter::once(input).collect(), terminal) {
+        return Exit::Error;
+    }
+    let mut files = Files::default();
+    let Some(project) = load(input, &mut files, terminal) else {
+        return Exit::Error;
+    };
+    if !project.knows_inputs && !project.needed_by_image().is_empty() {
+        let names: Vec<_> = project
+            .needed_by_image()
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        let names: Vec<_> = names.iter().map(String::as_str).collect();
+        terminal.note(&format!(
+            "without {PROJECT_FILE}, every pass is assumed to read {} in the channel of its letter",
+            list_of(&names).replace(" or ", " and ")
+        ));
+    }
+    let json = project.to_json(&files);
+    if !terminal.write(output, json.as_bytes()) {
+        return Exit::Error;
+    }
+    terminal.confirm(output, &file_size(json.len()));
+    Exit::Success
+}
+
+/// The files of a new project, by their names: an image that Buffer A refines from frame to frame.
+pub(super) fn template() -> [(&'static str, &'static str); 4] {
+    [
+        ("common.glsl", include_str!("template/common.glsl")),
+        ("buffer-a.glsl", include_str!("template/buffer-a.glsl")),
+        ("image.glsl", include_str!("template/image.glsl")),
+        (PROJECT_FILE, include_str!("template/project.toml")),
+    ]
+}
