@@ -235,6 +235,12 @@ pub(crate) fn is_project(folder: &Path) -> bool {
     folder.join(Tab::Pass(PassKind::Image).file_name()).is_file()
 }
 
+/// Returns whether a path is a folder that may have several shaders, and not a project.
+#[must_use]
+pub(crate) fn is_folder_of_shaders(path: &Path) -> bool {
+    path.is_dir() && !is_project(path)
+}
+
 /// Returns whether a file is a tab of the project in whose folder it lies.
 fn is_tab(path: &Path) -> bool {
     let is_named = |name: &OsStr| Tab::ALL.iter().any(|tab| name == OsStr::new(&tab.file_name()));
@@ -265,7 +271,8 @@ pub(crate) fn is_shader(path: &Path) -> bool {
         .is_some_and(|extension| EXTENSIONS.contains(&extension))
 }
 
-/// Reads the texts of an input, without byte order marks. JSON is recognized by its content.
+/// Reads the texts of an input, without byte order marks. JSON is recognized by its extension or its
+/// content.
 ///
 /// # Errors
 /// Those of [`ReadError`]; no more than one byte above the limit of a file is ever read.
@@ -275,11 +282,13 @@ pub(crate) fn read(found: &Input) -> Result<Texts, ReadError> {
         InputSource::File(path) if path.is_dir() => return read_folder(path).map(Texts::Project),
         InputSource::File(path) => read_text(path)?,
     };
-    Ok(if Project::is_json(file.text()) {
-        Texts::Project(ProjectTexts::Json(file))
-    } else {
-        Texts::Shader(file)
-    })
+    Ok(
+        if found.path().is_some_and(is_json) || Project::is_json(file.text()) {
+            Texts::Project(ProjectTexts::Json(file))
+        } else {
+            Texts::Shader(file)
+        },
+    )
 }
 
 /// Reads the files of a project; links that lead out of the folder are errors.

@@ -8,7 +8,7 @@ use toyproof_lint::Lints;
 use toyproof_project::{self as project, PROJECT_FILE, PassKind, Project, Tab};
 use toyproof_toml::list_of;
 
-use super::files::{self, Input, InputSource, ProjectTexts, ReadError, Texts};
+use super::files::{self, Input, ProjectTexts, ReadError, Texts};
 use super::inputs::may_write;
 use super::shader::{Unreadable, Unusable};
 use super::terminal::file_size;
@@ -153,10 +153,8 @@ fn load(path: &Path, files: &mut Files, terminal: &Terminal) -> Option<Project> 
 
 /// Reads the texts of a project; those of a shader are its Image tab.
 fn read(input: &Input) -> Result<ProjectTexts, ReadError> {
-    let is_json = matches!(&input.source, InputSource::File(path) if files::is_json(path));
     Ok(match files::read(input)? {
         Texts::Project(texts) => texts,
-        Texts::Shader(file) if is_json => ProjectTexts::Json(file),
         Texts::Shader(file) => ProjectTexts::Folder {
             toml: None,
             tabs: vec![(Tab::Pass(PassKind::Image), file)],

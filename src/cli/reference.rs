@@ -16,7 +16,7 @@ use toyproof_verify::{
 use super::Terminal;
 use super::inputs::{LanguageArgs, shell_word};
 use super::shader::{Shader, Unusable};
-use crate::cli::files::{Input, InputSource};
+use crate::cli::files::{self, Input, InputSource};
 use crate::report;
 
 /// What shaders are compared with.
@@ -280,7 +280,7 @@ fn read(
     let name = path_name(path);
     let extension = path.extension().and_then(OsStr::to_str).map(str::to_lowercase);
     let quantization = match extension.as_deref() {
-        _ if path.is_dir() => {
+        _ if files::is_folder_of_shaders(path) => {
             terminal.error(format_args!(
                 "{name} is a folder; `--reference` takes a single shader or an image"
             ));
@@ -289,12 +289,6 @@ fn read(
         Some("toml") => {
             terminal.error(format_args!(
                 "{name} is a scene\nhelp: name it with --scene instead of --reference"
-            ));
-            return Err(());
-        }
-        Some("json") => {
-            terminal.error(format_args!(
-                "{name} is a project of several passes; `--reference` takes a single shader or an image"
             ));
             return Err(());
         }

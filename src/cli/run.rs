@@ -18,7 +18,7 @@ use super::names::{Names, with_suffix};
 use super::sequence::{self, Frames, Sequence};
 use super::shader::{Shader, Unusable, find};
 use super::terminal::file_size;
-use super::{Exit, Terminal};
+use super::{Exit, Terminal, files};
 use crate::report;
 
 /// Run shaders and save their images
@@ -83,7 +83,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
     };
     let inputs = find(&args.shaders, terminal);
-    let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
+    let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
     let output = match (&args.output, &inputs[..]) {
         (Some(output), _) => output.clone(),
         (None, [Ok(input)]) if !several => default_image(&input.relative),

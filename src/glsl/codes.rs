@@ -106,6 +106,10 @@ codes! {
     UnusedAllow "W0015" "An unused `allow` comment",
     MissingReturn "W0016" "A function that may reach its end without a `return`",
     LintTimeout "W0017" "Lints that exceeded their time limit",
+    // Findings about the inputs of a project.
+    MissingPass "W0018" "An input that reads a pass that does not exist",
+    SamplerConflict "W0019" "Different samplers of one buffer",
+    BufferOrder "W0020" "Buffers that do not run in the order of their names",
     // Findings while a shader runs.
     UndefinedOperation "W0600" "An operation with an undefined result",
     LongRun "W0601" "Loops that exceed the iteration limit of older drivers",

@@ -99,7 +99,7 @@ impl Entry {
             let parameters = function.parameters.iter().map(|&id| &tree[id]);
             form.len() == function.parameters.len() && form.iter().zip(parameters).all(|(a, b)| fits(a, b))
         };
-        let form = self.parameters.iter().position(|form| has_form(form))?;
+        let form = self.parameters.iter().position(has_form)?;
         (function.return_type == self.return_type).then_some(form)
     }
 }

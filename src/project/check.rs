@@ -90,6 +90,7 @@ pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<
     {
         reported.add(files, [warning.clone()]);
     }
+    reported.add(files, crate::lint::lint(project, &passes));
     Ok(CheckedProject {
         passes,
         warnings: reported.0,
@@ -108,12 +109,10 @@ impl Reported {
     fn add(&mut self, files: &Files, diagnostics: impl IntoIterator<Item = Diagnostic>) {
         for diagnostic in diagnostics {
             let diagnostic = diagnostic.in_origin(files);
-            let mut others = self.0.iter();
-            // Another pass may suggest another fix.
-            if !others.any(|other| {
-                (&other.code, &other.message, other.span)
-                    == (&diagnostic.code, &diagnostic.message, diagnostic.span)
-            }) {
+            // Another pass may suggest another fix, or name the tab.
+            let is_same =
+                |other: &Diagnostic| (&other.code, other.span) == (&diagnostic.code, diagnostic.span);
+            if diagnostic.span.is_none() || !self.0.iter().any(is_same) {
                 self.0.push(diagnostic);
             }
         }

@@ -8,7 +8,7 @@ use toyproof_toml::list_of;
 
 use crate::media::{self, Name, SourceType};
 use crate::node::{Member, Node, Value};
-use crate::read::{Passes, default_sampler, read};
+use crate::read::{Renderpass, default_sampler, read};
 use crate::{Document, Filter, INVALID_SYNTAX, PassKind, Project, Tab, Wrap, Wrapper, json};
 
 /// The name of the file beside the tabs.
@@ -139,7 +139,7 @@ impl Project {
                     }
                 }
                 Value::Object(members) => {
-                    text += &format!("\n[{}]\n", toml_key(key));
+                    text.extend(["\n[", &toml_key(key), "]\n"]);
                     text.extend(members.iter().map(|member| line(&member.key, &member.node)));
                 }
                 _ => {}
@@ -287,22 +287,21 @@ impl Tree<'_> {
         let mut files = Files::default();
         let text = text.unwrap_or_default();
         let file = files.add(File::new("", text.strip_prefix('+').unwrap_or(&text)));
-        match json::parse(&files, file) {
-            Ok(Node {
-                value: number @ Value::Number(_),
-                ..
-            }) => number,
-            _ => {
-                let node = Node {
-                    value: Value::Null,
-                    span,
-                };
-                let error = node.error("a value that JSON does not have");
-                self.errors
-                    .push(error.help("write a finite decimal number, or a string in quotes"));
-                Value::Null
-            }
+        if let Ok(Node {
+            value: number @ Value::Number(_),
+            ..
+        }) = json::parse(&files, file)
+        {
+            return number;
         }
+        let node = Node {
+            value: Value::Null,
+            span,
+        };
+        let error = node.error("a value that JSON does not have");
+        self.errors
+            .push(error.help("write a finite decimal number, or a string in quotes"));
+        Value::Null
     }
 
     /// Reads the JSON of `{ json = "…" }`.
@@ -381,8 +380,11 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
             expand_pass(pass, format, completes, errors);
         }
     }
+    if !errors.is_empty() {
+        return None;
+    }
     let mut listed = Vec::new();
-    let Passes {
+    let Renderpass {
         common,
         passes,
         tabs: found,

@@ -252,16 +252,14 @@ impl Parser<'_> {
                     }
                     _ => None,
                 });
-                match char::decode_utf16(units).next() {
-                    Some(Ok(c)) => c,
-                    _ => {
-                        let message = "an escape sequence that is not a character";
-                        let error = Diagnostic::error(INVALID_SYNTAX, message).at(self.span_from(start));
-                        return Err(Box::new(
-                            error.help("write four hexadecimal digits, or the character itself"),
-                        ));
-                    }
-                }
+                let Some(Ok(c)) = char::decode_utf16(units).next() else {
+                    let message = "an escape sequence that is not a character";
+                    let error = Diagnostic::error(INVALID_SYNTAX, message).at(self.span_from(start));
+                    return Err(Box::new(
+                        error.help("write four hexadecimal digits, or the character itself"),
+                    ));
+                };
+                c
             }
             _ => {
                 self.at = start;
@@ -394,35 +392,35 @@ mod tests {
     #[test]
     fn errors_have_a_line_and_a_column() {
         for (text, expected) in [
-            ("", "1:1: error[E0505]: expected a JSON value"),
-            ("{\n \"a\" 1}", "2:6: error[E0505]: expected `:` after a key"),
+            ("", "1:1: error[E0507]: expected a JSON value"),
+            ("{\n \"a\" 1}", "2:6: error[E0507]: expected `:` after a key"),
             (
                 "{\"a\": 1,}",
-                "1:9: error[E0505]: expected a key in double quotes",
+                "1:9: error[E0507]: expected a key in double quotes",
             ),
-            ("{\"a\": 1, \"a\": 2}", "1:10: error[E0505]: duplicate key `a`"),
-            ("[1 2]", "1:4: error[E0505]: expected `,` or `]` in a list"),
-            ("[01]", "1:3: error[E0505]: expected `,` or `]` in a list"),
-            ("[1.]", "1:4: error[E0505]: expected a digit"),
-            ("\"a\nb\"", "1:3: error[E0505]: control character in a string"),
+            ("{\"a\": 1, \"a\": 2}", "1:10: error[E0507]: duplicate key `a`"),
+            ("[1 2]", "1:4: error[E0507]: expected `,` or `]` in a list"),
+            ("[01]", "1:3: error[E0507]: expected `,` or `]` in a list"),
+            ("[1.]", "1:4: error[E0507]: expected a digit"),
+            ("\"a\nb\"", "1:3: error[E0507]: control character in a string"),
             (
                 "\"\\ud800\"",
-                "1:2: error[E0505]: an escape sequence that is not a character",
+                "1:2: error[E0507]: an escape sequence that is not a character",
             ),
-            ("\"\\x\"", "1:2: error[E0505]: unknown escape sequence"),
-            ("\"a", "1:3: error[E0505]: missing `\"` at the end of a string"),
+            ("\"\\x\"", "1:2: error[E0507]: unknown escape sequence"),
+            ("\"a", "1:3: error[E0507]: missing `\"` at the end of a string"),
             (
                 "{} {}",
-                "1:4: error[E0505]: unexpected text after the end of the JSON",
+                "1:4: error[E0507]: unexpected text after the end of the JSON",
             ),
-            ("nul", "1:1: error[E0505]: expected a JSON value"),
+            ("nul", "1:1: error[E0507]: expected a JSON value"),
         ] {
             assert_eq!(parsed(text).unwrap_err(), format!("x.json:{expected}"), "{text}");
         }
         let deep = parsed(&"[".repeat(1 << 20)).unwrap_err();
         assert_eq!(
             deep,
-            "x.json:1:65: error[E0505]: JSON nested more than 64 levels deep"
+            "x.json:1:65: error[E0507]: JSON nested more than 64 levels deep"
         );
     }
 

@@ -25,6 +25,7 @@
 mod check;
 mod folder;
 mod json;
+mod lint;
 mod media;
 mod node;
 mod read;
@@ -40,9 +41,9 @@ pub use self::media::{Medium, SourceType};
 use self::node::Node;
 
 /// The code of errors in the syntax of a project's JSON or TOML.
-const INVALID_SYNTAX: &str = "E0505";
+const INVALID_SYNTAX: &str = "E0507";
 /// The code of errors in the content of a project's JSON or TOML.
-const INVALID_VALUE: &str = "E0506";
+const INVALID_VALUE: &str = "E0508";
 
 /// The maximum size of a tab in bytes. The site's editor takes 65,536 characters.
 pub const MAX_TAB_BYTES: usize = 1 << 20;

@@ -33,7 +33,7 @@ impl Project {
             let text = code(pass).map_err(|error| errors.push(*error)).ok()?;
             Some(files.add(File::new(format!("{folder}/{}", tab.file_name()), text)))
         });
-        let Some(Passes { common, passes, tabs }) = result.filter(|_| errors.is_empty()) else {
+        let Some(Renderpass { common, passes, tabs }) = result.filter(|_| errors.is_empty()) else {
             errors.truncate(MAX_ERRORS);
             return Err(Diagnostics::new(errors, files));
         };
@@ -135,7 +135,7 @@ fn code(pass: &mut Node) -> Result<String, Box<Diagnostic>> {
 const _: () = assert!(MAX_TAB_BYTES == 1 << 20);
 
 /// What `renderpass` holds.
-pub(crate) struct Passes {
+pub(crate) struct Renderpass {
     pub(crate) common: Option<FileId>,
     pub(crate) passes: Vec<Pass>,
     pub(crate) tabs: Vec<(Tab, FileId)>,
@@ -146,7 +146,7 @@ pub(crate) fn read(
     root: &mut Node,
     errors: &mut Vec<Diagnostic>,
     mut text: impl FnMut(Tab, &mut Node, &mut Vec<Diagnostic>) -> Option<FileId>,
-) -> Option<Passes> {
+) -> Option<Renderpass> {
     match root.get("ver") {
         Some(ver) if ver.as_str() != Some(VERSION) => {
             let help = format!("ShaderToy loads only version \"{VERSION}\"");
@@ -169,7 +169,7 @@ pub(crate) fn read(
         errors.push(wrong);
         return None;
     };
-    let mut found = Passes {
+    let mut found = Renderpass {
         common: None,
         passes: Vec::new(),
         tabs: Vec::new(),
@@ -408,14 +408,12 @@ fn choice<T: Copy>(
         return Ok(None);
     };
     let name = value.as_str().unwrap_or_default();
-    match choices.iter().find(|(known, _)| *known == name) {
-        Some((_, choice)) => Ok(Some(*choice)),
-        None => {
-            let known: Vec<_> = choices.iter().map(|(known, _)| *known).collect();
-            let error = value.error(format!("unknown `{key}` of a sampler"));
-            Err(Box::new(error.help(suggestion(name, &known))))
-        }
+    if let Some((_, choice)) = choices.iter().find(|(known, _)| *known == name) {
+        return Ok(Some(*choice));
     }
+    let known: Vec<_> = choices.iter().map(|(known, _)| *known).collect();
+    let error = value.error(format!("unknown `{key}` of a sampler"));
+    Err(Box::new(error.help(suggestion(name, &known))))
 }
 
 /// A truth value, which the site writes as a string.

@@ -109,76 +109,80 @@ fn errors_of_json_have_a_line_and_a_column() {
     for (text, expected) in [
         (
             "[]",
-            "1:1: error[E0506]: a project must be an object, found a list",
+            "1:1: error[E0508]: a project must be an object, found a list",
         ),
         (
             r#"{"Error": "Shader not found"}"#,
-            "1:11: error[E0506]: ShaderToy's API answered with an error instead of a shader: Shader not found",
+            "1:11: error[E0508]: ShaderToy's API answered with an error instead of a shader: Shader not found",
         ),
         (
             r#"{"ver": "0.1"}"#,
-            "1:1: error[E0506]: missing key `renderpass`, the list of the passes",
+            "1:1: error[E0508]: missing key `renderpass`, the list of the passes",
         ),
         (
             r#"{"renderpass": {}}"#,
-            "1:16: error[E0506]: the passes must be a list, found an object",
+            "1:16: error[E0508]: the passes must be a list, found an object",
         ),
         (
             r#"{"renderpass": []}"#,
-            "1:16: error[E0506]: there is no pass of the type `image`",
+            "1:16: error[E0508]: there is no pass of the type `image`",
         ),
         (
             "{\"ver\": \"0.2\",\n\"renderpass\": [{\"type\": \"image\", \"code\": \"\"}]}",
-            "1:9: error[E0506]: unknown version of ShaderToy's JSON",
+            "1:9: error[E0508]: unknown version of ShaderToy's JSON",
         ),
         (
             r#"{"renderpass": [1]}"#,
-            "1:17: error[E0506]: a pass must be an object, found a number",
+            "1:17: error[E0508]: a pass must be an object, found a number",
         ),
         (
             r#"{"renderpass": [{"code": ""}]}"#,
-            "1:17: error[E0506]: missing key `type` in a pass",
+            "1:17: error[E0508]: missing key `type` in a pass",
         ),
         (
             r#"{"renderpass": [{"type": "imag", "code": ""}]}"#,
-            "1:26: error[E0506]: unknown type `imag` of a pass",
+            "1:26: error[E0508]: unknown type `imag` of a pass",
         ),
         (
             r#"{"renderpass": [{"type": 1, "code": ""}]}"#,
-            "1:26: error[E0506]: `type` must be a string, found a number",
+            "1:26: error[E0508]: `type` must be a string, found a number",
         ),
         (
             "{\"renderpass\": [\n {\"type\": \"image\"}]}",
-            "2:2: error[E0506]: missing key `code` in a pass",
+            "2:2: error[E0508]: missing key `code` in a pass",
         ),
         (
             r#"{"renderpass": [{"type": "image", "code": []}]}"#,
-            "1:43: error[E0506]: `code` must be a string, found a list",
+            "1:43: error[E0508]: `code` must be a string, found a list",
         ),
         (
             r#"{"renderpass": [{"type": "image", "code": ""}, {"type": "image", "code": ""}]}"#,
-            "1:48: error[E0506]: there are two passes for Image",
+            "1:48: error[E0508]: there are two passes for Image",
         ),
         (
             r#"{"renderpass": [{"type": "buffer", "code": ""}]}"#,
-            "1:17: error[E0506]: missing key `outputs` of a buffer",
+            "1:17: error[E0508]: missing key `outputs` of a buffer",
         ),
         (
             r#"{"renderpass": [{"type": "buffer", "code": "", "outputs": [{"id": "x"}]}]}"#,
-            "1:67: error[E0506]: this is not the id of a buffer",
+            "1:67: error[E0508]: this is not the id of a buffer",
         ),
         (
             r#"{"renderpass": [{"type": "buffer", "code": "", "outputs": []}]}"#,
-            "1:59: error[E0506]: `outputs` of a buffer must be a list with an object that has an `id`",
+            "1:59: error[E0508]: `outputs` of a buffer must be a list with an object that has an `id`",
         ),
         (
             r#"{"renderpass": [{"type": "image", "code": "", "inputs": 1}]}"#,
-            "1:57: error[E0506]: `inputs` must be a list, found a number",
+            "1:57: error[E0508]: `inputs` must be a list, found a number",
         ),
     ] {
         let error = from_json(&mut Files::default(), text).unwrap_err();
         assert_eq!(error, format!("x.json:{expected}"), "{text}");
     }
+}
+
+#[test]
+fn errors_of_inputs_name_the_key() {
     for (input, expected) in [
         ("1", "an input must be an object, found a number"),
         (
@@ -232,7 +236,7 @@ fn errors_of_json_have_a_line_and_a_column() {
     ] {
         let text = format!(r#"{{"renderpass": [{{"type": "image", "code": "", "inputs": [{input}]}}]}}"#);
         let error = from_json(&mut Files::default(), &text).unwrap_err();
-        assert!(error.contains(&format!("E0506]: {expected}")), "{text}: {error}");
+        assert!(error.contains(&format!("E0508]: {expected}")), "{text}: {error}");
     }
 }
 
@@ -244,7 +248,7 @@ fn a_tab_has_a_limit() {
     );
     let error = from_json(&mut Files::default(), &text).unwrap_err();
     assert!(
-        error.contains("1:43: error[E0506]: the code of this tab is larger than 1 MiB"),
+        error.contains("1:43: error[E0508]: the code of this tab is larger than 1 MiB"),
         "{error}"
     );
 }
@@ -315,50 +319,50 @@ fn errors_of_a_project_file_have_a_line_and_a_column() {
     for (text, expected) in [
         (
             "[[pass]\n",
-            "1:8: error[E0505]: missing `]]` at the end of a table header",
+            "1:8: error[E0507]: missing `]]` at the end of a table header",
         ),
-        ("[[pass]]\n", "1:1: error[E0506]: missing key `tab` in [[pass]]"),
+        ("[[pass]]\n", "1:1: error[E0508]: missing key `tab` in [[pass]]"),
         (
             "[[pass]]\ntab = \"buffer-e\"\n",
-            "2:7: error[E0506]: `tab` must be the name of a tab",
+            "2:7: error[E0508]: `tab` must be the name of a tab",
         ),
         (
             "[[pass]]\ntab = \"sound\"\n",
-            "2:7: error[E0506]: there is no file sound.glsl in the folder of the project",
+            "2:7: error[E0508]: there is no file sound.glsl in the folder of the project",
         ),
         (
             "[[pass]]\ntab = \"image\"\ninput = []\n",
-            "3:9: error[E0506]: unknown key `input`",
+            "3:9: error[E0508]: unknown key `input`",
         ),
         (
             "[[pass]]\ntab = \"image\"\ntype = \"buffer\"\noutputs = [{ id = 258 }]\n",
-            "2:7: error[E0506]: `tab` names Image, but `type` and `outputs` are those of Buffer B",
+            "2:7: error[E0508]: `tab` names Image, but `type` and `outputs` are those of Buffer B",
         ),
         (
             "[[pass]]\ntab = \"image\"\ninputs = [{ channel = 0, source = \"buffer-x\" }]\n",
-            "3:35: error[E0506]: unknown source `buffer-x`",
+            "3:35: error[E0508]: unknown source `buffer-x`",
         ),
         (
             "[[pass]]\ntab = \"image\"\ninputs = [{ channel = 0x9, source = \"buffer-a\" }]\n",
-            "3:23: error[E0506]: `channel` must be 0, 1, 2 or 3",
+            "3:23: error[E0508]: `channel` must be 0, 1, 2 or 3",
         ),
-        ("format = \"pages\"\n", "1:10: error[E0506]: unknown `format`"),
-        ("titel = 1\n", "1:9: error[E0506]: unknown key `titel`"),
+        ("format = \"pages\"\n", "1:10: error[E0508]: unknown `format`"),
+        ("titel = 1\n", "1:9: error[E0508]: unknown key `titel`"),
         (
             "[info]\ndate = 2020-01-01\n",
-            "2:8: error[E0506]: a value that JSON does not have",
+            "2:8: error[E0508]: a value that JSON does not have",
         ),
         (
             "[info]\nx = inf\n",
-            "2:5: error[E0506]: a value that JSON does not have",
+            "2:5: error[E0508]: a value that JSON does not have",
         ),
         (
             "[info]\nx = { json = \"{\" }\n",
-            "2:5: error[E0506]: `json` must be JSON: expected a key in double quotes",
+            "2:5: error[E0508]: `json` must be JSON: expected a key in double quotes",
         ),
         (
             "pass = 1\n",
-            "1:8: error[E0506]: the passes must be a list, found a number",
+            "1:8: error[E0508]: the passes must be a list, found a number",
         ),
     ] {
         let mut files = Files::default();
@@ -378,7 +382,7 @@ fn errors_of_a_project_file_have_a_line_and_a_column() {
         .to_string();
     assert_eq!(
         errors,
-        "error[E0506]: buffer-a.glsl is not listed in project.toml"
+        "error[E0508]: buffer-a.glsl is not listed in project.toml"
     );
 }
 
@@ -528,5 +532,86 @@ fn the_image_needs_what_it_reads_through_buffers() {
     assert_eq!(
         project.needed_by_image(),
         [Buffer::A, Buffer::C].map(PassKind::Buffer)
+    );
+}
+
+/// The codes of the warnings about a project file; every tab names `iChannel0` and `iChannel1`.
+fn warnings(toml: &str) -> Vec<String> {
+    let mut files = Files::default();
+    let code = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p) + texture(iChannel1, p); }";
+    let named = |tab: &Tab| toml.contains(&format!("\"{}\"\n", tab.name()));
+    let tabs: Vec<_> = Tab::ALL
+        .into_iter()
+        .filter(named)
+        .map(|tab| (tab, files.add(File::new(tab.file_name(), code))))
+        .collect();
+    let toml = files.add(File::new(PROJECT_FILE, toml));
+    let project = Project::from_folder(&files, Some(toml), &tabs).unwrap_or_else(|errors| panic!("{errors}"));
+    let checked = check(&project, &mut files, &Default::default()).unwrap();
+    let short = |warning| toyproof_diagnostic::short(warning, &files);
+    checked.warnings.iter().map(short).collect()
+}
+
+#[test]
+fn inputs_are_linted_where_they_are_used() {
+    let pass = |tab: &str, inputs: &str| format!("[[pass]]\ntab = \"{tab}\"\ninputs = [{inputs}]\n");
+    let reads = |channel: u32, source: &str, sampler: &str| {
+        format!("{{ channel = {channel}, source = \"{source}\", sampler = {{ {sampler} }} }}, ")
+    };
+    let [nearest, linear, repeat] = ["filter = \"nearest\"", "filter = \"linear\"", "wrap = \"repeat\""];
+    let none: [&str; 0] = [];
+    let a = |channel, sampler| reads(channel, "buffer-a", sampler);
+    let project = |passes: &[String]| warnings(&passes.concat());
+    // A missing pass, and one in a channel that no code names.
+    assert_eq!(
+        project(&[pass("image", &(a(1, "") + &reads(2, "buffer-b", "")))]),
+        ["project.toml:3:11: warning[W0018]: iChannel1 of Image reads Buffer A, which does not exist"]
+    );
+    let buffer = pass("buffer-a", "");
+    assert_eq!(
+        project(&[buffer.clone(), pass("image", &(a(0, nearest) + &a(1, linear)))]),
+        [
+            "project.toml:6:11: warning[W0019]: iChannel0 and iChannel1 of Image read Buffer A with different filters"
+        ]
+    );
+    // Passes set the filter one after the other, but the wrap mode only once.
+    let own = pass("buffer-a", &a(0, nearest));
+    assert_eq!(project(&[own.clone(), pass("image", &a(0, linear))]), none);
+    assert_eq!(
+        project(&[own.clone(), pass("image", &a(0, repeat))]),
+        ["project.toml:3:11: warning[W0019]: Buffer A and Image read Buffer A with different wrap modes"]
+    );
+    assert_eq!(
+        project(&[own, pass("image", &(a(0, "") + &reads(2, "buffer-a", repeat)))]),
+        none
+    );
+    let [reads_a, reads_b] = ["buffer-a", "buffer-b"].map(|source| reads(0, source, ""));
+    assert_eq!(
+        project(&[pass("buffer-b", &reads_a), buffer.clone(), pass("image", "")]),
+        [
+            "project.toml:3:11: warning[W0020]: Buffer B reads the previous frame of Buffer A, which runs after it in this project"
+        ]
+    );
+    assert_eq!(
+        project(&[
+            pass("buffer-b", ""),
+            pass("buffer-a", &reads_b),
+            pass("image", "")
+        ]),
+        [
+            "project.toml:6:11: warning[W0020]: Buffer A reads the same frame of Buffer B, which runs before it in this project"
+        ]
+    );
+    assert_eq!(
+        project(&[buffer, pass("buffer-b", &reads_a), pass("image", &reads_b)]),
+        none
+    );
+    assert_eq!(
+        project(&[
+            pass("buffer-b", &reads_b),
+            pass("buffer-a", ""),
+            pass("image", "")
+        ]),
+        none
     );
 }

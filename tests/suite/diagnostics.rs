@@ -10,6 +10,7 @@ use toyproof::diagnostic::{Deadline, Diagnostic, File, Files, human};
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::image::{Frame, noise};
 use toyproof::lint::lint;
+use toyproof::project::{self, Project, Tab};
 use toyproof::report::{Explanation, Rubric, explanations};
 use toyproof::scene::{self, Scene};
 use toyproof::translate::FloatMode;
@@ -91,6 +92,29 @@ fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>,
         "toml" => {
             let file = files.add(File::new("example.toml", example.text));
             (scene::parse(&files, file).err().unwrap_or_default().into(), files)
+        }
+        "glsl common" => {
+            let file = files.add(File::new("common.glsl", example.text));
+            let options = glsl::Options {
+                stage: glsl::Stage::Common,
+                ..glsl::Options::default()
+            };
+            let checked = glsl::check_declarations(&files, file, &options);
+            (checked.unwrap_or_else(Vec::from), files)
+        }
+        "toml project" => {
+            let toml = files.add(File::new("project.toml", example.text));
+            // Every tab reads the two channels that the examples have.
+            let code = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0) + texelFetch(iChannel1, ivec2(p), 0); }";
+            let named = |tab: &Tab| example.text.contains(&format!("tab = \"{}\"", tab.name()));
+            let tabs: Vec<_> = Tab::ALL
+                .into_iter()
+                .filter(named)
+                .map(|tab| (tab, files.add(File::new(tab.file_name(), code))))
+                .collect();
+            let checked = Project::from_folder(&files, Some(toml), &tabs)
+                .and_then(|project| project::check(&project, &mut files, &glsl::Options::default()));
+            (checked.map_or_else(Vec::from, |checked| checked.warnings), files)
         }
         "toml rubric" => {
             let file = files.add(File::new("example.toml", example.text));

@@ -45,6 +45,7 @@ mod page;
 mod planted_faults;
 mod povray;
 mod program;
+mod projects;
 mod random_draws;
 mod references;
 mod repairs;

@@ -172,7 +172,7 @@ fn a_reference_that_cannot_be_used_is_reported_before_any_shader_is_checked() {
         ("endless.glsl", endless),
         ("undefined.glsl", undefined),
         ("scene.toml", "[background]\n"),
-        ("project/image.glsl", DISK),
+        ("folder/image-2.glsl", DISK),
         ("shader.json", "{}"),
         ("photo.jpg", "?"),
     ]);
@@ -199,8 +199,14 @@ fn a_reference_that_cannot_be_used_is_reported_before_any_shader_is_checked() {
         ),
         ("missing.glsl", &["missing.glsl: no such file"]),
         ("scene.toml", &["scene.toml is a scene", "--scene"]),
-        ("project", &["project is a folder", "a single shader or an image"]),
-        ("shader.json", &["a project of several passes"]),
+        ("folder", &["folder is a folder", "a single shader or an image"]),
+        (
+            "shader.json",
+            &[
+                "error[E0506]: missing key `renderpass`",
+                "the reference shader.json is invalid",
+            ],
+        ),
         ("photo.jpg", &[".png and .exr"]),
     ] {
         let run = check(

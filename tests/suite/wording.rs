@@ -70,7 +70,7 @@ const RETIRED: [(&str, &str); 41] = [
 ];
 
 /// Text that has a retired word for a reason: the end of its path, and a part of the text.
-const ALLOWED: [(&str, &str); 5] = [
+const ALLOWED: [(&str, &str); 6] = [
     // The British forms of keys, which scene files accept, and of students' parameters.
     ("scene/file", "colour"),
     ("scene/file", "centre"),
@@ -78,6 +78,8 @@ const ALLOWED: [(&str, &str); 5] = [
     // The former names of keys, which are reported.
     ("report/rubric", "\"maths\""),
     ("report/rubric", "\"rounding\""),
+    // The name of a medium of ShaderToy.
+    ("project/media", "Grey Noise3D"),
 ];
 
 fn patterns() -> RegexSet {

@@ -121,7 +121,7 @@ pub(super) fn measure(repository: &Path, limit: usize, seed: u64, checks: bool) 
         if !Project::is_json(&text) {
             continue;
         }
-        counts.add(name, text, checks);
+        counts.add(name, &text, checks);
     }
     writer.join().expect("git read everything");
     reader.wait().expect("git ends");
@@ -130,10 +130,10 @@ pub(super) fn measure(repository: &Path, limit: usize, seed: u64, checks: bool) 
 }
 
 impl Counts {
-    fn add(&mut self, name: &str, text: String, checks: bool) {
+    fn add(&mut self, name: &str, text: &str, checks: bool) {
         self.all += 1;
         let mut files = Files::default();
-        let file = files.add(File::new(name, text.as_str()));
+        let file = files.add(File::new(name, text));
         let project = match Project::from_json(&mut files, file) {
             Ok(project) => project,
             Err(errors) => {
@@ -142,7 +142,7 @@ impl Counts {
                 return;
             }
         };
-        if survives(&project, &mut files, &text) {
+        if survives(&project, &mut files, text) {
             self.same += 1;
         } else {
             println!("{name}: changed by export and import");

@@ -26,7 +26,7 @@ use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
 use super::{Exit, Terminal};
-use crate::cli::files::{Input, ReadError};
+use crate::cli::files::{self, Input, ReadError};
 use crate::report::{Detail, Layout};
 
 const HOSTS: &str = "\
@@ -157,7 +157,7 @@ impl To {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders, terminal);
-    let several = inputs.len() > 1 || args.shaders.iter().any(|path| path.is_dir());
+    let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
     let Some(output) = output(args, several, terminal) else {
         return Exit::Error;
     };
