@@ -203,7 +203,7 @@ fn a_reference_that_cannot_be_used_is_reported_before_any_shader_is_checked() {
         (
             "shader.json",
             &[
-                "error[E0506]: missing key `renderpass`",
+                "error[E0508]: missing key `renderpass`",
                 "the reference shader.json is invalid",
             ],
         ),

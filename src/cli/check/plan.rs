@@ -150,7 +150,7 @@ fn read(path: &Path, terminal: &Terminal) -> Result<(Assignment, String), ()> {
     };
     match unusable {
         Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
-        Unusable::Unreadable(error) => terminal.error(error),
+        Unusable::Unreadable(error) | Unusable::Unrendered(error) => terminal.error(error),
     }
     Err(())
 }

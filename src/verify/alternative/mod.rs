@@ -2,7 +2,7 @@
 //! antialiased, mirrored or corrected for gamma, or read another input than was asked for.
 //!
 //! A hypothesis is tried at a few pixels and then confirmed: under it, the whole image must be correct by the same
-//! rules as any other. Most hypotheses evaluate the shader differently (a [`View`](view::View): at other
+//! rules as any other. Most hypotheses evaluate the shader differently (a `View`: at other
 //! positions, or with other inputs), so that they apply to every kind of reference.
 
 mod antialiasing;
