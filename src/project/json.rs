@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use toyproof_diagnostic::{Diagnostic, FileId, Files, Span};
+use toyproof_diagnostic::{Diagnostic, FileId, Files, Span, grouped};
 
 use crate::INVALID_SYNTAX;
 use crate::node::{Member, Node, Value};
@@ -12,6 +12,9 @@ const MAX_NESTING: usize = 64;
 
 /// The maximum number of keys of an object; ShaderToy's JSON has at most 14.
 const MAX_KEYS: usize = 256;
+
+/// The maximum number of values of a text; ShaderToy's JSON has a few hundred.
+const MAX_VALUES: usize = 100_000;
 
 /// Parses a text.
 ///
@@ -24,6 +27,7 @@ pub(crate) fn parse(files: &Files, file: FileId) -> Result<Node, Box<Diagnostic>
         file,
         at: 0,
         depth: 0,
+        values: 0,
     };
     let node = parser.value()?;
     parser.skip_blanks();
@@ -39,6 +43,8 @@ struct Parser<'t> {
     /// The next byte.
     at: usize,
     depth: usize,
+    /// The number of values so far.
+    values: usize,
 }
 
 type Parsed<T> = Result<T, Box<Diagnostic>>;
@@ -81,6 +87,11 @@ impl Parser<'_> {
 
     fn value(&mut self) -> Parsed<Node> {
         self.skip_blanks();
+        if self.values == MAX_VALUES {
+            let message = format!("more than {} values", grouped(MAX_VALUES as u64));
+            return Err(self.error(&message, "ShaderToy's JSON has a few hundred"));
+        }
+        self.values += 1;
         let start = self.at;
         let value = match self.peek() {
             Some(b'{') => self.nested(Self::object)?,
