@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{Diagnostics, FileId, Files};
+use toyproof_diagnostic::{Diagnostics, FileId, Files, nearest};
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_toml::{Format, Literal, Located, Table};
+use toyproof_verify::alternative::{Difference, UnknownDifference};
 
 use super::{
     Assignment, DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, MAX_FRAMES, Reference,
@@ -32,6 +33,7 @@ impl Assignment {
     pub fn parse(files: &Files, file: FileId, folder: &Path) -> Result<Self, Diagnostics> {
         toyproof_toml::read(&FORMAT, files, file, |document| {
             let reference = reference(document, folder);
+            let permitted = permitted(document);
             let mut frames = Vec::new();
             document.tables("frame", |table| {
                 let frame = frame(table, folder);
@@ -78,6 +80,7 @@ impl Assignment {
             Self {
                 // Without one, there are errors.
                 reference: reference.unwrap_or_else(|| Reference::Scene(PathBuf::new())),
+                permitted,
                 frames,
                 rubric: rubric.or_else(|| (others > 0.0).then(Rubric::default)),
                 rules,
@@ -85,6 +88,27 @@ impl Assignment {
             }
         })
     }
+}
+
+/// Reads the differences with which a shader is still correct.
+fn permitted(document: &mut Table) -> Vec<Difference> {
+    let Some(Located { value: ids, span }) = document.optional::<Vec<String>>("permitted") else {
+        return Vec::new();
+    };
+    let mut permitted = Vec::new();
+    for id in &ids {
+        match id.parse() {
+            Ok(difference) => permitted.push(difference),
+            Err::<_, UnknownDifference>(error) => {
+                let help = match nearest(id, Difference::ALL.map(Difference::id)) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => error.to_string(),
+                };
+                document.reject(span, format!("`permitted` has the unknown id `{id}`"), &help);
+            }
+        }
+    }
+    permitted
 }
 
 /// Reads what the shaders are compared with; none if no key gives it.

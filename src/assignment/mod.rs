@@ -22,6 +22,7 @@ mod template;
 use std::path::PathBuf;
 
 use toyproof_image::FrameInputs;
+use toyproof_verify::alternative::Difference;
 
 pub use self::function::{DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, Subject};
 pub use self::rules::Rules;
@@ -39,6 +40,8 @@ pub const MAX_FRAMES: usize = 64;
 pub struct Assignment {
     /// What the shaders are compared with.
     pub reference: Reference,
+    /// The differences from the reference with which a shader is still correct.
+    pub permitted: Vec<Difference>,
     /// The frames in which a shader must be right, at least one.
     pub frames: Vec<FrameInputs>,
     /// The points of the checks, if the assignment gives any points.

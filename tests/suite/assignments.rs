@@ -105,6 +105,39 @@ fn a_shader_is_wrong_if_it_is_wrong_in_one_frame() {
 }
 
 #[test]
+fn permitted_differences_are_correct_in_all_frames() {
+    let mirrored = DISK.replace(
+        "/ iResolution.y;\n    vec2 center",
+        "/ iResolution.y;\n    p.x = -p.x;\n    vec2 center",
+    );
+    assert_ne!(mirrored, DISK);
+    let check_with = |permitted: &str| {
+        let folder = assigned(&format!("{permitted}{FRAMES}"), &[("hw/mai.glsl", &mirrored)]);
+        let run = check(folder.path(), &[&TASK[..], &["--format", "json"]].concat());
+        let [mai] = &records(&run)[..] else {
+            panic!("{run:?}");
+        };
+        (run.code, mai.clone())
+    };
+    let (code, mai) = check_with("");
+    assert_eq!((code, &mai["mistake"]["id"]), (1, &"mirrored-x".into()), "{mai}");
+    let (code, mai) = check_with("permitted = [\"antialiasing\", \"mirrored-x\"]\n");
+    assert_eq!((code, &mai["verdict"]), (0, &"correct".into()), "{mai}");
+    assert!(
+        mai["details"]
+            .to_string()
+            .contains("`mirrored-x`, which is permitted"),
+        "{mai}"
+    );
+    errors(
+        "reference = \"solution.glsl\"\npermitted = [\"mirored-x\"]\n",
+        &expect![[r#"
+            assignment.toml:2:13: error[E0506]: `permitted` has the unknown id `mirored-x`
+        "#]],
+    );
+}
+
+#[test]
 fn the_images_and_the_command_are_those_of_the_wrong_frame() {
     let no_time = DISK.replace("0.2 * iTime", "0.0");
     let folder = assigned(FRAMES, &[("hw/mai.glsl", &no_time)]);

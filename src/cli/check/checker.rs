@@ -81,7 +81,13 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
         hash.update(part);
     };
     let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
-    let settings = (&inputs, &args.language, &args.driver, args.search, &args.permit);
+    let settings = (
+        &inputs,
+        &args.language,
+        &args.driver,
+        args.search,
+        &plan.permitted,
+    );
     add(format!("{:?}", build()?).as_bytes());
     let named = (&plan.reference.scene, &plan.reference.reference);
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
@@ -437,7 +443,7 @@ impl<'a> Checker<'a> {
             expected: cached.as_ref().map(|cached| &cached.expected),
             hypotheses,
             alternatives: Some(Alternatives {
-                permitted: &self.args.permit,
+                permitted: &self.plan.permitted,
                 scenes: Some(&self.other_scenes),
             }),
             search: (explains && self.args.search > 0.0).then(|| self.search_options(shader, checked)),

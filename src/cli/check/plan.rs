@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{Frame, FrameInputs};
+use toyproof_verify::alternative::Difference;
 
 use super::{Args, reports};
 use crate::assignment::{self, Assignment, FILE_NAME};
@@ -19,6 +20,8 @@ pub(super) struct Plan {
     pub(super) reference: ReferenceArgs,
     /// The frames, at least one.
     pub(super) frames: Vec<PlannedFrame>,
+    /// The differences with which they are still correct.
+    pub(super) permitted: Vec<Difference>,
     pub(super) rubric: Option<Rubric>,
     /// The assignment and its text, if there is one.
     pub(super) assignment: Option<(Assignment, String)>,
@@ -47,6 +50,7 @@ impl Plan {
         let mut plan = Self {
             reference: args.reference.clone(),
             frames: Vec::new(),
+            permitted: args.permit.clone(),
             rubric,
             assignment: None,
         };
@@ -63,6 +67,7 @@ impl Plan {
                     ReferenceArgs::given(path.clone(), *tolerance)
                 }
             };
+            plan.permitted.extend(&assignment.permitted);
             plan.rubric = plan.rubric.or_else(|| assignment.rubric.clone());
             plan.assignment = Some((assignment, text));
         }

@@ -18,7 +18,7 @@ use std::sync::LazyLock;
 
 use toyproof_scene::Scene;
 
-pub use self::difference::Difference;
+pub use self::difference::{Difference, UnknownDifference};
 pub(crate) use self::wrong_shader::WrongShader;
 use crate::compare::CheckSummary;
 use crate::mistake::KnownMistake;
