@@ -75,8 +75,19 @@ const MAX_FITTED: usize = 1 << 16;
 /// The largest share of the samples that may be off the first fit, which they distort.
 const MAX_OUTLIERS: f64 = 0.02;
 
+/// The smallest share of the wrong pixels that differ by more than the tolerance of a curve. Where fewer than a
+/// hypothesis may leave unexplained do, the curve that changes nothing would explain the image.
+const MIN_BEYOND_TOLERANCE: f64 = 0.2;
+
 /// Finds the color curve that explains the image: one function of all components of all pixels.
 pub(super) fn curve(wrong: &WrongShader) -> Option<Alternative> {
+    let pixels = 0..wrong.statuses.len();
+    let is_beyond =
+        |&at: &usize| Pixel::at(at, &wrong.reference, &wrong.actual).difference() > wrong.tolerance();
+    let beyond = pixels.filter(is_beyond).count();
+    if (beyond as f64) < MIN_BEYOND_TOLERANCE * wrong.algorithm.differing as f64 {
+        return None;
+    }
     let samples = samples(wrong);
     let all = usual();
     let mut usual = all.iter().filter(|curve| explains(curve, &samples, wrong));
