@@ -27,6 +27,7 @@ pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{Alternative, Mistake, Position, Record, Report, SCHEMA, Seconds};
 pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
+#[cfg(feature = "lab")]
 pub(crate) use rubric::optional_points;
 pub use rubric::{Mark, Rubric, Visibility};
 pub use sarif::sarif;

@@ -134,7 +134,8 @@ fn points(table: &mut Table) -> f64 {
     points.map_or(0.0, |points| valid_points(table, &points))
 }
 
-/// Reads the points of a table; 0 if it gives none.
+/// Reads the points of a table of an assignment; 0 if it gives none.
+#[cfg(feature = "lab")]
 pub(crate) fn optional_points(table: &mut Table) -> f64 {
     let points = table.optional::<f64>("points");
     points.map_or(0.0, |points| valid_points(table, &points))
