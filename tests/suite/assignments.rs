@@ -131,9 +131,9 @@ fn permitted_differences_are_correct_in_all_frames() {
     );
     errors(
         "reference = \"solution.glsl\"\npermitted = [\"mirored-x\"]\n",
-        &expect![[r#"
+        &expect![[r"
             assignment.toml:2:13: error[E0506]: `permitted` has the unknown id `mirored-x`
-        "#]],
+        "]],
     );
 }
 

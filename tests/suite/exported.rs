@@ -378,10 +378,9 @@ fn random_scenes_and_their_shaders_agree() {
             }
         }
     }
-    println!("{ill_conditioned} images are ill-conditioned");
     assert!(
         failed.is_empty(),
-        "{} failed:\n{}",
+        "{} failed ({ill_conditioned} are ill-conditioned):\n{}",
         failed.len(),
         failed.join("\n")
     );
