@@ -80,6 +80,8 @@ pub use toyproof_image as image;
 pub use toyproof_lab as lab;
 pub use toyproof_lint as lint;
 pub use toyproof_math as math;
+#[cfg(feature = "eval")]
+pub use toyproof_player as player;
 #[cfg(feature = "project")]
 pub use toyproof_project as project;
 #[cfg(feature = "tracer")]

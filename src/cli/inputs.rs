@@ -9,7 +9,7 @@ use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_glsl as glsl;
 use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image::output::Originals;
-use toyproof_image::{Channel, FrameInputs, check_size};
+use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, check_size};
 use toyproof_translate::FloatMode;
 
 use super::{Terminal, WORKER};
@@ -86,13 +86,28 @@ impl FrameArgs {
         [&self.channel0, &self.channel1, &self.channel2, &self.channel3]
     }
 
+    /// The frame to show. One that depends on earlier ones follows from its time, if only that is given.
+    pub(super) fn number(&self, has_history: bool, rate: f64) -> i32 {
+        let of_time = self
+            .time
+            .filter(|_| has_history)
+            .map(|time| (f64::from(time) * rate).round());
+        let number = self.frame.or(of_time.map(|number| number.max(0.0) as i32));
+        number.unwrap_or_default()
+    }
+
+    /// The time of frame 0, so that the frame to show has the given time; 0 by default.
+    pub(super) fn start(&self, number: i32, rate: f64) -> f64 {
+        self.time.map_or(0.0, |time| f64::from(time) - f64::from(number) / rate)
+    }
+
     /// The frame that the flags describe.
     pub(super) fn inputs(&self) -> FrameInputs {
         FrameInputs {
             size: self.size,
             time: self.time.unwrap_or_default(),
             frame: self.frame.unwrap_or_default(),
-            mouse: self.mouse.unwrap_or_default(),
+            mouse: self.mouse.unwrap_or(IDLE_MOUSE),
             date: self.date.unwrap_or_default(),
             channels: self
                 .channels()

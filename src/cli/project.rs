@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::{Diagnostics, Files, path_name};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::Lints;
-use toyproof_project::{self as project, PROJECT_FILE, PassKind, Project, Tab};
+use toyproof_project::{self as project, NotRendered, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_toml::list_of;
 
 use super::files::{self, Input, ProjectTexts, ReadError, Texts};
@@ -32,41 +32,68 @@ fn parse(texts: ProjectTexts, files: &mut Files) -> Result<Project, Diagnostics>
     }
 }
 
-/// Checks all tabs of a project, and returns its image. The warnings are those about all tabs.
-pub(super) fn check_image(
+/// A project whose tabs compile, with what renders its image.
+#[derive(Debug)]
+pub(super) struct Passes {
+    pub(super) project: Project,
+    /// The trees of the passes, in the order of the project.
+    pub(super) checked: Vec<Checked>,
+}
+
+impl Passes {
+    /// What renders the image and another pass.
+    ///
+    /// # Errors
+    /// If a pass is needed that cannot be rendered.
+    pub(super) fn rendering(&self, also: PassKind) -> Result<Rendering, NotRendered> {
+        self.project.rendering(also)
+    }
+
+    /// The trees of the passes of a rendering, in its order.
+    pub(super) fn checked_of<'a>(&'a self, rendering: &'a Rendering) -> impl Iterator<Item = &'a Checked> {
+        rendering.passes.iter().map(|&at| &self.checked[at])
+    }
+
+    /// The tree of the image.
+    pub(super) fn image(&self) -> &Checked {
+        let mut passes = self.project.passes.iter().zip(&self.checked);
+        let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
+        image.expect("every project has an image").1
+    }
+
+    /// Why a command that renders the image alone cannot use the project; none if the image reads no pass.
+    pub(super) fn unrendered(&self, name: &str) -> Option<Unreadable> {
+        let needed = self.project.needed_by_image();
+        let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
+        (!names.is_empty()).then(|| Unreadable {
+            name: name.to_owned(),
+            reason: format!(
+                "the image reads {}, which this command does not render",
+                names.join(", ")
+            ),
+        })
+    }
+}
+
+/// Checks all tabs of a project. The warnings are those about all tabs.
+pub(super) fn check(
     texts: ProjectTexts,
-    name: &str,
     files: &mut Files,
     lints: &mut Lints,
     options: &glsl::Options,
-) -> Result<Checked, Unusable> {
+) -> Result<Passes, Unusable> {
     let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());
     let project = parse(texts, files).map_err(invalid)?;
-    let checked = project::check(&project, files, options).map_err(invalid)?;
-    let mut passes = checked.passes.into_iter();
-    let image = passes.find(|pass| pass.kind == PassKind::Image);
-    let image = image.expect("every project has an image");
-    *lints = Lints {
-        warnings: checked.warnings,
-        ..image.lints
-    };
-    let needed = project.needed_by_image();
-    if needed.is_empty() {
-        return Ok(image.checked);
+    let passes = project::check(&project, files, options).map_err(invalid)?;
+    let mut checked = Vec::with_capacity(passes.passes.len());
+    for pass in passes.passes {
+        if pass.kind == PassKind::Image {
+            *lints = pass.lints;
+        }
+        checked.push(pass.checked);
     }
-    let needed: Vec<_> = needed.iter().map(ToString::to_string).collect();
-    let assumed = if project.knows_inputs {
-        String::new()
-    } else {
-        format!("; without {PROJECT_FILE}, iChannel0 to iChannel3 are assumed to read Buffers A to D")
-    };
-    Err(Unusable::Unrendered(Unreadable {
-        name: name.to_owned(),
-        reason: format!(
-            "all tabs compile, but the image reads {}, and passes other than the image are not rendered yet{assumed}",
-            needed.join(", "),
-        ),
-    }))
+    lints.warnings = passes.warnings;
+    Ok(Passes { project, checked })
 }
 
 /// Import a project from ShaderToy's JSON into a folder

@@ -7,7 +7,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
-use toyproof_image::{Frame, Image};
+use toyproof_image::{FRAME_RATE, Frame, Image};
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Real, Tracer};
 use toyproof_verify::Expected;
@@ -140,7 +140,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             sequence.render(terminal, |one| {
                 let frame_time = FrameTime {
                     frame: one.frame,
-                    time: one.time,
+                    time: f64::from(one.frame) / f64::from(FRAME_RATE),
                 };
                 render_frame(&scene, frame_time, &mut previous, (args, &one.path), terminal)
             })

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use toyproof_diagnostic::{grouped, path_name, plural};
-use toyproof_image::{self as image, FRAME_RATE};
+use toyproof_image as image;
 
 use super::Terminal;
 
@@ -30,12 +30,14 @@ pub(super) fn parse_frames(text: &str) -> Result<Frames, String> {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SequenceFrame {
     pub(super) frame: i32,
-    /// In seconds, at `ShaderToy`'s 60 frames a second.
-    pub(super) time: f64,
     pub(super) path: PathBuf,
 }
 
 impl Frames {
+    pub(super) fn first(self) -> i32 {
+        self.first
+    }
+
     fn count(self) -> u64 {
         u64::from(self.last.abs_diff(self.first)) + 1
     }
@@ -48,7 +50,6 @@ impl Frames {
             let extension = output.extension().unwrap_or_default().to_string_lossy();
             SequenceFrame {
                 frame,
-                time: f64::from(frame) / f64::from(FRAME_RATE),
                 path: output.with_file_name(format!("{stem}-{frame:0digits$}.{extension}")),
             }
         })

@@ -11,7 +11,7 @@ use toyproof_lint::{Lints, lint};
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
 use crate::cli::files::{self, Input, ReadError, Texts, content_diagnostic};
-use crate::cli::project;
+use crate::cli::project::{self, Passes};
 
 /// The lints may take one part in this many of a shader's time limit.
 const LINT_TIME_SHARE: u32 = 4;
@@ -22,6 +22,8 @@ pub(super) struct Shader {
     pub(super) files: Files,
     pub(super) checked: Result<Checked, Unusable>,
     pub(super) lints: Lints,
+    /// All tabs, if it is a project.
+    pub(super) passes: Option<Passes>,
 }
 
 /// Why a shader cannot be used.
@@ -30,7 +32,7 @@ pub(super) enum Unusable {
     Invalid(Vec<Diagnostic>),
     /// It cannot be read.
     Unreadable(Unreadable),
-    /// It is valid, but reads passes of a project that cannot be rendered yet.
+    /// It is valid, but is an image that reads other passes of a project.
     Unrendered(Unreadable),
 }
 
@@ -75,10 +77,17 @@ impl Shader {
     ) -> Self {
         let mut files = Files::default();
         let mut lints = Lints::default();
+        let mut passes = None;
         let (name, checked) = match found {
             Err(error) => (error.name(), Err(Unusable::Unreadable(error.into()))),
             Ok(found) => {
-                let checked = read(found, &mut files, &mut lints, &language.options(deadline));
+                let checked = read(
+                    found,
+                    &mut files,
+                    &mut lints,
+                    &mut passes,
+                    &language.options(deadline),
+                );
                 let denied = denied(&mut lints.warnings, language.denied());
                 let checked = match checked {
                     Ok(_) | Err(Unusable::Unrendered(_)) if !denied.is_empty() => {
@@ -94,6 +103,7 @@ impl Shader {
             files,
             checked,
             lints,
+            passes,
         }
     }
 
@@ -121,6 +131,7 @@ fn read(
     found: &Input,
     files: &mut Files,
     lints: &mut Lints,
+    passes: &mut Option<Passes>,
     options: &glsl::Options,
 ) -> Result<Checked, Unusable> {
     match files::read(found) {
@@ -131,7 +142,13 @@ fn read(
             *lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
             Ok(checked)
         }
-        Ok(Texts::Project(texts)) => project::check_image(texts, &found.name(), files, lints, options),
+        Ok(Texts::Project(texts)) => {
+            let project = passes.insert(project::check(texts, files, lints, options)?);
+            match project.unrendered(&found.name()) {
+                None => Ok(project.image().clone()),
+                Some(unrendered) => Err(Unusable::Unrendered(unrendered)),
+            }
+        }
         Err(error) => Err(Unusable::of(error, files)),
     }
 }

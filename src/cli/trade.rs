@@ -172,6 +172,7 @@ fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &
             .map_err(|errors| Unusable::Invalid(errors.into())),
         files,
         lints: Lints::default(),
+        passes: None,
     })
 }
 

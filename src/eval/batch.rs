@@ -2,7 +2,8 @@
 
 use std::cell::{Cell, RefCell};
 
-use crate::frame::Texture;
+use toyproof_image::Texture;
+
 use crate::number::Number;
 use crate::observe::Notes;
 use crate::trace::Recorder;
@@ -63,7 +64,7 @@ pub(crate) struct Batch<'a, N: Number> {
     pub(crate) masks: Vec<Chunk<u32>>,
     pub(crate) active: Vec<Cell<Active>>,
     pub(crate) noise: N::Noise,
-    pub(crate) textures: &'a [Option<Texture<'a>>; 4],
+    pub(crate) textures: &'a [Option<Texture>; 4],
     /// Loop iterations left until the limits are checked again.
     pub(crate) fuel: Cell<u32>,
     pub(crate) stopped: Cell<Option<Stop>>,

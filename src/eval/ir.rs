@@ -8,6 +8,7 @@
 use toyproof_glsl::tree::{Input, Place};
 
 use crate::observe::{Predicate, SiteId};
+use crate::texture::Lookup;
 
 /// Identifies a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -64,12 +65,12 @@ pub(crate) enum ValueDef {
         index: Value,
         kind: Kind,
     },
-    /// One component of a lookup in a channel's texture.
+    /// One component of a lookup in a channel's texture: a single texel, by its integer coordinates, or a filtered one,
+    /// by normalized coordinates. The third operand is the level of the mipmaps.
     Texel {
-        channel: u8,
         lookup: Lookup,
-        component: u8,
-        at: [Value; 2],
+        is_filtered: bool,
+        at: [Value; 3],
     },
 }
 
@@ -81,15 +82,6 @@ pub(crate) const NONE: Value = Value(u32::MAX);
 pub(crate) enum Axis {
     X,
     Y,
-}
-
-/// The kind of a texture lookup.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Lookup {
-    /// Filtered, by normalized coordinates, with an offset in texels.
-    Filtered { offset: [i32; 2] },
-    /// A single texel, by its integer coordinates.
-    Fetched,
 }
 
 /// Nodes in execution order.
@@ -149,8 +141,8 @@ pub(crate) struct Function {
     /// The source location of each loop.
     pub(crate) loops: Vec<Place>,
     pub(crate) body: Block,
-    /// Red, green, blue, and whether the pixel was discarded.
-    pub(crate) output: [Value; 4],
+    /// Red, green, blue, alpha, and whether the pixel was discarded.
+    pub(crate) output: [Value; 5],
 }
 
 impl Function {
@@ -209,14 +201,12 @@ impl ValueDef {
                 kind,
             },
             Self::Texel {
-                channel,
                 lookup,
-                component,
+                is_filtered,
                 at,
             } => Self::Texel {
-                channel,
                 lookup,
-                component,
+                is_filtered,
                 at: at.map(each),
             },
             other => other,

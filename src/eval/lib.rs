@@ -67,10 +67,12 @@ mod observe;
 mod ops;
 mod opt;
 mod parametric;
+mod passes;
 mod program;
 mod render;
 #[cfg(test)]
 mod tests;
+mod texture;
 mod tile;
 mod trace;
 
@@ -79,6 +81,7 @@ pub use frame::Framebuffer;
 pub use number::{Number, RandomRounding, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
 pub use parametric::{ParametricProgram, Point, PointEvaluator};
+pub use passes::{PassFailure, PassRenderer};
 pub use program::Program;
 pub use render::{Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
 pub use trace::{

@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use toyproof_image::{Image, Texture};
 use toyproof_math::native::{self, flush};
 
 use crate::program::Backend;
@@ -17,6 +18,12 @@ macro_rules! define_number {
             /// Converts to the nearest number of this type.
             #[must_use]
             fn from_f64(value: f64) -> Self;
+            /// Converts from f32, exactly.
+            #[must_use]
+            fn from_f32(value: f32) -> Self;
+            /// A texture with these texels, bottom row first, in the precision of this type.
+            #[must_use]
+            fn texture(size: [u32; 2], texels: Vec<[Self; 4]>) -> Texture;
             /// Converts to f64, exactly.
             fn to_f64(self) -> f64;
             /// Converts to the nearest f32.
@@ -81,6 +88,13 @@ macro_rules! define_number {
                 value as f32
             }
             #[inline(always)]
+            fn from_f32(value: f32) -> Self {
+                value
+            }
+            fn texture([width, height]: [u32; 2], texels: Vec<[Self; 4]>) -> Texture {
+                Image::new(width, height, texels).into()
+            }
+            #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
@@ -134,6 +148,13 @@ macro_rules! define_number {
                 value
             }
             #[inline(always)]
+            fn from_f32(value: f32) -> Self {
+                f64::from(value)
+            }
+            fn texture([width, height]: [u32; 2], texels: Vec<[Self; 4]>) -> Texture {
+                Image::new(width, height, texels).into()
+            }
+            #[inline(always)]
             fn to_f64(self) -> f64 {
                 self
             }
@@ -184,6 +205,14 @@ macro_rules! define_number {
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
                 Self(value)
+            }
+            #[inline(always)]
+            fn from_f32(value: f32) -> Self {
+                Self(f64::from(value))
+            }
+            fn texture([width, height]: [u32; 2], texels: Vec<[Self; 4]>) -> Texture {
+                let texels = texels.into_iter().map(|texel| texel.map(Self::to_f64));
+                Image::new(width, height, texels.collect()).into()
             }
             #[inline(always)]
             fn to_f64(self) -> f64 {

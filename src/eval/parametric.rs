@@ -11,7 +11,6 @@ use toyproof_image::Frame;
 
 use crate::batch::{Active, Batch, LANES};
 use crate::build::{BuildOptions, Refusal};
-use crate::frame::Texture;
 use crate::ir::Kind;
 use crate::lower::isel::Prepared;
 use crate::ops::run;
@@ -58,12 +57,11 @@ impl ParametricProgram {
         settings: &Settings<'_, f64>,
         work: impl FnOnce(&mut PointEvaluator<'_>) -> T,
     ) -> T {
-        let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
         let job = FrameJob::new(
             &self.compiled,
             &self.prepared,
-            &textures,
+            &frame.channels,
             &limits,
             settings,
             frame.size,
@@ -168,9 +166,9 @@ impl PointEvaluator<'_> {
         }
         let mut all = Vec::with_capacity(chunks * LANES);
         for chunk in 0..chunks {
-            let (color, discarded) = self.job.outputs(&batch, chunk);
+            let ([red, green, blue, _], discarded) = self.job.outputs(&batch, chunk);
             all.extend((0..LANES).map(|lane| match discarded[lane] {
-                0 => color.map(|component| component[lane]),
+                0 => [red, green, blue].map(|component| component[lane]),
                 _ => [0.0; 3],
             }));
         }

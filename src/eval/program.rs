@@ -162,7 +162,7 @@ pub trait Backend: Sized {
         frame: &Frame,
         part: Part<'_>,
         settings: &Settings<'_, Self>,
-        pixels: &mut [[Self; 3]],
+        pixels: &mut [[Self; 4]],
         flags: &mut [u8],
     ) -> Result<Observations, Failure>
     where
@@ -202,7 +202,7 @@ macro_rules! backends {
                 frame: &Frame,
                 part: Part<'_>,
                 settings: &Settings<'_, Self>,
-                pixels: &mut [[Self; 3]],
+                pixels: &mut [[Self; 4]],
                 flags: &mut [u8],
             ) -> Result<Observations, Failure> {
                 program.fill(frame, part, settings, pixels, flags, |color, _| color)

@@ -12,7 +12,6 @@ use toyproof_image::{Frame, Image};
 
 use crate::batch::Cancellation;
 use crate::build::Refusal;
-use crate::frame::Texture;
 use crate::frame::{Framebuffer, UNDEFINED};
 use crate::number::Number;
 use crate::observe::Observations;
@@ -289,22 +288,21 @@ impl Program {
         settings: &Settings<'_, N>,
         pixels: &mut [P],
         flags: &mut [u8],
-        keep: impl Fn([N; 3], u8) -> P + Sync,
+        keep: impl Fn([N; 4], u8) -> P + Sync,
     ) -> Result<Observations, Failure> {
         let compiled = self.code(settings.undefined)?;
         let prepared = N::prepare(compiled, frame);
-        let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
         let (size, start, places) = match part {
             Part::Rows(rows) => ([frame.size[0], rows.end], rows.start, None),
             Part::Places(places) => (places.size(), 0, Some(places)),
         };
-        let job = FrameJob::new(compiled, &prepared, &textures, &limits, settings, size).at(places);
+        let job = FrameJob::new(compiled, &prepared, &frame.channels, &limits, settings, size).at(places);
         let failure = Mutex::new(None);
         let band = size[0] as usize * job.rows();
         let bands = pixels.par_chunks_mut(band).zip(flags.par_chunks_mut(band));
         let observed = bands.enumerate().map_init(
-            || (job.batch(), vec![[N::default(); 3]; band]),
+            || (job.batch(), vec![[N::default(); 4]; band]),
             |(batch, colors), (tiles, (pixels, flags))| {
                 let first = start + (tiles * job.rows()) as u32;
                 let wanted = settings

@@ -31,7 +31,7 @@ impl FunctionBuilder {
                 scopes,
                 loops: vec![place; loops],
                 body: Block::new(),
-                output: [NONE; 4],
+                output: [NONE; 5],
             },
             varying: NONE,
         };
@@ -65,7 +65,7 @@ impl FunctionBuilder {
         let mut body = std::mem::take(&mut self.function.body);
         let [a, b] = cells.map(|cell| self.load(cell, &mut body));
         self.function.body = body;
-        self.function.output = [a, b, a, b];
+        self.function.output = [a, b, a, b, a];
         self.function
     }
 

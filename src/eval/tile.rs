@@ -5,11 +5,12 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::iter::repeat_with;
 
+use toyproof_image::Texture;
+
 use crate::batch::{
     Active, Batch, Cancellation, Chunk, FUEL_ITERATIONS, LANES, Lanes, Stop, TILE_COLUMNS, lane_at,
     lane_position,
 };
-use crate::frame::Texture;
 use crate::frame::{DISCARDED, UNDEFINED};
 use crate::lower::isel::Prepared;
 use crate::lower::regalloc::Location;
@@ -51,7 +52,7 @@ const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 /// A frame that is being rendered.
 pub(crate) struct FrameJob<'a, N: Number> {
     prepared: &'a Prepared<N>,
-    textures: &'a [Option<Texture<'a>>; 4],
+    textures: &'a [Option<Texture>; 4],
     limits: &'a Limits<'a>,
     settings: &'a Settings<'a, N>,
     floats: Vec<N>,
@@ -66,7 +67,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
     pub(crate) fn new(
         compiled: &'a Compiled,
         prepared: &'a Prepared<N>,
-        textures: &'a [Option<Texture<'a>>; 4],
+        textures: &'a [Option<Texture>; 4],
         limits: &'a Limits<'a>,
         settings: &'a Settings<'a, N>,
         size: [u32; 2],
@@ -133,7 +134,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
         &self,
         batch: &mut Batch<'_, N>,
         first: u32,
-        (pixels, flags): (&mut [[N; 3]], &mut [u8]),
+        (pixels, flags): (&mut [[N; 4]], &mut [u8]),
         wanted: Option<&[bool]>,
     ) -> Result<Observations, BandError> {
         let mut observations = Observations::default();
@@ -186,7 +187,9 @@ impl<'a, N: Number> FrameJob<'a, N> {
             .map_or_else(ExecutionTrace::default, Recorder::finish);
         let (chunk, lane) = (position / LANES, position % LANES);
         let (color, discarded) = self.outputs(&batch, chunk);
-        trace.color = (discarded[lane] == 0).then(|| color.map(|component| component[lane].to_f64()));
+        let [red, green, blue, _] = color;
+        trace.color =
+            (discarded[lane] == 0).then(|| [red, green, blue].map(|component| component[lane].to_f64()));
         Ok(trace)
     }
 
@@ -220,7 +223,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
     }
 
     /// Returns the colors of a chunk, and which of its pixels were discarded.
-    pub(crate) fn outputs(&self, batch: &Batch<'_, N>, chunk: usize) -> ([Lanes<N>; 3], Lanes<u32>) {
+    pub(crate) fn outputs(&self, batch: &Batch<'_, N>, chunk: usize) -> ([Lanes<N>; 4], Lanes<u32>) {
         let color = self.prepared.color.map(|location| match location {
             Location::Row(row) => batch.float_row(row)[chunk].get(),
             Location::Scalar(scalar) => [batch.float_scalars[scalar as usize].get(); LANES],
@@ -237,7 +240,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
         &self,
         batch: &Batch<'_, N>,
         [left, low]: [u32; 2],
-        pixels: &mut [[N; 3]],
+        pixels: &mut [[N; 4]],
         flags: &mut [u8],
         observations: &mut Observations,
     ) {
@@ -310,7 +313,7 @@ fn chunks<T: Copy>(lanes: Lanes<T>, count: usize) -> Vec<Chunk<T>> {
 fn prologue<N: Number>(
     prepared: &Prepared<N>,
     settings: &Settings<'_, N>,
-    textures: &[Option<Texture<'_>>; 4],
+    textures: &[Option<Texture>; 4],
     limits: &Limits<'_>,
 ) -> (Vec<N>, Vec<u32>) {
     let batch = Batch {

@@ -6,7 +6,6 @@ use toyproof_glsl::tree::{FunctionId, Place, Type};
 use toyproof_image::Frame;
 
 use crate::batch::LANES;
-use crate::frame::Texture;
 use crate::lower::isel::Prepared;
 use crate::number::Number;
 use crate::program::{Compiled, Program};
@@ -316,12 +315,11 @@ impl<'a, N: Number> PixelDebugger<'a, N> {
     ) -> Result<ExecutionTrace, Failure> {
         let (frame, settings) = (self.frame, &self.settings);
         assert!(pixel[0] < frame.size[0] && pixel[1] < frame.size[1], "{pixel:?}");
-        let textures = frame.channels.each_ref().map(|image| image.as_ref().map(Texture));
         let limits = Limits::of(settings);
         let job = FrameJob::new(
             self.compiled,
             &self.prepared,
-            &textures,
+            &frame.channels,
             &limits,
             settings,
             frame.size,

@@ -59,6 +59,7 @@ mod foreign;
 mod keywords;
 mod parse;
 mod preprocess;
+mod sampling;
 mod single_edit;
 mod stage;
 mod token;
@@ -66,6 +67,7 @@ pub mod tree;
 
 pub use codes::{Code, IN_MACRO, MAX_REPORTED, overdue};
 pub use preprocess::ControlComment;
+pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
 pub use stage::Stage;
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
@@ -91,6 +93,8 @@ pub struct Options {
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
     /// `sampler2D`, or the shape that the first lookup that does not fit a `sampler2D` requires.
     pub channels: [Option<SamplerShape>; 4],
+    /// How the textures of `iChannel0` to `iChannel3` are sampled.
+    pub sampling: [Sampling; 4],
     /// When the check must end. Lints get a quarter of the time for themselves; lints that take longer are
     /// skipped.
     pub deadline: Deadline,
@@ -105,6 +109,10 @@ pub struct Checked {
     pub main_image: FunctionId,
     /// The shapes of `iChannel0` to `iChannel3`, as given in the options or inferred from use.
     pub channels: [SamplerShape; 4],
+    /// How the textures of `iChannel0` to `iChannel3` are sampled.
+    pub sampling: [Sampling; 4],
+    /// The tab that the text is.
+    pub stage: Stage,
     /// The front end's warnings in source order, including those that the author allows: lints filter them.
     pub warnings: Vec<Diagnostic>,
     /// The `// toyproof:` comments, which control lints.
@@ -151,6 +159,8 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         tree: text.tree,
         main_image: text.entry.expect("every stage but Common has an entry point"),
         channels: text.channels,
+        sampling: options.sampling,
+        stage: options.stage,
         warnings: text.warnings,
         control_comments: text.control_comments,
     })

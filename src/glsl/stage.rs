@@ -5,9 +5,11 @@ use crate::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
 /// What a text is compiled as: a tab of ShaderToy's editor.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Stage {
-    /// The image or a buffer, with `mainImage`.
+    /// The image, with `mainImage`. Its alpha is 1.
     #[default]
     Image,
+    /// A buffer, with `mainImage`. Its alpha is what the shader writes.
+    Buffer,
     /// A cube map, with `mainCubemap`.
     Cubemap,
     /// Sound, with `mainSound`.
@@ -20,7 +22,7 @@ impl Stage {
     /// Whether the site declares an input in this tab.
     pub(crate) fn has_input(self, name: &str) -> bool {
         match self {
-            Self::Image | Self::Cubemap => true,
+            Self::Image | Self::Buffer | Self::Cubemap => true,
             Self::Sound => name.starts_with("iChannel") || matches!(name, "iDate" | "iSampleRate"),
             Self::Common => matches!(name, "iDate" | "iSampleRate"),
         }
@@ -30,6 +32,7 @@ impl Stage {
     pub(crate) fn tab(self) -> &'static str {
         match self {
             Self::Image => "Image",
+            Self::Buffer => "Buffer",
             Self::Cubemap => "Cube A",
             Self::Sound => "Sound",
             Self::Common => "Common",
@@ -45,7 +48,7 @@ impl Stage {
         const COLOR: Parameter = (VEC4, &[Out, InOut]);
         const INPUT: &[Direction] = &[In, ConstIn];
         Some(match self {
-            Self::Image => Entry {
+            Self::Image | Self::Buffer => Entry {
                 name: "mainImage",
                 return_type: Type::Void,
                 parameters: &[&[COLOR, (VEC2, INPUT)]],

@@ -144,8 +144,8 @@ impl Chromium {
 }
 
 fn frame_json(frame: &Frame) -> Value {
-    let channels = frame.channels.iter().enumerate().filter_map(|(number, image)| {
-        let image = image.as_ref()?;
+    let channels = frame.channels.iter().enumerate().filter_map(|(number, texture)| {
+        let image = texture.as_ref()?.to_single().swap_remove(0);
         let [width, height] = image.size();
         let pixels = BASE64_STANDARD.encode(bytemuck::cast_slice::<_, u8>(image.pixels()));
         Some(json!({"number": number, "width": width, "height": height, "pixels": pixels}))

@@ -9,11 +9,13 @@ use toyproof_image::{Frame, Image};
 use toyproof_translate::backend::spirv;
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
-use wgpu::{BindGroup, Buffer, BufferUsages, PollType, RenderPipeline, Texture, TextureUsages};
+use wgpu::{BindGroup, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::Device;
-use super::pipeline::{FORMAT, Layout};
+use super::pipeline::Layout;
 use super::quirks::{OPAQUE_NUMBERS, mesa_barriers};
+use super::readback::RowBuffer;
+use super::texture::flat;
 use super::{AdapterSelector, Failure};
 
 /// A rendered image with its statistics.
@@ -58,14 +60,12 @@ impl DrawOutput {
 /// A compiled shader with the bindings and the target of a frame.
 #[derive(Debug)]
 pub(super) struct PreparedFrame {
-    width: u32,
     bands: Vec<Range<u32>>,
     pipeline: RenderPipeline,
     bindings: BindGroup,
     target: Texture,
     /// Holds one band.
-    readback: Buffer,
-    bytes_per_row: u32,
+    readback: RowBuffer,
 }
 
 /// SPIR-V words of a shader, and the shapes of the textures that they sample.
@@ -120,8 +120,8 @@ pub(crate) const CLEAR_COLOR: wgpu::Color = wgpu::Color {
 /// A pipeline for frames of any size.
 #[derive(Debug)]
 pub(super) struct Compiled {
-    layout: Layout,
-    pipeline: RenderPipeline,
+    pub(super) layout: Layout,
+    pub(super) pipeline: RenderPipeline,
 }
 
 impl Device {
@@ -153,39 +153,27 @@ impl Device {
 
     /// Prepares the bindings and the target of a frame, with a draw that covers no pixel.
     pub(super) fn stage(&self, compiled: &Compiled, frame: &Frame) -> Result<PreparedFrame, Failure> {
-        let [width, height] = frame.size;
         self.with_error_scopes(|| {
-            let target = self.gpu.create_texture(&wgpu::TextureDescriptor {
-                label: None,
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: FORMAT,
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-                view_formats: &[],
-            });
-            let bytes_per_row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+            let target = flat(
+                &self.gpu,
+                frame.size,
+                1,
+                TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+            );
             let bands: Vec<_> = frame.bands().collect();
             let highest = bands.iter().map(Range::len).max().unwrap_or(0);
-            let readback = self.gpu.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: u64::from(bytes_per_row) * highest as u64,
-                usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
+            let readback = RowBuffer::new(self, frame.size[0], highest);
             let prepared = PreparedFrame {
-                width,
                 bands,
                 pipeline: compiled.pipeline.clone(),
-                bindings: compiled.layout.bind(&self.gpu, &self.queue, frame),
+                bindings: {
+                    let views = compiled.layout.views(&self.gpu, &self.queue, frame);
+                    compiled
+                        .layout
+                        .bind(&self.gpu, &self.queue, &frame.block(), &views)
+                },
                 target,
                 readback,
-                bytes_per_row,
             };
             self.submit(&prepared, 3..6)?;
             Ok(prepared)
@@ -204,11 +192,11 @@ impl Device {
                 // The first band was copied with the draw.
                 if number > 0 {
                     let mut commands = self.gpu.create_command_encoder(&Default::default());
-                    prepared.copy(&mut commands, rows);
+                    prepared.readback.copy(&mut commands, &prepared.target, rows);
                     self.queue.submit([commands.finish()]);
                     self.wait()?;
                 }
-                on_band(self.read(prepared, rows)?)?;
+                on_band(prepared.readback.read(self, rows.len())?)?;
             }
             Ok(())
         })
@@ -222,26 +210,6 @@ impl Device {
             Ok(())
         })?;
         Ok(Image::of_bands(bands))
-    }
-
-    /// Reads the band in the buffer. The first row of the target has the smallest fragment coordinates: it is
-    /// the bottom.
-    fn read(&self, prepared: &PreparedFrame, rows: &Range<u32>) -> Result<Image, Failure> {
-        let slice = prepared.readback.slice(..);
-        slice.map_async(wgpu::MapMode::Read, |_| {});
-        self.wait()?;
-        let view = slice
-            .get_mapped_range()
-            .map_err(|error| Failure::Device(error.to_string()))?;
-        let pixels = view
-            .chunks(prepared.bytes_per_row as usize)
-            .take(rows.len())
-            .flat_map(|row| row[..16 * prepared.width as usize].chunks_exact(16))
-            .map(bytemuck::pod_read_unaligned)
-            .collect();
-        drop(view);
-        prepared.readback.unmap();
-        Ok(Image::new(prepared.width, rows.len() as u32, pixels))
     }
 
     fn submit(&self, prepared: &PreparedFrame, vertices: Range<u32>) -> Result<(), Failure> {
@@ -265,13 +233,13 @@ impl Device {
             pass.draw(vertices, 0..1);
         }
         if let Some(rows) = prepared.bands.first() {
-            prepared.copy(&mut commands, rows);
+            prepared.readback.copy(&mut commands, &prepared.target, rows);
         }
         self.queue.submit([commands.finish()]);
         self.wait()
     }
 
-    fn wait(&self) -> Result<(), Failure> {
+    pub(super) fn wait(&self) -> Result<(), Failure> {
         self.gpu
             .poll(PollType::wait_indefinitely())
             .map(|_| ())
@@ -280,7 +248,10 @@ impl Device {
 
     /// Runs `work` and collects the errors that wgpu reports out of band: validation, memory, and device
     /// loss.
-    fn with_error_scopes<T>(&self, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    pub(super) fn with_error_scopes<T>(
+        &self,
+        work: impl FnOnce() -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
         use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
         let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.gpu.push_error_scope(filter));
         let result = work();
@@ -308,34 +279,6 @@ fn one_line(words: &str) -> String {
         .filter(|line| !line.is_empty())
         .collect::<Vec<_>>()
         .join(": ")
-}
-
-impl PreparedFrame {
-    /// Copies rows of the target to the buffer.
-    fn copy(&self, commands: &mut wgpu::CommandEncoder, rows: &Range<u32>) {
-        let target = wgpu::TexelCopyTextureInfo {
-            origin: wgpu::Origin3d {
-                x: 0,
-                y: rows.start,
-                z: 0,
-            },
-            ..self.target.as_image_copy()
-        };
-        let buffer = wgpu::TexelCopyBufferInfo {
-            buffer: &self.readback,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(self.bytes_per_row),
-                rows_per_image: None,
-            },
-        };
-        let size = wgpu::Extent3d {
-            width: self.width,
-            height: rows.len() as u32,
-            depth_or_array_layers: 1,
-        };
-        commands.copy_texture_to_buffer(target, buffer, size);
-    }
 }
 
 /// A shader compiled on a device of this process: for measurements, where the isolation of a worker is not

@@ -30,9 +30,12 @@ pub mod browser;
 mod device;
 mod draw;
 mod pipeline;
+mod play;
 mod protocol;
 pub mod quirks;
+mod readback;
 mod serve;
+mod texture;
 mod worker;
 
 use std::fmt;
@@ -40,7 +43,7 @@ use std::time::Duration;
 
 pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
 pub use draw::{DrawOutput, LocalRenderer};
-pub use protocol::ShaderArtifact;
+pub use protocol::{Readback, ShaderArtifact};
 pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
 use serde::{Deserialize, Serialize};
 pub use serve::{MAX_MEMORY_BYTES, serve};

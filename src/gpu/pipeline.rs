@@ -2,16 +2,14 @@
 
 use std::num::NonZeroU64;
 
-use toyproof_image::{BLOCK_BYTES, Frame, Image};
+use toyproof_image::{BLOCK_BYTES, Frame};
 use toyproof_translate::naga_ir::Shape;
 use wgpu::{
-    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, Extent3d,
-    PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureFormat, TextureUsages, TextureView,
-    TextureViewDimension,
+    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device,
+    PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureView,
 };
 
-/// Format of all targets and textures: 32-bit floats, so that nothing is rounded.
-pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
+use super::texture::{FORMAT, black, dimension, upload};
 
 /// Vertex shader with three vertices that cover the target, and three more outside of it: drawing those
 /// compiles the pipeline without covering a pixel.
@@ -110,9 +108,36 @@ impl Layout {
         })
     }
 
-    /// Creates the bind group of a frame: its uniform block and channels.
-    pub(super) fn bind(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame) -> BindGroup {
-        let block = uniform(device, queue, &frame.block());
+    /// Creates the views of a frame's channels.
+    pub(super) fn views(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame) -> [TextureView; 4] {
+        std::array::from_fn(
+            |channel| match (&frame.channels[channel], self.channels[channel]) {
+                (Some(texture), Shape::D2) => upload(device, queue, texture).create_view(&Default::default()),
+                // Volumes and cubes cannot be bound yet: they are black.
+                (_, shape) => black(device, queue, shape),
+            },
+        )
+    }
+
+    /// Creates the view of a channel that reads nothing.
+    pub(super) fn unbound(&self, device: &Device, queue: &wgpu::Queue, channel: usize) -> TextureView {
+        black(device, queue, self.channels[channel])
+    }
+
+    /// Whether a channel is declared with two dimensions.
+    pub(super) fn is_flat(&self, channel: usize) -> bool {
+        self.channels[channel] == Shape::D2
+    }
+
+    /// Creates the bind group of a frame: its uniform block and the views of its channels.
+    pub(super) fn bind(
+        &self,
+        device: &Device,
+        queue: &wgpu::Queue,
+        block: &[u8],
+        views: &[TextureView; 4],
+    ) -> BindGroup {
+        let block = uniform(device, queue, block);
         let filter = if self.filterable {
             wgpu::FilterMode::Linear
         } else {
@@ -125,16 +150,6 @@ impl Layout {
             min_filter: filter,
             ..Default::default()
         });
-        let views: Vec<_> = frame
-            .channels
-            .iter()
-            .zip(self.channels)
-            .map(|(image, shape)| match (image, shape) {
-                (Some(image), Shape::D2) => texture(device, queue, image),
-                // Volumes and cubes cannot be bound yet: they are black.
-                _ => black(device, queue, shape),
-            })
-            .collect();
         let pairs = views.iter().flat_map(|view| {
             [
                 wgpu::BindingResource::TextureView(view),
@@ -181,79 +196,4 @@ fn uniform(device: &Device, queue: &wgpu::Queue, bytes: &[u8]) -> Buffer {
     });
     queue.write_buffer(&buffer, 0, bytes);
     buffer
-}
-
-fn dimension(shape: Shape) -> TextureViewDimension {
-    match shape {
-        Shape::D2 => TextureViewDimension::D2,
-        Shape::D3 => TextureViewDimension::D3,
-        Shape::Cube => TextureViewDimension::Cube,
-    }
-}
-
-/// Uploads the texture of a channel. Row 0 is the bottom, as in texture coordinates.
-fn texture(device: &Device, queue: &wgpu::Queue, image: &Image) -> TextureView {
-    let [width, height] = image.size();
-    upload(
-        device,
-        queue,
-        Shape::D2,
-        Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        image.pixels(),
-    )
-}
-
-/// Creates the texture of an unbound channel: opaque black.
-fn black(device: &Device, queue: &wgpu::Queue, shape: Shape) -> TextureView {
-    let depth_or_array_layers = if shape == Shape::Cube { 6 } else { 1 };
-    let size = Extent3d {
-        width: 1,
-        height: 1,
-        depth_or_array_layers,
-    };
-    upload(
-        device,
-        queue,
-        shape,
-        size,
-        &[[0.0, 0.0, 0.0, 1.0]; 6][..depth_or_array_layers as usize],
-    )
-}
-
-fn upload(
-    device: &Device,
-    queue: &wgpu::Queue,
-    shape: Shape,
-    size: Extent3d,
-    pixels: &[[f32; 4]],
-) -> TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: dimension(shape).compatible_texture_dimension(),
-        format: FORMAT,
-        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(16 * size.width),
-        rows_per_image: Some(size.height),
-    };
-    queue.write_texture(
-        texture.as_image_copy(),
-        bytemuck::cast_slice(pixels),
-        layout,
-        size,
-    );
-    texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(dimension(shape)),
-        ..Default::default()
-    })
 }

@@ -4,7 +4,8 @@ use std::io::{self, Read, Write};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use toyproof_image::{Frame, Image};
+use toyproof_image::{Frame, Image, Texture};
+use toyproof_player::{self as player, Graph, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Hosted;
@@ -28,6 +29,10 @@ pub(super) enum Job {
     /// Parse a converted shader again, compile it with driver-dependent operations expanded, and render
     /// frames.
     RenderArtifact(Box<ShaderArtifact>, Vec<Frame>, AdapterSelector),
+    /// Compile the passes of a shader, whose frames the next jobs render.
+    OpenPlayer(Box<PlayJob>),
+    /// Render the next frame, if there is one, and read textures back.
+    Play(Option<Box<Frame>>, Vec<Readback>),
     /// Count the pixels of a frame in which the driver terminates a loop.
     WatchLoops(Box<DrawJob>),
 }
@@ -39,6 +44,29 @@ pub(super) struct DrawJob {
     pub(super) frame: Frame,
     pub(super) float: FloatMode,
     pub(super) selector: AdapterSelector,
+}
+
+/// The passes of a shader.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct PlayJob {
+    /// In the order of the graph.
+    pub(super) passes: Vec<Lowered>,
+    pub(super) graph: Graph,
+    /// The textures that do not change.
+    pub(super) media: Vec<Texture>,
+    /// Where to go on.
+    pub(super) state: Option<State>,
+    pub(super) float: FloatMode,
+    pub(super) selector: AdapterSelector,
+}
+
+/// A texture of the passes of a shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Readback {
+    /// What a pass rendered last.
+    Last(player::Target),
+    /// The other texture of a buffer, which its pass renders next.
+    Other(usize),
 }
 
 /// SPIR-V of a different compiler and the frame to render.
@@ -83,6 +111,8 @@ pub(super) enum Output {
     Drawn(Box<DrawOutput>),
     Completed,
     Rendered(Vec<Image>, String),
+    /// The name of the device.
+    Opened(String),
     LoopTruncated(u64),
 }
 

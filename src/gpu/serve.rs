@@ -7,13 +7,17 @@ use std::thread;
 use std::time::Instant;
 
 use toyproof_image::Frame;
+use toyproof_player::Player;
 use toyproof_translate::backend::{Target, emit, spirv};
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
-use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
+use super::play::{self, DevicePlayer, PassRenderer};
+use super::protocol::{
+    DrawJob, ForeignSpirv, Job, Output, PlayJob, Readback, Reply, ShaderArtifact, receive, send,
+};
 use super::quirks::loop_probe::{self, Probe};
 use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
 use super::{AdapterSelector, Failure, Phase, draw};
@@ -31,7 +35,12 @@ const TRANSLATOR_STACK_BYTES: usize = 256 << 20;
 pub fn serve(input: impl Read, output: impl Write) -> io::Result<()> {
     restrict_process();
     panic::set_hook(Box::new(|_| {}));
-    Server { output, device: None }.serve(input)
+    Server {
+        output,
+        device: None,
+        player: None,
+    }
+    .serve(input)
 }
 
 /// Limits the process's memory and lets it die with its parent.
@@ -59,6 +68,8 @@ fn restrict_process() {
 struct Server<W> {
     output: W,
     device: Option<(AdapterSelector, Device)>,
+    /// The passes that are played, which own the device meanwhile.
+    player: Option<(AdapterSelector, DevicePlayer)>,
 }
 
 impl<W: Write> Server<W> {
@@ -76,10 +87,15 @@ impl<W: Write> Server<W> {
                 Job::RenderArtifact(artifact, frames, selector) => {
                     self.catch_panics(|server| server.render(*artifact, &frames, &selector))
                 }
+                Job::OpenPlayer(play_job) => self.catch_panics(|server| server.open_player(*play_job)),
+                Job::Play(frame, wanted) => {
+                    self.catch_panics(|server| server.play(frame.as_deref(), &wanted))
+                }
                 Job::WatchLoops(draw_job) => self.catch_panics(|server| server.watch_loops(*draw_job)),
             };
             if matches!(result, Err(Failure::Device(_))) {
                 self.device = None;
+                self.player = None;
             }
             send(&mut self.output, &Reply::Done(result))?;
         }
@@ -220,6 +236,54 @@ impl<W: Write> Server<W> {
         Ok(Output::Rendered(images, name))
     }
 
+    fn open_player(&mut self, play_job: PlayJob) -> Result<Output, Failure> {
+        self.phase(Phase::Translating)?;
+        let PlayJob {
+            passes,
+            graph,
+            media,
+            state,
+            float,
+            selector,
+        } = play_job;
+        let programs = on_translator_thread(move || play::programs(&passes, float))?;
+        self.open(&selector)?;
+        self.phase(Phase::Compiling)?;
+        let (selector, device) = self.device.take().ok_or_else(device_lost)?;
+        match PassRenderer::new(device, &programs, &media) {
+            Ok(renderer) => {
+                let name = renderer.device_name();
+                let mut player = Player::new(graph, renderer);
+                if let Some(state) = state {
+                    player.restore(&state, |renderer, texture, mipmaps| {
+                        renderer.load(texture, mipmaps)
+                    })?;
+                }
+                self.player = Some((selector, player));
+                Ok(Output::Opened(name))
+            }
+            Err((device, failure)) => {
+                self.device = Some((selector, device));
+                Err(failure)
+            }
+        }
+    }
+
+    fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Output, Failure> {
+        self.phase(Phase::Drawing)?;
+        let Some((_, player)) = &mut self.player else {
+            return Err(device_lost());
+        };
+        if let Some(frame) = frame {
+            player.render(frame)?;
+        }
+        for &texture in wanted {
+            let image = play::read(player, texture)?;
+            send_reply(&mut self.output, &Reply::Band(image))?;
+        }
+        Ok(Output::Completed)
+    }
+
     fn watch_loops(&mut self, draw_job: DrawJob) -> Result<Output, Failure> {
         self.phase(Phase::WatchingLoops)?;
         let DrawJob {
@@ -262,6 +326,9 @@ impl<W: Write> Server<W> {
     }
 
     fn open(&mut self, selector: &AdapterSelector) -> Result<(), Failure> {
+        if let Some((selector, player)) = self.player.take() {
+            self.device = Some((selector, player.into_renderer().into_device()));
+        }
         if self.device.as_ref().is_none_or(|(open, _)| open != selector) {
             self.phase(Phase::Starting)?;
             let device = Device::open(selector).map_err(|failure| match failure {

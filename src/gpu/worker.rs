@@ -9,11 +9,14 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::path_name;
-use toyproof_image::{Frame, Image};
+use toyproof_image::{Frame, Image, Texture};
+use toyproof_player::{Graph, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::protocol::{DrawJob, ForeignSpirv, Job, Output, Reply, ShaderArtifact, receive, send};
+use super::protocol::{
+    DrawJob, ForeignSpirv, Job, Output, PlayJob, Readback, Reply, ShaderArtifact, receive, send,
+};
 use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, device, quirks};
 
 /// A worker process, started on first use and restarted after each failure.
@@ -269,6 +272,50 @@ impl Worker {
             self.selector.clone(),
         ))? {
             Output::Rendered(images, device) => Ok((images, device)),
+            _ => Err(unexpected_reply()),
+        }
+    }
+
+    /// Compiles the passes of a shader, in the order of their graph, with the textures that do not change, and goes on
+    /// from a state, if there is one. Returns the name of the device. [`Self::play`] then renders the frames, until another job follows.
+    ///
+    /// # Errors
+    /// Why the passes cannot be rendered.
+    pub fn open_player(
+        &mut self,
+        passes: Vec<Lowered>,
+        graph: Graph,
+        media: Vec<Texture>,
+        state: Option<State>,
+        float: FloatMode,
+    ) -> Result<String, Failure> {
+        if let Some(diagnostic) = passes.iter().find_map(Lowered::too_deep) {
+            return Err(Failure::Invalid(vec![diagnostic.clone()]));
+        }
+        let job = Job::OpenPlayer(Box::new(PlayJob {
+            passes,
+            graph,
+            media,
+            state,
+            float,
+            selector: self.selector.clone(),
+        }));
+        match self.run(&job)? {
+            Output::Opened(device) => Ok(device),
+            _ => Err(unexpected_reply()),
+        }
+    }
+
+    /// Renders the next frame of the passes that were opened, if one is given, and returns these textures. The channels
+    /// of the frame do not count.
+    ///
+    /// # Errors
+    /// Why there is no image. The passes must then be opened again, and start with the first frame.
+    pub fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Vec<Image>, Failure> {
+        let mut images = Vec::with_capacity(wanted.len());
+        let job = Job::Play(frame.cloned().map(Box::new), wanted.to_vec());
+        match self.run_in_bands(&job, |image| images.push(image))? {
+            Output::Completed => Ok(images),
             _ => Err(unexpected_reply()),
         }
     }

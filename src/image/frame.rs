@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytemuck::bytes_of;
 use serde::{Deserialize, Serialize};
 
-use crate::Image;
+use crate::Texture;
 
 /// All inputs of a shader for the frame that it renders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -14,14 +14,18 @@ pub struct Frame {
     pub size: [u32; 2],
     /// `iTime`, in seconds.
     pub time: f32,
+    /// `iTimeDelta`: the time since the previous frame, in seconds.
+    pub time_delta: f32,
+    /// `iFrameRate`, in frames per second.
+    pub frame_rate: f32,
     /// `iFrame`, from 0.
     pub frame: i32,
     /// `iMouse`, in pixels, as in ShaderToy: xy is the last drag position, zw the click.
     pub mouse: [f32; 4],
     /// `iDate`: year, month from 0, day, seconds since midnight.
     pub date: [f32; 4],
-    /// The images of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.
-    pub channels: [Option<Image>; 4],
+    /// The textures of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.
+    pub channels: [Option<Texture>; 4],
 }
 
 impl Default for Frame {
@@ -30,8 +34,10 @@ impl Default for Frame {
         Self {
             size: [640, 360],
             time: 0.0,
+            time_delta: 1.0 / FRAME_RATE,
+            frame_rate: FRAME_RATE,
             frame: 0,
-            mouse: [0.0; 4],
+            mouse: IDLE_MOUSE,
             date: [0.0; 4],
             channels: [const { None }; 4],
         }
@@ -45,7 +51,10 @@ const BAND_PIXELS: u32 = 1 << 18;
 /// derivatives cross bands.
 const BAND_ROWS: u32 = 32;
 
-/// `iFrameRate`, in frames per second; `iTimeDelta` is its reciprocal.
+/// `iMouse` before the first click: as on ShaderToy, zw is negative.
+pub const IDLE_MOUSE: [f32; 4] = [0.0, 0.0, -0.0, -0.0];
+
+/// The default of `iFrameRate`, in frames per second; `iTimeDelta` is its reciprocal.
 pub const FRAME_RATE: f32 = 60.0;
 /// `iSampleRate`, in hertz.
 pub const SAMPLE_RATE: f32 = 44_100.0;
@@ -89,21 +98,30 @@ impl Frame {
     /// The bytes of the uniform block in the layout that translated shaders expect.
     #[must_use]
     pub fn block(&self) -> [u8; BLOCK_BYTES] {
-        let resolution = |channel: &Option<Image>| {
-            channel.as_ref().map_or([0.0; 4], |image| {
-                let [width, height] = image.size();
+        self.block_with(
+            self.channels
+                .each_ref()
+                .map(|channel| channel.as_ref().map(Texture::size)),
+        )
+    }
+
+    /// The uniform block with channels of these sizes instead of the frame's own.
+    #[must_use]
+    pub fn block_with(&self, channels: [Option<[u32; 2]>; 4]) -> [u8; BLOCK_BYTES] {
+        let resolution = |size: Option<[u32; 2]>| {
+            size.map_or([0.0; 4], |[width, height]| {
                 [width as f32, height as f32, 1.0, 0.0]
             })
         };
         let block = Block {
             resolution: [self.size[0] as f32, self.size[1] as f32, 1.0],
             time: self.time,
-            time_delta: 1.0 / FRAME_RATE,
+            time_delta: self.time_delta,
             frame: self.frame,
-            frame_rate: FRAME_RATE,
+            frame_rate: self.frame_rate,
             padding: 0.0,
             channel_time: [[0.0; 4]; 4],
-            channel_resolution: self.channels.each_ref().map(resolution),
+            channel_resolution: channels.map(resolution),
             mouse: self.mouse,
             date: self.date,
             sample_rate: [SAMPLE_RATE, 0.0, 0.0, 0.0],
@@ -119,6 +137,7 @@ mod tests {
     use std::mem::offset_of;
 
     use super::*;
+    use crate::Image;
 
     #[test]
     fn bands_cover_the_image_and_small_images_are_one_band() {
@@ -155,7 +174,7 @@ mod tests {
     #[test]
     fn a_bound_channel_has_its_resolution_and_an_unbound_one_zero() {
         let mut frame = Frame::default();
-        frame.channels[1] = Some(Image::new(2, 1, vec![[0.0; 4]; 2]));
+        frame.channels[1] = Some(Image::new(2, 1, vec![[0.0; 4]; 2]).into());
         let bytes = frame.block();
         let bits = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
         assert_eq!(

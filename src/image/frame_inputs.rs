@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{Frame, Image, ImageError, noise, read};
+use crate::{Frame, IDLE_MOUSE, Image, ImageError, Texture, noise, read};
 
 /// The inputs of a frame.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FrameInputs {
     /// `iResolution.xy`, in pixels; none for the size of what the frame is compared with.
     pub size: Option<[u32; 2]>,
@@ -19,6 +19,19 @@ pub struct FrameInputs {
     pub date: [f32; 4],
     /// The textures of `iChannel0` to `iChannel3`; none for black.
     pub channels: [Option<Channel>; 4],
+}
+
+impl Default for FrameInputs {
+    fn default() -> Self {
+        Self {
+            size: None,
+            time: 0.0,
+            frame: 0,
+            mouse: IDLE_MOUSE,
+            date: [0.0; 4],
+            channels: [const { None }; 4],
+        }
+    }
 }
 
 /// The texture of a channel.
@@ -74,7 +87,8 @@ impl FrameInputs {
     pub fn load(&self) -> Result<Frame, ImageError> {
         let mut channels = [const { None }; 4];
         for (image, channel) in channels.iter_mut().zip(&self.channels) {
-            *image = channel.as_ref().map(Channel::load).transpose()?;
+            let loaded = channel.as_ref().map(Channel::load).transpose()?;
+            *image = loaded.map(Texture::from);
         }
         Ok(Frame {
             size: self.size.unwrap_or(Frame::default().size),
@@ -83,6 +97,7 @@ impl FrameInputs {
             mouse: self.mouse,
             date: self.date,
             channels,
+            ..Frame::default()
         })
     }
 }

@@ -15,14 +15,18 @@
 mod file;
 mod frame;
 mod frame_inputs;
+mod noise;
 pub mod output;
 mod rgb8;
+mod texture;
 
 pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown};
-pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, SAMPLE_RATE};
+pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs};
+pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;
 use serde::{Deserialize, Serialize};
+pub use texture::Texture;
 use thiserror::Error;
 use toyproof_diagnostic::grouped;
 
@@ -35,19 +39,19 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 /// An image of linear RGBA floats, bottom row first. Colors are nominally in [0, 1] but are stored unchanged,
 /// including NaN and infinities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Image {
+pub struct Image<T = f32> {
     width: u32,
     height: u32,
-    pixels: Vec<[f32; 4]>,
+    pixels: Vec<[T; 4]>,
 }
 
-impl Image {
+impl<T: Copy> Image<T> {
     /// Makes an image from its pixels, bottom row first.
     ///
     /// # Panics
     /// If the number of pixels is not `width · height`.
     #[must_use]
-    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 4]>) -> Self {
+    pub fn new(width: u32, height: u32, pixels: Vec<[T; 4]>) -> Self {
         assert_eq!(pixels.len(), width as usize * height as usize);
         Self {
             width,
@@ -56,6 +60,32 @@ impl Image {
         }
     }
 
+    /// Whether it has as many pixels as its size says: one that was read from a file may not.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.pixels.len() as u64 == u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// All pixels, bottom row first.
+    #[must_use]
+    pub fn pixels(&self) -> &[[T; 4]] {
+        &self.pixels
+    }
+
+    /// The pixel at (x, y), y upwards from the bottom.
+    #[must_use]
+    pub fn get(&self, x: u32, y: u32) -> [T; 4] {
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+}
+
+impl Image {
     /// Makes an image from bands of rows of one width, from the bottom up. Each band is freed after it is
     /// copied.
     ///
@@ -74,24 +104,6 @@ impl Image {
         }
         whole.height = height;
         whole
-    }
-
-    /// Width and height in pixels.
-    #[must_use]
-    pub fn size(&self) -> [u32; 2] {
-        [self.width, self.height]
-    }
-
-    /// All pixels, bottom row first.
-    #[must_use]
-    pub fn pixels(&self) -> &[[f32; 4]] {
-        &self.pixels
-    }
-
-    /// The pixel at (x, y), y upwards from the bottom.
-    #[must_use]
-    pub fn get(&self, x: u32, y: u32) -> [f32; 4] {
-        self.pixels[y as usize * self.width as usize + x as usize]
     }
 
     /// The image flipped vertically.
@@ -148,19 +160,6 @@ pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], SizeError> {
     Ok([width as u32, height as u32])
 }
 
-/// The side of the noise texture in pixels, as in ShaderToy.
-const NOISE_SIDE: u32 = 256;
-
-/// A noise texture, the same on every machine: 256×256 pixels of independent 8-bit values in all four
-/// components.
-#[must_use]
-pub fn noise() -> Image {
-    let pixels = (0..NOISE_SIDE * NOISE_SIDE)
-        .map(|index| [0, 1, 2, 3].map(|component| f32::from(pcg(4 * index + component) as u8) / 255.0))
-        .collect();
-    Image::new(NOISE_SIDE, NOISE_SIDE, pixels)
-}
-
 /// The PCG hash of Jarzynski and Olano, “Hash Functions for GPU Rendering”, JCGT 9(3), 2020.
 #[inline]
 #[must_use]
@@ -173,24 +172,6 @@ pub fn pcg(input: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn noise_is_uniform_and_its_components_are_independent() {
-        let image = noise();
-        let count = image.pixels().len() as f32;
-        for i in 0..4 {
-            let mean = image.pixels().iter().map(|p| p[i]).sum::<f32>() / count;
-            // The mean of 65,536 uniform samples has a standard deviation of 0.0011.
-            assert!((mean - 0.5).abs() < 0.005, "{mean}");
-        }
-        let product = image
-            .pixels()
-            .iter()
-            .map(|p| (p[0] - 0.5) * (p[1] - 0.5))
-            .sum::<f32>()
-            / count;
-        assert!(product.abs() < 0.002, "{product}");
-    }
 
     #[test]
     fn quantizes_like_conversion_of_float_targets_to_eight_bits() {

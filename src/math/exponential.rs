@@ -5,8 +5,9 @@
 
 use std::f64::consts::LN_2;
 
+use super::algebraic::dot;
 use super::float::{
-    Bits, Float, flushed, infinity, is_below, is_finite, is_nan, is_zero, magnitude, nan, negate_if,
+    Bits, Float, Number, flushed, infinity, is_below, is_finite, is_nan, is_zero, magnitude, nan, negate_if,
     polynomial,
 };
 use super::two_float::TwoFloat;
@@ -114,6 +115,26 @@ pub fn log<F: Float>(x: F) -> F {
 pub fn log2<F: Float>(x: F) -> F {
     let value = log2_of(x).value();
     F::select(is_positive_normal(x), value, log_of_special(x))
+}
+
+/// The level of the mipmaps (OpenGL ES 3.0.6, equation 3.17): log₂ of the longer of two vectors, the derivatives of the
+/// coordinates in texels along x and y.
+///
+/// # Panics
+/// If a vector has no components.
+#[must_use]
+pub fn level_of_detail<F: Float>(along_x: &[F], along_y: &[F]) -> F {
+    let square = longer_square(along_x, along_y);
+    log2(square) * square.literal(0.5)
+}
+
+/// The square of the length of the longer of two vectors.
+///
+/// # Panics
+/// If a vector has no components.
+#[must_use]
+pub fn longer_square<N: Number>(a: &[N], b: &[N]) -> N {
+    dot(a, a).max(dot(b, b))
 }
 
 /// `x` to the power of `y`. NaN for x < 0; for zero and infinite x, and for y = 0, as in C.

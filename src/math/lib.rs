@@ -34,7 +34,9 @@ pub use self::algebraic::{
     Matrix, clamp, cross, degrees, determinant, distance, dot, faceforward, fract, inverse, inverse_sqrt,
     length, mix, modulo, normalize, outer_product, radians, reflect, refract, sign, smoothstep, step,
 };
-pub use self::exponential::{acosh, asinh, atanh, cosh, exp, exp2, log, log2, pow, sinh, tanh};
+pub use self::exponential::{
+    acosh, asinh, atanh, cosh, exp, exp2, level_of_detail, log, log2, longer_square, pow, sinh, tanh,
+};
 pub use self::expr_graph::{Binary, ExprGraph, FloatTerm, Kind, Step, StepId, Unary};
 pub use self::float::{Bits, Float, Number, Word};
 pub use self::trigonometric::{acos, asin, atan, atan2, cos, sin, tan};

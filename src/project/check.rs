@@ -53,6 +53,7 @@ pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<
         let options = Options {
             stage: stage(pass.kind),
             channels: channels(project, pass),
+            sampling: project.sampling(pass),
             ..options.clone()
         };
         let file = joined(project, pass, files);
@@ -121,7 +122,8 @@ impl Reported {
 
 fn stage(kind: PassKind) -> Stage {
     match kind {
-        PassKind::Image | PassKind::Buffer(_) => Stage::Image,
+        PassKind::Image => Stage::Image,
+        PassKind::Buffer(_) => Stage::Buffer,
         PassKind::CubeA => Stage::Cubemap,
         PassKind::Sound => Stage::Sound,
     }
@@ -167,7 +169,14 @@ impl Project {
     /// those that these read.
     #[must_use]
     pub fn needed_by_image(&self) -> Vec<PassKind> {
-        let mut needed = vec![PassKind::Image];
+        let mut needed = self.needed_by(&[PassKind::Image]);
+        needed.retain(|kind| *kind != PassKind::Image);
+        needed
+    }
+
+    /// These passes, and those that they read, directly or not.
+    pub(crate) fn needed_by(&self, passes: &[PassKind]) -> Vec<PassKind> {
+        let mut needed = passes.to_vec();
         let mut next = 0;
         while let Some(&kind) = needed.get(next) {
             next += 1;
@@ -181,7 +190,6 @@ impl Project {
                 }
             }
         }
-        needed.remove(0);
         let order = |kind: &PassKind| Tab::ALL.iter().position(|tab| *tab == Tab::Pass(*kind));
         needed.sort_by_key(order);
         needed

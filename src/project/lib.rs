@@ -24,6 +24,7 @@
 
 mod check;
 mod folder;
+mod graph;
 mod json;
 mod lint;
 mod media;
@@ -33,10 +34,12 @@ mod read;
 use std::fmt;
 
 use toyproof_diagnostic::{FileId, Span};
+pub use toyproof_glsl::{Filter, Wrap};
 
 pub use self::check::{CheckedPass, CheckedProject, check};
 use self::folder::Format;
 pub use self::folder::PROJECT_FILE;
+pub use self::graph::{NotRendered, Rendering, Replaced};
 pub use self::media::{Medium, SourceType};
 use self::node::Node;
 
@@ -173,26 +176,6 @@ pub struct Sampler {
     pub vflip: bool,
     /// Whether texels are decoded from sRGB. The site ignores it.
     pub srgb: bool,
-}
-
-/// A texture filter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Filter {
-    /// The nearest texel.
-    Nearest,
-    /// Four texels, or eight in a volume.
-    Linear,
-    /// Linear, also between mipmaps.
-    Mipmap,
-}
-
-/// What lies outside of a texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wrap {
-    /// Its edge.
-    Clamp,
-    /// Its repetitions.
-    Repeat,
 }
 
 impl Buffer {

@@ -65,7 +65,7 @@ use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 
-use crate::lower::Passes;
+use crate::lower::{Pass, Passes};
 
 /// Why a module cannot be read, changed or written: mostly naga's message.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -112,6 +112,19 @@ impl FloatMode {
     pub fn lower_within(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
         let passes = match self {
             Self::Strict => Passes::strict(),
+            Self::Fast => Passes::all(),
+        };
+        lower_within(checked, passes, deadline)
+    }
+
+    /// Lowers a shader for a host that filters textures itself: unlike [`Self::lower_within`], strict mode leaves their
+    /// lookups as they are.
+    ///
+    /// # Errors
+    /// If the deadline passes.
+    pub fn lower_for_host(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
+        let passes = match self {
+            Self::Strict => Passes::strict().without(Pass::Lookups),
             Self::Fast => Passes::all(),
         };
         lower_within(checked, passes, deadline)

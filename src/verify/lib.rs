@@ -119,6 +119,7 @@ mod on_gpu;
 #[cfg(not(feature = "gpu"))]
 #[path = "no_gpu.rs"]
 mod on_gpu;
+pub mod playback;
 pub mod repair;
 mod replicates;
 mod resampled;

@@ -137,7 +137,7 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
     let frame = Frame {
         size: scene.map_or([16, 9], |scene| scene.film.size),
         // The fourth channel has no image.
-        channels: [true, true, true, false].map(|bound| bound.then(noise)),
+        channels: [true, true, true, false].map(|bound| bound.then(|| noise().into())),
         ..Frame::default()
     };
     let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));

@@ -361,7 +361,7 @@ fn frame() -> Frame {
         time: 2.0,
         ..Frame::default()
     };
-    frame.channels[0] = Some(Image::new(4, 4, texels));
+    frame.channels[0] = Some(Image::new(4, 4, texels).into());
     frame
 }
 

@@ -38,6 +38,7 @@ mod glslang;
 mod hostile;
 mod limits;
 mod literals;
+mod lookups;
 mod math;
 mod miscompiles;
 mod nesting;

@@ -136,7 +136,7 @@ fn render(worker: &mut Worker, (pass, before, body, _): &Case, passes: Passes) -
         time: 2.0,
         ..Frame::default()
     };
-    frame.channels[0] = Some(Image::new(4, 4, texels));
+    frame.channels[0] = Some(Image::new(4, 4, texels).into());
     worker
         .draw(lower_with(&checked, passes), frame, FloatMode::Strict)
         .unwrap_or_else(|failure| panic!("{pass:?}: {failure}"))

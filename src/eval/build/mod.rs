@@ -7,14 +7,15 @@ mod instrument;
 mod lvalue;
 mod operator;
 mod statement;
+mod texture;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Overdue};
-use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{Direction, ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
+use toyproof_glsl::tree::{ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
+use toyproof_glsl::{Checked, Sampling, Stage};
 
 use self::instrument::{WrittenFlags, out_arguments};
 use self::lvalue::{Location, component_count, scalar_kind};
@@ -105,6 +106,8 @@ pub(crate) fn compile(
 ) -> Result<Program> {
     let mut builder = Builder {
         tree: &checked.tree,
+        sampling: checked.sampling,
+        keeps_alpha: checked.stage != Stage::Image,
         parameters: parameters.iter().copied().zip(0..).collect(),
         deadline,
         options,
@@ -133,14 +136,13 @@ pub(crate) fn compile(
     };
     builder.program(checked.main_image)?;
     let writer = builder.writer.into_inner();
-    let [red, green, blue, discarded] = writer.output;
     let function = Function {
         defs: writer.defs,
         cells: builder.cells,
         scopes: builder.scopes,
         loops: builder.loops,
         body: writer.block,
-        output: [red, green, blue, discarded],
+        output: writer.output,
     };
     Ok(Program {
         function,
@@ -156,7 +158,7 @@ struct IrWriter {
     block: Block,
     /// Constants and inputs, which have no node.
     known: HashMap<ValueDef, Value>,
-    output: [Value; 4],
+    output: [Value; 5],
 }
 
 impl Default for IrWriter {
@@ -165,7 +167,7 @@ impl Default for IrWriter {
             defs: Vec::new(),
             block: Block::new(),
             known: HashMap::new(),
-            output: [NONE; 4],
+            output: [NONE; 5],
         }
     }
 }
@@ -206,6 +208,10 @@ struct InlinedCall {
 /// Builds the function of a tree.
 struct Builder<'a> {
     tree: &'a Tree,
+    /// How the textures of the channels are sampled.
+    sampling: [Sampling; 4],
+    /// Whether the alpha of the color is an output; else it is 1.
+    keeps_alpha: bool,
     /// The uniforms whose values are given for each run, with their numbers.
     parameters: HashMap<VariableId, u32>,
     deadline: &'a Deadline,
@@ -253,9 +259,7 @@ impl Builder<'_> {
         };
         // The color is initially black, and opaque for an `inout` parameter, as in ShaderToy's own `main`; an
         // `out` parameter takes no value.
-        let color_parameter = self.tree[main_image].parameters.first();
-        let added_to = color_parameter
-            .is_some_and(|&parameter| call::direction(self.tree[parameter].kind) == Direction::InOut);
+        let added_to = self.tree.adds_to_color(main_image);
         for value in [0.0, 0.0, 0.0, f64::from(u8::from(added_to))] {
             let cell = self.allocate(Kind::Float);
             let value = self.float(value);
@@ -274,8 +278,13 @@ impl Builder<'_> {
         })?;
         self.push(Node::Scope { scope: all, body });
         let [r, g, b] = [0, 1, 2].map(|at| self.load(Cell(color.first + at)));
+        let a = if self.keeps_alpha {
+            self.load(Cell(color.first + 3))
+        } else {
+            self.float(1.0)
+        };
         let discarded = self.load(discarded);
-        self.writer.borrow_mut().output = [r, g, b, discarded];
+        self.writer.borrow_mut().output = [r, g, b, a, discarded];
         Ok(())
     }
 

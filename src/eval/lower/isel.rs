@@ -7,7 +7,7 @@ use toyproof_image::Frame;
 use crate::batch::LANES;
 use crate::frame::{float_input, frame_counter};
 use crate::ir::Kind;
-use crate::ir::{Lookup, NONE, Value, ValueDef};
+use crate::ir::{NONE, Value, ValueDef};
 use crate::lower::linearize::Step;
 use crate::lower::regalloc::Location;
 use crate::number::Number;
@@ -29,8 +29,8 @@ pub struct Prepared<N: Number> {
     pub(crate) masks: usize,
     /// The number of chunks in a row.
     pub(crate) width: usize,
-    /// Red, green, blue.
-    pub(crate) color: [Location; 3],
+    /// Red, green, blue, alpha.
+    pub(crate) color: [Location; 4],
     pub(crate) discarded: Location,
     /// The numbers, kinds and rows of the parameters.
     pub(crate) parameters: Vec<(u32, Kind, u32)>,
@@ -45,7 +45,7 @@ const MAX_ROW_CHUNKS: usize = 16;
 const CACHE_BYTES: usize = 768 << 10;
 
 /// The number of spare rows that hold the coordinates of lookups with scalar coordinates.
-const SPARE_ROWS: u32 = 2;
+const SPARE_ROWS: u32 = 3;
 
 impl Compiled {
     /// Generates code for a frame in a number type.
@@ -100,7 +100,7 @@ impl Compiled {
             Some(location) => location,
             None => Location::Scalar(0),
         };
-        let [red, green, blue, discarded] = function.output;
+        let [red, green, blue, alpha, discarded] = function.output;
         Prepared {
             code,
             floats,
@@ -110,7 +110,7 @@ impl Compiled {
             word_rows: (rows.words + SPARE_ROWS) as usize,
             masks: usize::from(self.linear.masks),
             width,
-            color: [red, green, blue].map(place),
+            color: [red, green, blue, alpha].map(place),
             discarded: place(discarded),
             parameters,
             coordinates,
@@ -324,21 +324,17 @@ impl<N: Number> Writer<'_, N> {
                 self.push(run, out, [index, first, cells.count - 1 - offset], 0);
             }
             ValueDef::Texel {
-                channel,
                 lookup,
-                component,
+                is_filtered,
                 at,
             } => {
-                let kind = match lookup {
-                    Lookup::Filtered { .. } => Kind::Float,
-                    Lookup::Fetched => Kind::Word,
-                };
                 let rows = self.compiled.locations.rows;
-                let spare = match kind {
-                    Kind::Float => rows.floats,
-                    Kind::Word => rows.words,
+                let (kind, spare) = if is_filtered {
+                    (Kind::Float, rows.floats)
+                } else {
+                    (Kind::Word, rows.words)
                 };
-                let mut places = [0; 2];
+                let mut places = [0; 3];
                 for (axis, &value) in at.iter().enumerate() {
                     let (place, is_row) = self.value(value);
                     places[axis] = if is_row {
@@ -350,13 +346,7 @@ impl<N: Number> Writer<'_, N> {
                         to
                     };
                 }
-                let offset = match lookup {
-                    Lookup::Filtered { offset: [x, y] } => x as u16 as u32 | (y as u16 as u32) << 16,
-                    Lookup::Fetched => 0,
-                };
-                let which = u32::from(channel) * 4 + u32::from(component);
-                let run = ops::texel(kind == Kind::Float);
-                self.push(run, out, [places[0], places[1], which], offset);
+                self.push(ops::texel(is_filtered), out, places, lookup.encoded());
             }
             ValueDef::Float(_)
             | ValueDef::Word(_)

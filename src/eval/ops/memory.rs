@@ -2,13 +2,15 @@
 
 use std::marker::PhantomData;
 
+use toyproof_image::Texture;
+
 use super::{
     Component, Handler, Instruction, Level, One, Operand, Row, Run, Source, for_each_chunk, handler,
 };
 use crate::batch::{Batch, LANES};
-use crate::frame::Texture;
 use crate::ir::Kind;
 use crate::number::Number;
+use crate::texture::Lookup;
 
 /// Copies whole chunks that have an active pixel.
 struct Copy<A, T>(PhantomData<(A, T)>);
@@ -230,26 +232,22 @@ pub(crate) fn store_at<N: Number>(level: Level, kind: Kind, cells_are_rows: bool
 
 // Texture lookups.
 
-/// A filtered lookup. Operands 0 and 1 are rows of coordinates, operand 2 is 4 · channel + component, `to`
-/// the offset in texels.
+/// A filtered lookup. Operands 0 and 1 are rows of coordinates, operand 2 of levels, `to` the encoded lookup.
 struct Filtered;
 
 impl<N: Number> Run<N> for Filtered {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let [x, y, which] = instruction.operands;
-        let (x, y) = (batch.float_row(x), batch.float_row(y));
+        let [x, y, level] = instruction.operands.map(|row| batch.float_row(row));
+        let (lookup, texture) = lookup(batch, instruction);
         let out = batch.float_row(instruction.out);
-        let offset =
-            [instruction.to as u16, (instruction.to >> 16) as u16].map(|axis| i32::from(axis.cast_signed()));
-        let texture = texture(batch, which);
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let (x, y) = (x[chunk].get(), y[chunk].get());
+            let [x, y, level] = [x, y, level].map(|row| row[chunk].get());
             let mut result = [N::default(); LANES];
             for lane in 0..LANES {
                 result[lane] = match texture {
-                    Some(texture) => texture.sample([x[lane], y[lane]], offset, which as usize % 4, batch.noise),
-                    None => unbound_texel(which),
+                    Some(texture) => lookup.sample(texture, [x[lane], y[lane]], level[lane], batch.noise),
+                    None => lookup.unbound(),
                 };
             }
             out[chunk].set(result);
@@ -258,26 +256,25 @@ impl<N: Number> Run<N> for Filtered {
     }
 }
 
-/// A lookup of single texels. Operands 0 and 1 are rows of texel coordinates.
+/// A lookup of single texels. Operands 0 and 1 are rows of texel coordinates, operand 2 of levels.
 struct Fetched;
 
 impl<N: Number> Run<N> for Fetched {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let [x, y, which] = instruction.operands;
-        let (x, y) = (batch.word_row(x), batch.word_row(y));
+        let [x, y, level] = instruction.operands.map(|row| batch.word_row(row));
+        let (lookup, texture) = lookup(batch, instruction);
         let out = batch.float_row(instruction.out);
-        let texture = texture(batch, which);
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let (x, y) = (x[chunk].get(), y[chunk].get());
+            let [x, y, level] = [x, y, level].map(|row| row[chunk].get());
             let mut result = [N::default(); LANES];
             for lane in 0..LANES {
                 result[lane] = match texture {
                     Some(texture) => {
-                        let place = [x[lane], y[lane]].map(u32::cast_signed);
-                        N::from_f64(f64::from(texture.fetch(place, which as usize % 4)))
+                        let [x, y, level] = [x[lane], y[lane], level[lane]].map(u32::cast_signed);
+                        lookup.texel(texture, [x, y], level)
                     }
-                    None => unbound_texel(which),
+                    None => lookup.unbound(),
                 };
             }
             out[chunk].set(result);
@@ -286,13 +283,12 @@ impl<N: Number> Run<N> for Fetched {
     }
 }
 
-fn texture<'a, N: Number>(batch: &'a Batch<'_, N>, which: u32) -> Option<&'a Texture<'a>> {
-    batch.textures[which as usize / 4 % 4].as_ref()
-}
-
-/// Returns a component of an unbound channel: opaque black.
-fn unbound_texel<N: Number>(which: u32) -> N {
-    N::from_f64(f64::from(u8::from(which % 4 == 3)))
+fn lookup<'a, N: Number>(
+    batch: &Batch<'a, N>,
+    instruction: &Instruction<N>,
+) -> (Lookup, Option<&'a Texture>) {
+    let lookup = Lookup::decoded(instruction.to);
+    (lookup, batch.textures[usize::from(lookup.channel)].as_ref())
 }
 
 /// Returns the handler of a lookup with coordinates in rows.

@@ -57,6 +57,13 @@ pub struct Tree {
 }
 
 impl Tree {
+    /// Whether the entry point reads the color before it writes it: its first parameter is `inout`.
+    #[must_use]
+    pub fn adds_to_color(&self, entry: FunctionId) -> bool {
+        let color = self[entry].parameters.first();
+        color.is_some_and(|&color| self[color].kind == VariableKind::Parameter(Direction::InOut))
+    }
+
     /// The type of arrays with `size` elements, created once.
     pub fn array_of(&mut self, element: Type, size: u32) -> Type {
         let array = ArrayType { element, size };

@@ -28,7 +28,7 @@ use toyproof_diagnostic::{Diagnostic, File, Files};
 use toyproof_eval::{self as eval, Number, Program, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{self as gpu, Worker};
-use toyproof_image::{Frame, Image};
+use toyproof_image::{Frame, Image, Texture};
 use toyproof_translate::FloatMode;
 
 /// The settings of a study.
@@ -227,11 +227,11 @@ fn case_frame(cases: &[Case]) -> Frame {
     let channel = |i: usize| {
         let mut pixels: Vec<_> = cases.iter().map(|case| case.texels()[i]).collect();
         pixels.resize(width * height, [0.0; 4]);
-        Some(Image::new(width as u32, height as u32, pixels))
+        Texture::from(Image::new(width as u32, height as u32, pixels))
     };
     Frame {
         size: [width as u32, height as u32],
-        channels: [channel(0), channel(1), channel(2), None],
+        channels: [0, 1, 2, 3].map(|at| (at < 3).then(|| channel(at))),
         ..Frame::default()
     }
 }

@@ -9,6 +9,7 @@ use toyproof_glsl::tree::{
     Scalar, Statement, StatementKind, Swizzle, Tree, Type, UnaryOp, Value, Variable, VariableId,
     VariableKind, walk,
 };
+use toyproof_glsl::{Checked, Sampling, Stage};
 
 use crate::lower::builtin::Helper;
 use crate::lower::polyfill::Expansion;
@@ -17,6 +18,10 @@ use crate::lower::polyfill::Expansion;
 pub(crate) struct LoweringContext {
     pub(crate) tree: Tree,
     pub(crate) main_image: FunctionId,
+    /// The tab that the shader is.
+    pub(crate) stage: Stage,
+    /// How the textures of the channels are sampled.
+    pub(super) sampling: [Sampling; 4],
     /// Assignments that run before `mainImage`, in order.
     pub(super) startup: Vec<ExprId>,
     /// The function of the assignments that run before `mainImage`.
@@ -28,6 +33,8 @@ pub(crate) struct LoweringContext {
     pub(crate) moved: HashSet<VariableId>,
     /// The bodies of generated functions that are plain text.
     pub(crate) helpers: HashMap<FunctionId, String>,
+    /// The channels that such a text names.
+    pub(crate) helper_inputs: HashMap<FunctionId, VariableId>,
     /// The diagnostic for a shader that nests deeper than drivers support.
     pub(crate) too_deep: Option<Diagnostic>,
     helper_ids: HashMap<(Helper, Type, Type), FunctionId>,
@@ -36,15 +43,18 @@ pub(crate) struct LoweringContext {
 }
 
 impl LoweringContext {
-    pub(crate) fn new(tree: Tree, main_image: FunctionId) -> Self {
+    pub(crate) fn new(checked: &Checked) -> Self {
         Self {
-            tree,
-            main_image,
+            tree: checked.tree.clone(),
+            main_image: checked.main_image,
+            stage: checked.stage,
+            sampling: checked.sampling,
             startup: Vec::new(),
             startup_function: None,
             temporaries: HashSet::new(),
             moved: HashSet::new(),
             helpers: HashMap::new(),
+            helper_inputs: HashMap::new(),
             too_deep: None,
             helper_ids: HashMap::new(),
             expansions: HashMap::new(),

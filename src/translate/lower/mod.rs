@@ -13,6 +13,7 @@ mod context;
 mod expression_tests;
 mod flatten;
 mod initializer;
+mod lookup;
 mod loops;
 mod lvalue;
 mod member;
@@ -55,7 +56,7 @@ pub fn lower_with(checked: &Checked, passes: Passes) -> Lowered {
 /// # Errors
 /// If the deadline passes.
 pub fn lower_within(checked: &Checked, passes: Passes, deadline: &Deadline) -> Result<Lowered, Overdue> {
-    let mut cx = LoweringContext::new(checked.tree.clone(), checked.main_image);
+    let mut cx = LoweringContext::new(checked);
     passes.run(&mut cx, deadline)?;
     print(&cx, deadline)
 }
@@ -88,6 +89,8 @@ passes! {
     StageIo = stage_io::lower_stage_io,
     /// `&&` and `||` with an effect on the right.
     ShortCircuit = operator::lower_short_circuit,
+    /// Filtered texture lookups, which drivers compute with few bits; for strict shaders only.
+    Lookups = lookup::expand_lookups,
     /// Built-in functions whose last bits depend on the driver; for strict shaders only.
     InexactFunctions = polyfill::expand_inexact_functions,
     /// `modf`, `matrixCompMult`, `outerProduct`, `inverse`.
@@ -161,6 +164,7 @@ impl Passes {
     #[must_use]
     pub fn all() -> Self {
         Self::strict()
+            .without(Pass::Lookups)
             .without(Pass::InexactFunctions)
             .without(Pass::Products)
     }

@@ -15,6 +15,7 @@ use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Un
 
 use crate::inexact::{Definition, InexactFunction};
 use crate::lower::context::LoweringContext;
+use crate::lower::lookup::{self, Level, lookup_function};
 
 /// An operation to expand, instantiated for the types of its arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -25,6 +26,16 @@ pub(super) enum Expansion {
     Product,
     /// The conversion of a `uint` to the nearest float.
     UintToFloat,
+    /// A filtered lookup of a channel, whose texture is this variable.
+    Lookup {
+        texture: VariableId,
+        channel: u8,
+        level: Level,
+    },
+    /// The level of the mipmaps for derivatives in texels.
+    LevelOfDetail,
+    /// The coordinates that `textureProj` divides by their last component.
+    Projection,
 }
 
 pub(super) fn expand_inexact_functions(cx: &mut LoweringContext) {
@@ -125,7 +136,7 @@ fn call(cx: &mut LoweringContext, id: ExprId, expansion: Expansion, arguments: V
 }
 
 /// Returns the generated function for the given types and adds it on first use.
-fn function(
+pub(super) fn function(
     cx: &mut LoweringContext,
     expansion: Expansion,
     types: Vec<Type>,
@@ -137,7 +148,14 @@ fn function(
         return id;
     }
     let (expansion, types) = &key;
-    let id = if is_componentwise(*expansion, types.len()) && matches!(ty, Type::Vector(..)) {
+    let id = if let Expansion::Lookup {
+        texture,
+        channel,
+        level,
+    } = *expansion
+    {
+        lookup_function(cx, (texture, channel, level), types, at)
+    } else if is_componentwise(*expansion, types.len()) && matches!(ty, Type::Vector(..)) {
         componentwise_function(cx, *expansion, types, ty, at)
     } else {
         let id = declare(cx, *expansion, types, ty, at);
@@ -162,6 +180,9 @@ fn declare(
         Expansion::Function(function) => function.name(),
         Expansion::Product => "product",
         Expansion::UintToFloat => "float",
+        Expansion::Lookup { .. } => "lookup",
+        Expansion::LevelOfDetail => "level",
+        Expansion::Projection => "projected",
     };
     let parameters: Vec<_> = types
         .iter()
@@ -216,7 +237,9 @@ fn is_componentwise(expansion: Expansion, arguments: usize) -> bool {
         Expansion::Function(function) => InexactFunction::of(function, arguments)
             .is_some_and(|function| function.definition.is_componentwise()),
         Expansion::UintToFloat => true,
-        Expansion::Product => false,
+        Expansion::Product | Expansion::Lookup { .. } | Expansion::LevelOfDetail | Expansion::Projection => {
+            false
+        }
     }
 }
 
@@ -241,6 +264,13 @@ fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: T
             }
         }
         Expansion::Product => product(&arguments, types),
+        Expansion::LevelOfDetail => {
+            let [along_x, along_y] = [0, 1].map(|at| &arguments[at]);
+            vec![toyproof_math::level_of_detail(along_x, along_y)]
+        }
+        Expansion::Projection => return lookup::projection(types[0], PARAMETER_NAMES[0]),
+        // Its text is written with its declaration.
+        Expansion::Lookup { .. } => Vec::new(),
         // Both halves are exact, so that only their sum is rounded.
         Expansion::UintToFloat => {
             let a = PARAMETER_NAMES[0];

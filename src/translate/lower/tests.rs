@@ -210,7 +210,7 @@ fn every_lowered_expression_has_one_parent() {
     let body = "S a, b; float x[3]; test(a, b, int(p.x), x); o.x = g(iChannel0, p, a) + g(iChannel1, p, b);";
     let checked = checked(&main_image(EVERYTHING, body), false);
     accepted(&checked);
-    let mut cx = crate::lower::context::LoweringContext::new(checked.tree, checked.main_image);
+    let mut cx = crate::lower::context::LoweringContext::new(&checked);
     Passes::all()
         .run(&mut cx, &toyproof_diagnostic::Deadline::default())
         .unwrap();

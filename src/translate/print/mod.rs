@@ -17,6 +17,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
+use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{FunctionId, Input, Place, Sampler, SamplerShape, Type, VariableId, VariableKind};
 
 use self::names::{BLOCK, Names};
@@ -173,12 +174,21 @@ impl Printer<'_> {
             .map(|begin| format!("    {}();\n", self.function(begin)))
             .unwrap_or_default();
         let main_image = self.function(self.cx.main_image);
+        let is_image = self.cx.stage == Stage::Image;
+        // An `out` parameter takes no value; the alpha of a buffer is visible.
+        let opaque = is_image || self.cx.tree.adds_to_color(self.cx.main_image);
+        let alpha = if opaque { "1.0" } else { "0.0" };
+        let written = if is_image {
+            "vec4(toyproof_image_color.xyz, 1.0)"
+        } else {
+            "toyproof_image_color"
+        };
         self.plain(&format!(
             "
 void main() {{
-{begin}    vec4 toyproof_image_color = vec4(0.0, 0.0, 0.0, 1.0);
+{begin}    vec4 toyproof_image_color = vec4(0.0, 0.0, 0.0, {alpha});
     {main_image}(toyproof_image_color, gl_FragCoord.xy);
-    toyproof_color = vec4(toyproof_image_color.xyz, 1.0);
+    toyproof_color = {written};
 }}
 "
         ));

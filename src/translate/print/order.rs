@@ -120,6 +120,7 @@ impl Collector<'_> {
             Item::Prototype(_) => {}
             Item::Function(id) => {
                 let cx = self.cx;
+                self.inputs.extend(cx.helper_inputs.get(&id));
                 self.add_function(&cx.tree[id], &mut dependencies);
             }
         }

@@ -210,7 +210,7 @@ impl Writer<'_> {
         let mut files = Files::default();
         let file = files.add(File::new("<helper>", source));
         let checked = glsl::check(&files, file, &Options::default()).map_err(|_| BROKEN)?;
-        let cx = LoweringContext::new(checked.tree, checked.main_image);
+        let cx = LoweringContext::new(&checked);
         let first = cx.tree.items.iter().find_map(|item| match item {
             Item::Function(id) => Some(*id),
             _ => None,

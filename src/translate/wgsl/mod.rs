@@ -55,7 +55,7 @@ pub enum Failure {
 /// # Errors
 /// If a construct is not supported or the deadline passes.
 pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline) -> Result<String, Failure> {
-    let mut cx = LoweringContext::new(checked.tree.clone(), checked.main_image);
+    let mut cx = LoweringContext::new(checked);
     passes().run(&mut cx, deadline)?;
     let order = Order::with_labels(&cx);
     deadline.check()?;

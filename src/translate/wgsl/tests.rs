@@ -24,7 +24,7 @@ fn printing_stops_after_the_deadline() {
     assert!(matches!(late, Err(Failure::Overdue(_))), "{late:?}");
 
     // Each value, statement and item checks the deadline.
-    let cx = LoweringContext::new(checked.tree.clone(), checked.main_image);
+    let cx = LoweringContext::new(&checked);
     let order = Order::with_labels(&cx);
     let names = Names::of(&cx, &order, Style::Plain);
     let facts = Facts::of(&cx);

@@ -227,7 +227,7 @@ impl Converter {
 
     fn lower(&self, source: Source) -> Result<Lowered, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        Ok(self.float.lower_within(source.checked, &deadline)?)
+        Ok(self.float.lower_for_host(source.checked, &deadline)?)
     }
 
     /// Writes WGSL that keeps the author's names and comments, and that naga reads.

@@ -141,7 +141,7 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     let channels = if checked.reads_textures() {
         checked
             .channels
-            .map(|shape| (shape == SamplerShape::D2).then(image::noise))
+            .map(|shape| (shape == SamplerShape::D2).then(|| image::noise().into()))
     } else {
         [const { None }; 4]
     };
@@ -152,6 +152,7 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
         mouse: test_frame.mouse,
         date: test_frame.date,
         channels: channels.clone(),
+        ..Frame::default()
     };
     FRAMES.map(of).to_vec()
 }
@@ -329,7 +330,7 @@ fn strict_images(
     frames: &[Frame],
     timeout: Duration,
 ) -> Result<Vec<Image>, Failure> {
-    let lowered = FloatMode::Strict.lower_within(checked, &Deadline::after(timeout))?;
+    let lowered = FloatMode::Strict.lower_for_host(checked, &Deadline::after(timeout))?;
     let image = |frame: &Frame| -> Result<Image, Failure> {
         let drawn = worker.draw_unwatched(lowered.clone(), frame.clone(), FloatMode::Strict)?;
         Ok(drawn.image())

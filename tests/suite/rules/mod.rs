@@ -69,7 +69,8 @@ pub(crate) fn frame() -> Frame {
         frame: 3,
         mouse: [1.0, 2.0, 3.0, 4.0],
         date: [2025.0, 0.0, 1.0, 3600.0],
-        channels: [Some(Image::new(4, 4, texels.collect())), None, None, None],
+        channels: [Some(Image::new(4, 4, texels.collect()).into()), None, None, None],
+        ..Frame::default()
     }
 }
 

@@ -1,5 +1,7 @@
 //! `toyproof run`
 
+mod project;
+
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -11,14 +13,16 @@ use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
+use toyproof_player::Clock;
+use toyproof_project::PassKind;
 use toyproof_verify::unbound;
 
-use super::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write, short_device};
-use super::names::{Names, with_suffix};
-use super::sequence::{self, Frames, Sequence};
-use super::shader::{Shader, Unusable, find};
-use super::terminal::file_size;
-use super::{Exit, Terminal, files};
+use crate::cli::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write, short_device};
+use crate::cli::names::{Names, with_suffix};
+use crate::cli::sequence::{self, Frames, Sequence};
+use crate::cli::shader::{Shader, Unusable, find};
+use crate::cli::terminal::file_size;
+use crate::cli::{Exit, Terminal, files};
 use crate::report;
 
 /// Run shaders and save their images
@@ -29,7 +33,7 @@ Examples:
   toyproof run mine.glsl -o mine.exr --precision f64
   toyproof run mine.glsl -o frames/mine.png --frames 0..479
   toyproof run shaders -o images")]
-pub(super) struct Args {
+pub(in crate::cli) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
@@ -48,6 +52,17 @@ pub(super) struct Args {
     /// The number is inserted before the extension. The same command resumes an interrupted sequence.
     #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
     frames: Option<Frames>,
+    /// The frames in a second: they determine the times of frames, `iTimeDelta` and `iFrameRate`
+    #[arg(long, value_name = "N", default_value_t = 60.0, value_parser = parse_rate, hide_short_help = true)]
+    fps: f64,
+    /// The pass of a project to show: `image`, or `buffer-a` to `buffer-d` [default: image]
+    #[arg(long, value_name = "PASS", value_parser = project::parse_pass, hide_short_help = true)]
+    pass: Option<PassKind>,
+    /// The buffers of a project: read from this file, if it exists, and written to it after the last frame
+    ///
+    /// A later run goes on with the next frame instead of the first.
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
+    state: Option<PathBuf>,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -58,13 +73,13 @@ pub(super) struct Args {
 
 /// The number type of floats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Precision {
+pub(in crate::cli) enum Precision {
     F32,
     F64,
 }
 
 impl Precision {
-    pub(super) fn name(self) -> &'static str {
+    pub(in crate::cli) fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",
             Self::F64 => "f64",
@@ -72,7 +87,7 @@ impl Precision {
     }
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs_of_frame = args.frame.inputs();
     let load = || inputs_of_frame.load().map_err(|error| error.to_string());
     let (worker, frame) = match args.driver.worker().and_then(|worker| Ok((worker, load()?))) {
@@ -123,6 +138,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), ".png"),
         };
         terminal.diagnostics(&shader.lints.warnings, &shader.files);
+        if let Some(passes) = &shader.passes
+            && !matches!(shader.checked, Err(Unusable::Invalid(_)))
+        {
+            exit = exit.max(runner.project(&shader, passes, &path));
+            continue;
+        }
         if let Ok(checked) = &shader.checked {
             terminal.diagnostics(&unbound(checked, &shader.lints, &runner.frame), &shader.files);
         }
@@ -147,13 +168,19 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     exit
 }
 
+/// Parses a number of frames in a second.
+fn parse_rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (0.001..=1e6).contains(rate));
+    rate.ok_or_else(|| "expected a number from 0.001 to 1000000".to_owned())
+}
+
 /// The default name of an image, in the current folder.
-pub(super) fn default_image(input: &Path) -> PathBuf {
+pub(in crate::cli) fn default_image(input: &Path) -> PathBuf {
     Path::new(input.file_name().unwrap_or_default()).with_extension("png")
 }
 
 /// Returns whether images can be written to a file of this name; prints an error if not.
-pub(super) fn has_image_extension(path: &Path, terminal: &Terminal) -> bool {
+pub(in crate::cli) fn has_image_extension(path: &Path, terminal: &Terminal) -> bool {
     if path == Path::new("-") {
         return true;
     }
@@ -173,7 +200,7 @@ pub(super) fn has_image_extension(path: &Path, terminal: &Terminal) -> bool {
 }
 
 /// Encodes an image for a file, by its extension, or as PNG for standard output; prints an error on failure.
-pub(super) fn encode(image: &Image, path: &Path, terminal: &Terminal) -> Option<Vec<u8>> {
+pub(in crate::cli) fn encode(image: &Image, path: &Path, terminal: &Terminal) -> Option<Vec<u8>> {
     let format = if path == Path::new("-") {
         Path::new("-.png")
     } else {
@@ -221,12 +248,20 @@ struct Runner<'a> {
 impl Runner<'_> {
     /// Renders the frames of a shader, each into its file; stops at the first failure.
     fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Exit {
-        let fingerprint = self.fingerprint(shader);
+        let mut hasher = DefaultHasher::new();
+        if let Ok(checked) = &shader.checked {
+            self.args.driver.float().lower(checked).text().hash(&mut hasher);
+        }
+        let fingerprint = self.fingerprint(hasher);
         let sequence = Sequence::resume(frames, output, &fingerprint, self.terminal);
         let mut exit = Exit::Success;
         let whole = sequence.render(self.terminal, |one| {
-            self.frame.frame = one.frame;
-            self.frame.time = one.time as f32;
+            self.frame = Clock {
+                inputs: self.frame.clone(),
+                rate: self.args.fps,
+                start: 0.0,
+            }
+            .frame(one.frame);
             exit = match self.render(shader) {
                 Ok(rendered) => self.write(&rendered, &shader.name, &one.path, false),
                 Err(exit) => exit,
@@ -241,13 +276,9 @@ impl Runner<'_> {
         }
     }
 
-    /// A digest of everything that the frames of a sequence depend on: a record with a different one is
-    /// ignored.
-    fn fingerprint(&self, shader: &Shader) -> String {
-        let mut hasher = DefaultHasher::new();
-        if let Ok(checked) = &shader.checked {
-            self.args.driver.float().lower(checked).text().hash(&mut hasher);
-        }
+    /// A digest of everything that the frames of a sequence depend on, beginning with that of the shader: a record
+    /// with a different one is ignored.
+    fn fingerprint(&self, mut hasher: DefaultHasher) -> String {
         let any = Frame {
             frame: 0,
             time: 0.0,
@@ -315,22 +346,29 @@ impl Runner<'_> {
                 device: drawn.device.clone(),
                 image: drawn.image(),
             }),
-            Err(Failure::Invalid(diagnostics)) => {
+            Err(failure) => Err(self.draw_failed(failure, shader)),
+        }
+    }
+
+    /// Prints why the driver rendered nothing.
+    fn draw_failed(&self, failure: Failure, shader: &Shader) -> Exit {
+        match failure {
+            Failure::Invalid(diagnostics) => {
                 self.terminal.diagnostics(&diagnostics, &shader.files);
-                Err(Exit::ShaderFault)
+                Exit::ShaderFault
             }
-            Err(Failure::Refused(diagnostics)) => {
+            Failure::Refused(diagnostics) => {
                 self.terminal.diagnostics(&diagnostics, &shader.files);
-                Err(Exit::Error)
+                Exit::Error
             }
-            Err(failure) => {
+            failure => {
                 self.terminal.error(format_args!("{}: {failure}", shader.name));
                 let shaders_fault = failure.is_invalid() || matches!(failure, Failure::Timeout { .. });
-                Err(if shaders_fault {
+                if shaders_fault {
                     Exit::ShaderFault
                 } else {
                     Exit::Error
-                })
+                }
             }
         }
     }
@@ -387,7 +425,7 @@ impl Runner<'_> {
 }
 
 /// Prints why the evaluator failed.
-pub(super) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: &Terminal) -> Exit {
+pub(in crate::cli) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: &Terminal) -> Exit {
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
         terminal.diagnostics(&[glsl::overdue(*overdue)], &shader.files);
         return Exit::ShaderFault;

@@ -1,0 +1,40 @@
+//! How the textures of channels are sampled. `ShaderToy` sets it for each input; the shader cannot see it.
+
+/// How a lookup by normalized coordinates reads a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Sampling {
+    /// The filter.
+    pub filter: Filter,
+    /// What lies outside of the texture.
+    pub wrap: Wrap,
+}
+
+impl Default for Sampling {
+    /// Linear and repeated, without mipmaps.
+    fn default() -> Self {
+        Self {
+            filter: Filter::Linear,
+            wrap: Wrap::Repeat,
+        }
+    }
+}
+
+/// A texture filter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Filter {
+    /// The nearest texel.
+    Nearest,
+    /// Four texels, or eight in a volume.
+    Linear,
+    /// Linear, also between mipmaps.
+    Mipmap,
+}
+
+/// What lies outside of a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// Its edge.
+    Clamp,
+    /// Its repetitions.
+    Repeat,
+}

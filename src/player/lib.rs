@@ -1,0 +1,151 @@
+//! The order in which `ShaderToy` renders the passes of a shader over frames, for any renderer: the evaluator in each
+//! precision, and a graphics driver.
+//!
+//! In a frame, the buffers are rendered in the order of the graph, and then the image. Each buffer has two textures: a
+//! pass reads the one that was completed last, and renders into the other. So a pass reads a buffer that precedes it
+//! as of this frame, and itself or a later one as of the previous frame. Both textures are zero at first and never
+//! cleared, so that a discarded pixel of a buffer keeps its value of two frames ago, and one of the image that of the
+//! previous frame.
+//!
+//! ```
+//! use toyproof_image::Frame;
+//! use toyproof_player::{Channel, Graph, Pass, Player, Renderer, Source, Target};
+//!
+//! /// Buffers of one number: Buffer A adds 1 to itself, and the image shows it.
+//! struct Counter;
+//!
+//! impl Renderer for Counter {
+//!     type Texture = u32;
+//!     type Error = std::convert::Infallible;
+//!
+//!     fn zeros(&mut self, _: [u32; 2], _: bool) -> Result<u32, Self::Error> {
+//!         Ok(0)
+//!     }
+//!     fn draw(&mut self, pass: usize, _: u32, _: &Frame, channels: [Channel<'_, u32>; 4]) -> Result<u32, Self::Error> {
+//!         let Channel::Texture(last) = channels[0] else { return Ok(0) };
+//!         Ok(if pass == 0 { last + 1 } else { *last })
+//!     }
+//!     fn resized(&mut self, texture: u32, _: [u32; 2]) -> Result<u32, Self::Error> {
+//!         Ok(texture)
+//!     }
+//! }
+//!
+//! let read_a = [Some(Source::Buffer(0)), None, None, None];
+//! let passes = [Target::Buffer(0), Target::Image].map(|target| Pass { target, inputs: read_a });
+//! let graph = Graph::new(passes.to_vec(), [false; 4]);
+//! let mut player = Player::new(graph, Counter);
+//! for frame in 0..3 {
+//!     player.render(&Frame { frame, ..Frame::default() }).unwrap();
+//! }
+//! assert_eq!(player.texture(Target::Image), Some(&3));
+//! ```
+
+mod clock;
+mod play;
+mod state;
+
+pub use clock::Clock;
+pub use play::{Channel, Player, Renderer};
+use serde::{Deserialize, Serialize};
+pub use state::State;
+
+/// The number of buffers that a shader can have.
+pub const BUFFERS: usize = 4;
+
+/// The passes of a shader, and what each reads.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Graph {
+    /// Buffers in the order in which they are rendered, and the image last.
+    passes: Vec<Pass>,
+    /// Whether mipmaps of each buffer are made.
+    mipmaps: [bool; BUFFERS],
+}
+
+/// A pass: what it renders, and what it reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Pass {
+    /// What it renders.
+    pub target: Target,
+    /// The inputs of `iChannel0` to `iChannel3`.
+    pub inputs: [Option<Source>; 4],
+}
+
+/// What a pass renders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Target {
+    /// The buffer with this number, from 0.
+    Buffer(usize),
+    /// The image.
+    Image,
+}
+
+/// What an input reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Source {
+    /// The buffer with this number, from 0.
+    Buffer(usize),
+    /// The texture with this number among those that do not change.
+    Medium(usize),
+}
+
+impl Graph {
+    /// A graph of these passes; `mipmaps` says of which buffers mipmaps are made.
+    ///
+    /// # Panics
+    /// If a pass other than the last renders the image, the last does not, or a buffer has a number of 4 or more.
+    #[must_use]
+    pub fn new(passes: Vec<Pass>, mipmaps: [bool; BUFFERS]) -> Self {
+        let image = passes.iter().position(|pass| pass.target == Target::Image);
+        assert_eq!(image, passes.len().checked_sub(1), "the image is rendered last");
+        let numbers = passes.iter().flat_map(|pass| {
+            let target = match pass.target {
+                Target::Buffer(number) => Some(number),
+                Target::Image => None,
+            };
+            target
+                .into_iter()
+                .chain(pass.inputs.iter().flatten().filter_map(|input| input.buffer()))
+        });
+        assert!(numbers.max() < Some(BUFFERS), "there are four buffers");
+        Self { passes, mipmaps }
+    }
+
+    /// The passes in the order in which they are rendered.
+    #[must_use]
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+
+    /// Makes the image read a texture that does not change.
+    pub fn bind_to_image(&mut self, channel: usize, medium: usize) {
+        if let Some(image) = self.passes.last_mut() {
+            image.inputs[channel] = Some(Source::Medium(medium));
+        }
+    }
+
+    /// Whether mipmaps of a buffer are made.
+    #[must_use]
+    pub fn has_mipmaps(&self, buffer: usize) -> bool {
+        self.mipmaps[buffer]
+    }
+
+    /// Whether a buffer is rendered or read. One that is only read stays zero.
+    #[must_use]
+    pub fn uses(&self, buffer: usize) -> bool {
+        self.passes.iter().any(|pass| {
+            pass.target == Target::Buffer(buffer) || pass.inputs.contains(&Some(Source::Buffer(buffer)))
+        })
+    }
+}
+
+impl Source {
+    fn buffer(self) -> Option<usize> {
+        match self {
+            Self::Buffer(number) => Some(number),
+            Self::Medium(_) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,228 @@
+//! Frames of a graph, by a renderer.
+
+use toyproof_image::Frame;
+
+use crate::{BUFFERS, Graph, Source, Target};
+
+/// Renders single passes.
+pub trait Renderer {
+    /// A texture that passes render and read.
+    type Texture;
+    /// Why a pass cannot be rendered.
+    type Error;
+
+    /// A texture of zeros, perhaps with mipmaps.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Self::Texture, Self::Error>;
+
+    /// Renders the pass with this number over a texture, whose discarded pixels stay as they are. `frame` holds the
+    /// values of all inputs but the channels.
+    ///
+    /// # Errors
+    /// If the pass fails.
+    fn draw(
+        &mut self,
+        pass: usize,
+        over: Self::Texture,
+        frame: &Frame,
+        channels: [Channel<'_, Self::Texture>; 4],
+    ) -> Result<Self::Texture, Self::Error>;
+
+    /// A texture of another size with the same lower left part, and zeros elsewhere.
+    ///
+    /// # Errors
+    /// If there is not enough memory.
+    fn resized(&mut self, texture: Self::Texture, size: [u32; 2]) -> Result<Self::Texture, Self::Error>;
+}
+
+/// What a channel of a pass reads.
+#[derive(Debug)]
+pub enum Channel<'a, T> {
+    /// Nothing: opaque black.
+    Unbound,
+    /// A buffer.
+    Texture(&'a T),
+    /// The texture with this number among those that do not change.
+    Medium(usize),
+}
+
+/// The state of a graph between two frames.
+#[derive(Debug)]
+pub struct Player<R: Renderer> {
+    graph: Graph,
+    renderer: R,
+    buffers: [Option<Buffer<R::Texture>>; BUFFERS],
+    image: Option<R::Texture>,
+    size: Option<[u32; 2]>,
+}
+
+/// The two textures of a buffer. One of them is absent while it is rendered.
+#[derive(Debug)]
+struct Buffer<T> {
+    textures: [Option<T>; 2],
+    /// The index of the texture that was completed last.
+    last: usize,
+}
+
+impl<R: Renderer> Player<R> {
+    /// A player before the first frame.
+    #[must_use]
+    pub fn new(graph: Graph, renderer: R) -> Self {
+        Self {
+            graph,
+            renderer,
+            buffers: [const { None }; BUFFERS],
+            image: None,
+            size: None,
+        }
+    }
+
+    /// The graph.
+    #[must_use]
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// The renderer.
+    #[must_use]
+    pub fn renderer(&self) -> &R {
+        &self.renderer
+    }
+
+    /// The renderer, to change its settings.
+    pub fn renderer_mut(&mut self) -> &mut R {
+        &mut self.renderer
+    }
+
+    /// The renderer; all textures are dropped.
+    #[must_use]
+    pub fn into_renderer(self) -> R {
+        self.renderer
+    }
+
+    /// What a pass rendered last: none before the first frame, and for buffers that are not used.
+    #[must_use]
+    pub fn texture(&self, target: Target) -> Option<&R::Texture> {
+        match target {
+            Target::Image => self.image.as_ref(),
+            Target::Buffer(number) => {
+                let buffer = self.buffers[number].as_ref()?;
+                buffer.textures[buffer.last].as_ref()
+            }
+        }
+    }
+
+    /// The textures of a buffer, the one that was completed last first: all that the next frame depends on, together
+    /// with the image.
+    #[must_use]
+    pub fn buffer(&self, number: usize) -> Option<[&R::Texture; 2]> {
+        let buffer = self.buffers[number].as_ref()?;
+        let [first, second] = buffer.textures.each_ref().map(Option::as_ref);
+        let [last, other] = if buffer.last == 0 {
+            [first, second]
+        } else {
+            [second, first]
+        };
+        Some([last?, other?])
+    }
+
+    /// The size of the textures: none before the first frame.
+    pub(crate) fn size(&self) -> Option<[u32; 2]> {
+        self.size
+    }
+
+    /// Replaces all textures; for each buffer that is used, its textures as returned by [`Self::buffer`].
+    pub(crate) fn set_textures(
+        &mut self,
+        size: [u32; 2],
+        buffers: [Option<[R::Texture; 2]>; BUFFERS],
+        image: Option<R::Texture>,
+    ) {
+        self.size = Some(size);
+        self.image = image;
+        self.buffers = buffers.map(|textures| {
+            textures.map(|textures| Buffer {
+                textures: textures.map(Some),
+                last: 0,
+            })
+        });
+    }
+
+    /// Renders the next frame. If its size differs from that of the previous one, all textures keep their lower left
+    /// part.
+    ///
+    /// # Errors
+    /// If a pass fails; the player must not be used again.
+    pub fn render(&mut self, frame: &Frame) -> Result<(), R::Error> {
+        self.resize(frame.size)?;
+        for number in 0..self.graph.passes().len() {
+            let target = self.graph.passes()[number].target;
+            let over = match self.take(target) {
+                Some(texture) => texture,
+                None => self.renderer.zeros(frame.size, false)?,
+            };
+            let inputs = self.graph.passes()[number].inputs;
+            let channels = inputs.map(|input| match input {
+                None => Channel::Unbound,
+                Some(Source::Medium(medium)) => Channel::Medium(medium),
+                Some(Source::Buffer(buffer)) => {
+                    let buffer = self.buffers[buffer].as_ref();
+                    let last = buffer.and_then(|buffer| buffer.textures[buffer.last].as_ref());
+                    last.map_or(Channel::Unbound, Channel::Texture)
+                }
+            });
+            let drawn = self.renderer.draw(number, over, frame, channels)?;
+            match target {
+                Target::Image => self.image = Some(drawn),
+                Target::Buffer(number) => {
+                    if let Some(buffer) = &mut self.buffers[number] {
+                        buffer.last = 1 - buffer.last;
+                        buffer.textures[buffer.last] = Some(drawn);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes the texture that a pass renders into.
+    fn take(&mut self, target: Target) -> Option<R::Texture> {
+        match target {
+            Target::Image => self.image.take(),
+            Target::Buffer(number) => {
+                let buffer = self.buffers[number].as_mut()?;
+                buffer.textures[1 - buffer.last].take()
+            }
+        }
+    }
+
+    /// Makes the textures, or changes their size.
+    fn resize(&mut self, size: [u32; 2]) -> Result<(), R::Error> {
+        if self.size == Some(size) {
+            return Ok(());
+        }
+        let is_new = self.size.replace(size).is_none();
+        for (number, buffer) in self.buffers.iter_mut().enumerate() {
+            if !self.graph.uses(number) {
+                continue;
+            }
+            let mut textures = [const { None }; 2];
+            for (at, texture) in textures.iter_mut().enumerate() {
+                let old = buffer.as_mut().and_then(|buffer| buffer.textures[at].take());
+                *texture = Some(match old {
+                    Some(old) => self.renderer.resized(old, size)?,
+                    None => self.renderer.zeros(size, self.graph.has_mipmaps(number))?,
+                });
+            }
+            // As on the site, the first texture counts as the one that was completed last.
+            *buffer = Some(Buffer { textures, last: 0 });
+        }
+        // The canvas is cleared when its size changes.
+        if !is_new {
+            self.image = None;
+        }
+        Ok(())
+    }
+}

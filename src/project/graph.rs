@@ -1,0 +1,191 @@
+//! What is rendered of a project: its passes in the site's order, the textures that they read, and how they sample them.
+
+use toyproof_glsl::{Sampling, Wrap};
+use toyproof_image::{Noise, Texture};
+use toyproof_player::{self as player, BUFFERS, Graph, Target};
+
+use crate::{Buffer, Filter, Input, Pass, PassKind, Project, Source, SourceType};
+
+/// What renders the image of a project.
+#[derive(Debug, Clone)]
+pub struct Rendering {
+    /// The order of the passes, and what they read.
+    pub graph: Graph,
+    /// The passes of the graph, in its order: their indices in [`Project::passes`].
+    pub passes: Vec<usize>,
+    /// The textures that do not change.
+    pub media: Vec<Texture>,
+    /// The inputs whose media are replaced, or are black, without repetitions.
+    pub replaced: Vec<Replaced>,
+}
+
+/// An input whose medium is not available.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Replaced {
+    /// What would be read.
+    pub source: Source,
+    /// Whether a texture with the same properties takes its place; otherwise the channel is black.
+    pub has_stand_in: bool,
+}
+
+/// Why the image of a project cannot be rendered: a part of a sentence, after the name of the image.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("reads {0}, which is not rendered yet")]
+pub struct NotRendered(pub PassKind);
+
+/// Width and height of the keyboard's texture.
+const KEYBOARD: [u32; 2] = [256, 3];
+
+impl Project {
+    /// The passes that the image depends on, and this one with those that it depends on, for the renderers.
+    ///
+    /// # Errors
+    /// If a pass is needed that cannot be rendered.
+    pub fn rendering(&self, also: PassKind) -> Result<Rendering, NotRendered> {
+        let needed = self.needed_by(&[PassKind::Image, also]);
+        let unable = [PassKind::CubeA, PassKind::Sound];
+        if let Some(&kind) = needed.iter().find(|kind| unable.contains(kind)) {
+            return Err(NotRendered(kind));
+        }
+        let is_rendered = |kind: PassKind| needed.contains(&kind);
+        let passes = (0..self.passes.len()).filter(|&at| is_rendered(self.passes[at].kind));
+        let mut passes: Vec<usize> = passes.collect();
+        // Buffers keep the order of the file.
+        passes.sort_by_key(|&at| self.passes[at].kind == PassKind::Image);
+        let mut media = Media::default();
+        let nodes = passes
+            .iter()
+            .map(|&at| &self.passes[at])
+            .map(|pass| player::Pass {
+                target: match pass.kind {
+                    PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
+                    _ => Target::Image,
+                },
+                inputs: pass.inputs.each_ref().map(|input| media.source(input.as_ref()?)),
+            });
+        let nodes = nodes.collect();
+        let mut mipmaps = [false; BUFFERS];
+        for input in self.rendered_inputs() {
+            if let (Source::Buffer(buffer), Filter::Mipmap) = (&input.source, input.sampler.filter) {
+                mipmaps[*buffer as usize] = true;
+            }
+        }
+        Ok(Rendering {
+            graph: Graph::new(nodes, mipmaps),
+            passes,
+            media: media.textures,
+            replaced: media.replaced,
+        })
+    }
+
+    /// How the channels of a pass are sampled. On the site, filter and wrap of a buffer belong to its texture: the filter
+    /// is that of the highest channel of the pass that reads it, and the wrap that of the last input in the file.
+    pub(crate) fn sampling(&self, pass: &Pass) -> [Sampling; 4] {
+        pass.inputs.each_ref().map(|input| {
+            let Some(input) = input else {
+                return Sampling::default();
+            };
+            let Source::Buffer(buffer) = input.source else {
+                return Sampling {
+                    filter: input.sampler.filter,
+                    wrap: input.sampler.wrap,
+                };
+            };
+            let reads = |input: &&Input| input.source == Source::Buffer(buffer);
+            let highest = pass.inputs.iter().flatten().rfind(reads);
+            Sampling {
+                filter: highest.map_or(input.sampler.filter, |input| input.sampler.filter),
+                wrap: self.wrap(buffer),
+            }
+        })
+    }
+
+    /// The wrap of a buffer.
+    fn wrap(&self, buffer: Buffer) -> Wrap {
+        let readers = self
+            .rendered_inputs()
+            .filter(|input| input.source == Source::Buffer(buffer));
+        // Without spans, the inputs are assumed, and alike.
+        let last = readers.max_by_key(|input| input.span.map(|span| span.start));
+        last.map_or(Wrap::Clamp, |input| input.sampler.wrap)
+    }
+
+    /// The inputs of all passes but Sound, which reads no buffers.
+    fn rendered_inputs(&self) -> impl Iterator<Item = &Input> {
+        let passes = self.passes.iter().filter(|pass| pass.kind != PassKind::Sound);
+        passes.flat_map(|pass| pass.inputs.iter().flatten())
+    }
+}
+
+/// The textures that do not change, as they are found.
+#[derive(Default)]
+struct Media {
+    textures: Vec<Texture>,
+    /// The sources of the textures, and whether they have mipmaps and are flipped.
+    known: Vec<(Source, bool, bool)>,
+    replaced: Vec<Replaced>,
+}
+
+impl Media {
+    /// What an input reads in the graph; none for black.
+    fn source(&mut self, input: &Input) -> Option<player::Source> {
+        if let Source::Buffer(buffer) = input.source {
+            return Some(player::Source::Buffer(buffer as usize));
+        }
+        let has_mipmaps = input.sampler.filter == Filter::Mipmap;
+        let key = (input.source.clone(), has_mipmaps, input.sampler.vflip);
+        if let Some(known) = self.known.iter().position(|known| *known == key) {
+            return Some(player::Source::Medium(known));
+        }
+        let image = match &input.source {
+            Source::Keyboard => {
+                let [width, height] = KEYBOARD;
+                let idle = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
+                Some(toyproof_image::Image::new(width, height, idle))
+            }
+            source => {
+                let noise = noise(source);
+                let replaced = Replaced {
+                    source: source.clone(),
+                    has_stand_in: noise.is_some(),
+                };
+                if !self.replaced.contains(&replaced) {
+                    self.replaced.push(replaced);
+                }
+                // A picture stands upright if it is flipped on its way to the texture.
+                let upright = noise.map(Noise::image);
+                upright.map(|image| {
+                    if input.sampler.vflip {
+                        image
+                    } else {
+                        image.upside_down()
+                    }
+                })
+            }
+        };
+        let texture = Texture::from(image?);
+        self.textures.push(if has_mipmaps {
+            texture.with_mipmaps()
+        } else {
+            texture
+        });
+        self.known.push(key);
+        Some(player::Source::Medium(self.known.len() - 1))
+    }
+}
+
+/// The stand-in for a texture of the site.
+fn noise(source: &Source) -> Option<Noise> {
+    let medium = source
+        .medium()
+        .filter(|medium| medium.source_type == SourceType::Texture)?;
+    Some(match medium.name {
+        "RGBA Noise Medium" => Noise::RgbaMedium,
+        "RGBA Noise Small" => Noise::RgbaSmall,
+        "Gray Noise Medium" => Noise::GrayMedium,
+        "Gray Noise Small" => Noise::GraySmall,
+        "Bayer" => Noise::Bayer,
+        "Blue Noise" => Noise::Blue,
+        _ => return None,
+    })
+}

@@ -1,0 +1,207 @@
+//! The frames of a shader with several passes, one after the other: on the evaluator, and by a driver.
+
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use toyproof_eval::{Number, PassFailure, PassRenderer, Program, Refusal, Settings, UndefinedPolicy};
+use toyproof_glsl::Checked;
+use toyproof_image::{Frame, Texture};
+use toyproof_player::{Graph, Player, State, Target};
+#[cfg(feature = "gpu")]
+use {
+    crate::{GpuFailure, Worker},
+    toyproof_diagnostic::{Deadline, Overdue},
+    toyproof_gpu::Readback,
+    toyproof_image::Image,
+    toyproof_player::BUFFERS,
+    toyproof_translate::FloatMode,
+};
+
+/// A shader with several passes.
+#[derive(Debug, Clone)]
+pub struct PassShader<'a> {
+    /// The passes, in the order of the graph.
+    pub checked: Vec<&'a Checked>,
+    /// The order of the passes, and what they read.
+    pub graph: &'a Graph,
+    /// The textures that do not change.
+    pub media: &'a [Texture],
+}
+
+impl PassShader<'_> {
+    /// Compiles all passes for the evaluator, each in so much time at most.
+    ///
+    /// # Errors
+    /// The number of the first pass that is too large, and why.
+    pub fn programs(&self, timeout: Duration) -> Result<Vec<Program>, (usize, Refusal)> {
+        let passes = self.checked.iter().enumerate();
+        let program = |(pass, checked): (usize, &&Checked)| {
+            let program = Program::prepared_within(checked, UndefinedPolicy::Plain, Some(timeout));
+            program.map_err(|refusal| (pass, refusal))
+        };
+        passes.map(program).collect()
+    }
+}
+
+/// The frames of a shader on the evaluator.
+#[derive(Debug)]
+pub struct CpuPlayback<'a, N: Number> {
+    player: Player<PassRenderer<'a, N>>,
+    timeout: Duration,
+}
+
+impl<'a, N: Number> CpuPlayback<'a, N> {
+    /// Starts before the first frame, or after the frame of a state. `timeout` is the time limit of a frame.
+    #[must_use]
+    pub fn new(
+        shader: &PassShader<'a>,
+        programs: &'a [Program],
+        state: Option<&State>,
+        timeout: Duration,
+        interrupt: Option<&'a AtomicBool>,
+    ) -> Self {
+        let settings = Settings {
+            undefined: UndefinedPolicy::Plain,
+            interrupt,
+            ..Settings::default()
+        };
+        Self::with_settings(shader, programs, state, timeout, settings)
+    }
+
+    /// Like [`Self::new`], with all settings; the deadline is set for each frame.
+    #[must_use]
+    pub fn with_settings(
+        shader: &PassShader<'a>,
+        programs: &'a [Program],
+        state: Option<&State>,
+        timeout: Duration,
+        settings: Settings<'a, N>,
+    ) -> Self {
+        let renderer = PassRenderer::new(programs, shader.media, settings);
+        let mut player = Player::new(shader.graph.clone(), renderer);
+        if let Some(state) = state {
+            let load = |_: &mut _, texture: &_, mipmaps| Ok(PassRenderer::<N>::load(texture, mipmaps));
+            let Ok::<(), std::convert::Infallible>(()) = player.restore(state, load);
+        }
+        Self { player, timeout }
+    }
+
+    /// Renders the next frame, whose channels do not count.
+    ///
+    /// # Errors
+    /// If a pass fails.
+    pub fn render(&mut self, frame: &Frame) -> Result<(), PassFailure> {
+        self.player
+            .renderer_mut()
+            .set_deadline(Instant::now() + self.timeout);
+        self.player.render(frame)
+    }
+
+    /// What a pass rendered last; none if the shader does not use it.
+    #[must_use]
+    pub fn texture(&self, target: Target) -> Option<&Texture> {
+        self.player.texture(target)
+    }
+
+    /// The state after a frame.
+    #[must_use]
+    pub fn state(&self, frame: i32) -> State {
+        let copy = |texture: &Texture| Ok(texture.cropped(texture.size()));
+        let Ok::<State, std::convert::Infallible>(state) = self.player.state(frame, copy);
+        state
+    }
+}
+
+/// The frames of a shader by a driver.
+#[cfg(feature = "gpu")]
+#[derive(Debug)]
+pub struct DevicePlayback<'a> {
+    worker: &'a mut Worker,
+    graph: Graph,
+    device: String,
+}
+
+/// Why a driver does not render the passes.
+#[cfg(feature = "gpu")]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlaybackFailure {
+    /// A pass takes too long to translate.
+    #[error(transparent)]
+    Overdue(#[from] Overdue),
+    /// The worker failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuFailure),
+}
+
+#[cfg(feature = "gpu")]
+impl<'a> DevicePlayback<'a> {
+    /// Compiles the passes. Starts before the first frame, or after the frame of a state.
+    ///
+    /// # Errors
+    /// If the passes cannot be compiled in time, or at all.
+    pub fn open(
+        worker: &'a mut Worker,
+        shader: &PassShader<'_>,
+        state: Option<&State>,
+        float: FloatMode,
+        timeout: Duration,
+    ) -> Result<Self, PlaybackFailure> {
+        let deadline = Deadline::after(timeout);
+        let lowered = shader
+            .checked
+            .iter()
+            .map(|checked| float.lower_within(checked, &deadline));
+        let lowered = lowered.collect::<Result<Vec<_>, _>>()?;
+        let device = worker.open_player(
+            lowered,
+            shader.graph.clone(),
+            shader.media.to_vec(),
+            state.cloned(),
+            float,
+        )?;
+        Ok(Self {
+            worker,
+            graph: shader.graph.clone(),
+            device,
+        })
+    }
+
+    /// Adapter and driver.
+    #[must_use]
+    pub fn device(&self) -> &str {
+        &self.device
+    }
+
+    /// Renders the next frame, whose channels do not count, and returns what these passes rendered.
+    ///
+    /// # Errors
+    /// If the driver fails; the playback is then over.
+    pub fn render(&mut self, frame: &Frame, wanted: &[Target]) -> Result<Vec<Image>, GpuFailure> {
+        let wanted: Vec<_> = wanted.iter().copied().map(Readback::Last).collect();
+        self.worker.play(Some(frame), &wanted)
+    }
+
+    /// The state after a frame, which was rendered last.
+    ///
+    /// # Errors
+    /// If the driver fails; the playback is then over.
+    pub fn state(&mut self, frame: &Frame) -> Result<State, GpuFailure> {
+        let used: Vec<_> = (0..BUFFERS).filter(|&buffer| self.graph.uses(buffer)).collect();
+        let buffers = used
+            .iter()
+            .flat_map(|&buffer| [Readback::Last(Target::Buffer(buffer)), Readback::Other(buffer)]);
+        let wanted: Vec<_> = buffers.chain([Readback::Last(Target::Image)]).collect();
+        let images = self.worker.play(None, &wanted)?;
+        let mut images = images.into_iter().map(Texture::from);
+        let mut buffers = [const { None }; BUFFERS];
+        for buffer in used {
+            buffers[buffer] = images.next().zip(images.next()).map(<[Texture; 2]>::from);
+        }
+        Ok(State {
+            frame: frame.frame,
+            size: frame.size,
+            buffers,
+            image: images.next(),
+        })
+    }
+}
