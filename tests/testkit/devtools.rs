@@ -3,8 +3,9 @@
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{self, Receiver};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -87,18 +88,31 @@ impl Page {
 
     /// Calls a method and waits for the reply.
     pub fn call(&mut self, method: &str, parameters: &Value) -> Value {
+        self.try_call(method, parameters, HANG_GUARD)
+            .unwrap_or_else(|error| panic!("{method}: {error}"))
+    }
+
+    /// Calls a method and waits for the reply until the time limit.
+    fn try_call(&mut self, method: &str, parameters: &Value, timeout: Duration) -> Result<Value, String> {
         self.last += 1;
         let mut order = json!({ "id": self.last, "method": method, "params": parameters });
         if let Some(session) = &self.session {
             order["sessionId"] = session.as_str().into();
         }
-        write!(self.orders, "{order}\0").unwrap();
-        self.orders.flush().unwrap();
+        let sent = write!(self.orders, "{order}\0").and_then(|()| self.orders.flush());
+        sent.map_err(|error| error.to_string())?;
+        let deadline = Instant::now() + timeout;
         loop {
-            let message = self.told.recv_timeout(HANG_GUARD).expect(method);
+            let left = deadline.saturating_duration_since(Instant::now());
+            let message = self.told.recv_timeout(left).map_err(|error| match error {
+                RecvTimeoutError::Timeout => format!("no reply within {:.1} s", timeout.as_secs_f64()),
+                RecvTimeoutError::Disconnected => "the browser has exited".to_owned(),
+            })?;
             if message["id"] == self.last {
-                assert!(message["error"].is_null(), "{method}: {}", message["error"]);
-                return message["result"].clone();
+                return match &message["error"] {
+                    Value::Null => Ok(message["result"].clone()),
+                    error => Err(error.to_string()),
+                };
             }
             self.events.push(message);
         }
@@ -121,10 +135,23 @@ impl Page {
 
     /// Evaluates a JavaScript expression, awaiting promises.
     pub fn value(&mut self, script: &str) -> Value {
+        self.try_value(script, HANG_GUARD)
+            .unwrap_or_else(|error| panic!("{script}: {error}"))
+    }
+
+    /// Evaluates a JavaScript expression, awaiting promises, until the time limit.
+    ///
+    /// # Errors
+    /// The exception, or why the browser does not answer. It may still be busy then: start another one.
+    pub fn try_value(&mut self, script: &str, timeout: Duration) -> Result<Value, String> {
         let asked = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
-        let result = self.call("Runtime.evaluate", &asked);
-        assert!(result["exceptionDetails"].is_null(), "{script}: {result}");
-        result["result"]["value"].clone()
+        let result = self.try_call("Runtime.evaluate", &asked, timeout)?;
+        match &result["exceptionDetails"] {
+            Value::Null => Ok(result["result"]["value"].clone()),
+            exception => Err(exception["exception"]["description"]
+                .as_str()
+                .map_or_else(|| exception.to_string(), str::to_owned)),
+        }
     }
 
     /// Waits until an expression is true.

@@ -5,6 +5,7 @@
 mod corpus;
 mod faults;
 mod page;
+mod player;
 mod projects;
 mod references;
 mod repairs;
@@ -58,6 +59,8 @@ enum Task {
         #[arg(long)]
         screenshots: Option<PathBuf>,
     },
+    /// Render projects in Chromium as ShaderToy's own page does; `tests/xtask/player.rs` documents the files
+    Player(player::Arguments),
     /// Measure how many projects of a git repository are exported as they were imported, and how many compile
     Projects {
         /// The git directory of a repository with ShaderToy's JSON files
@@ -115,6 +118,7 @@ fn main() -> ExitCode {
         Task::Corpus { folder, limit } => corpus::compare_bits(&folder, limit),
         Task::Conversions { shaders, converted } => corpus::compare_conversions(&shaders, &converted),
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
+        Task::Player(arguments) => player::play(&arguments),
         Task::Projects {
             repository,
             limit,

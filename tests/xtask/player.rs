@@ -1,0 +1,221 @@
+//! Plays ShaderToy's projects in Chromium by the rules of the site's own page: the judge of `toyproof run`.
+//!
+//! A folder of results has `frame-0007-image.f32`, `frame-0007-buffer-a.f32` and so on: RGBA as 32-bit floats, little
+//! endian, bottom row first. Its `player.json` has the size, the passes, the frames, the tabs that do not compile
+//! with the messages of the compiler, and `failure`: why frames are missing.
+//!
+//! A list has a line of JSON per project: `{"project": "a.json", "out": "a", "size": [64, 36], "frames": [0, 7]}`.
+//! Only `project` is required. The default of `out` is the name of the file, below `--out`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use clap::Args;
+use serde_json::{Value, json};
+use toyproof_testkit::devtools::Page;
+
+/// WebGL 2 on the bundled software driver. The time limit of a project is ours.
+const SWITCHES: [&str; 4] = [
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-watchdog",
+];
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A project: ShaderToy's JSON
+    #[arg(required_unless_present = "list")]
+    project: Option<PathBuf>,
+    /// A file with a line of JSON for each project
+    #[arg(long, conflicts_with = "project")]
+    list: Option<PathBuf>,
+    /// The size of the canvas
+    #[arg(long, default_value = "64x36", value_parser = parse_size)]
+    size: [u64; 2],
+    /// The frames to write
+    #[arg(long, default_value = "0", value_delimiter = ',')]
+    frames: Vec<u64>,
+    /// The folder of the results
+    #[arg(long)]
+    out: PathBuf,
+    /// The time limit of a project, in seconds
+    #[arg(long, default_value_t = 30.0)]
+    timeout: f64,
+}
+
+fn parse_size(text: &str) -> Result<[u64; 2], String> {
+    let numbers = text
+        .split_once('x')
+        .map(|(width, height)| [width, height].map(str::parse));
+    match numbers {
+        Some([Ok(width), Ok(height)]) => Ok([width, height]),
+        _ => Err("write the size as 64x36".to_owned()),
+    }
+}
+
+/// A project, and what to render of it.
+#[derive(Debug)]
+struct Job {
+    project: PathBuf,
+    out: PathBuf,
+    size: [u64; 2],
+    /// In ascending order.
+    frames: Vec<u64>,
+}
+
+impl Job {
+    /// Reads a line of a list.
+    fn parse(line: &str, defaults: &Arguments) -> Self {
+        let line: Value = serde_json::from_str(line).expect("a line is JSON");
+        let project = PathBuf::from(line["project"].as_str().expect("a line has a project"));
+        let out = match line["out"].as_str() {
+            Some(out) => defaults.out.join(out),
+            None => defaults.out.join(project.file_stem().expect("it is a file")),
+        };
+        let numbers = |key: &str| serde_json::from_value::<Vec<u64>>(line[key].clone()).ok();
+        let size = numbers("size").map_or(defaults.size, |size| {
+            size.try_into().expect("a size has two numbers")
+        });
+        let frames = numbers("frames").unwrap_or_else(|| defaults.frames.clone());
+        Self {
+            project,
+            out,
+            size,
+            frames,
+        }
+        .sorted()
+    }
+
+    fn sorted(mut self) -> Self {
+        self.frames.sort_unstable();
+        self
+    }
+}
+
+/// The player's page, in a browser that is started anew after each failure.
+struct Player {
+    chromium: PathBuf,
+    file: PathBuf,
+    page: Option<Page>,
+}
+
+impl Player {
+    fn new() -> Self {
+        Self {
+            chromium: toyproof::gpu::browser::find().expect("Chromium is installed"),
+            file: Path::new(env!("CARGO_MANIFEST_DIR")).join("player/player.html"),
+            page: None,
+        }
+    }
+
+    /// Renders a project into its folder, and returns the record of it.
+    fn play(&mut self, job: &Job, timeout: Duration) -> Value {
+        let mut record =
+            json!({ "project": job.project, "size": job.size, "passes": [], "frames": [], "errors": [] });
+        let project: Value = match read_json(&job.project) {
+            Ok(project) => project,
+            Err(failure) => {
+                record["failure"] = failure.into();
+                return record;
+            }
+        };
+        // A new document has a new context: nothing is left of the project before.
+        let mut page = self
+            .page
+            .take()
+            .unwrap_or_else(|| Page::with(&self.chromium, &SWITCHES));
+        page.open(&self.file);
+        match render(&mut page, job, &project, timeout, &mut record) {
+            Ok(()) => self.page = Some(page),
+            Err(failure) => record["failure"] = failure.into(),
+        }
+        record
+    }
+}
+
+fn read_json(file: &Path) -> Result<Value, String> {
+    let text = fs::read_to_string(file).map_err(|error| error.to_string())?;
+    serde_json::from_str(&text).map_err(|error| error.to_string())
+}
+
+/// Renders a project, and adds what is done to its record.
+fn render(
+    page: &mut Page,
+    job: &Job,
+    project: &Value,
+    timeout: Duration,
+    record: &mut Value,
+) -> Result<(), String> {
+    let deadline = Instant::now() + timeout;
+    let mut value = |script: &str| page.try_value(script, deadline.saturating_duration_since(Instant::now()));
+    let loaded = value(&format!("load({project}, {})", json!(job.size)))?;
+    record["passes"] = loaded["passes"].clone();
+    record["errors"] = loaded["errors"].clone();
+    if loaded["errors"] != json!([]) {
+        return Ok(());
+    }
+    for frame in &job.frames {
+        let pixels = value(&format!("render({frame})"))?;
+        for (pass, pixels) in pixels.as_object().expect("it has the passes") {
+            let bytes = BASE64_STANDARD.decode(pixels.as_str().expect("it is text"));
+            let file = job.out.join(format!("frame-{frame:04}-{pass}.f32"));
+            fs::write(file, bytes.expect("it is base64")).expect("the folder is writable");
+        }
+        record["frames"]
+            .as_array_mut()
+            .expect("it is an array")
+            .push(json!(frame));
+    }
+    Ok(())
+}
+
+/// Renders one project or those of a list, and prints a line for each.
+pub(super) fn play(arguments: &Arguments) {
+    let jobs: Vec<Job> = match (&arguments.project, &arguments.list) {
+        (Some(project), _) => vec![
+            Job {
+                project: project.clone(),
+                out: arguments.out.clone(),
+                size: arguments.size,
+                frames: arguments.frames.clone(),
+            }
+            .sorted(),
+        ],
+        (None, list) => {
+            let list = list.as_ref().expect("clap requires it");
+            let list = fs::read_to_string(list).expect("the list is readable");
+            list.lines().map(|line| Job::parse(line, arguments)).collect()
+        }
+    };
+    let mut player = Player::new();
+    for job in &jobs {
+        fs::create_dir_all(&job.out).expect("the folder is writable");
+        let start = Instant::now();
+        let record = player.play(job, Duration::from_secs_f64(arguments.timeout));
+        fs::write(job.out.join("player.json"), format!("{record:#}\n")).expect("the folder is writable");
+        println!(
+            "{}: {}, {:.1} s",
+            job.project.display(),
+            summary(&record),
+            start.elapsed().as_secs_f64()
+        );
+    }
+}
+
+/// A record in a line.
+fn summary(record: &Value) -> String {
+    let frames = record["frames"].as_array().map_or(0, Vec::len);
+    match (record["failure"].as_str(), &record["errors"][0]) {
+        (Some(failure), _) => format!("{frames} frames, then {failure}"),
+        (None, Value::Null) => format!("{frames} frames"),
+        (None, error) => {
+            let log = error["log"].as_str().unwrap_or_default();
+            let tab = error["pass"].as_str().unwrap_or("project");
+            format!("refused: {tab}: {}", log.lines().next().unwrap_or_default())
+        }
+    }
+}
