@@ -7,6 +7,7 @@
 //! A list has a line of JSON per project: `{"project": "a.json", "out": "a", "size": [64, 36], "frames": [0, 7]}`.
 //! Only `project` is required. The default of `out` is the name of the file, below `--out`.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -15,6 +16,7 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use clap::Args;
 use serde_json::{Value, json};
+use toyproof::diagnostic::path_name;
 use toyproof_testkit::devtools::Page;
 
 /// WebGL 2 on the bundled software driver. The time limit of a project is ours.
@@ -63,7 +65,6 @@ struct Job {
     project: PathBuf,
     out: PathBuf,
     size: [u64; 2],
-    /// In ascending order.
     frames: Vec<u64>,
 }
 
@@ -87,12 +88,6 @@ impl Job {
             size,
             frames,
         }
-        .sorted()
-    }
-
-    fn sorted(mut self) -> Self {
-        self.frames.sort_unstable();
-        self
     }
 }
 
@@ -158,7 +153,8 @@ fn render(
     if loaded["errors"] != json!([]) {
         return Ok(());
     }
-    for frame in &job.frames {
+    let frames: BTreeSet<u64> = job.frames.iter().copied().collect();
+    for frame in frames {
         let pixels = value(&format!("render({frame})"))?;
         for (pass, pixels) in pixels.as_object().expect("it has the passes") {
             let bytes = BASE64_STANDARD.decode(pixels.as_str().expect("it is text"));
@@ -176,15 +172,12 @@ fn render(
 /// Renders one project or those of a list, and prints a line for each.
 pub(super) fn play(arguments: &Arguments) {
     let jobs: Vec<Job> = match (&arguments.project, &arguments.list) {
-        (Some(project), _) => vec![
-            Job {
-                project: project.clone(),
-                out: arguments.out.clone(),
-                size: arguments.size,
-                frames: arguments.frames.clone(),
-            }
-            .sorted(),
-        ],
+        (Some(project), _) => vec![Job {
+            project: project.clone(),
+            out: arguments.out.clone(),
+            size: arguments.size,
+            frames: arguments.frames.clone(),
+        }],
         (None, list) => {
             let list = list.as_ref().expect("clap requires it");
             let list = fs::read_to_string(list).expect("the list is readable");
@@ -199,7 +192,7 @@ pub(super) fn play(arguments: &Arguments) {
         fs::write(job.out.join("player.json"), format!("{record:#}\n")).expect("the folder is writable");
         println!(
             "{}: {}, {:.1} s",
-            job.project.display(),
+            path_name(&job.project),
             summary(&record),
             start.elapsed().as_secs_f64()
         );
