@@ -17,7 +17,7 @@ if (!gl?.getExtension("EXT_color_buffer_float") || !gl.getExtension("OES_texture
 // The project: all passes in the order of the file, and the buffers that they name.
 let passes, size, buffers, image, keyboard, nextFrame;
 
-// ---- The text of a tab: what the site writes before it.
+// ---- The text of a tab: what the site writes before it, with as many lines, which `__LINE__` shows.
 
 const VERTICES = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
@@ -46,17 +46,18 @@ uniform float iFrameRate;
 const IMAGE_MAIN = `void mainImage( out vec4 c, in vec2 f );
 void st_assert( bool cond );
 void st_assert( bool cond, int v );
+
 out vec4 shadertoy_out_color;
-void st_assert( bool cond, int v ) {
+${oneLine(`void st_assert( bool cond, int v ) {
   if (!cond) {
     if (v == 0) shadertoy_out_color.x = -1.0;
     else if (v == 1) shadertoy_out_color.y = -1.0;
     else if (v == 2) shadertoy_out_color.z = -1.0;
     else shadertoy_out_color.w = -1.0;
   }
-}
+}`)}
 void st_assert( bool cond ) { if (!cond) shadertoy_out_color.x = -1.0; }
-void main() {
+${oneLine(`void main() {
   shadertoy_out_color = vec4(1.0);
   vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
   mainImage(color, gl_FragCoord.xy);
@@ -65,16 +66,15 @@ void main() {
   if (shadertoy_out_color.z < 0.0) color = vec4(0.0, 0.0, 1.0, 1.0);
   if (shadertoy_out_color.w < 0.0) color = vec4(1.0, 1.0, 0.0, 1.0);
   shadertoy_out_color = vec4(color.xyz, 1.0);
-}
+}`)}
 `;
 
 const BUFFER_MAIN = `void mainImage( out vec4 c, in vec2 f );
+
 out vec4 outColor;
-void main() {
-  vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
-  mainImage(color, gl_FragCoord.xy);
-  outColor = color;
-}
+
+void main()
+{ vec4 color = vec4(0.0, 0.0, 0.0, 1.0); mainImage(color, gl_FragCoord.xy); outColor = color; }
 `;
 
 const SOUND_HEADER = `#define HW_PERFORMANCE 1
@@ -86,24 +86,34 @@ uniform float iSampleRate;
 uniform vec3 iChannelResolution[4];
 `;
 
-const SOUND_MAIN = `vec2 mainSound( in int samp, float time );
-out vec4 outColor;
-void main() { outColor = mainSound(iSampleOffset, iTimeOffset).xyxy; }
+const SOUND_MAIN = `
+vec2 mainSound( in int samp, float time );
+out vec4 outColor; void main() { outColor = mainSound(iSampleOffset, iTimeOffset).xyxy; }
 `;
 
 const COMMON_HEADER = `uniform vec4 iDate;
 uniform float iSampleRate;
 out vec4 outColor;
-void main() { outColor = vec4(0.0); }
+void main()
+{ outColor = vec4(0.0); }
 `;
+
+function oneLine(text) {
+  return text.replace(/\n */g, " ");
+}
 
 const samplerType = (channel) => ({ cubemap: "samplerCube", volume: "sampler3D" })[channel?.kind] ?? "sampler2D";
 
 function header({ kind, channels }) {
   const samplers = channels.map((channel, at) => `uniform ${samplerType(channel)} iChannel${at};\n`);
-  const structs = channels.map(
-    (channel, at) => `uniform struct { ${samplerType(channel)} sampler; vec3 size; float time; int loaded; } iCh${at};\n`,
-  );
+  // The Image has another way to read channels.
+  const structs = channels.map((channel, at) => `uniform struct {
+${samplerType(channel)} sampler;
+vec3 size;
+float time;
+int loaded;
+} iCh${at};
+`);
   switch (kind) {
     case "image": return UNIFORMS + samplers.join("") + structs.join("") + IMAGE_MAIN;
     case "buffer": return UNIFORMS + samplers.join("") + BUFFER_MAIN;
