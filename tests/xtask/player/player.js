@@ -1,5 +1,5 @@
-// Renders projects of ShaderToy as the site's own page does, into float targets. `load(project, size)` compiles all
-// tabs, `render(frame)` renders up to that frame and returns the pixels of all passes, bottom row first.
+// Renders projects of ShaderToy as the site's own page does, into float targets. `load(project, size)` compiles
+// all tabs, `render(frame)` renders up to that frame and returns the pixels of all passes, bottom row first.
 "use strict";
 
 const FRAMES_PER_SECOND = 60;
@@ -193,8 +193,8 @@ function compile(pass, common) {
   return { log: log.replace(/^(ERROR|WARNING): 0:(\d+)/gm, (_, word, line) => `${word}: 0:${line - linesBefore}`) };
 }
 
-// Reads and compiles a project. Returns the names of its passes, and the error of each tab that does not compile:
-// the site starts only if there is none.
+// Reads and compiles a project. Returns the names of its passes, and the error of each tab that does not
+// compile: the site starts only if there is none.
 function load(project, newSize) {
   [size, buffers, nextFrame] = [newSize, [], 0];
   if (Array.isArray(project)) [project] = project;
@@ -270,8 +270,8 @@ function makeMipmaps({ texture }) {
 
 // ---- A frame.
 
-// Binds what a pass reads, and returns the resolutions of its channels. What is not there is left unbound: WebGL
-// then reads (0, 0, 0, 1).
+// Binds what a pass reads, and returns the resolutions of its channels. What is not there is left unbound:
+// WebGL then reads (0, 0, 0, 1).
 function bindChannels(channels) {
   return channels.map((channel, at) => {
     gl.activeTexture(gl.TEXTURE0 + at);
