@@ -82,6 +82,11 @@ impl FrameArgs {
         is_given.contains(&true) || self.channels().iter().any(|channel| channel.is_some())
     }
 
+    /// Whether the number or the time of a frame is given.
+    pub(super) fn is_moment_given(&self) -> bool {
+        self.frame.is_some() || self.time.is_some()
+    }
+
     fn channels(&self) -> [&Option<PathBuf>; 4] {
         [&self.channel0, &self.channel1, &self.channel2, &self.channel3]
     }
@@ -98,7 +103,8 @@ impl FrameArgs {
 
     /// The time of frame 0, so that the frame to show has the given time; 0 by default.
     pub(super) fn start(&self, number: i32, rate: f64) -> f64 {
-        self.time.map_or(0.0, |time| f64::from(time) - f64::from(number) / rate)
+        self.time
+            .map_or(0.0, |time| f64::from(time) - f64::from(number) / rate)
     }
 
     /// The frame that the flags describe.

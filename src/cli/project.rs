@@ -46,7 +46,7 @@ impl Passes {
     /// # Errors
     /// If a pass is needed that cannot be rendered.
     pub(super) fn rendering(&self, also: PassKind) -> Result<Rendering, NotRendered> {
-        self.project.rendering(also)
+        self.project.rendering(&[also])
     }
 
     /// The trees of the passes of a rendering, in its order.

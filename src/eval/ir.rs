@@ -8,7 +8,6 @@
 use toyproof_glsl::tree::{Input, Place};
 
 use crate::observe::{Predicate, SiteId};
-use crate::texture::Lookup;
 
 /// Identifies a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -65,11 +64,10 @@ pub(crate) enum ValueDef {
         index: Value,
         kind: Kind,
     },
-    /// One component of a lookup in a channel's texture: a single texel, by its integer coordinates, or a filtered one,
-    /// by normalized coordinates. The third operand is the level of the mipmaps.
+    /// One component of a texel of a channel's texture, by its coordinates and its level.
     Texel {
-        lookup: Lookup,
-        is_filtered: bool,
+        channel: u8,
+        component: u8,
         at: [Value; 3],
     },
 }
@@ -201,12 +199,12 @@ impl ValueDef {
                 kind,
             },
             Self::Texel {
-                lookup,
-                is_filtered,
+                channel,
+                component,
                 at,
             } => Self::Texel {
-                lookup,
-                is_filtered,
+                channel,
+                component,
                 at: at.map(each),
             },
             other => other,

@@ -115,12 +115,14 @@ impl PassRenderer {
 
     /// Renders all mipmaps of a texture, as [`Image::halved`] computes them.
     fn make_mipmaps(&self, texture: &wgpu::Texture) -> Result<(), Failure> {
-        let halving = match self.halving.get() {
-            Some(halving) => halving,
-            None => {
-                let compiled = self.device.compile(&halving_program()?)?;
-                self.halving.get_or_init(|| compiled)
-            }
+        if texture.mip_level_count() == 1 {
+            return Ok(());
+        }
+        let halving = if let Some(halving) = self.halving.get() {
+            halving
+        } else {
+            let compiled = self.device.compile(&halving_program()?)?;
+            self.halving.get_or_init(|| compiled)
         };
         for level in 1..texture.mip_level_count() {
             let of = |level: u32| {

@@ -41,8 +41,12 @@ impl Texture {
     #[must_use]
     pub fn is_whole(&self, size: [u32; 2]) -> bool {
         match self {
-            Self::Single(levels) => matches!(&levels[..], [level] if level.is_whole() && level.size() == size),
-            Self::Double(levels) => matches!(&levels[..], [level] if level.is_whole() && level.size() == size),
+            Self::Single(levels) => {
+                matches!(&levels[..], [level] if level.is_whole() && level.size() == size)
+            }
+            Self::Double(levels) => {
+                matches!(&levels[..], [level] if level.is_whole() && level.size() == size)
+            }
         }
     }
 

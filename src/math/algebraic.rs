@@ -69,11 +69,14 @@ pub fn step<N: Number>(edge: N, x: N) -> N {
     N::select(x.less(edge), x.literal(0.0), x.literal(1.0))
 }
 
-/// `t²·(3 − 2t)` with t = `clamp((x − low) / (high − low), 0, 1)`
+/// `t²·(3 − 2t)` with t = `clamp((x − low) / (high − low), 0, 1)`; 0 where t is NaN, as in browsers.
 #[inline]
 #[must_use]
 pub fn smoothstep<N: Number>(low: N, high: N, x: N) -> N {
-    let t = clamp((x - low) / (high - low), x.literal(0.0), x.literal(1.0));
+    let t = (x - low) / (high - low);
+    let (zero, one) = (x.literal(0.0), x.literal(1.0));
+    let t = N::select(zero.less(t), t, zero);
+    let t = N::select(t.less(one), t, one);
     t * t * (x.literal(3.0) - x.literal(2.0) * t)
 }
 

@@ -24,7 +24,9 @@ impl State {
     pub fn fits(&self, graph: &Graph) -> bool {
         let mut buffers = self.buffers.iter().enumerate();
         let has_buffers = buffers.all(|(number, textures)| match textures {
-            Some(textures) => graph.uses(number) && textures.iter().all(|texture| texture.is_whole(self.size)),
+            Some(textures) => {
+                graph.uses(number) && textures.iter().all(|texture| texture.is_whole(self.size))
+            }
             None => !graph.uses(number),
         });
         let image = self.image.as_ref();

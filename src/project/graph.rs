@@ -37,12 +37,12 @@ pub struct NotRendered(pub PassKind);
 const KEYBOARD: [u32; 2] = [256, 3];
 
 impl Project {
-    /// The passes that the image depends on, and this one with those that it depends on, for the renderers.
+    /// The image and these passes, with all passes that they depend on, for the renderers.
     ///
     /// # Errors
     /// If a pass is needed that cannot be rendered.
-    pub fn rendering(&self, also: PassKind) -> Result<Rendering, NotRendered> {
-        let needed = self.needed_by(&[PassKind::Image, also]);
+    pub fn rendering(&self, shown: &[PassKind]) -> Result<Rendering, NotRendered> {
+        let needed = self.needed_by(&[&[PassKind::Image], shown].concat());
         let unable = [PassKind::CubeA, PassKind::Sound];
         if let Some(&kind) = needed.iter().find(|kind| unable.contains(kind)) {
             return Err(NotRendered(kind));

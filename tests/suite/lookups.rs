@@ -10,7 +10,7 @@ use toyproof::translate::{FloatMode, lower_strict};
 use crate::requirements::require_worker;
 
 /// Every kind of lookup, at coordinates within and beyond the texture.
-const LOOKUPS: [&str; 14] = [
+const LOOKUPS: [&str; 19] = [
     "texture(iChannel0, at)",
     "texture(iChannel0, at, 0.75)",
     "texture(iChannel0, at * 9.0, -1.25)",
@@ -23,7 +23,13 @@ const LOOKUPS: [&str; 14] = [
     "textureProj(iChannel0, vec3(at, 0.7))",
     "textureProj(iChannel0, vec4(at, 3.0, 1.3))",
     "textureProjLod(iChannel0, vec3(at, 1.7), 0.5)",
-    "texelFetch(iChannel0, textureSize(iChannel0, 0) / 2 - 1, 0)",
+    "texelFetch(iChannel0, textureSize(iChannel0, 0) / 2, 0)",
+    "texelFetch(iChannel0, ivec2(p) - 4, int(p.x) / 4 - 1)",
+    "texelFetchOffset(iChannel0, ivec2(p) - 4, 1, ivec2(3, -2)) + texelFetch(iChannel1, ivec2(p), 0)",
+    // The level falls from left to right.
+    "textureLod(iChannel0, at, 2.9 - p.x * 0.2)",
+    "texelFetch(iChannel0, ivec2(p) / 4, 3 - int(p.x) / 5)",
+    "vec4(textureSize(iChannel0, MIPMAPS * (2 - int(p.x) / 8)), 0.0, 1.0)",
     "vec4(textureSize(iChannel0, 0), iChannelResolution[0].xy)",
 ];
 
@@ -58,11 +64,13 @@ fn every_lookup_has_the_same_bits_on_the_cpu() {
             let lookups = cases.collect::<Vec<_>>().join("\n");
             // The derivatives of all lookups are taken in uniform control flow.
             let text = format!(
-                "void mainImage(out vec4 color, in vec2 p) {{
+                "#define MIPMAPS {}
+                void mainImage(out vec4 color, in vec2 p) {{
                     vec2 at = p / iResolution.yx * 2.0 - 0.6;
                     color = vec4(0.0);
                     switch (iFrame) {{ {lookups} }}
-                }}"
+                }}",
+                i32::from(filter == Filter::Mipmap)
             );
             let mut files = Files::default();
             let file = files.add(File::new("lookups", text));

@@ -43,6 +43,7 @@ mod math;
 mod miscompiles;
 mod nesting;
 mod page;
+mod passes;
 mod planted_faults;
 mod povray;
 mod program;

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
+use toyproof::image;
 
 use crate::program::{Run, toyproof};
 use crate::requirements::require_driver;
@@ -117,38 +118,144 @@ fn a_shader_is_exported_as_an_image() {
 }
 
 #[test]
-fn the_template_compiles_and_is_exported() {
+fn the_template_is_checked_rendered_and_exported() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     assert_eq!(toyproof(folder, &["new", "project", "waves"]).code, 0);
     let (run, shader) = verdict(folder, &["waves"]);
-    assert_eq!(
-        (run.code, &shader["verdict"]),
-        (1, &json!("inconclusive")),
-        "{run:?}"
-    );
+    assert_eq!((run.code, &shader["verdict"]), (0, &json!("ok")), "{run:?}");
     assert_eq!(shader["diagnostics"], json!([]), "no warnings");
-    assert!(
-        shader["reason"]
-            .as_str()
-            .unwrap()
-            .contains("the image reads Buffer A"),
-        "{shader}"
-    );
-    let run = toyproof(folder, &["run", "waves", "-o", "waves.png"]);
-    assert_eq!(run.code, 2);
-    assert!(
-        run.stderr
-            .contains("waves: all tabs compile, but the image reads Buffer A"),
-        "{}",
-        run.stderr
-    );
     assert_eq!(toyproof(folder, &["export", "waves", "-o", "waves.json"]).code, 0);
-    assert_eq!(verdict(folder, &["waves.json"]).1["verdict"], "inconclusive");
+    assert_eq!(verdict(folder, &["waves.json"]).1["verdict"], "ok");
     assert_eq!(
         toyproof(folder, &["new", "project", "waves"]).code,
         2,
         "nothing is overwritten"
+    );
+    let refused = toyproof(folder, &["convert", "waves", "-o", "waves.wgsl"]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused
+            .stderr
+            .contains("the image reads Buffer A, which this command does not render"),
+        "{}",
+        refused.stderr
+    );
+}
+
+#[test]
+fn frames_of_a_project_follow_from_those_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert_eq!(toyproof(folder, &["new", "project", "waves"]).code, 0);
+    let run = |output: &str, flags: &[&str]| {
+        let fixed = ["run", "waves", "--size", "16x9", "-o", output];
+        let run = toyproof(folder, &[&fixed, flags].concat());
+        assert_eq!(run.code, 0, "{flags:?}: {}", run.stderr);
+        run
+    };
+    let bytes = |name: &str| fs::read(folder.join(name)).unwrap();
+    run("5.exr", &["--frame", "5", "--device", "cpu"]);
+    if require_driver() {
+        run("driver.exr", &["--frame", "5"]);
+        assert_eq!(bytes("driver.exr"), bytes("5.exr"));
+    }
+    // The number of samples is in the alpha of the buffer; it does not depend on the precision.
+    for precision in ["f32", "f64"] {
+        run(
+            "sum.exr",
+            &[
+                "--time",
+                "0.0834",
+                "--pass",
+                "buffer-a",
+                "--precision",
+                precision,
+                "--device",
+                "cpu",
+            ],
+        );
+        let sum = image::read(&folder.join("sum.exr")).unwrap();
+        assert!(
+            sum.pixels().iter().all(|pixel| pixel[3] == 6.0),
+            "{:?}",
+            sum.get(0, 0)
+        );
+    }
+    run("all.exr", &["--frames", "4..6", "--device", "cpu"]);
+    assert_eq!(bytes("all-0005.exr"), bytes("5.exr"));
+    // The frame of a project is not that of the next shader.
+    write(
+        folder,
+        &[(
+            "time.glsl",
+            "void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime, iFrame, 0, 1); }",
+        )],
+    );
+    let both = [
+        "run",
+        "waves",
+        "time.glsl",
+        "-o",
+        "both",
+        "--size",
+        "2x2",
+        "--time",
+        "0.5",
+        "--device",
+        "cpu",
+    ];
+    assert_eq!(toyproof(folder, &both).code, 0);
+    let time = image::read(&folder.join("both/time.png")).unwrap();
+    assert_eq!(time.get(0, 0)[..2], [128.0 / 255.0, 0.0]);
+    // A state goes on where it was written, also by another device.
+    let state = ["--state", "waves.state"];
+    let confirmed = run(
+        "2.exr",
+        &[&["--frame", "2", "--device", "cpu"][..], &state].concat(),
+    );
+    assert!(confirmed.stderr.contains("waves.state"), "{}", confirmed.stderr);
+    run("5-again.exr", &[&["--frame", "5"][..], &state].concat());
+    assert_eq!(bytes("5-again.exr"), bytes("5.exr"));
+}
+
+#[test]
+fn states_that_do_not_fit_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert_eq!(toyproof(folder, &["new", "project", "waves"]).code, 0);
+    let run = |size: &str, frame: &str| {
+        let flags = [
+            "run", "waves", "-o", "i.png", "--device", "cpu", "--state", "s", "--size", size, "--frame",
+            frame,
+        ];
+        toyproof(folder, &flags)
+    };
+    assert_eq!(run("8x8", "3").code, 0);
+    let refused = |size: &str, frame: &str, reason: &str| {
+        let refused = run(size, frame);
+        assert_eq!(refused.code, 2);
+        assert!(refused.stderr.contains(reason), "{reason}: {}", refused.stderr);
+    };
+    refused("8x9", "5", "s is the state of frames of 8×8 pixels");
+    refused("8x8", "3", "the state is that of frame 3, and frame 3 is earlier");
+    let whole = fs::read(folder.join("s")).unwrap();
+    fs::write(folder.join("s"), &whole[..whole.len() / 2]).unwrap();
+    refused("8x8", "5", "s is not a state of");
+    fs::write(folder.join("s"), "text").unwrap();
+    refused("8x8", "5", "s is not a state of");
+    // A texture with too few texels: the count stands before them, as the size does.
+    let mut damaged = whole.clone();
+    let texels = damaged.windows(3).rposition(|bytes| bytes == [8, 8, 64]).unwrap();
+    damaged[texels] = 9;
+    fs::write(folder.join("s"), damaged).unwrap();
+    refused("8x8", "5", "s is damaged");
+    let other = toyproof(folder, &["run", "waves", "-o", "i.png", "--pass", "buffer-b"]);
+    assert_eq!(other.code, 2);
+    assert!(
+        other.stderr.contains("waves: there is no Buffer B"),
+        "{}",
+        other.stderr
     );
 }
 

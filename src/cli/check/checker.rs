@@ -12,7 +12,7 @@ use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Sever
 use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
 use toyproof_image as image;
-use toyproof_image::{Frame, FrameInputs, output};
+use toyproof_image::{FRAME_RATE, Frame, FrameInputs, output};
 use toyproof_scene::Scene;
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
@@ -21,6 +21,7 @@ use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 
 use super::Args;
 use super::images::{FIXED, IMAGES, ImageKind};
+use super::passes;
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
 use crate::assignment::Subject;
@@ -278,7 +279,7 @@ impl<'a> Checker<'a> {
         outcome.report(shader.lints.warnings.clone(), &shader.files);
         let findings = self.check_frames(context, &mut outcome, &shader, reference.as_ref());
         if let Some((assignment, _)) = &self.plan.assignment {
-            let subject = shader.checked.as_ref().ok().map(|checked| Subject {
+            let subject = image(&shader).ok().map(|checked| Subject {
                 checked,
                 files: &shader.files,
                 text: shader.text(checked),
@@ -415,13 +416,34 @@ impl<'a> Checker<'a> {
         (index, frame): (usize, &mut Frame),
         explains: bool,
     ) -> Result<Findings, Failure> {
-        let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
-            Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
-            Unusable::Unrendered(error) => Failure::Unrendered(error.reason.clone()),
-            Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
-        })?;
-        let cached = reference.map(|reference| self.cached(reference, index, frame));
+        let checked = image(shader)?;
+        let has_history = shader.passes.as_ref().is_some_and(passes::has_history);
+        let mut key = index;
+        if has_history && self.plan.assignment.is_none() && !matches!(reference, Some(Reference::Given(_))) {
+            // The reference has the time of the frame that the user does not name.
+            if !self.args.frame.is_moment_given() {
+                frame.frame = passes::CHECKED_FRAME;
+                frame.time = passes::CHECKED_FRAME as f32 / FRAME_RATE;
+            }
+            key = self.plan.frames.len() + frame.frame as usize;
+        }
+        let cached = reference.map(|reference| self.cached(reference, (index, key), frame));
         let cached = cached.transpose()?;
+        if let Some(passes) = &shader.passes {
+            let renderers = passes::Renderers {
+                worker: context.worker.as_mut(),
+                float: self.args.driver.float(),
+                timeout: self.args.driver.timeout(),
+                pool: context.pool.as_ref(),
+            };
+            if let Some(difference) = passes::bind(passes, frame, renderers)? {
+                outcome.messages.push(Message::Warning(format!(
+                    "{}: the driver and the CPU render {} differently in frame {} ({} pixels); such pixels depend on \
+                     undefined behavior, or the driver is wrong",
+                    shader.name, difference.pass, difference.frame, difference.pixels
+                )));
+            }
+        }
         let frame = &*frame;
         if let (Some(Reference::Scene(scene)), Some(cached)) = (reference, &cached)
             && let Some(conditioning) = cached.conditioning()
@@ -430,7 +452,8 @@ impl<'a> Checker<'a> {
             outcome.messages.push(Message::Warning(warning));
         }
         let hypotheses = contain(Part::Mistake, || {
-            let cached = cached.as_ref().filter(|_| explains);
+            // A mistake of another pass is not one of the image.
+            let cached = cached.as_ref().filter(|_| explains && !has_history);
             cached.and_then(|cached| cached.hypotheses(frame))
         });
         let hypotheses = hypotheses.unwrap_or_else(|panic| {
@@ -442,11 +465,12 @@ impl<'a> Checker<'a> {
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
             hypotheses,
-            alternatives: Some(Alternatives {
+            alternatives: (!has_history).then_some(Alternatives {
                 permitted: &self.plan.permitted,
                 scenes: Some(&self.other_scenes),
             }),
-            search: (explains && self.args.search > 0.0).then(|| self.search_options(shader, checked)),
+            search: (explains && !has_history && self.args.search > 0.0)
+                .then(|| self.search_options(shader, checked)),
             frame,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
@@ -495,7 +519,7 @@ impl<'a> Checker<'a> {
         let reference = self.references.find(submission.input.as_ref().ok()?)?;
         let index = record.shown_frame();
         let mut frame = self.plan.frames[index].frame.clone();
-        let cached = self.cached(&reference, index, &mut frame).ok()?;
+        let cached = self.cached(&reference, (index, index), &mut frame).ok()?;
         let case = Case {
             checked,
             lints: &shader.lints,
@@ -552,7 +576,7 @@ impl<'a> Checker<'a> {
     fn cached(
         &self,
         reference: &Reference,
-        index: usize,
+        (index, key): (usize, usize),
         frame: &mut Frame,
     ) -> Result<Arc<CachedReference>, Failure> {
         match reference {
@@ -560,10 +584,22 @@ impl<'a> Checker<'a> {
                 let mut scene: Scene = scene.scene.clone()?;
                 frame.size = self.plan.frames[index].inputs.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
-                Ok(self.scenes.get(scene, index, frame))
+                Ok(self.scenes.get(scene, key, frame))
             }
             Reference::Given(given) => Ok(Arc::clone(&given.cached[index])),
         }
+    }
+}
+
+/// The tree of the image, with whatever it reads.
+fn image(shader: &Shader) -> Result<&Checked, Failure> {
+    match (&shader.checked, &shader.passes) {
+        (Ok(checked), _) => Ok(checked),
+        (Err(Unusable::Unrendered(_)), Some(passes)) => Ok(passes.image()),
+        (Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)), _) => {
+            Err(Failure::Unreadable(error.reason.clone()))
+        }
+        (Err(Unusable::Invalid(diagnostics)), _) => Err(Failure::Invalid(diagnostics.clone())),
     }
 }
 

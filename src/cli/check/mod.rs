@@ -3,6 +3,7 @@
 mod checker;
 mod donors;
 mod images;
+mod passes;
 mod plan;
 mod reference;
 mod reports;

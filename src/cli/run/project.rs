@@ -187,6 +187,17 @@ struct Run<'a> {
     terminal: &'a Terminal,
 }
 
+/// The frames to render.
+struct Schedule {
+    /// The frame to show, unless a sequence is.
+    number: i32,
+    /// The next frame to render.
+    next: i32,
+    clock: Clock,
+    /// The state before that frame.
+    state: Option<State>,
+}
+
 /// Why there is no image.
 enum Unshown {
     Stopped(Stopped),
@@ -226,27 +237,80 @@ impl Run<'_> {
 impl Runner<'_> {
     /// Renders a project: one frame, or each of a sequence into its file.
     pub(super) fn project(&mut self, shader: &Shader, passes: &Passes, path: &Path) -> Exit {
-        self.try_project(shader, passes, path).unwrap_or_else(|exit| exit)
+        // The worker is used beside this runner, which writes the images. The next shader has the same frame.
+        let (mut worker, frame) = (self.worker.take(), self.frame.clone());
+        let exit = self.render_project(&mut worker, shader, passes, path);
+        (self.worker, self.frame) = (worker, frame);
+        exit.unwrap_or_else(|exit| exit)
     }
 
-    fn try_project(&mut self, shader: &Shader, passes: &Passes, path: &Path) -> Result<Exit, Exit> {
-        let terminal = self.terminal;
-        let fail = |error: &dyn std::fmt::Display, help: &str| {
-            terminal.error(format_args!("{}: {error}", shader.name));
-            terminal.help(help);
-            Exit::Error
-        };
+    fn render_project(
+        &mut self,
+        worker: &mut Option<Worker>,
+        shader: &Shader,
+        passes: &Passes,
+        path: &Path,
+    ) -> Result<Exit, Exit> {
         let kind = self.args.pass.unwrap_or(PassKind::Image);
-        if passes.project.pass(kind).is_none() {
-            return Err(fail(
-                &format_args!("there is no {kind}"),
-                "name one of its passes with --pass",
-            ));
+        let rendering = self.rendering(shader, passes, kind)?;
+        let scheduled = PassShader {
+            checked: passes.checked_of(&rendering).collect(),
+            graph: &rendering.graph,
+            media: &rendering.media,
+        };
+        let schedule = self.schedule(shader, &rendering.graph)?;
+        let state = schedule.state.as_ref();
+        let timeout = self.args.driver.timeout();
+        let opened = match worker {
+            Some(worker) => self.open(worker, &scheduled, state, shader)?,
+            None => None,
+        };
+        let falls_back = opened.is_none();
+        let programs;
+        let playback = if let Some(playback) = opened {
+            Playback::Device(playback)
+        } else {
+            programs = scheduled.programs(timeout).map_err(|(_, refusal)| {
+                not_evaluated(&eval::Failure::Refused(refusal), shader, self.terminal)
+            })?;
+            match self.args.precision {
+                Precision::F32 => {
+                    Playback::Single(CpuPlayback::new(&scheduled, &programs, state, timeout, None))
+                }
+                Precision::F64 => {
+                    Playback::Double(CpuPlayback::new(&scheduled, &programs, state, timeout, None))
+                }
+            }
+        };
+        let mut run = Run {
+            playback,
+            clock: schedule.clock,
+            target: target(kind),
+            next: schedule.next,
+            terminal: self.terminal,
+        };
+        let exit = match self.args.frames {
+            None => self.one_frame(&mut run, schedule.number, shader, path),
+            Some(frames) => self.all_frames(&mut run, frames, shader, passes, path),
+        };
+        let saved = self.save_state(&mut run, schedule.next, &rendering);
+        drop(run);
+        if falls_back {
+            *worker = None;
         }
-        let mut rendering = passes
-            .rendering(kind)
-            .map_err(|error| fail(&error, "`toyproof check` compiles all its tabs"))?;
-        report_replaced(&rendering, &shader.name, terminal);
+        Ok(exit.max(saved))
+    }
+
+    /// What renders a pass, with the textures that the user binds to the channels of the image.
+    fn rendering(&self, shader: &Shader, passes: &Passes, kind: PassKind) -> Result<Rendering, Exit> {
+        if passes.project.pass(kind).is_none() {
+            let error = format!("there is no {kind}");
+            return Err(self.refuse(shader, &error, "name one of its passes with --pass"));
+        }
+        let rendering = passes.rendering(kind);
+        let mut rendering = rendering
+            .map_err(|error| self.refuse(shader, &error, "`toyproof check` compiles all its tabs"))?;
+        report_replaced(&rendering, &shader.name, self.terminal);
         for (channel, texture) in self.frame.channels.iter().enumerate() {
             if let Some(texture) = texture {
                 let has_mipmaps = passes.image().sampling[channel].filter == Filter::Mipmap;
@@ -259,13 +323,13 @@ impl Runner<'_> {
                 });
             }
         }
-        let scheduled = PassShader {
-            checked: passes.checked_of(&rendering).collect(),
-            graph: &rendering.graph,
-            media: &rendering.media,
-        };
+        Ok(rendering)
+    }
+
+    /// The frames to render, and the state to start from.
+    fn schedule(&self, shader: &Shader, graph: &Graph) -> Result<Schedule, Exit> {
         // A frame depends on earlier ones if there is a pass besides the image.
-        let has_history = rendering.graph.passes().len() > 1;
+        let has_history = graph.passes().len() > 1;
         let arguments = &self.args.frame;
         let number = arguments.number(has_history, self.args.fps);
         let clock = Clock {
@@ -276,65 +340,36 @@ impl Runner<'_> {
                 None => arguments.start(number, self.args.fps),
             },
         };
+        let refuse = |error: &str| self.refuse(shader, &error, "name another file with --state");
         let state = match &self.args.state {
             None => None,
-            Some(file) => read_state(file, scheduled.graph, clock.inputs.size)
-                .map_err(|error| fail(&error, "name another file with --state"))?,
+            Some(file) => read_state(file, graph, clock.inputs.size).map_err(|error| refuse(&error))?,
         };
         let first = self.args.frames.map_or(number, Frames::first);
         let next = match &state {
             Some(state) if state.frame >= first => {
-                let error = format!(
-                    "the state is that of frame {}, and frame {first} is earlier",
-                    state.frame
-                );
-                return Err(fail(&error, "name another file with --state"));
+                let last = state.frame;
+                return Err(refuse(&format!(
+                    "the state is that of frame {last}, and frame {first} is earlier"
+                )));
             }
             Some(state) => state.frame + 1,
             None if has_history => 0,
             None => first,
         };
-        // The worker is used besides this runner, which writes the images.
-        let mut worker = self.worker.take();
-        let opened = match &mut worker {
-            Some(worker) => self.open(worker, &scheduled, state.as_ref(), shader)?,
-            None => None,
-        };
-        let has_driver = opened.is_some();
-        let programs;
-        let timeout = self.args.driver.timeout();
-        let playback = match opened {
-            Some(playback) => Playback::Device(playback),
-            None => {
-                programs = scheduled.programs(timeout).map_err(|(_, refusal)| {
-                    not_evaluated(&eval::Failure::Refused(refusal), shader, terminal)
-                })?;
-                let state = state.as_ref();
-                match self.args.precision {
-                    Precision::F32 => {
-                        Playback::Single(CpuPlayback::new(&scheduled, &programs, state, timeout, None))
-                    }
-                    Precision::F64 => {
-                        Playback::Double(CpuPlayback::new(&scheduled, &programs, state, timeout, None))
-                    }
-                }
-            }
-        };
-        let mut run = Run {
-            playback,
-            clock,
-            target: target(kind),
+        Ok(Schedule {
+            number,
             next,
-            terminal,
-        };
-        let exit = match self.args.frames {
-            None => self.one_frame(&mut run, number, shader, path),
-            Some(frames) => self.all_frames(&mut run, frames, shader, passes, path),
-        };
-        let saved = self.save_state(&mut run, next, &rendering);
-        drop(run);
-        self.worker = worker.filter(|_| has_driver);
-        Ok(exit.max(saved))
+            clock,
+            state,
+        })
+    }
+
+    /// Prints why a project is not rendered.
+    fn refuse(&self, shader: &Shader, error: &dyn std::fmt::Display, help: &str) -> Exit {
+        self.terminal.error(format_args!("{}: {error}", shader.name));
+        self.terminal.help(help);
+        Exit::Error
     }
 
     /// Compiles the passes for the driver; none if there is no driver and the evaluator takes its place.

@@ -305,7 +305,7 @@ impl Builder<'_> {
         }
     }
 
-    fn clamp(&self, x: Value, least: Value, most: Value) -> Value {
+    pub(super) fn clamp(&self, x: Value, least: Value, most: Value) -> Value {
         let bounded = self.binary(Operation::Max, x, least);
         self.binary(Operation::Min, bounded, most)
     }

@@ -106,7 +106,7 @@ impl Compiled {
             floats,
             words,
             prologue,
-            float_rows: (rows.floats + SPARE_ROWS) as usize,
+            float_rows: rows.floats as usize,
             word_rows: (rows.words + SPARE_ROWS) as usize,
             masks: usize::from(self.linear.masks),
             width,
@@ -324,16 +324,11 @@ impl<N: Number> Writer<'_, N> {
                 self.push(run, out, [index, first, cells.count - 1 - offset], 0);
             }
             ValueDef::Texel {
-                lookup,
-                is_filtered,
+                channel,
+                component,
                 at,
             } => {
-                let rows = self.compiled.locations.rows;
-                let (kind, spare) = if is_filtered {
-                    (Kind::Float, rows.floats)
-                } else {
-                    (Kind::Word, rows.words)
-                };
+                let spare = self.compiled.locations.rows.words;
                 let mut places = [0; 3];
                 for (axis, &value) in at.iter().enumerate() {
                     let (place, is_row) = self.value(value);
@@ -341,12 +336,13 @@ impl<N: Number> Writer<'_, N> {
                         place
                     } else {
                         let to = (spare + axis as u32) * self.width;
-                        let run = ops::copy(self.level, kind, false, true);
+                        let run = ops::copy(self.level, Kind::Word, false, true);
                         self.push(run, to, [place, 0, 0], 0);
                         to
                     };
                 }
-                self.push(ops::texel(is_filtered), out, places, lookup.encoded());
+                let which = u32::from(channel) * 4 + u32::from(component);
+                self.push(ops::texel(), out, places, which);
             }
             ValueDef::Float(_)
             | ValueDef::Word(_)

@@ -1,7 +1,5 @@
 //! The semantics of each operation on components.
 
-use toyproof_math::native::flush;
-
 use crate::ir::{Operation, for_each_operation};
 use crate::number::Number;
 
@@ -117,7 +115,7 @@ apply! {
     FromUint(a: W) F = |_| N::from_f64(f64::from(a));
     ToInt(a: F) W = |_| to_int(a.to_f64()).cast_unsigned();
     ToUint(a: F) W = |_| to_uint(a.to_f64());
-    FromBits(a: W) F = |_| N::from_f64(f64::from(flush(f32::from_bits(a))));
+    FromBits(a: W) F = |_| N::from_f32(f32::from_bits(a));
     ToBits(a: F) W = |_| a.to_f32().to_bits();
     PackHalf(a: F, b: F) W = |_| u32::from(f32_to_f16(a.to_f32())) | u32::from(f32_to_f16(b.to_f32())) << 16;
     UnpackLow(a: W) F = |_| N::from_f64(f64::from(f16_to_f32(a as u16)));

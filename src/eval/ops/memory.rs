@@ -2,15 +2,13 @@
 
 use std::marker::PhantomData;
 
-use toyproof_image::Texture;
-
 use super::{
     Component, Handler, Instruction, Level, One, Operand, Row, Run, Source, for_each_chunk, handler,
 };
 use crate::batch::{Batch, LANES};
 use crate::ir::Kind;
 use crate::number::Number;
-use crate::texture::Lookup;
+use crate::texture::{fetch, unbound};
 
 /// Copies whole chunks that have an active pixel.
 struct Copy<A, T>(PhantomData<(A, T)>);
@@ -232,49 +230,25 @@ pub(crate) fn store_at<N: Number>(level: Level, kind: Kind, cells_are_rows: bool
 
 // Texture lookups.
 
-/// A filtered lookup. Operands 0 and 1 are rows of coordinates, operand 2 of levels, `to` the encoded lookup.
-struct Filtered;
-
-impl<N: Number> Run<N> for Filtered {
-    #[inline(always)]
-    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let [x, y, level] = instruction.operands.map(|row| batch.float_row(row));
-        let (lookup, texture) = lookup(batch, instruction);
-        let out = batch.float_row(instruction.out);
-        for_each_chunk!(batch, instruction.mask, chunk => {
-            let [x, y, level] = [x, y, level].map(|row| row[chunk].get());
-            let mut result = [N::default(); LANES];
-            for lane in 0..LANES {
-                result[lane] = match texture {
-                    Some(texture) => lookup.sample(texture, [x[lane], y[lane]], level[lane], batch.noise),
-                    None => lookup.unbound(),
-                };
-            }
-            out[chunk].set(result);
-        });
-        at + 1
-    }
-}
-
-/// A lookup of single texels. Operands 0 and 1 are rows of texel coordinates, operand 2 of levels.
+/// A lookup of single texels. Operands 0 and 1 are rows of texel coordinates, operand 2 of levels; `to` is
+/// 4 · channel + component.
 struct Fetched;
 
 impl<N: Number> Run<N> for Fetched {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let [x, y, level] = instruction.operands.map(|row| batch.word_row(row));
-        let (lookup, texture) = lookup(batch, instruction);
+        let [channel, component] = [instruction.to / 4 % 4, instruction.to % 4].map(|part| part as usize);
+        let texture = batch.textures[channel].as_ref();
         let out = batch.float_row(instruction.out);
         for_each_chunk!(batch, instruction.mask, chunk => {
             let [x, y, level] = [x, y, level].map(|row| row[chunk].get());
             let mut result = [N::default(); LANES];
             for lane in 0..LANES {
+                let at = [x[lane], y[lane]];
                 result[lane] = match texture {
-                    Some(texture) => {
-                        let [x, y, level] = [x[lane], y[lane], level[lane]].map(u32::cast_signed);
-                        lookup.texel(texture, [x, y], level)
-                    }
-                    None => lookup.unbound(),
+                    Some(texture) => fetch(texture, at, level[lane], component),
+                    None => unbound(at, level[lane], component),
                 };
             }
             out[chunk].set(result);
@@ -283,19 +257,7 @@ impl<N: Number> Run<N> for Fetched {
     }
 }
 
-fn lookup<'a, N: Number>(
-    batch: &Batch<'a, N>,
-    instruction: &Instruction<N>,
-) -> (Lookup, Option<&'a Texture>) {
-    let lookup = Lookup::decoded(instruction.to);
-    (lookup, batch.textures[usize::from(lookup.channel)].as_ref())
-}
-
 /// Returns the handler of a lookup with coordinates in rows.
-pub(crate) fn texel<N: Number>(filtered: bool) -> Handler<N> {
-    if filtered {
-        handler::<N, Filtered>(Level::Base)
-    } else {
-        handler::<N, Fetched>(Level::Base)
-    }
+pub(crate) fn texel<N: Number>() -> Handler<N> {
+    handler::<N, Fetched>(Level::Base)
 }

@@ -6,7 +6,10 @@ use super::Checker;
 use super::scope::{Entity, did_you_mean};
 use crate::codes::Code;
 use crate::token::Symbol;
-use crate::tree::{BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, VariableKind};
+use crate::tree::{
+    BuiltIn, ExprId, ExprKind, Input, Place, Scalar, StructId, Swizzle, Type, Variable, VariableId,
+    VariableKind,
+};
 
 /// The three sets of component names; a swizzle takes all of its names from one set (§5.5).
 const COMPONENT_NAMES: [&str; 3] = ["xyzw", "rgba", "stpq"];
@@ -17,6 +20,7 @@ impl Checker<'_> {
         let text = self.text(name);
         match self.scopes.find(name) {
             Some(&Entity::Variable(variable)) => {
+                let variable = self.bound_texture(variable);
                 let found = &self.tree[variable];
                 let constant = match found.kind {
                     VariableKind::BuiltInConstant => true,
@@ -43,6 +47,20 @@ impl Checker<'_> {
             ),
             None => self.undeclared(name, at),
         }
+    }
+
+    /// The channel that a sampler of the author's own reads: its value is 0, the number of `iChannel0`. Other variables
+    /// are themselves.
+    fn bound_texture(&self, variable: VariableId) -> VariableId {
+        let own = &self.tree[variable];
+        if own.kind != VariableKind::Uniform || !matches!(own.ty, Type::Sampler(_)) {
+            return variable;
+        }
+        let is_first = |(_, channel): &(VariableId, &Variable)| {
+            channel.kind == VariableKind::Input(Input::Channel(0)) && channel.ty == own.ty
+        };
+        let channel = self.tree.variables.iter().find(is_first);
+        channel.map_or(variable, |(channel, _)| channel)
     }
 
     /// Whether the name is declared in the current scope or built in.

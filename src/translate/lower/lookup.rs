@@ -18,8 +18,9 @@ const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
 const IVEC2: Type = Type::Vector(Scalar::Int, 2);
 
-/// Expands the filtered lookups of channels with two dimensions.
+/// Expands the lookups of channels with two dimensions.
 pub(super) fn expand_lookups(cx: &mut LoweringContext) {
+    cx.limits_fetches = true;
     cx.each_expression(|cx, id| {
         let ExprKind::BuiltIn { function, arguments } = &cx.tree[id].kind else {
             return;
@@ -27,6 +28,8 @@ pub(super) fn expand_lookups(cx: &mut LoweringContext) {
         let (function, arguments) = (*function, arguments.clone());
         if let Some(lookup) = Lookup::of(cx, function, &arguments) {
             lookup.expand(cx, id, arguments[1..].to_vec());
+        } else if function.is_texture() {
+            cx.limits_fetches = false;
         }
     });
 }
@@ -52,12 +55,16 @@ pub(super) enum Level {
     Given,
     /// The derivatives in two arguments.
     Gradient,
+    /// None: a single texel of a level is fetched.
+    Fetched,
+    /// None: the size of a level is returned.
+    Size,
 }
 
 impl Lookup {
     fn of(cx: &LoweringContext, function: BuiltIn, arguments: &[ExprId]) -> Option<Self> {
         use BuiltIn as B;
-        use Level::{Biased, Given, Gradient, Implicit};
+        use Level::{Biased, Fetched, Given, Gradient, Implicit, Size};
         let (level, is_projected, has_offset) = match function {
             B::Texture => (Implicit, false, false),
             B::TextureOffset => (Implicit, false, true),
@@ -71,6 +78,9 @@ impl Lookup {
             B::TextureGradOffset => (Gradient, false, true),
             B::TextureProjGrad => (Gradient, true, false),
             B::TextureProjGradOffset => (Gradient, true, true),
+            B::TexelFetch => (Fetched, false, false),
+            B::TexelFetchOffset => (Fetched, false, true),
+            B::TextureSize => (Size, false, false),
             _ => return None,
         };
         let ExprKind::Variable(texture) = cx.tree[*arguments.first()?].kind else {
@@ -113,12 +123,13 @@ impl Lookup {
         };
         arguments.push(offset);
         let types = arguments.iter().map(|&argument| cx.tree[argument].ty).collect();
+        let ty = if self.level == Level::Size { IVEC2 } else { VEC4 };
         let expansion = Expansion::Lookup {
             texture: self.texture,
             channel: self.channel,
             level: self.level,
         };
-        let function = function(cx, expansion, types, VEC4, at);
+        let function = function(cx, expansion, types, ty, at);
         cx.tree[id].kind = ExprKind::Call { function, arguments };
         cx.tree[id].constant = false;
     }
@@ -142,10 +153,17 @@ pub(super) fn lookup_function(
         .zip(names)
         .map(|(&ty, name)| (Direction::In, ty, name))
         .collect();
-    let id = cx.function(format!("toyproof_lookup_{channel}"), &parameters, VEC4, at);
-    let is_text = sampling.filter != Filter::Mipmap || level == Level::Given;
+    let ty = if level == Level::Size { IVEC2 } else { VEC4 };
+    let id = cx.function(format!("toyproof_lookup_{channel}"), &parameters, ty, at);
+    let is_implicit = matches!(level, Level::Implicit | Level::Biased | Level::Gradient);
+    let is_text = sampling.filter != Filter::Mipmap || !is_implicit;
     if is_text {
-        cx.helpers.insert(id, text(channel, sampling));
+        let text = match level {
+            Level::Fetched => fetch_text(channel),
+            Level::Size => format!("return {};", size_of_level(&self::texture(channel), "toyproof_p")),
+            _ => text(channel, sampling),
+        };
+        cx.helpers.insert(id, text);
         cx.helper_inputs.insert(id, texture);
         return id;
     }
@@ -193,9 +211,36 @@ pub(super) fn lookup_function(
     id
 }
 
+/// The body of a fetch of the texel `toyproof_p` in the level `toyproof_a`. Beyond the texture, browsers return zeros, and
+/// naga the texel at the edge.
+fn fetch_text(channel: u8) -> String {
+    let texture = texture(channel);
+    format!(
+        "ivec2 toyproof_at = toyproof_p + {OFFSET};
+    int toyproof_level = min(max(toyproof_a, 0), textureQueryLevels({texture}) - 1);
+    ivec2 toyproof_size = {size};
+    ivec2 toyproof_near = min(max(toyproof_at, ivec2(0)), toyproof_size - ivec2(1));
+    vec4 toyproof_texel = texelFetch({texture}, toyproof_near, toyproof_level);
+    bool toyproof_is_inside = toyproof_level == toyproof_a
+        && toyproof_near.x == toyproof_at.x && toyproof_near.y == toyproof_at.y;
+    return mix(vec4(0.0), toyproof_texel, bvec4(toyproof_is_inside));",
+        size = size_of_level(&texture, "toyproof_level"),
+    )
+}
+
+/// The size of a level. Mesa's software driver returns that of one level to all pixels that it computes together.
+fn size_of_level(texture: &str, level: &str) -> String {
+    format!("max(ivec2(uvec2(textureSize({texture}, 0)) >> uvec2(uint({level}) & 31u)), ivec2(1))")
+}
+
+/// The texture of a channel, as naga's GLSL combines it with its sampler.
+fn texture(channel: u8) -> String {
+    format!("sampler2D(iChannel{channel}, iChannel{channel}_sampler)")
+}
+
 /// The body of a lookup at `toyproof_p`. With mipmaps, the level is `toyproof_a`; other arguments are ignored.
 fn text(channel: u8, sampling: Sampling) -> String {
-    let texture = format!("sampler2D(iChannel{channel}, iChannel{channel}_sampler)");
+    let texture = texture(channel);
     if sampling.filter != Filter::Mipmap {
         let mut text = String::new();
         push_level(&mut text, &texture, sampling, "0", "0");
@@ -225,9 +270,10 @@ fn text(channel: u8, sampling: Sampling) -> String {
 
 /// Writes the lookup of a level as the variable `toyproof_color{n}`.
 fn push_level(text: &mut String, texture: &str, sampling: Sampling, n: &str, level: &str) {
-    let place = match sampling.wrap {
-        Wrap::Repeat => "(toyproof_p - floor(toyproof_p))",
-        Wrap::Clamp => "toyproof_p",
+    // Far coordinates, and NaN, must fit an integer.
+    let (place, least, most) = match sampling.wrap {
+        Wrap::Repeat => ("(toyproof_p - floor(toyproof_p))", "-1.0", "0.0"),
+        Wrap::Clamp => ("toyproof_p", "-16.0", "16.0"),
     };
     let wrapped = |place: &str| match sampling.wrap {
         Wrap::Repeat => format!("ivec2(uvec2({place} + 32 * toyproof_size{n}) % uvec2(toyproof_size{n}))"),
@@ -242,15 +288,14 @@ fn push_level(text: &mut String, texture: &str, sampling: Sampling, n: &str, lev
         text,
         "ivec2 toyproof_size{n} = {size};
     vec2 toyproof_side{n} = vec2(toyproof_size{n});
-    vec2 toyproof_at{n} = min(max({place} * toyproof_side{n}{half}, vec2(-16.0)), toyproof_side{n} + vec2(16.0));
+    vec2 toyproof_at{n} = min(max({place} * toyproof_side{n}{half}, vec2({least})), toyproof_side{n} + vec2({most}));
     vec2 toyproof_floor{n} = floor(toyproof_at{n});
     ivec2 toyproof_i{n} = ivec2(toyproof_floor{n}) + {OFFSET};
     ivec2 toyproof_low{n} = {low};\n    ",
         size = if level == "0" {
             format!("textureSize({texture}, 0)")
         } else {
-            // Mesa's software driver returns the size of one level to all pixels that it computes together.
-            format!("max(ivec2(uvec2(textureSize({texture}, 0)) >> uvec2({level})), ivec2(1))")
+            size_of_level(texture, level)
         },
         low = wrapped(&format!("toyproof_i{n}")),
     );

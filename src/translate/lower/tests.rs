@@ -399,8 +399,8 @@ fn stage_inputs() {
     fixes_rejection(
         Pass::StageIo,
         &main_image(
-            "uniform sampler2D tex; uniform float u;",
-            "o = texture(tex, p) * u;",
+            "uniform sampler3D tex; uniform float u;",
+            "o = texture(tex, p.xyx) * u;",
         ),
     );
     accepted(&checked(

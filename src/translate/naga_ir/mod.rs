@@ -24,6 +24,7 @@ pub enum Shape {
 pub struct ValidModule {
     module: Module,
     info: ModuleInfo,
+    limits_fetches: bool,
 }
 
 impl ValidModule {
@@ -37,6 +38,11 @@ impl ValidModule {
     #[must_use]
     pub fn info(&self) -> &ModuleInfo {
         &self.info
+    }
+
+    /// Whether all fetches of texels stay within their textures.
+    pub(crate) fn limits_fetches(&self) -> bool {
+        self.limits_fetches
     }
 
     /// Parses and validates a lowered shader and removes unused items.
@@ -53,7 +59,11 @@ impl ValidModule {
                     .collect::<Vec<_>>()
             })?;
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-        Self::validate(module).map_err(|error| {
+        let validated = Self::validate(module).map(|valid| Self {
+            limits_fetches: lowered.limits_fetches(),
+            ..valid
+        });
+        validated.map_err(|error| {
             let span = error
                 .spans()
                 .next()
@@ -88,7 +98,11 @@ impl ValidModule {
             Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32,
         )
         .validate(&module)?;
-        Ok(Self { module, info })
+        Ok(Self {
+            module,
+            info,
+            limits_fetches: false,
+        })
     }
 
     /// The texture shapes of channels 0 to 3; unused channels have any shape.

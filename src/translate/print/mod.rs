@@ -35,6 +35,7 @@ pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered
     }
     printer.epilogue();
     printer.out.refuse(cx.too_deep.clone());
+    printer.out.limits_fetches = cx.limits_fetches;
     Ok(printer.out)
 }
 
@@ -204,6 +205,7 @@ pub struct Lowered {
     runs: Vec<(u32, Option<Span>)>,
     /// The reason why no driver may run it.
     too_deep: Option<Diagnostic>,
+    limits_fetches: bool,
 }
 
 impl Lowered {
@@ -236,6 +238,11 @@ impl Lowered {
     }
 
     /// Sets the reason why no driver may run it, if any.
+    /// Whether all fetches of texels stay within their textures: such a shader is strict.
+    pub(crate) fn limits_fetches(&self) -> bool {
+        self.limits_fetches
+    }
+
     fn refuse(&mut self, too_deep: Option<Diagnostic>) {
         self.too_deep = too_deep;
     }

@@ -9,6 +9,7 @@ use ::spirv::{Capability, Decoration, GlslStd450Op, Op};
 pub use expand::expanded;
 use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
 use super::{BOUNDS, ENTRY_POINT, bindings};
 use crate::TranslateError;
@@ -20,6 +21,15 @@ use crate::naga_ir::ValidModule;
 /// # Errors
 /// naga's message, if it cannot write the module.
 pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
+    let bounds = if module.limits_fetches() {
+        // On Mesa's software driver, naga's own limit is wrong where the level varies between pixels.
+        BoundsCheckPolicies {
+            image_load: BoundsCheckPolicy::Unchecked,
+            ..BOUNDS
+        }
+    } else {
+        BOUNDS
+    };
     let options = Options {
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         binding_map: bindings(module)
@@ -33,7 +43,7 @@ pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
             })
             .collect(),
         fake_missing_bindings: false,
-        bounds_check_policies: BOUNDS,
+        bounds_check_policies: bounds,
         force_loop_bounding: false,
         ..Options::default()
     };
