@@ -28,7 +28,7 @@ const LOOKUPS: [&str; 19] = [
     "texelFetchOffset(iChannel0, ivec2(p) - 4, 1, ivec2(3, -2)) + texelFetch(iChannel1, ivec2(p), 0)",
     // The level falls from left to right.
     "textureLod(iChannel0, at, 2.9 - p.x * 0.2)",
-    "texelFetch(iChannel0, ivec2(p) / 4, 3 - int(p.x) / 5)",
+    "texelFetch(iChannel0, ivec2(p) / 16, 3 - int(p.x) / 5)",
     "vec4(textureSize(iChannel0, MIPMAPS * (2 - int(p.x) / 8)), 0.0, 1.0)",
     "vec4(textureSize(iChannel0, 0), iChannelResolution[0].xy)",
 ];
