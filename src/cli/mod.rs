@@ -86,6 +86,7 @@ Exit code: 0 on success, 1 if a shader is at fault or images differ, 2 for any o
 #[derive(Debug, Subcommand)]
 enum Command {
     Check(check::Args),
+    Merge(check::MergeArgs),
     Render(render::Args),
     Run(run::Args),
     Convert(convert::Args),
@@ -185,6 +186,7 @@ impl Command {
     fn run(&self, terminal: &Terminal) -> Exit {
         match self {
             Self::Check(args) => check::run(args, terminal),
+            Self::Merge(args) => check::merge(args, terminal),
             Self::Render(args) => render::run(args, terminal),
             Self::Run(args) => run::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),

@@ -2,6 +2,7 @@
 
 mod assigned;
 mod csv;
+mod earlier;
 mod explanation;
 mod frames;
 mod gradescope;
@@ -18,6 +19,7 @@ mod trace;
 
 pub use assigned::{FunctionRecord, RulesRecord, Violation};
 pub use csv::csv;
+pub use earlier::{Change, Earlier};
 pub use explanation::{Explanation, explain, explanations};
 pub use frames::{CheckedFrame, FrameRecord};
 pub use gradescope::gradescope;

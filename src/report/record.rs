@@ -27,11 +27,14 @@ pub struct Report {
 }
 
 impl Report {
+    /// The version of the format.
+    pub(super) const VERSION: u32 = 2;
+
     /// Creates a report of these shaders, in this order.
     #[must_use]
     pub fn new(device: Option<String>, shaders: Vec<Record>) -> Self {
         Self {
-            version: 2,
+            version: Self::VERSION,
             tool: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
             device,
             shaders,

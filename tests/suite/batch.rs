@@ -13,7 +13,7 @@ use crate::support::wait::wait_until;
 use crate::support::{MANY_OBJECTS, SHADING, SPHERE, edited};
 
 /// Creates a folder of submissions: every third is wrong, every seventh does not compile.
-fn homework(count: usize) -> tempfile::TempDir {
+pub(crate) fn homework(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let hw = folder.path().join("hw");
     fs::create_dir(&hw).unwrap();
@@ -44,7 +44,7 @@ fn check(folder: &Path, rest: &[&str]) -> Run {
 }
 
 /// The records without their timings.
-fn records(folder: &Path) -> Vec<Value> {
+pub(crate) fn records(folder: &Path) -> Vec<Value> {
     let text = fs::read_to_string(folder.join("out/verdict.json")).unwrap();
     let mut report: Value = serde_json::from_str(&text).unwrap();
     let shaders = report["shaders"].as_array_mut().unwrap();

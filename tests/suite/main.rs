@@ -55,6 +55,7 @@ mod reports;
 mod requirements;
 mod rules;
 mod scene_commands;
+mod sharding;
 mod snapshots;
 mod stress;
 mod strict;

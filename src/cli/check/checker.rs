@@ -39,44 +39,60 @@ pub(super) struct Submission {
     pub(super) name: String,
     /// The path of its images without their suffixes; none without `--out`.
     pub(super) output_stem: Option<PathBuf>,
-    /// A hash of everything that its record depends on; none if its files cannot be read.
+    /// A hash of everything that its record depends on; none if its files cannot be read, or without `--out`.
     pub(super) key: Option<String>,
+    /// The size of its text in bytes, where it has a key.
+    pub(super) bytes: u64,
 }
 
 impl Submission {
+    /// With the `build` that checks it, the submission has a key.
     pub(super) fn new(
         input: Result<Input, ReadError>,
         args: &Args,
         plan: &Plan,
         references: &References,
         names: &mut Names,
+        build: Option<&str>,
     ) -> Self {
         let found = input.as_ref().ok();
+        let identity = found
+            .zip(build)
+            .and_then(|(found, build)| identity(found, args, plan, references, build));
+        let (key, bytes) = identity.map_or((None, 0), |(key, bytes)| (Some(key), bytes));
         let output_stem = match (&args.out, found) {
             (Some(out), Some(found)) => Some(out.join(names.assign(found))),
             _ => None,
         };
         Self {
             name: found.map_or_else(String::new, Input::name),
-            key: found
-                .filter(|_| args.out.is_some())
-                .and_then(|found| key(found, args, plan, references)),
+            key,
+            bytes,
             output_stem,
             input,
         }
     }
 }
 
-/// Identifies this build of the program: the size of its file, in bytes, and the time of its last change.
-fn build() -> Option<(u64, SystemTime)> {
+/// Identifies this build of the program on this machine: the size of its file, in bytes, and the time of its last
+/// change.
+pub(super) fn build() -> Option<String> {
     let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
-    Some((file.len(), file.modified().ok()?))
+    let identity: (u64, SystemTime) = (file.len(), file.modified().ok()?);
+    Some(format!("{identity:?}"))
 }
 
 /// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the assignment,
-/// the flags, and the contents of the files that they name.
-fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Option<String> {
+/// the flags, and the contents of the files that they name. Also returns the size of the shader in bytes.
+fn identity(
+    found: &Input,
+    args: &Args,
+    plan: &Plan,
+    references: &References,
+    build: &str,
+) -> Option<(String, u64)> {
     let mut hash = Sha256::new();
+    let mut bytes = 0;
     let mut add = |part: &[u8]| {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part);
@@ -89,7 +105,7 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
         args.search,
         &plan.permitted,
     );
-    add(format!("{:?}", build()?).as_bytes());
+    add(build.as_bytes());
     let named = (&plan.reference.scene, &plan.reference.reference);
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
     let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
@@ -97,6 +113,7 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
     for file in files::read(found).ok()?.files() {
         add(file.name().as_bytes());
         add(file.text().as_bytes());
+        bytes += file.text().len() as u64;
     }
     if let Some(content) = references.content(found) {
         add(&content.ok()?);
@@ -106,7 +123,7 @@ fn key(found: &Input, args: &Args, plan: &Plan, references: &References) -> Opti
     }
     let hash: [u8; 32] = hash.finalize().into();
     let half = hash.first_chunk().copied().map(u128::from_be_bytes);
-    half.map(|half| format!("{half:032x}"))
+    half.map(|half| (format!("{half:032x}"), bytes))
 }
 
 /// The worker process and the thread pool that a thread owns.

@@ -4,13 +4,15 @@ mod checker;
 mod donors;
 mod images;
 mod passes;
+mod merge;
 mod plan;
 mod reference;
 mod reports;
+mod shard;
 
 use std::collections::HashSet;
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
@@ -23,10 +25,12 @@ use toyproof_verify::repair::DEFAULT_BUDGET;
 
 use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
+pub(super) use self::merge::{MergeArgs, merge};
 use self::plan::Plan;
 use self::reference::References;
 pub(super) use self::reference::Scenes;
-use self::reports::Results;
+use self::reports::{Line, Results};
+use self::shard::{Manifest, Shard};
 use super::inputs::short_device;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
@@ -34,7 +38,7 @@ use super::pool::{self, InOrder};
 use super::reference::ReferenceArgs;
 use super::shader::find;
 use super::{Exit, Terminal};
-use crate::report::{self, Detail, Hints, Layout, Record, Report, Rubric};
+use crate::report::{self, Detail, Earlier, Hints, Layout, Record, Report, Rubric};
 
 /// Check shaders against a reference, and give a verdict on each
 ///
@@ -50,7 +54,8 @@ Examples:
   toyproof check homework --assignment shadows/assignment.toml --out marks
   toyproof check mine.glsl --scene scene.toml --format json
 
-Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.")]
+Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.
+With --shard: 0 if the shard is complete, else 2.")]
 pub(super) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
@@ -81,6 +86,16 @@ pub(super) struct Args {
     /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been interrupted.
     #[arg(long, requires = "out", help_heading = "Reports")]
     resume: bool,
+    /// Check only part K of N of the shaders, in a folder of its own; `toyproof merge` writes the report of all
+    ///
+    /// Each shader is in one of the N parts, which depends on the contents of all shaders. The parts take about
+    /// equally long. They may be checked at any time, in any order and on several machines; with --resume, a
+    /// part that was interrupted continues.
+    #[arg(long, value_name = "K/N", requires = "out", help_heading = "Reports")]
+    shard: Option<Shard>,
+    /// List the verdicts that differ from an earlier report: a folder that --out wrote, or its verdict.json
+    #[arg(long, value_name = "OLD", conflicts_with = "shard", help_heading = "Reports")]
+    compare: Option<PathBuf>,
     /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
@@ -174,15 +189,32 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         terminal.error(error);
         return Exit::Error;
     }
-    let Ok(mut plan) = Plan::new(args, terminal) else {
+    let Ok(earlier) = earlier(args.compare.as_deref(), terminal) else {
         return Exit::Error;
     };
-    let Ok(references) = References::new(args, &mut plan, terminal) else {
+    let build = match (&args.out, args.shard) {
+        (None, _) => None,
+        (Some(_), None) => checker::build(),
+        (Some(_), Some(_)) => match shard::program() {
+            Ok(program) => Some(program),
+            Err(error) => {
+                terminal.error(format_args!("the program's own file cannot be read: {error}"));
+                return Exit::Error;
+            }
+        },
+    };
+    let Ok(mut work) = Work::new(args, build.as_deref(), terminal) else {
         return Exit::Error;
     };
     let mut results = None;
     if let Some(out) = &args.out {
-        match Results::open(out, args.resume) {
+        let opened = match (args.shard, build) {
+            (Some(shard), Some(program)) => work.select(args, shard, program, out),
+            _ => Ok(()),
+        };
+        match opened
+            .and_then(|()| Results::open(out, args.resume).map_err(|error| format!("cannot write {error}")))
+        {
             Ok(opened) => {
                 if let broken @ 1.. = opened.broken as u64 {
                     terminal.warn(format_args!(
@@ -195,37 +227,111 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 results = Some(opened);
             }
             Err(error) => {
-                terminal.error(format_args!("cannot write {error}"));
+                terminal.error(error);
                 return Exit::Error;
             }
         }
     }
-    let reserved: Vec<&str> = reports::REPORT_NAMES
-        .into_iter()
-        .chain([reports::RESULTS_NAME])
-        .collect();
-    let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
-    let submissions: Vec<Submission> = find(&args.shaders, terminal)
-        .into_iter()
-        .map(|input| Submission::new(input, args, &plan, &references, &mut names))
-        .collect();
-    let mut batch = Batch {
-        args,
-        terminal,
-        rubric: plan.rubric.take(),
-        results,
-        order: InOrder::default(),
-        records: Vec::new(),
-        device: None,
-        failed: false,
-        layout: layout(&submissions, args.format, terminal),
-        unrepaired: HashSet::new(),
-        has_sources: submissions.len() <= MAX_WITH_SOURCE,
-        hidden_warnings: 0,
-        start: Instant::now(),
+    work.check(args, results, earlier, terminal)
+}
+
+/// Reads the report that `--compare` names, if any.
+///
+/// # Errors
+/// It is unusable; what is wrong with it has been printed.
+fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, ()> {
+    let Some(path) = path else {
+        return Ok(None);
     };
-    batch.check(&submissions, &Checker::new(args, &plan, &references));
-    batch.finish(&submissions)
+    let file = if path.is_dir() {
+        path.join("verdict.json")
+    } else {
+        path.to_owned()
+    };
+    let name = path_name(&file);
+    let text = std::fs::read_to_string(&file).map_err(|error| error.to_string());
+    let earlier = text.and_then(|text| Earlier::parse(name.clone(), &text));
+    earlier
+        .map(Some)
+        .map_err(|error| terminal.error(format_args!("{name} cannot be compared with: {error}")))
+}
+
+/// All that one command checks.
+struct Work {
+    plan: Plan,
+    references: References,
+    submissions: Vec<Submission>,
+}
+
+impl Work {
+    /// Reads what the arguments name. With the `build` that checks them, submissions have keys.
+    ///
+    /// # Errors
+    /// Something is unusable; what is wrong with it has been printed.
+    fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, ()> {
+        let mut plan = Plan::new(args, terminal)?;
+        let references = References::new(args, &mut plan, terminal)?;
+        let reserved: Vec<&str> = reports::REPORT_NAMES
+            .into_iter()
+            .chain([reports::RESULTS_NAME, shard::MANIFEST_NAME])
+            .collect();
+        let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
+        let submissions = find(&args.shaders, terminal)
+            .into_iter()
+            .map(|input| Submission::new(input, args, &plan, &references, &mut names, build))
+            .collect();
+        Ok(Self {
+            plan,
+            references,
+            submissions,
+        })
+    }
+
+    /// Keeps the submissions of a shard, and describes it in its folder.
+    fn select(&mut self, args: &Args, shard: Shard, program: String, out: &Path) -> Result<(), String> {
+        if args.shaders.iter().any(|shader| shader == Path::new("-")) {
+            return Err(
+                "--shard cannot be used with standard input, which only one shard could read".to_owned(),
+            );
+        }
+        let manifest = Manifest {
+            program,
+            inputs: shard::inputs(&self.submissions),
+            shard,
+            arguments: shard::arguments()?,
+        };
+        let mut numbers = shard::assign(&self.submissions, shard.of).into_iter();
+        self.submissions.retain(|_| numbers.next() == Some(shard.number));
+        manifest.write(out).map_err(|error| error.to_string())
+    }
+
+    fn check(
+        mut self,
+        args: &Args,
+        results: Option<Results>,
+        earlier: Option<Earlier>,
+        terminal: &Terminal,
+    ) -> Exit {
+        let submissions = &self.submissions;
+        let mut batch = Batch {
+            args,
+            terminal,
+            rubric: self.plan.rubric.take(),
+            results,
+            earlier,
+            order: InOrder::default(),
+            records: Vec::new(),
+            device: None,
+            failed: false,
+            layout: layout(submissions, args.format, terminal),
+            unrepaired: HashSet::new(),
+            has_sources: submissions.len() <= MAX_WITH_SOURCE,
+            hidden_warnings: 0,
+            start: Instant::now(),
+        };
+        batch.check(submissions, &Checker::new(args, &self.plan, &self.references));
+        batch.finish(submissions)
+    }
 }
 
 /// The layout of the lines of all shaders.
@@ -248,6 +354,8 @@ struct Batch<'a> {
     terminal: &'a Terminal,
     rubric: Option<Rubric>,
     results: Option<Results>,
+    /// The report that is compared with.
+    earlier: Option<Earlier>,
     order: InOrder<(usize, Outcome)>,
     /// The reported records, in order, each with the index of its submission.
     records: Vec<(usize, Record)>,
@@ -277,18 +385,21 @@ impl Batch<'_> {
         let mut todo = Vec::new();
         for (index, submission) in submissions.iter().enumerate() {
             let key = submission.key.as_deref();
-            let known = key.and_then(|key| self.results.as_mut()?.known(key));
+            let known = key.and_then(|key| self.results.as_ref()?.known(key));
             match known {
-                Some(record) => {
+                Some(Line { record, device, .. }) => {
                     tally.add(record.verdict);
                     bar.inc(1);
-                    self.take(index, Outcome::known(record));
+                    let mut known = Outcome::known(record);
+                    known.device = device;
+                    self.take(index, known);
                 }
                 None => todo.push(index),
             }
         }
+        self.results.as_mut().map(Results::forget);
         let reused = submissions.len() - todo.len();
-        if reused > 0 {
+        if self.args.resume && reused > 0 {
             let of = submissions.len();
             self.terminal.note(&format!(
                 "{} of {} {} reused from an earlier run",
@@ -337,7 +448,8 @@ impl Batch<'_> {
                     .help("run the same command with --resume to check the others");
             }
             self.failed = true;
-        } else if self.args.search > 0.0 {
+        } else if self.args.search > 0.0 && self.args.shard.is_none() {
+            // What repairs a shader may be in another shard; `merge` searches.
             self.search_again(submissions, checker, &stop);
         }
     }
@@ -354,7 +466,7 @@ impl Batch<'_> {
     /// Appends a record to `results.jsonl`.
     fn keep(&mut self, submission: &Submission, outcome: &Outcome) {
         if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
-            && let Err(error) = results.add(key, &outcome.record)
+            && let Err(error) = results.add(key, &outcome.record, outcome.device.as_deref())
         {
             self.terminal.error(format_args!("cannot write {error}"));
             self.failed = true;
@@ -426,6 +538,7 @@ impl Batch<'_> {
             records,
             device,
             results,
+            earlier,
             mut failed,
             hidden_warnings,
             start,
@@ -441,21 +554,26 @@ impl Batch<'_> {
             CheckFormat::Short => {}
             CheckFormat::Json => failed |= !terminal.bytes(report.json().as_bytes()),
         }
+        if let Some(earlier) = earlier {
+            print_changes(&earlier, &report, args.format, terminal);
+        }
         if let Some(out) = &args.out {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
-            let written = reports::write(
-                &report,
-                &reported,
-                rubric.as_ref(),
-                args.students_hints(),
-                out,
-                terminal,
-            );
+            let written = args.shard.is_some()
+                || reports::write(
+                    &report,
+                    &reported,
+                    rubric.as_ref(),
+                    args.students_hints(),
+                    out,
+                    terminal,
+                );
             match is_there {
-                Ok(()) if written => {
-                    terminal.note(&format!("report: {}", path_name(&out.join("report.html"))));
-                }
+                Ok(()) if written => terminal.note(&match args.shard {
+                    None => format!("report: {}", path_name(&out.join("report.html"))),
+                    Some(shard) => format!("shard {shard}: {}", path_name(out)),
+                }),
                 Ok(()) => failed = true,
                 Err(error) => {
                     terminal.error(format_args!(
@@ -464,6 +582,9 @@ impl Batch<'_> {
                     failed = true;
                 }
             }
+        }
+        if args.shard.is_some() {
+            return if failed { Exit::Error } else { Exit::Success };
         }
         let verdicts = || report.shaders().iter().map(|record| record.verdict);
         if failed || verdicts().any(|verdict| verdict == Verdict::Error) {
@@ -510,6 +631,24 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
         ));
         terminal.help("name a scene with --scene or a shader or image with --reference, or put NAME.toml beside NAME.glsl");
     }
+}
+
+/// Prints the verdicts that differ from those of an earlier report.
+fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, terminal: &Terminal) {
+    let changes = earlier.changes(report);
+    if format == CheckFormat::Human {
+        terminal.note("");
+        for change in &changes {
+            terminal.result(&change.to_string());
+        }
+    }
+    let count = changes.len() as u64;
+    terminal.note(&format!(
+        "{} {} from {}",
+        grouped(count),
+        plural(count, "verdict differs", "verdicts differ"),
+        earlier.name()
+    ));
 }
 
 #[cfg(test)]

@@ -95,12 +95,23 @@ pub(super) fn write(
 /// The name of the file of records.
 pub(super) const RESULTS_NAME: &str = "results.jsonl";
 
-/// A line of the file.
-#[derive(Debug, Serialize, Deserialize)]
-struct Line {
+/// A line of the file: the result of a shader.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Line {
     /// A hash of everything that the record depends on.
-    key: String,
-    record: Record,
+    pub(super) key: String,
+    pub(super) record: Record,
+    /// The adapter that rendered it, if any did.
+    #[serde(default)]
+    pub(super) device: Option<String>,
+}
+
+/// The complete lines of `results.jsonl`, each with its result unless it cannot be parsed. A killed run leaves
+/// an incomplete last line.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (&[u8], Option<Line>)> {
+    let lines = bytes.split_inclusive(|&byte| byte == b'\n');
+    let complete = lines.filter(|line| line.ends_with(b"\n"));
+    complete.map(|line| (line, serde_json::from_slice(line).ok()))
 }
 
 /// The file of records, open for appending.
@@ -108,15 +119,14 @@ struct Line {
 pub(super) struct Results {
     path: PathBuf,
     file: File,
-    /// The records of an earlier run, by key.
-    known: HashMap<String, Record>,
+    /// The results of an earlier run, by key.
+    known: HashMap<String, Line>,
     /// The number of lines of an earlier run that could not be read.
     pub(super) broken: usize,
 }
 
 impl Results {
-    /// Creates the file; with `resume`, keeps the records that it has. An incomplete last line, left by a
-    /// killed run, is dropped.
+    /// Creates the file; with `resume`, keeps the results that it has, except an incomplete last line.
     pub(super) fn open(folder: &Path, resume: bool) -> io::Result<Self> {
         let path = folder.join(RESULTS_NAME);
         let before = match std::fs::read(&path) {
@@ -129,26 +139,47 @@ impl Results {
         let mut kept = Vec::new();
         let mut known = HashMap::new();
         let mut broken = 0;
-        for line in before
-            .split_inclusive(|&byte| byte == b'\n')
-            .filter(|line| line.ends_with(b"\n"))
-        {
-            match serde_json::from_slice(line) {
-                Ok(Line { key, record }) => {
-                    known.insert(key, record);
+        for (line, parsed) in lines(&before) {
+            match parsed {
+                Some(result) => {
+                    known.insert(result.key.clone(), result);
                     kept.extend_from_slice(line);
                 }
-                Err(_) => broken += 1,
+                None => broken += 1,
             }
         }
-        output::write_inside(folder, &path, &kept)?;
+        let results = Self::create(folder, &kept)?;
+        Ok(Self {
+            known,
+            broken,
+            ..results
+        })
+    }
+
+    /// Creates the file with the results of other runs.
+    pub(super) fn merged(folder: &Path, results: Vec<Line>) -> io::Result<Self> {
+        let mut kept = Vec::new();
+        for result in &results {
+            serde_json::to_writer(&mut kept, result)?;
+            kept.push(b'\n');
+        }
+        let known = results.into_iter().map(|result| (result.key.clone(), result));
+        Ok(Self {
+            known: known.collect(),
+            ..Self::create(folder, &kept)?
+        })
+    }
+
+    fn create(folder: &Path, kept: &[u8]) -> io::Result<Self> {
+        let path = folder.join(RESULTS_NAME);
+        output::write_inside(folder, &path, kept)?;
         let file = OpenOptions::new().append(true).open(&path);
         let file = file.map_err(|error| with_path(&path, &error))?;
         Ok(Self {
             path,
             file,
-            known,
-            broken,
+            known: HashMap::new(),
+            broken: 0,
         })
     }
 
@@ -160,19 +191,25 @@ impl Results {
         }
     }
 
-    /// Takes the record of an earlier run, if there is one.
-    pub(super) fn known(&mut self, key: &str) -> Option<Record> {
-        self.known.remove(key)
+    /// The result of an earlier run, if there is one.
+    pub(super) fn known(&self, key: &str) -> Option<Line> {
+        self.known.get(key).cloned()
     }
 
-    /// Appends a record in a single write.
-    pub(super) fn add(&mut self, key: &str, record: &Record) -> io::Result<()> {
+    /// Drops the results of an earlier run.
+    pub(super) fn forget(&mut self) {
+        self.known = HashMap::new();
+    }
+
+    /// Appends a result in a single write.
+    pub(super) fn add(&mut self, key: &str, record: &Record, device: Option<&str>) -> io::Result<()> {
         #[derive(Serialize)]
         struct Borrowed<'a> {
             key: &'a str,
             record: &'a Record,
+            device: Option<&'a str>,
         }
-        let mut line = serde_json::to_vec(&Borrowed { key, record }).map_err(io::Error::other)?;
+        let mut line = serde_json::to_vec(&Borrowed { key, record, device }).map_err(io::Error::other)?;
         line.push(b'\n');
         self.file
             .write_all(&line)

@@ -1,0 +1,274 @@
+//! `toyproof merge`: the report of all shards of a batch.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use toyproof_diagnostic::{grouped, path_name, plural};
+use toyproof_image::output;
+
+use super::checker::Submission;
+use super::images::IMAGES;
+use super::reports::{self, Line, Results};
+use super::shard::{self, MANIFEST_NAME, Manifest, Shard};
+use super::{Args, Work, earlier};
+use crate::cli::inputs::shell_word;
+use crate::cli::names::with_suffix;
+use crate::cli::{Cli, Command, Exit, Terminal};
+
+/// Merge the shards of a batch into one report
+///
+/// The report is the one that a single `check` of all shaders writes. The shaders and the reference are read
+/// again, so run it in the folder in which the shards were checked. Shards of other shaders, flags or
+/// programs are rejected, and missing ones are listed.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  toyproof check homework --scene 02-sphere --shard 1/2 --out shards/1
+  toyproof check homework --scene 02-sphere --shard 2/2 --out shards/2
+  toyproof merge shards/* --out marks
+
+Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.")]
+pub(in crate::cli) struct MergeArgs {
+    /// The folders of the shards, in any order: what `check --shard K/N --out DIR` wrote
+    #[arg(required = true, value_name = "DIR")]
+    shards: Vec<PathBuf>,
+    /// Write the images and reports into this folder
+    #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
+    out: PathBuf,
+    /// List the verdicts that differ from an earlier report: a folder that --out wrote, or its verdict.json
+    #[arg(long, value_name = "OLD", help_heading = "Reports")]
+    compare: Option<PathBuf>,
+    /// The number of wrong shaders to search again in parallel [default: the number of cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
+    jobs: Option<u16>,
+}
+
+pub(in crate::cli) fn merge(args: &MergeArgs, terminal: &Terminal) -> Exit {
+    match try_merge(args, terminal) {
+        Ok(exit) => exit,
+        Err(problem) => {
+            if let Some(Problem { error, help }) = problem {
+                terminal.error(error);
+                if let Some(help) = help {
+                    terminal.help(help);
+                }
+            }
+            Exit::Error
+        }
+    }
+}
+
+/// Why shards cannot be merged.
+struct Problem {
+    error: String,
+    help: Option<String>,
+}
+
+impl From<String> for Problem {
+    fn from(error: String) -> Self {
+        Self { error, help: None }
+    }
+}
+
+/// Merges the shards. The error is none if it has been printed.
+fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Problem>> {
+    let program = shard::program()
+        .map_err(|error| Problem::from(format!("the program's own file cannot be read: {error}")))?;
+    let folders = read_folders(args, &program)?;
+    let (_, first) = &folders[0];
+    let mut check = parse(&first.arguments)?;
+    check.out = Some(args.out.clone());
+    check.compare.clone_from(&args.compare);
+    check.jobs = args.jobs;
+    let earlier = earlier(check.compare.as_deref(), terminal).map_err(|()| None)?;
+    let work = Work::new(&check, Some(&program), terminal).map_err(|()| None)?;
+    if shard::inputs(&work.submissions) != first.inputs {
+        return Err(Some(Problem {
+            error: "the shaders, their reference or a file that an option names changed after the shards were checked"
+                .to_owned(),
+            help: Some("run `merge` in the folder in which the shards were checked, or check them again".to_owned()),
+        }));
+    }
+    let shards = first.shard.of;
+    let numbers = shard::assign(&work.submissions, shards);
+    let mut results = read_results(&folders).map_err(|error| Problem::from(error.to_string()))?;
+    let found: Vec<Option<(&Path, Line)>> = work
+        .submissions
+        .iter()
+        .zip(&numbers)
+        .map(|(submission, &number)| results.get(&(number, submission.key.clone()?)).cloned())
+        .collect();
+    results.clear();
+    check_complete(&folders, &work.submissions, &numbers, &found)?;
+    for (submission, found) in work.submissions.iter().zip(&found) {
+        if let Some((folder, _)) = found {
+            copy_images(submission, folder, &args.out)
+                .map_err(|error| Problem::from(format!("cannot write {error}")))?;
+        }
+    }
+    let lines = found.into_iter().flatten().map(|(_, line)| line);
+    let results = Results::merged(&args.out, lines.collect())
+        .map_err(|error| Problem::from(format!("cannot write {error}")))?;
+    terminal.note(&format!(
+        "{} {} merged",
+        grouped(shards.into()),
+        plural(shards.into(), "shard is", "shards are")
+    ));
+    Ok(work.check(&check, Some(results), earlier, terminal))
+}
+
+/// Reads what the folders say of their shards, all of which have to be of one batch, and of this program.
+fn read_folders(args: &MergeArgs, program: &str) -> Result<Vec<(PathBuf, Manifest)>, Problem> {
+    let mut folders: Vec<(PathBuf, Manifest)> = Vec::new();
+    for folder in &args.shards {
+        let name = path_name(folder);
+        let manifest = Manifest::read(folder).map_err(|error| error.to_string())?;
+        let manifest = manifest
+            .ok_or_else(|| format!("{name} is not the folder of a shard: it has no {MANIFEST_NAME}"))?;
+        if is_same_folder(folder, &args.out) {
+            return Err(Problem {
+                error: format!("{name} is a shard, and would be overwritten"),
+                help: Some("give the report another folder with --out".to_owned()),
+            });
+        }
+        if manifest.program != program {
+            return Err(Problem {
+                error: format!("{name} was written by another build of toyproof"),
+                help: Some("merge with the program that checked the shards, or check them again".to_owned()),
+            });
+        }
+        if let Some((other, first)) = folders.first() {
+            let other = path_name(other);
+            let error = if manifest.shard.of != first.shard.of {
+                format!(
+                    "{name} is shard {}, and {other} is shard {}",
+                    manifest.shard, first.shard
+                )
+            } else if manifest.arguments != first.arguments {
+                format!("{name} was checked with other arguments than {other}")
+            } else if manifest.inputs != first.inputs {
+                format!("{name} was checked with other shaders, references or settings than {other}")
+            } else {
+                String::new()
+            };
+            if !error.is_empty() {
+                return Err(Problem {
+                    error,
+                    help: Some("merge the shards of one batch".to_owned()),
+                });
+            }
+        }
+        folders.push((folder.clone(), manifest));
+    }
+    Ok(folders)
+}
+
+fn is_same_folder(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// Parses the arguments of the command that checked the shards.
+fn parse(arguments: &[String]) -> Result<Args, Problem> {
+    let parsed = Cli::try_parse_from(std::iter::once("toyproof").chain(arguments.iter().map(String::as_str)));
+    match parsed.map(|cli| cli.command) {
+        Ok(Command::Check(check)) => Ok(check),
+        _ => Err(format!("the arguments in {MANIFEST_NAME} are not those of `toyproof check`").into()),
+    }
+}
+
+/// The results of shaders, by the numbers of their shards and their keys, each with its folder.
+type ShardResults<'a> = HashMap<(u32, String), (&'a Path, Line)>;
+
+/// Reads the results in all folders. Of several results of one shader, which differ in their times, one is taken
+/// that does not depend on the order of the folders.
+fn read_results(folders: &[(PathBuf, Manifest)]) -> io::Result<ShardResults<'_>> {
+    let mut folders: Vec<_> = folders.iter().collect();
+    folders.sort_by(|(a, _), (b, _)| a.cmp(b));
+    let mut results = HashMap::new();
+    for (folder, manifest) in folders {
+        let path = folder.join(reports::RESULTS_NAME);
+        let bytes = match fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            Err(error) => return Err(io::Error::other(format!("{}: {error}", path_name(&path)))),
+        };
+        for line in reports::lines(&bytes).filter_map(|(_, line)| line) {
+            let key = (manifest.shard.number, line.key.clone());
+            results.entry(key).or_insert((folder.as_path(), line));
+        }
+    }
+    Ok(results)
+}
+
+/// Checks that there is a result of every shader that can be read; otherwise lists the shards that lack some.
+fn check_complete(
+    folders: &[(PathBuf, Manifest)],
+    submissions: &[Submission],
+    numbers: &[u32],
+    found: &[Option<(&Path, Line)>],
+) -> Result<(), Problem> {
+    let (_, first) = &folders[0];
+    let mut lacking = Vec::new();
+    for number in 1..=first.shard.of {
+        let of_shard =
+            || (0..submissions.len()).filter(|&at| numbers[at] == number && submissions[at].key.is_some());
+        let all = of_shard().count();
+        let checked = of_shard().filter(|&at| found[at].is_some()).count();
+        let shard = Shard {
+            number,
+            ..first.shard
+        };
+        if !folders.iter().any(|(_, manifest)| manifest.shard == shard) {
+            lacking.push(format!("shard {shard}: missing"));
+        } else if checked < all {
+            lacking.push(format!(
+                "shard {shard}: {} of {} {} checked",
+                grouped(checked as u64),
+                grouped(all as u64),
+                plural(all as u64, "shader is", "shaders are")
+            ));
+        }
+    }
+    if lacking.is_empty() {
+        return Ok(());
+    }
+    let arguments: Vec<_> = first
+        .arguments
+        .iter()
+        .map(|argument| shell_word(argument))
+        .collect();
+    Err(Problem {
+        error: format!(
+            "{} of {} shards {} missing or incomplete\n{}",
+            grouped(lacking.len() as u64),
+            grouped(first.shard.of.into()),
+            plural(lacking.len() as u64, "is", "are"),
+            lacking.join("\n")
+        ),
+        help: Some(format!(
+            "check them with `toyproof {} --shard K/{} --out DIR --resume`, and merge again",
+            arguments.join(" "),
+            first.shard.of
+        )),
+    })
+}
+
+/// Copies the images of a shader, and removes those that it does not have.
+fn copy_images(submission: &Submission, shard: &Path, out: &Path) -> io::Result<()> {
+    let Some(stem) = &submission.output_stem else {
+        return Ok(());
+    };
+    let relative = stem.strip_prefix(out).unwrap_or(stem);
+    for kind in &IMAGES {
+        let path = with_suffix(stem, kind.suffix);
+        match fs::read(with_suffix(&shard.join(relative), kind.suffix)) {
+            Ok(bytes) => output::write_inside(out, &path, &bytes)?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => output::remove_inside(out, &path)?,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}

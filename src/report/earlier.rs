@@ -1,0 +1,142 @@
+//! An earlier report, and the verdicts that differ from it: after a correction of the reference, or with a new
+//! version of the program.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::Deserialize;
+use toyproof_verify::Verdict;
+
+use super::Report;
+
+/// The verdicts of an earlier report.
+#[derive(Debug, Clone)]
+pub struct Earlier {
+    name: String,
+    verdicts: BTreeMap<String, Verdict>,
+}
+
+/// A shader whose verdict differs between two reports; none where a report does not have the shader.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Change {
+    /// The shader's name.
+    pub shader: String,
+    /// The verdict in the earlier report.
+    pub before: Option<Verdict>,
+    /// The verdict in the later report.
+    pub after: Option<Verdict>,
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown =
+            |verdict: Option<Verdict>| verdict.map_or("–".to_owned(), |verdict| verdict.to_string());
+        let [before, after] = [self.before, self.after].map(shown);
+        write!(f, "{before:<12} → {after:<12} {}", self.shader)
+    }
+}
+
+impl Earlier {
+    /// Reads the text of a `verdict.json`; the name is for messages.
+    ///
+    /// # Errors
+    /// Why the text is not one.
+    pub fn parse(name: String, text: &str) -> Result<Self, String> {
+        #[derive(Deserialize)]
+        struct Version {
+            version: u32,
+        }
+        #[derive(Deserialize)]
+        struct Shaders {
+            shaders: Vec<Shader>,
+        }
+        #[derive(Deserialize)]
+        struct Shader {
+            shader: String,
+            verdict: Verdict,
+        }
+        let error = |error: serde_json::Error| format!("it is not a verdict.json: {error}");
+        let Version { version } = serde_json::from_str(text).map_err(error)?;
+        if version != Report::VERSION {
+            return Err(format!(
+                "it has version {version}, and this program reads version {}",
+                Report::VERSION
+            ));
+        }
+        let Shaders { shaders } = serde_json::from_str(text).map_err(error)?;
+        let verdicts = shaders.into_iter().map(|one| (one.shader, one.verdict));
+        Ok(Self {
+            name,
+            verdicts: verdicts.collect(),
+        })
+    }
+
+    /// The name of the report.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The shaders whose verdicts differ in a later report: in its order, and then those that it does not have.
+    #[must_use]
+    pub fn changes(&self, later: &Report) -> Vec<Change> {
+        let mut gone = self.verdicts.clone();
+        let changed = later.shaders().iter().filter_map(|record| {
+            gone.remove(&record.shader);
+            let before = self.verdicts.get(&record.shader).copied();
+            (before != Some(record.verdict)).then(|| Change {
+                shader: record.shader.clone(),
+                before,
+                after: Some(record.verdict),
+            })
+        });
+        let mut changes: Vec<_> = changed.collect();
+        changes.extend(gone.into_iter().map(|(shader, verdict)| Change {
+            shader,
+            before: Some(verdict),
+            after: None,
+        }));
+        changes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Record;
+
+    fn report(shaders: &[(&str, Verdict)]) -> Report {
+        let record = |&(name, verdict): &(&str, Verdict)| Record {
+            verdict,
+            ..Record::new(name.to_owned())
+        };
+        Report::new(None, shaders.iter().map(record).collect())
+    }
+
+    #[test]
+    fn changed_new_and_missing_shaders_are_listed() {
+        use Verdict::{Correct, Invalid, Wrong};
+        let before = report(&[("a", Wrong), ("b", Correct), ("gone", Invalid)]);
+        let before = Earlier::parse("old".to_owned(), &before.json()).unwrap();
+        let after = report(&[("new", Wrong), ("b", Correct), ("a", Correct)]);
+        let shown: Vec<_> = before.changes(&after).iter().map(Change::to_string).collect();
+        assert_eq!(
+            shown,
+            [
+                "–            → wrong        new",
+                "wrong        → correct      a",
+                "invalid      → –            gone"
+            ]
+        );
+    }
+
+    #[test]
+    fn other_files_are_rejected() {
+        let parse = |text| Earlier::parse(String::new(), text).unwrap_err();
+        assert!(parse("[]").starts_with("it is not a verdict.json"));
+        assert_eq!(
+            parse(r#"{"version": 1, "shaders": []}"#),
+            "it has version 1, and this program reads version 2"
+        );
+    }
+}
