@@ -112,6 +112,8 @@ pub(crate) enum ReadError {
     Scene(PathBuf),
     /// A folder without any shader.
     NoShader(PathBuf),
+    /// The folder of a student without any shader, and what there is instead.
+    NotSubmitted(PathBuf, String),
     /// An error of the operating system.
     Unreadable {
         /// The file or folder.
@@ -137,7 +139,9 @@ impl ReadError {
     /// The name of the file or folder.
     pub(crate) fn name(&self) -> String {
         match self {
-            Self::Missing(path) | Self::NoShader(path) | Self::Scene(path) => path_name(path),
+            Self::Missing(path) | Self::NoShader(path) | Self::NotSubmitted(path, _) | Self::Scene(path) => {
+                path_name(path)
+            }
             Self::Unreadable { name, .. } | Self::TooLarge { name } => name.clone(),
             Self::NotUtf8 { file, .. } => file.name().to_owned(),
         }
@@ -162,6 +166,7 @@ impl ReadError {
                 "no shader in this folder or its subfolders (searched for .glsl .frag .fs .shadertoy)"
                     .to_owned()
             }
+            Self::NotSubmitted(_, instead) => format!("no shader was submitted{instead}"),
             Self::Unreadable { error, .. } => format!("cannot be read: {error}"),
             Self::TooLarge { .. } => TOO_LARGE.to_owned(),
             Self::NotUtf8 { .. } => NOT_UTF8.to_owned(),
@@ -198,7 +203,7 @@ pub(crate) fn find(argument: &Path) -> Search {
     };
     let only = |input| Search {
         inputs: vec![input],
-        skipped: Vec::new(),
+        ..Search::default()
     };
     let stream = |bytes: Result<Vec<u8>, ReadError>, name: String, relative| {
         bytes.map(|bytes| named(InputSource::Stream { name, bytes }, relative))
@@ -266,9 +271,7 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 /// Returns whether a file has a shader's extension.
 #[must_use]
 pub(crate) fn is_shader(path: &Path) -> bool {
-    path.extension()
-        .and_then(OsStr::to_str)
-        .is_some_and(|extension| EXTENSIONS.contains(&extension))
+    EXTENSIONS.iter().any(|extension| has_extension(path, extension))
 }
 
 /// Reads the texts of an input, without byte order marks. JSON is recognized by its extension or its
@@ -413,6 +416,8 @@ pub(crate) struct Search {
     pub inputs: Vec<Result<Input, ReadError>>,
     /// The links that were not followed.
     pub skipped: Vec<Skipped>,
+    /// The archives and plain texts, in which `collect` finds shaders.
+    pub unread: Vec<PathBuf>,
 }
 
 /// Searches a folder and its subfolders, except hidden ones. Each folder is searched once, however many links
@@ -422,6 +427,7 @@ pub(super) fn search(folder: &Path) -> Search {
         folder,
         found: Vec::new(),
         skipped: Vec::new(),
+        unread: Vec::new(),
         folders: HashSet::new(),
         links: Vec::new(),
         entries: 0,
@@ -442,6 +448,7 @@ pub(super) fn search(folder: &Path) -> Search {
     Search {
         inputs: found.into_iter().map(|(_, found)| found).collect(),
         skipped: walk.skipped,
+        unread: walk.unread,
     }
 }
 
@@ -450,6 +457,7 @@ struct Walk<'a> {
     /// The inputs, each with its path.
     found: Vec<(PathBuf, Result<Input, ReadError>)>,
     skipped: Vec<Skipped>,
+    unread: Vec<PathBuf>,
     /// The canonical paths of the searched folders.
     folders: HashSet<PathBuf>,
     /// Links to folders.
@@ -497,6 +505,12 @@ impl Walk<'_> {
             }
         } else if kind.is_file() && is_input(entry.path()) {
             self.add(entry.into_path());
+        } else if kind.is_file()
+            && ["zip", "txt"]
+                .iter()
+                .any(|other| has_extension(entry.path(), other))
+        {
+            self.unread.push(entry.into_path());
         }
     }
 
@@ -544,7 +558,7 @@ fn is_input(path: &Path) -> bool {
 
 /// Returns whether a file or folder is hidden, as `.git` is, or is the `__MACOSX` folder that macOS adds to
 /// archives.
-fn is_hidden(name: &OsStr) -> bool {
+pub(super) fn is_hidden(name: &OsStr) -> bool {
     name.as_encoded_bytes().starts_with(b".") || name == "__MACOSX"
 }
 

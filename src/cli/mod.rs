@@ -2,12 +2,14 @@
 //! result.
 
 mod check;
+mod collect;
 mod compare;
 mod convert;
 mod debug;
 mod doctor;
 mod explain;
 mod files;
+mod gradescope;
 mod inputs;
 mod names;
 mod new;
@@ -23,6 +25,7 @@ mod shell;
 mod stress;
 mod terminal;
 mod trade;
+mod zip;
 
 use std::ffi::OsString;
 use std::io;
@@ -87,6 +90,7 @@ Exit code: 0 on success, 1 if a shader is at fault or images differ, 2 for any o
 enum Command {
     Check(check::Args),
     Merge(check::MergeArgs),
+    Collect(collect::Args),
     Render(render::Args),
     Run(run::Args),
     Convert(convert::Args),
@@ -98,6 +102,7 @@ enum Command {
     Export(render::ExportArgs),
     Import(project::ImportArgs),
     New(new::Args),
+    Gradescope(gradescope::Args),
     Scenes(scenes::Args),
     Doctor(doctor::Args),
     Completions(shell::CompletionsArgs),
@@ -187,6 +192,7 @@ impl Command {
         match self {
             Self::Check(args) => check::run(args, terminal),
             Self::Merge(args) => check::merge(args, terminal),
+            Self::Collect(args) => collect::run(args, terminal),
             Self::Render(args) => render::run(args, terminal),
             Self::Run(args) => run::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
@@ -198,6 +204,7 @@ impl Command {
             Self::Export(args) => render::export(args, terminal),
             Self::Import(args) => project::import(args, terminal),
             Self::New(args) => new::run(args, terminal),
+            Self::Gradescope(args) => gradescope::run(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Completions(args) => shell::completions(args, terminal),

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 
-use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity};
+use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity, grouped, path_name, plural};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
 
@@ -24,6 +24,8 @@ pub(super) struct Shader {
     pub(super) lints: Lints,
     /// All tabs, if it is a project.
     pub(super) passes: Option<Passes>,
+    /// Whether a student submitted no shader.
+    pub(super) is_missing: bool,
 }
 
 /// Why a shader cannot be used.
@@ -104,6 +106,7 @@ impl Shader {
             checked,
             lints,
             passes,
+            is_missing: matches!(found, Err(ReadError::NotSubmitted(..))),
         }
     }
 
@@ -154,7 +157,7 @@ fn read(
 }
 
 /// Finds all shaders that the arguments name, in their order; standard input is read once. Warns of links
-/// that are not followed.
+/// that are not followed, and of archives and texts.
 pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
     let first = arguments.iter().position(|argument| argument == Path::new("-"));
     let mut inputs: Vec<_> = arguments
@@ -165,6 +168,16 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Inp
             let search = files::find(argument);
             for skipped in &search.skipped {
                 terminal.warn(skipped);
+            }
+            if let [first, rest @ ..] = &search.unread[..] {
+                let more = match rest.len() as u64 {
+                    0 => String::new(),
+                    more => format!(" and {} more {}", grouped(more), plural(more, "file", "files")),
+                };
+                terminal.warn(format_args!(
+                    "skipped {}{more}: not a shader\nhelp: `toyproof collect` finds shaders in archives and texts",
+                    path_name(first)
+                ));
             }
             search.inputs
         })

@@ -173,6 +173,7 @@ fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &
         files,
         lints: Lints::default(),
         passes: None,
+        is_missing: false,
     })
 }
 

@@ -119,7 +119,7 @@ impl Record {
     }
 
     fn is_compiled(&self) -> bool {
-        self.verdict != toyproof_verify::Verdict::Invalid
+        self.verdict.is_compiled()
     }
 
     /// The marks for rules and functions that have points.

@@ -24,7 +24,7 @@ pub struct Explanation {
 }
 
 /// The terms, each with its id and its definition.
-pub(super) const TERMS: [(&str, &str, &str); 20] = [
+pub(super) const TERMS: [(&str, &str, &str); 21] = [
     (
         "correct",
         "correct",
@@ -53,6 +53,7 @@ pub(super) const TERMS: [(&str, &str, &str); 20] = [
          random numbers, or the shader cannot be evaluated in time.",
     ),
     ("invalid", "invalid", "The shader does not compile."),
+    ("missing", "missing", "No shader was submitted."),
     (
         "timeout",
         "timeout",

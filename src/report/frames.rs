@@ -188,7 +188,7 @@ impl Record {
             };
             return;
         }
-        if self.verdict != Verdict::Invalid {
+        if self.verdict.is_compiled() {
             self.reason = format!("at {}: {}", frames[shown].label(), self.reason);
         }
         let others = frames.iter().enumerate();
@@ -209,7 +209,7 @@ impl Record {
                 .push(format!("right in {} of {count} frames", grouped(right)));
         }
         let unchecked = (planned - frames.len()) as u64;
-        if unchecked > 0 && self.verdict != Verdict::Invalid {
+        if unchecked > 0 && self.verdict.is_compiled() {
             let verb = plural(unchecked, "frame was", "frames were");
             self.details
                 .push(format!("{} further {verb} not checked", grouped(unchecked)));

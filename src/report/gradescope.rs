@@ -17,6 +17,9 @@ struct Results {
     stdout_visibility: Visibility,
     /// In seconds.
     execution_time: u64,
+    /// Replaces the sum of the tests' scores.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    score: Option<f64>,
     tests: Vec<Test>,
 }
 
@@ -44,7 +47,8 @@ enum Status {
     Failed,
 }
 
-/// Formats the file: a test per mark of the rubric; for several shaders, each name starts with the shader's.
+/// Formats the file: a test per mark of the rubric; for several shaders, each name starts with the shader's, and the
+/// one with the fewest points gives the score.
 #[must_use]
 pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
     let tests = records.iter().flat_map(|record| {
@@ -69,7 +73,10 @@ pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
     let results = Results {
         output: match records {
             [one] => format!("{}: {}", one.verdict, one.reason),
-            several => plain(&summary(several)),
+            several => format!(
+                "{}\nSeveral shaders were submitted; the one with the fewest points counts.",
+                plain(&summary(several))
+            ),
         },
         output_format: Format::Text,
         visibility: rubric.visibility,
@@ -79,10 +86,18 @@ pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
             .map(|record| record.seconds.total())
             .sum::<f64>()
             .ceil() as u64,
+        score: lowest_score(records, rubric),
         tests: tests.collect(),
     };
     // Strings and finite numbers always serialize.
     serde_json::to_string_pretty(&results).unwrap_or_default() + "\n"
+}
+
+/// The fewest points of several shaders; none for one.
+fn lowest_score(records: &[Record], rubric: &Rubric) -> Option<f64> {
+    let points = |record: &Record| rubric.marks(record).iter().map(|mark| mark.points).sum();
+    let scores = records.iter().map(points).filter(|_| records.len() > 1);
+    scores.reduce(f64::min)
 }
 
 #[cfg(test)]
@@ -145,7 +160,7 @@ mod tests {
             .map(|error| error.to_string())
             .collect();
         assert!(errors.is_empty(), "{errors:?}");
-        assert_eq!(json["tests"].as_array().unwrap().len(), 3 * 8);
+        assert_eq!(json["tests"].as_array().unwrap().len(), 3 * 9);
         json["tests"][0]["points"] = 1.into();
         assert!(!validator.is_valid(&json));
     }
@@ -158,7 +173,11 @@ mod tests {
             (&test["name"], &test["score"], &test["max_score"], &test["status"]),
             (&json!("algorithm"), &json!(6.0), &json!(6.0), &json!("passed"))
         );
-        assert_eq!(json["execution_time"], 2);
+        assert_eq!(
+            (&json["execution_time"], &json["score"]),
+            (&json!(2), &Value::Null)
+        );
+        assert_eq!(read(&[correct(), invalid()])["score"], 0.0);
         let mut hostile = invalid();
         hostile.diagnostics[0].message = "<script>".to_owned();
         let json = read(&[hostile]);

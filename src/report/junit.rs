@@ -54,7 +54,7 @@ fn test_case(record: &Record) -> TestCase {
 fn status(verdict: Verdict) -> Option<TestCaseStatus> {
     match verdict {
         Verdict::Correct => None,
-        Verdict::Invalid | Verdict::Wrong | Verdict::Unstable => {
+        Verdict::Missing | Verdict::Invalid | Verdict::Wrong | Verdict::Unstable => {
             Some(TestCaseStatus::non_success(NonSuccessKind::Failure))
         }
         Verdict::Timeout | Verdict::Error => Some(TestCaseStatus::non_success(NonSuccessKind::Error)),
@@ -146,6 +146,7 @@ mod tests {
             })
             .collect();
         let wanted = [
+            ("missing", "failure"),
             ("invalid", "failure"),
             ("timeout", "error"),
             ("error", "error"),
@@ -163,7 +164,7 @@ mod tests {
         let count = |name| suite.attribute(name).unwrap();
         assert_eq!(
             ["tests", "failures", "errors", "skipped"].map(count),
-            ["8", "3", "2", "2"]
+            ["9", "4", "2", "2"]
         );
     }
 

@@ -298,7 +298,8 @@ fn without_image(failure: &Failure, files: &Files) -> String {
         }
         Failure::LoopTruncated(pixels) => loop_truncated(*pixels),
         Failure::Cpu(failure) => format!("{failure}{}", failure_position(failure, files)),
-        Failure::Unreadable(_)
+        Failure::Missing(_)
+        | Failure::Unreadable(_)
         | Failure::Unrendered(_)
         | Failure::Reference(_)
         | Failure::Gpu(_)

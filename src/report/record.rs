@@ -423,6 +423,7 @@ pub(super) mod samples {
         (unstable.shader, unstable.verdict) = ("unstable".to_owned(), Verdict::Unstable);
         unstable.precision = Some(question([500, 0, 0]));
         vec![
+            record(Verdict::Missing),
             invalid(),
             record(Verdict::Timeout),
             record(Verdict::Error),
@@ -484,12 +485,12 @@ mod tests {
             validator.iter_errors(&json).collect::<Vec<_>>()
         );
         for (path, value) in [
-            ("/shaders/9/fix/line", 0.into()),
-            ("/shaders/9/fix/edits", serde_json::json!([])),
-            ("/shaders/9/fix/alternatives/0/agreeing", "many".into()),
-            ("/shaders/10/suspects/0/score", 2.into()),
-            ("/shaders/12/frames/0/size", serde_json::json!([0, 4])),
-            ("/shaders/12/frames/1/verdict", "splendid".into()),
+            ("/shaders/10/fix/line", 0.into()),
+            ("/shaders/10/fix/edits", serde_json::json!([])),
+            ("/shaders/10/fix/alternatives/0/agreeing", "many".into()),
+            ("/shaders/11/suspects/0/score", 2.into()),
+            ("/shaders/13/frames/0/size", serde_json::json!([0, 4])),
+            ("/shaders/13/frames/1/verdict", "splendid".into()),
             ("/shaders/0/verdict", "splendid".into()),
         ] {
             let mut json = json.clone();

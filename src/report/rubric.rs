@@ -226,7 +226,7 @@ fn compiles(points: f64, record: &Record) -> Mark {
         points,
         partial_from: None,
     };
-    let passed = record.verdict != Verdict::Invalid;
+    let passed = record.verdict.is_compiled();
     let why = if passed {
         "the shader compiles".to_owned()
     } else {

@@ -18,6 +18,8 @@ use crate::compare::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
+    /// No shader was submitted.
+    Missing,
     /// It does not compile, is not text, or is nested too deeply.
     Invalid,
     /// It never ends or takes too long; also if a driver truncated its loops.
@@ -37,6 +39,12 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Whether there is a shader that compiles.
+    #[must_use]
+    pub fn is_compiled(self) -> bool {
+        !matches!(self, Self::Missing | Self::Invalid)
+    }
+
     /// Whether the shader has no fault.
     #[must_use]
     pub fn is_good(self) -> bool {
@@ -47,6 +55,7 @@ impl Verdict {
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
+            Self::Missing => "missing",
             Self::Invalid => "invalid",
             Self::Timeout => "timeout",
             Self::Error => "error",
@@ -357,6 +366,7 @@ fn without_image(failure: &Failure) -> Verdict {
         diagnostics.iter().any(|diagnostic| diagnostic.code == code)
     };
     match failure {
+        Failure::Missing(_) => Verdict::Missing,
         Failure::Invalid(diagnostics) if is_late(diagnostics) => Verdict::Timeout,
         Failure::Invalid(_) => Verdict::Invalid,
         Failure::Gpu(failure) if failure.is_timeout() || is_late(failure.diagnostics()) => Verdict::Timeout,
@@ -712,6 +722,7 @@ mod tests {
     fn without_an_image_the_failure_decides() {
         let of = |failure| decide(Evidence::NoImage(failure)).0;
         let error = |code: &'static str| vec![Diagnostic::error(code, "x")];
+        assert_eq!(of(Failure::Missing("no shader".to_owned())), Verdict::Missing);
         assert_eq!(of(Failure::Invalid(error("E0201"))), Verdict::Invalid);
         assert_eq!(
             of(Failure::Invalid(error(Code::TooSlow.as_str()))),

@@ -191,6 +191,9 @@ pub struct Case<'a> {
 /// Why there is no image of a shader.
 #[derive(Debug, Clone, Error)]
 pub enum Failure {
+    /// No shader was submitted.
+    #[error("{0}")]
+    Missing(String),
     /// The shader, or its scene, cannot be read.
     #[error("{0}")]
     Unreadable(String),

@@ -5,12 +5,9 @@ use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use serde_json::Value;
-
 use crate::architecture::sources;
 use crate::program::toyproof;
 use crate::requirements::{require_chromium, require_driver};
-use crate::support::SPHERE;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -375,34 +372,6 @@ fn the_pipeline_of_the_guide_is_that_of_the_example() {
         count += 1;
     }
     assert_eq!(count, 3);
-}
-
-/// The script that Gradescope runs, in another folder than `/autograder`.
-#[cfg(unix)]
-#[test]
-fn the_autograder_of_the_guide_writes_marks() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    for name in ["source", "submission"] {
-        fs::create_dir(at(name)).unwrap();
-    }
-    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), at("source/toyproof")).unwrap();
-    fs::write(at("source/scene.toml"), SPHERE.scene).unwrap();
-    let rubric = block("docs/guide/checking.md", "[compiles]");
-    fs::write(at("source/rubric.toml"), rubric).unwrap();
-    let script = block("docs/guide/checking.md", "cd /autograder/source");
-    let script = script.replace("/autograder", folder.path().to_str().unwrap());
-    let grade = || -> Value {
-        let status = Command::new("sh").args(["-c", &script]).status().unwrap();
-        assert!(status.success(), "{script}");
-        serde_json::from_str(&fs::read_to_string(at("results/results.json")).unwrap()).unwrap()
-    };
-    assert_eq!(grade()["score"], 0);
-    fs::write(at("submission/mine.glsl"), SPHERE.shader).unwrap();
-    let marks = grade();
-    let scores = marks["tests"].as_array().unwrap().iter();
-    let total: f64 = scores.map(|test| test["score"].as_f64().unwrap()).sum();
-    assert!((total - 10.0).abs() < 1e-9, "{marks}");
 }
 
 /// The format that editors match.

@@ -9,9 +9,11 @@
 mod alternatives;
 mod architecture;
 mod assignments;
+mod autograder;
 mod bad_input;
 mod batch;
 mod browser;
+mod collected;
 mod commands;
 mod containment;
 mod conversion;

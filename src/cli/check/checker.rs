@@ -303,7 +303,7 @@ impl<'a> Checker<'a> {
                 lenient: self.args.language.is_lenient(),
                 timeout: self.args.driver.timeout(),
             });
-            let subject = subject.filter(|_| outcome.record.verdict != Verdict::Invalid);
+            let subject = subject.filter(|_| outcome.record.verdict.is_compiled());
             let mut check_text = || assignment.check_text(subject.as_ref(), &mut outcome.record);
             match &context.pool {
                 Some(pool) => pool.install(check_text),
@@ -405,7 +405,7 @@ impl<'a> Checker<'a> {
                     None => None,
                 };
             }
-            Verdict::Error | Verdict::Correct | Verdict::Ok => return None,
+            Verdict::Missing | Verdict::Error | Verdict::Correct | Verdict::Ok => return None,
         };
         let check = check.as_ref()?;
         let pixel = check.worst.as_ref().or(check.first.as_ref())?;
@@ -445,6 +445,13 @@ impl<'a> Checker<'a> {
             key = self.plan.frames.len() + frame.frame as usize;
         }
         let cached = reference.map(|reference| self.cached(reference, (index, key), frame));
+        let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
+            Unusable::Unreadable(error) if shader.is_missing => Failure::Missing(error.reason.clone()),
+            Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
+            Unusable::Unrendered(error) => Failure::Unrendered(error.reason.clone()),
+            Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
+        })?;
+        let cached = reference.map(|reference| self.cached(reference, index, frame));
         let cached = cached.transpose()?;
         if let Some(passes) = &shader.passes {
             let renderers = passes::Renderers {

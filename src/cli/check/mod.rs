@@ -27,10 +27,12 @@ use self::checker::{Checker, Message, Outcome, Submission, WorkerContext};
 use self::images::IMAGES;
 pub(super) use self::merge::{MergeArgs, merge};
 use self::plan::Plan;
+pub(super) use self::plan::read_assignment;
 use self::reference::References;
 pub(super) use self::reference::Scenes;
 use self::reports::{Line, Results};
 use self::shard::{Manifest, Shard};
+use super::collect::add_missing;
 use super::inputs::short_device;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
@@ -276,7 +278,11 @@ impl Work {
             .chain([reports::RESULTS_NAME, shard::MANIFEST_NAME])
             .collect();
         let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
-        let submissions = find(&args.shaders, terminal)
+        let mut inputs = find(&args.shaders, terminal);
+        for folder in &args.shaders {
+            add_missing(folder, &mut inputs).map_err(|error| terminal.error(error))?;
+        }
+        let submissions = inputs
             .into_iter()
             .map(|input| Submission::new(input, args, &plan, &references, &mut names, build))
             .collect();

@@ -79,6 +79,16 @@ impl Plan {
     }
 }
 
+/// Reads the assignment that an argument names, and returns its file.
+///
+/// # Errors
+/// It is unusable; what is wrong with it has been printed.
+pub(in crate::cli) fn read_assignment(path: &Path, terminal: &Terminal) -> Result<(PathBuf, Assignment), ()> {
+    let file = named(path, terminal)?;
+    let (assignment, _) = read(&file, terminal)?;
+    Ok((file, assignment))
+}
+
 /// The file that `--assignment` names, which may be its folder.
 fn named(path: &Path, terminal: &Terminal) -> Result<PathBuf, ()> {
     let file = if path.is_dir() {

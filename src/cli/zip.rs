@@ -1,0 +1,377 @@
+//! Zip archives, as PKWARE's APPNOTE 6.3.10 describes them: read from untrusted sources, and written for Gradescope.
+
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+use flate2::read::DeflateDecoder;
+use flate2::write::DeflateEncoder;
+use flate2::{Compression, Crc};
+
+const LOCAL_HEADER: u32 = 0x0403_4b50;
+const CENTRAL_HEADER: u32 = 0x0201_4b50;
+const END: u32 = 0x0605_4b50;
+const END_64: u32 = 0x0606_4b50;
+const END_64_LOCATOR: u32 = 0x0706_4b50;
+
+const END_BYTES: u64 = 22;
+const END_64_LOCATOR_BYTES: u64 = 20;
+/// The longest comment of an archive.
+const MAX_COMMENT: u64 = 0xffff;
+/// The largest directory that is read: about a million files.
+const MAX_DIRECTORY: u64 = 128 << 20;
+
+const STORED: u16 = 0;
+const DEFLATED: u16 = 8;
+const ENCRYPTED: u16 = 1;
+const UTF8: u16 = 1 << 11;
+
+/// A file of an archive.
+#[derive(Debug, Clone)]
+pub(super) struct Entry {
+    /// The path in the archive, with `/` between components. It may be hostile.
+    pub(super) name: String,
+    flags: u16,
+    method: u16,
+    crc: u32,
+    compressed: u64,
+    offset: u64,
+}
+
+/// An archive.
+#[derive(Debug)]
+pub(super) struct Archive<R> {
+    input: R,
+    entries: Vec<Entry>,
+}
+
+fn broken(problem: &str) -> io::Error {
+    io::Error::new(
+        io::ErrorKind::InvalidData,
+        format!("not a valid zip archive: {problem}"),
+    )
+}
+
+/// Reads little-endian numbers one after the other.
+struct Fields<'a>(&'a [u8]);
+
+impl<'a> Fields<'a> {
+    fn bytes(&mut self, count: usize) -> io::Result<&'a [u8]> {
+        let (bytes, rest) = self
+            .0
+            .split_at_checked(count)
+            .ok_or_else(|| broken("it is truncated"))?;
+        self.0 = rest;
+        Ok(bytes)
+    }
+
+    fn number(&mut self, bytes: usize) -> io::Result<u64> {
+        let bytes = self.bytes(bytes)?.iter().rev();
+        Ok(bytes.fold(0, |number, &byte| number << 8 | u64::from(byte)))
+    }
+
+    fn u16(&mut self) -> io::Result<u16> {
+        Ok(self.number(2)? as u16)
+    }
+
+    fn u32(&mut self) -> io::Result<u32> {
+        Ok(self.number(4)? as u32)
+    }
+}
+
+impl<R: Read + Seek> Archive<R> {
+    /// Reads the directory.
+    ///
+    /// # Errors
+    /// Those of the input, or that it is not an archive.
+    pub(super) fn open(mut input: R) -> io::Result<Self> {
+        let (offset, bytes) = find_directory(&mut input)?;
+        if bytes > MAX_DIRECTORY {
+            return Err(broken("its directory is too large"));
+        }
+        input.seek(SeekFrom::Start(offset))?;
+        let mut directory = Vec::new();
+        input.by_ref().take(bytes).read_to_end(&mut directory)?;
+        let mut fields = Fields(&directory);
+        let mut entries = Vec::new();
+        while !fields.0.is_empty() {
+            entries.extend(read_entry(&mut fields)?);
+        }
+        Ok(Self { input, entries })
+    }
+
+    /// The files, without folders.
+    pub(super) fn entries(&self) -> &[Entry] {
+        &self.entries
+    }
+
+    /// Unpacks a file, but at most `limit` bytes and one more.
+    ///
+    /// # Errors
+    /// The file is damaged, encrypted, or compressed in another way than by *deflate*.
+    pub(super) fn read(&mut self, entry: &Entry, limit: u64) -> io::Result<Vec<u8>> {
+        if entry.flags & ENCRYPTED != 0 {
+            return Err(io::Error::other("it is encrypted"));
+        }
+        self.input.seek(SeekFrom::Start(entry.offset))?;
+        let mut header = [0; 30];
+        self.input.read_exact(&mut header)?;
+        let mut fields = Fields(&header);
+        if fields.u32()? != LOCAL_HEADER {
+            return Err(broken("a file is not where its directory says"));
+        }
+        fields.bytes(22)?;
+        let names = i64::from(fields.u16()?) + i64::from(fields.u16()?);
+        self.input.seek(SeekFrom::Current(names))?;
+        let packed = self.input.by_ref().take(entry.compressed);
+        let mut bytes = Vec::new();
+        match entry.method {
+            STORED => packed.take(limit + 1).read_to_end(&mut bytes)?,
+            DEFLATED => DeflateDecoder::new(packed)
+                .take(limit + 1)
+                .read_to_end(&mut bytes)?,
+            method => {
+                return Err(io::Error::other(format!(
+                    "its compression, method {method}, is not supported"
+                )));
+            }
+        };
+        if bytes.len() as u64 <= limit && checksum(&bytes) != entry.crc {
+            return Err(broken("a file has another checksum than its content"));
+        }
+        Ok(bytes)
+    }
+}
+
+/// The offset and the size of the directory.
+fn find_directory(input: &mut (impl Read + Seek)) -> io::Result<(u64, u64)> {
+    let length = input.seek(SeekFrom::End(0))?;
+    let tail_at = length.saturating_sub(END_64_LOCATOR_BYTES + END_BYTES + MAX_COMMENT);
+    input.seek(SeekFrom::Start(tail_at))?;
+    let mut tail = Vec::new();
+    input.by_ref().take(length - tail_at).read_to_end(&mut tail)?;
+    let end = tail.windows(4).rposition(|bytes| bytes == END.to_le_bytes());
+    let end = end.ok_or_else(|| broken("it has no directory"))?;
+    let mut fields = Fields(&tail[end + 4..]);
+    fields.bytes(8)?;
+    let (bytes, offset) = (fields.number(4)?, fields.number(4)?);
+    fields.bytes(2)?;
+    if offset != u64::from(u32::MAX) && bytes != u64::from(u32::MAX) {
+        return Ok((offset, bytes));
+    }
+    let locator = end
+        .checked_sub(END_64_LOCATOR_BYTES as usize)
+        .ok_or_else(|| broken("it is truncated"))?;
+    let mut fields = Fields(&tail[locator..]);
+    if fields.u32()? != END_64_LOCATOR {
+        return Err(broken("it has no directory of large files"));
+    }
+    fields.bytes(4)?;
+    input.seek(SeekFrom::Start(fields.number(8)?))?;
+    let mut end = [0; 56];
+    input.read_exact(&mut end)?;
+    let mut fields = Fields(&end);
+    if fields.u32()? != END_64 {
+        return Err(broken("it has no directory of large files"));
+    }
+    fields.bytes(36)?;
+    let (bytes, offset) = (fields.number(8)?, fields.number(8)?);
+    Ok((offset, bytes))
+}
+
+/// Reads an entry of the directory; none if it is a folder.
+fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
+    if fields.u32()? != CENTRAL_HEADER {
+        return Err(broken("its directory is damaged"));
+    }
+    fields.bytes(4)?;
+    let (flags, method) = (fields.u16()?, fields.u16()?);
+    fields.bytes(4)?;
+    let crc = fields.u32()?;
+    let (mut compressed, mut size) = (fields.number(4)?, fields.number(4)?);
+    let [name, extra, comment] = [fields.u16()?, fields.u16()?, fields.u16()?].map(usize::from);
+    fields.bytes(8)?;
+    let mut offset = fields.number(4)?;
+    let name = fields.bytes(name)?;
+    let mut extra = Fields(fields.bytes(extra)?);
+    fields.bytes(comment)?;
+    while extra.0.len() >= 4 {
+        let (id, length) = (extra.u16()?, extra.u16()?);
+        let mut large = Fields(extra.bytes(usize::from(length).min(extra.0.len()))?);
+        if id == 1 {
+            for number in [&mut size, &mut compressed, &mut offset] {
+                if *number == u64::from(u32::MAX) {
+                    *number = large.number(8)?;
+                }
+            }
+        }
+    }
+    let name = decode_name(name, flags & UTF8 != 0);
+    Ok((!name.ends_with(['/', '\\'])).then_some(Entry {
+        name: name.replace('\\', "/"),
+        flags,
+        method,
+        crc,
+        compressed,
+        offset,
+    }))
+}
+
+/// The characters of code page 437 from 128.
+const CODE_PAGE_437: &str = "ÇüéâäàåçêëèïîìÄÅÉæÆôöòûùÿÖÜ¢£¥₧ƒáíóúñÑªº¿⌐¬½¼¡«»░▒▓│┤╡╢╖╕╣║╗╝╜╛┐└┴┬├─┼╞╟╚╔╩╦╠═╬╧╨╤╥╙╘╒╓╫╪┘┌█▄▌▐▀αßΓπΣσµτΦΘΩδ∞φε∩≡±≥≤⌠⌡÷≈°∙·√ⁿ²■\u{a0}";
+
+/// Decodes a name. Archives of macOS have UTF-8 without the flag; those of old Windows programs have code page 437.
+fn decode_name(bytes: &[u8], is_utf8: bool) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(name) => name.to_owned(),
+        Err(_) if is_utf8 => String::from_utf8_lossy(bytes).into_owned(),
+        Err(_) => {
+            let upper: Vec<char> = CODE_PAGE_437.chars().collect();
+            let character = |&byte: &u8| match byte.checked_sub(128) {
+                Some(at) => upper[usize::from(at)],
+                None => char::from(byte),
+            };
+            bytes.iter().map(character).collect()
+        }
+    }
+}
+
+fn checksum(bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    crc.sum()
+}
+
+/// Whether a file of an archive can be run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// It is a plain file.
+    Plain,
+    /// It is a program.
+    Executable,
+}
+
+impl Mode {
+    /// The bits of Unix: a regular file and its permissions.
+    fn bits(self) -> u32 {
+        match self {
+            Self::Plain => 0o100_644,
+            Self::Executable => 0o100_755,
+        }
+    }
+}
+
+/// Packs files, each with its path. The same files give the same bytes: times are those of no file.
+pub(super) fn pack(files: &[(&str, Mode, &[u8])]) -> io::Result<Vec<u8>> {
+    /// 1980-01-01, the first day of the format, in the order of time and date.
+    const NO_TIME: [u8; 4] = [0, 0, 0x21, 0];
+    /// Version 2.0, of Unix, so that permissions count.
+    const MADE_BY: u16 = 3 * 256 + 20;
+    let large = |_| io::Error::other("the archive is larger than 4 GiB");
+    let mut archive = Vec::new();
+    let mut directory = Vec::new();
+    for (name, mode, bytes) in files {
+        let offset = u32::try_from(archive.len()).map_err(large)?;
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::default());
+        encoder.write_all(bytes)?;
+        let packed = encoder.finish()?;
+        let mut common = Vec::new();
+        for number in [20, UTF8, DEFLATED] {
+            common.extend(number.to_le_bytes());
+        }
+        common.extend(NO_TIME);
+        common.extend(checksum(bytes).to_le_bytes());
+        for length in [packed.len(), bytes.len()] {
+            common.extend(u32::try_from(length).map_err(large)?.to_le_bytes());
+        }
+        let name_length = u16::try_from(name.len()).map_err(|_| io::Error::other("a name is too long"))?;
+        common.extend(name_length.to_le_bytes());
+        common.extend([0; 2]);
+        archive.extend(LOCAL_HEADER.to_le_bytes());
+        archive.extend(&common);
+        archive.extend(name.as_bytes());
+        archive.extend(packed);
+        directory.extend(CENTRAL_HEADER.to_le_bytes());
+        directory.extend(MADE_BY.to_le_bytes());
+        directory.extend(common);
+        directory.extend([0; 6]);
+        directory.extend((mode.bits() << 16).to_le_bytes());
+        directory.extend(offset.to_le_bytes());
+        directory.extend(name.as_bytes());
+    }
+    let offset = u32::try_from(archive.len()).map_err(large)?;
+    let count = u16::try_from(files.len()).map_err(|_| io::Error::other("too many files"))?;
+    archive.extend(&directory);
+    archive.extend(END.to_le_bytes());
+    archive.extend([0; 4]);
+    archive.extend([count, count].map(u16::to_le_bytes).as_flattened());
+    archive.extend(u32::try_from(directory.len()).map_err(large)?.to_le_bytes());
+    archive.extend(offset.to_le_bytes());
+    archive.extend([0; 2]);
+    Ok(archive)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    fn files() -> Vec<u8> {
+        let long = "a".repeat(10_000);
+        pack(&[
+            ("a.glsl", Mode::Plain, b"void"),
+            ("ä/run", Mode::Executable, long.as_bytes()),
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn what_is_packed_is_unpacked() {
+        let bytes = files();
+        assert!(bytes.len() < 1000, "{}", bytes.len());
+        let mut archive = Archive::open(Cursor::new(bytes)).unwrap();
+        let entries = archive.entries().to_vec();
+        let names: Vec<_> = entries.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["a.glsl", "ä/run"]);
+        assert_eq!(archive.read(&entries[0], 100).unwrap(), b"void");
+        assert_eq!(
+            archive.read(&entries[1], 10_000).unwrap(),
+            "a".repeat(10_000).as_bytes()
+        );
+        assert_eq!(
+            archive.read(&entries[1], 100).unwrap().len(),
+            101,
+            "more is not unpacked"
+        );
+    }
+
+    #[test]
+    fn names_of_old_programs_are_of_code_page_437() {
+        assert_eq!(decode_name(b"M\x81ller/a.glsl", false), "Müller/a.glsl");
+        assert_eq!(decode_name("Müller".as_bytes(), false), "Müller");
+        assert_eq!(CODE_PAGE_437.chars().count(), 128);
+    }
+
+    /// Every truncation and every changed byte gives an error, or other files, but neither a panic nor a large
+    /// allocation.
+    #[test]
+    fn damaged_archives_are_errors() {
+        let bytes = files();
+        let unpack = |bytes: Vec<u8>| -> io::Result<()> {
+            let mut archive = Archive::open(Cursor::new(bytes))?;
+            for entry in archive.entries().to_vec() {
+                archive.read(&entry, 20_000)?;
+            }
+            Ok(())
+        };
+        for length in 0..bytes.len() {
+            assert!(unpack(bytes[..length].to_vec()).is_err(), "{length}");
+        }
+        for at in 0..bytes.len() {
+            for bit in 0..8 {
+                let mut damaged = bytes.clone();
+                damaged[at] ^= 1 << bit;
+                let _ = unpack(damaged);
+            }
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The archive for Gradescope, unpacked and run as Gradescope does.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::Command;
+
+use flate2::read::DeflateDecoder;
+use serde_json::Value;
+
+use crate::program::toyproof;
+use crate::support::SPHERE;
+
+const ASSIGNMENT: &str = "scene = \"scenes/sphere.toml\"\n[[frame]]\nsize = [64, 36]\n\
+                          [rubric.compiles]\npoints = 2\n[rubric.algorithm]\npoints = 6\n[rubric.precision]\npoints = 2\n";
+
+/// A folder with an assignment, and a file that passes for a program.
+fn assignment() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("task/scenes")).unwrap();
+    fs::write(folder.path().join("task/assignment.toml"), ASSIGNMENT).unwrap();
+    fs::write(folder.path().join("task/scenes/sphere.toml"), SPHERE.scene).unwrap();
+    let mut program = b"\x7fELF\x02\x01".to_vec();
+    program.resize(18, 0);
+    program.extend([0x3e, 0]);
+    fs::write(folder.path().join("program"), program).unwrap();
+    folder
+}
+
+/// Unpacks an archive by the headers of its files, which have their sizes.
+fn unpack(archive: &[u8], folder: &Path) {
+    let mut rest = archive;
+    while let Some(header) = rest.strip_prefix(b"PK\x03\x04") {
+        let number = |at: usize, count: usize| {
+            let bytes = header[at..at + count].iter().rev();
+            bytes.fold(0, |number, &byte| number << 8 | usize::from(byte))
+        };
+        let (packed, size, name) = (number(14, 4), number(18, 4), number(22, 2));
+        let content = &header[26 + name..][..packed];
+        let path = folder.join(std::str::from_utf8(&header[26..26 + name]).unwrap());
+        let mut bytes = Vec::new();
+        DeflateDecoder::new(content).read_to_end(&mut bytes).unwrap();
+        assert_eq!(bytes.len(), size);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+        rest = &header[26 + name + packed..];
+    }
+    assert!(rest.starts_with(b"PK\x01\x02"));
+}
+
+#[cfg(unix)]
+#[test]
+fn submissions_get_marks() {
+    let folder = assignment();
+    let folder = folder.path();
+    let packed = toyproof(
+        folder,
+        &[
+            "gradescope",
+            "task",
+            "--program",
+            "program",
+            "-o",
+            "autograder.zip",
+        ],
+    );
+    assert_eq!(packed.code, 0, "{}", packed.stderr);
+    let root = folder.join("autograder");
+    unpack(
+        &fs::read(folder.join("autograder.zip")).unwrap(),
+        &root.join("source"),
+    );
+    fs::remove_file(root.join("source/toyproof")).unwrap();
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), root.join("source/toyproof")).unwrap();
+    let script = fs::read_to_string(root.join("source/run_autograder")).unwrap();
+    let script = script.replace("/autograder", root.to_str().unwrap());
+    let grade = |files: &[(&str, &str)]| -> Value {
+        let _ = fs::remove_dir_all(root.join("submission"));
+        fs::create_dir(root.join("submission")).unwrap();
+        for (name, bytes) in files {
+            let path = root.join("submission").join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+        }
+        let status = Command::new("sh").args(["-c", &script]).status().unwrap();
+        assert!(status.success());
+        serde_json::from_str(&fs::read_to_string(root.join("results/results.json")).unwrap()).unwrap()
+    };
+    let right = SPHERE.shader;
+    let wrong = right.replace("sphere.radius * sphere.radius", "sphere.radius");
+    let invalid = right.replace("float disc", "flaot disc");
+    let endless = "void mainImage(out vec4 c, in vec2 p) { while (p.x > -1.0) { c += vec4(p, 0, 1); } }";
+    let common = "vec4 gray(float level) { return vec4(level); }";
+    for (files, points, output) in [
+        (
+            &[("mine.glsl", right)][..],
+            10.0,
+            "correct: all 2,304 pixels agree",
+        ),
+        (
+            &[("src/mine.txt", right), ("notes.pdf", "%PDF\x01")][..],
+            10.0,
+            "correct: ",
+        ),
+        (&[("mine.glsl", wrong.as_str())][..], 2.0, "wrong: "),
+        (&[("mine.glsl", invalid.as_str())][..], 0.0, "invalid: "),
+        (&[("mine.glsl", endless)][..], 2.0, "timeout: "),
+        (&[][..], 0.0, "missing: no shader was submitted"),
+        (
+            &[("notes.pdf", "%PDF\x01")][..],
+            0.0,
+            "missing: no shader was submitted (notes.pdf: it is not text)",
+        ),
+        (
+            &[("a.glsl", right), ("b.glsl", wrong.as_str())][..],
+            2.0,
+            "2 shaders: ",
+        ),
+        (
+            &[
+                (
+                    "image.glsl",
+                    "void mainImage(out vec4 c, in vec2 p) { c = gray(0.5); }",
+                ),
+                ("common.glsl", common),
+            ][..],
+            2.0,
+            "wrong: ",
+        ),
+    ] {
+        let marks = grade(files);
+        let scores = marks["tests"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|test| test["score"].as_f64().unwrap());
+        let sum = marks["score"].as_f64().unwrap_or(scores.sum());
+        assert!((sum - points).abs() < 1e-9, "{points}: {marks:#}");
+        assert!(
+            marks["output"].as_str().unwrap().starts_with(output),
+            "{output}: {marks:#}"
+        );
+    }
+    fs::remove_file(root.join("source/toyproof")).unwrap();
+    let failed = grade(&[("mine.glsl", right)]);
+    assert!(
+        failed["output"]
+            .as_str()
+            .unwrap()
+            .starts_with("The autograder failed"),
+        "{failed}"
+    );
+}
+
+#[test]
+fn assignments_that_cannot_be_packed_are_rejected() {
+    let folder = assignment();
+    let folder = folder.path();
+    let rejected = |assignment: &str, program: &str, error: &str| {
+        fs::write(folder.join("task/assignment.toml"), assignment).unwrap();
+        let run = toyproof(
+            folder,
+            &["gradescope", "task/assignment.toml", "--program", program],
+        );
+        assert!(run.code == 2 && run.stderr.contains(error), "{}", run.stderr);
+        assert!(!folder.join("autograder.zip").exists());
+    };
+    rejected(
+        "scene = \"scenes/sphere.toml\"\n",
+        "program",
+        "task/assignment.toml gives no points",
+    );
+    fs::write(folder.join("scene.toml"), SPHERE.scene).unwrap();
+    let outside = ASSIGNMENT.replace("scenes/sphere.toml", "../scene.toml");
+    rejected(
+        &outside,
+        "program",
+        "task/../scene.toml is not in the folder of the assignment",
+    );
+    rejected(
+        ASSIGNMENT,
+        "scene.toml",
+        "scene.toml is not a program for Linux on x86-64",
+    );
+}
