@@ -22,6 +22,7 @@ mod scenes;
 mod sequence;
 mod shader;
 mod shell;
+mod similar;
 mod stress;
 mod terminal;
 mod trade;
@@ -103,6 +104,7 @@ enum Command {
     Import(project::ImportArgs),
     New(new::Args),
     Gradescope(gradescope::Args),
+    Similar(similar::Args),
     Scenes(scenes::Args),
     Doctor(doctor::Args),
     Completions(shell::CompletionsArgs),
@@ -205,6 +207,7 @@ impl Command {
             Self::Import(args) => project::import(args, terminal),
             Self::New(args) => new::run(args, terminal),
             Self::Gradescope(args) => gradescope::run(args, terminal),
+            Self::Similar(args) => similar::run(args, terminal),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Completions(args) => shell::completions(args, terminal),

@@ -58,6 +58,7 @@ mod requirements;
 mod rules;
 mod scene_commands;
 mod sharding;
+mod similar;
 mod snapshots;
 mod stress;
 mod strict;

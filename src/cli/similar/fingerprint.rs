@@ -1,0 +1,335 @@
+//! Fingerprints of a shader's structure, without names, numbers, layout and the order of its functions: winnowing
+//! (Schleimer, Wilkerson and Aiken, *Winnowing: Local Algorithms for Document Fingerprinting*, 2003) over the typed
+//! tree of each function.
+
+use std::collections::{HashMap, HashSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use toyproof_diagnostic::{Files, Span};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{
+    Block, Condition, ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
+};
+
+/// The number of nodes that a fingerprint covers: fewer match by chance.
+const NODES: usize = 14;
+/// One of this many consecutive fingerprints is kept: equal parts of `NODES + WINDOW - 1` nodes share one.
+const WINDOW: usize = 6;
+
+/// The kept fingerprints of a shader, each with the first and the last line that it covers.
+#[derive(Debug, Default)]
+pub(super) struct Fingerprints(HashMap<u64, [usize; 2]>);
+
+/// A node of a tree: what it is, and where.
+struct Node {
+    kind: u64,
+    span: Span,
+}
+
+impl Fingerprints {
+    pub(super) fn of(checked: &Checked, files: &Files) -> Self {
+        let mut kept = HashMap::new();
+        for (_, function) in checked.tree.functions.iter() {
+            let mut flat = Flat {
+                tree: &checked.tree,
+                nodes: Vec::new(),
+            };
+            flat.block(function.body.as_deref().unwrap_or_default());
+            let grams: Vec<u64> = flat
+                .nodes
+                .windows(NODES)
+                .map(|nodes| hash(&nodes.iter().map(|node| node.kind).collect::<Vec<_>>()))
+                .collect();
+            for at in winnow(&grams) {
+                let lines = flat.nodes[at..at + NODES].iter().map(|node| files.position(node.span).line);
+                let first = lines.clone().min().unwrap_or_default();
+                let last = lines.max().unwrap_or_default();
+                kept.insert(grams[at], [first, last]);
+            }
+        }
+        Self(kept)
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(super) fn hashes(&self) -> impl Iterator<Item = u64> {
+        self.0.keys().copied()
+    }
+
+    /// Removes fingerprints.
+    pub(super) fn remove(&mut self, others: &HashSet<u64>) {
+        self.0.retain(|hash, _| !others.contains(hash));
+    }
+
+    /// The number of fingerprints that two shaders share.
+    pub(super) fn shared(&self, other: &Self) -> usize {
+        self.hashes().filter(|hash| other.0.contains_key(hash)).count()
+    }
+
+    /// The ranges of lines that another shader has too.
+    pub(super) fn shared_lines(&self, other: &Self) -> Vec<[usize; 2]> {
+        let shared = self.0.iter().filter(|(hash, _)| other.0.contains_key(hash));
+        let mut ranges: Vec<[usize; 2]> = shared.map(|(_, &lines)| lines).collect();
+        ranges.sort_unstable();
+        ranges.dedup_by(|next, range| {
+            let touches = next[0] <= range[1] + 1;
+            if touches {
+                range[1] = range[1].max(next[1]);
+            }
+            touches
+        });
+        ranges
+    }
+}
+
+fn hash(value: &impl Hash) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    value.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The places of the smallest hash of each window, of equal ones the last; the only window of a short text is
+/// smaller.
+fn winnow(hashes: &[u64]) -> Vec<usize> {
+    let mut places = Vec::new();
+    let window = WINDOW.min(hashes.len()).max(1);
+    for (start, hashes) in hashes.windows(window).enumerate() {
+        let smallest = hashes.iter().enumerate().rev().min_by_key(|&(_, hash)| hash);
+        let place = start + smallest.map_or(0, |(at, _)| at);
+        if places.last() != Some(&place) {
+            places.push(place);
+        }
+    }
+    places
+}
+
+/// What is left of an expression or a statement without names and numbers.
+#[derive(Hash)]
+enum Kind<T> {
+    /// A number, also if it has a name, or any variable.
+    Value,
+    Assign(T),
+    Unary(T),
+    Binary(T),
+    Step,
+    Conditional,
+    Call,
+    BuiltIn(T),
+    Construct(T),
+    Swizzle(T),
+    Member,
+    Index,
+    Input(T),
+    If,
+    Switch,
+    Loop,
+    Jump(T),
+}
+
+/// The nodes of a function's tree, in the order of evaluation.
+struct Flat<'a> {
+    tree: &'a Tree,
+    nodes: Vec<Node>,
+}
+
+impl Flat<'_> {
+    fn add<T: Hash>(&mut self, kind: Kind<T>, span: Span) {
+        self.nodes.push(Node {
+            kind: hash(&kind),
+            span,
+        });
+    }
+
+    fn block(&mut self, block: &[Statement]) {
+        for statement in block {
+            self.statement(statement);
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        let span = statement.at.span;
+        match &statement.kind {
+            StatementKind::If { arms, otherwise } => {
+                for arm in arms {
+                    self.add(Kind::<()>::If, span);
+                    self.expression(arm.condition);
+                    self.block(&arm.body);
+                }
+                self.block(otherwise.as_deref().unwrap_or_default());
+            }
+            StatementKind::For {
+                init,
+                condition,
+                step,
+                body,
+            } => {
+                self.block(init);
+                self.add(Kind::<()>::Loop, span);
+                self.condition(condition.as_ref());
+                self.block(body);
+                step.iter().for_each(|&step| self.expression(step));
+            }
+            StatementKind::While { condition, body } => {
+                self.add(Kind::<()>::Loop, span);
+                self.condition(Some(condition));
+                self.block(body);
+            }
+            StatementKind::DoWhile { condition, body } => {
+                self.add(Kind::<()>::Loop, span);
+                self.block(body);
+                self.expression(*condition);
+            }
+            StatementKind::Declare(variable) => self.declare(*variable, span),
+            kind => {
+                match kind {
+                    StatementKind::Switch { .. } => self.add(Kind::<()>::Switch, span),
+                    StatementKind::Break
+                    | StatementKind::Continue
+                    | StatementKind::Return(_)
+                    | StatementKind::Discard => {
+                        self.add(Kind::Jump(std::mem::discriminant(kind)), span);
+                    }
+                    _ => {}
+                }
+                for expression in walk::own_expressions(self.tree, statement) {
+                    self.expression(expression);
+                }
+                walk::child_blocks(statement).into_iter().for_each(|block: &Block| self.block(block));
+            }
+        }
+    }
+
+    fn condition(&mut self, condition: Option<&Condition>) {
+        match condition {
+            Some(&Condition::Expression(expression)) => self.expression(expression),
+            Some(&Condition::Declare(variable)) => {
+                let initializer = self.tree[variable].initializer;
+                initializer.into_iter().for_each(|value| self.expression(value));
+            }
+            None => {}
+        }
+    }
+
+    /// A declaration with a value is an assignment; one without is nothing, and so is a constant with a number.
+    fn declare(&mut self, variable: VariableId, span: Span) {
+        let declared = &self.tree[variable];
+        let is_number = |value: ExprId| matches!(self.tree[value].kind, ExprKind::Literal(_));
+        if let Some(value) = declared.initializer
+            && !(declared.kind == VariableKind::Const && is_number(value))
+        {
+            self.add(Kind::Assign(None::<()>), span);
+            self.add(Kind::<()>::Value, span);
+            self.expression(value);
+        }
+    }
+
+    /// Adds an expression and its operands, with a stack of its own: chains of operators are long.
+    fn expression(&mut self, root: ExprId) {
+        let mut pending = vec![root];
+        while let Some(id) = pending.pop() {
+            let expression = &self.tree[id];
+            let span = expression.at.span;
+            match &expression.kind {
+                ExprKind::Variable(variable) => match self.tree[*variable].kind {
+                    VariableKind::Input(input) => self.add(Kind::Input(input), span),
+                    _ => self.add(Kind::<()>::Value, span),
+                },
+                ExprKind::Literal(_) => self.add(Kind::<()>::Value, span),
+                ExprKind::Unary { op, operand } => {
+                    // The sign of a number is part of the number.
+                    if !matches!(self.tree[*operand].kind, ExprKind::Literal(_)) {
+                        self.add(Kind::Unary(op), span);
+                    }
+                }
+                ExprKind::Binary { op, .. } => self.add(Kind::Binary(op), span),
+                ExprKind::Assign { op, .. } => self.add(Kind::Assign(op), span),
+                ExprKind::Step { .. } => self.add(Kind::<()>::Step, span),
+                ExprKind::Conditional { .. } => self.add(Kind::<()>::Conditional, span),
+                ExprKind::Call { .. } => self.add(Kind::<()>::Call, span),
+                ExprKind::BuiltIn { function, .. } => self.add(Kind::BuiltIn(function), span),
+                ExprKind::Construct { constructor, .. } => self.add(Kind::Construct(constructor), span),
+                ExprKind::Swizzle { components, .. } => self.add(Kind::Swizzle(components), span),
+                ExprKind::Member { .. } => self.add(Kind::<()>::Member, span),
+                ExprKind::Index { .. } | ExprKind::Length { .. } => self.add(Kind::<()>::Index, span),
+                ExprKind::Sequence { .. } => {}
+            }
+            let from = pending.len();
+            expression.kind.for_each_operand(|operand| pending.push(operand));
+            pending[from..].reverse();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::File;
+    use toyproof_glsl as glsl;
+
+    use super::*;
+
+    const ORIGINAL: &str = "
+        float march(vec3 o, vec3 d) {
+            float t = 0.0;
+            for (int i = 0; i < 99; i++) {
+                vec3 p = o + t * d;
+                float h = min(length(p.xz) - 1.5, p.y + abs(sin(4.0 * p.x)));
+                if (h < 0.001) break;
+                t += h;
+            }
+            return t;
+        }
+        void mainImage(out vec4 color, in vec2 at) {
+            vec2 s = (2.0 * at - iResolution.xy) / iResolution.y;
+            float t = march(vec3(0, 1, -4), normalize(vec3(s, 1.5)));
+            color = vec4(vec3(1.0 / (1.0 + t * t * 0.1)), 1.0);
+        }";
+
+    fn of(text: &str) -> Fingerprints {
+        let mut files = Files::default();
+        let file = files.add(File::new("a", text));
+        Fingerprints::of(&glsl::check(&files, file, &glsl::Options::default()).unwrap(), &files)
+    }
+
+    #[test]
+    fn names_numbers_layout_and_order_do_not_matter() {
+        let original = of(ORIGINAL);
+        assert!(original.len() > 10, "{}", original.len());
+        let (march, main) = ORIGINAL.split_once("void mainImage").unwrap();
+        let reordered = format!("float march(vec3 o, vec3 d);\nvoid mainImage{main}\n{march}");
+        let renamed = ORIGINAL.replace("march", "go").replace("vec3 p ", "vec3 point ").replace("p.", "point.");
+        let renumbered = ORIGINAL.replace("1.5", "2.25").replace("99", "64").replace("-4", "7");
+        let flat = ORIGINAL.split_whitespace().collect::<Vec<_>>().join(" ");
+        for copy in [reordered, renamed, renumbered, flat] {
+            let copy = of(&copy);
+            assert_eq!((original.shared(&copy), copy.len()), (original.len(), original.len()));
+        }
+        let named = format!("const float STEP = 0.001;\n{}", ORIGINAL.replace("0.001", "STEP"));
+        assert_eq!(original.shared(&of(&named)), original.len());
+    }
+
+    #[test]
+    fn other_shaders_share_little_and_parts_are_located() {
+        let original = of(ORIGINAL);
+        let other = of("void mainImage(out vec4 c, in vec2 p) {
+            vec2 z = vec2(0);
+            for (int i = 0; i < 50; i++) z = vec2(z.x * z.x - z.y * z.y, 2.0 * z.x * z.y) + p / iResolution.xy;
+            c = vec4(dot(z, z) < 4.0 ? vec3(0) : vec3(1, 0.5, 0), 1);
+        }");
+        assert_eq!(original.shared(&other), 0);
+        let (march, _) = ORIGINAL.split_once("void mainImage").unwrap();
+        let part = of(&format!("{march} void mainImage(out vec4 c, in vec2 p) {{ c = vec4(march(vec3(0), vec3(1))); }}"));
+        let lines = original.shared_lines(&part);
+        assert!(lines.first().unwrap()[0] >= 2 && lines.last().unwrap()[1] <= 10, "{lines:?}");
+    }
+
+    #[test]
+    fn every_window_keeps_a_hash() {
+        let hashes: Vec<u64> = (0..200_u64).map(|at| hash(&at)).collect();
+        let places = winnow(&hashes);
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] <= WINDOW), "{places:?}");
+        assert!(places.len() < 100);
+        assert_eq!((winnow(&[]), winnow(&[7, 3])), (vec![], vec![1]));
+    }
+}
