@@ -8,7 +8,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use toyproof_diagnostic::{Files, Span};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{
-    Block, Condition, ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
+    Condition, ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
 };
 
 /// The number of nodes that a fingerprint covers: fewer match by chance.
@@ -41,7 +41,9 @@ impl Fingerprints {
                 .map(|nodes| hash(&nodes.iter().map(|node| node.kind).collect::<Vec<_>>()))
                 .collect();
             for at in winnow(&grams) {
-                let lines = flat.nodes[at..at + NODES].iter().map(|node| files.position(node.span).line);
+                let lines = flat.nodes[at..at + NODES]
+                    .iter()
+                    .map(|node| files.position(node.span).line);
                 let first = lines.clone().min().unwrap_or_default();
                 let last = lines.max().unwrap_or_default();
                 kept.insert(grams[at], [first, last]);
@@ -135,9 +137,9 @@ struct Flat<'a> {
 }
 
 impl Flat<'_> {
-    fn add<T: Hash>(&mut self, kind: Kind<T>, span: Span) {
+    fn add<T: Hash>(&mut self, kind: &Kind<T>, span: Span) {
         self.nodes.push(Node {
-            kind: hash(&kind),
+            kind: hash(kind),
             span,
         });
     }
@@ -153,7 +155,7 @@ impl Flat<'_> {
         match &statement.kind {
             StatementKind::If { arms, otherwise } => {
                 for arm in arms {
-                    self.add(Kind::<()>::If, span);
+                    self.add(&Kind::<()>::If, span);
                     self.expression(arm.condition);
                     self.block(&arm.body);
                 }
@@ -166,37 +168,41 @@ impl Flat<'_> {
                 body,
             } => {
                 self.block(init);
-                self.add(Kind::<()>::Loop, span);
+                self.add(&Kind::<()>::Loop, span);
                 self.condition(condition.as_ref());
                 self.block(body);
-                step.iter().for_each(|&step| self.expression(step));
+                if let Some(step) = step {
+                    self.expression(*step);
+                }
             }
             StatementKind::While { condition, body } => {
-                self.add(Kind::<()>::Loop, span);
+                self.add(&Kind::<()>::Loop, span);
                 self.condition(Some(condition));
                 self.block(body);
             }
             StatementKind::DoWhile { condition, body } => {
-                self.add(Kind::<()>::Loop, span);
+                self.add(&Kind::<()>::Loop, span);
                 self.block(body);
                 self.expression(*condition);
             }
             StatementKind::Declare(variable) => self.declare(*variable, span),
             kind => {
                 match kind {
-                    StatementKind::Switch { .. } => self.add(Kind::<()>::Switch, span),
+                    StatementKind::Switch { .. } => self.add(&Kind::<()>::Switch, span),
                     StatementKind::Break
                     | StatementKind::Continue
                     | StatementKind::Return(_)
                     | StatementKind::Discard => {
-                        self.add(Kind::Jump(std::mem::discriminant(kind)), span);
+                        self.add(&Kind::Jump(std::mem::discriminant(kind)), span);
                     }
                     _ => {}
                 }
                 for expression in walk::own_expressions(self.tree, statement) {
                     self.expression(expression);
                 }
-                walk::child_blocks(statement).into_iter().for_each(|block: &Block| self.block(block));
+                for block in walk::child_blocks(statement) {
+                    self.block(block);
+                }
             }
         }
     }
@@ -205,8 +211,9 @@ impl Flat<'_> {
         match condition {
             Some(&Condition::Expression(expression)) => self.expression(expression),
             Some(&Condition::Declare(variable)) => {
-                let initializer = self.tree[variable].initializer;
-                initializer.into_iter().for_each(|value| self.expression(value));
+                if let Some(value) = self.tree[variable].initializer {
+                    self.expression(value);
+                }
             }
             None => {}
         }
@@ -219,8 +226,8 @@ impl Flat<'_> {
         if let Some(value) = declared.initializer
             && !(declared.kind == VariableKind::Const && is_number(value))
         {
-            self.add(Kind::Assign(None::<()>), span);
-            self.add(Kind::<()>::Value, span);
+            self.add(&Kind::Assign(None::<()>), span);
+            self.add(&Kind::<()>::Value, span);
             self.expression(value);
         }
     }
@@ -233,26 +240,26 @@ impl Flat<'_> {
             let span = expression.at.span;
             match &expression.kind {
                 ExprKind::Variable(variable) => match self.tree[*variable].kind {
-                    VariableKind::Input(input) => self.add(Kind::Input(input), span),
-                    _ => self.add(Kind::<()>::Value, span),
+                    VariableKind::Input(input) => self.add(&Kind::Input(input), span),
+                    _ => self.add(&Kind::<()>::Value, span),
                 },
-                ExprKind::Literal(_) => self.add(Kind::<()>::Value, span),
+                ExprKind::Literal(_) => self.add(&Kind::<()>::Value, span),
                 ExprKind::Unary { op, operand } => {
                     // The sign of a number is part of the number.
                     if !matches!(self.tree[*operand].kind, ExprKind::Literal(_)) {
-                        self.add(Kind::Unary(op), span);
+                        self.add(&Kind::Unary(op), span);
                     }
                 }
-                ExprKind::Binary { op, .. } => self.add(Kind::Binary(op), span),
-                ExprKind::Assign { op, .. } => self.add(Kind::Assign(op), span),
-                ExprKind::Step { .. } => self.add(Kind::<()>::Step, span),
-                ExprKind::Conditional { .. } => self.add(Kind::<()>::Conditional, span),
-                ExprKind::Call { .. } => self.add(Kind::<()>::Call, span),
-                ExprKind::BuiltIn { function, .. } => self.add(Kind::BuiltIn(function), span),
-                ExprKind::Construct { constructor, .. } => self.add(Kind::Construct(constructor), span),
-                ExprKind::Swizzle { components, .. } => self.add(Kind::Swizzle(components), span),
-                ExprKind::Member { .. } => self.add(Kind::<()>::Member, span),
-                ExprKind::Index { .. } | ExprKind::Length { .. } => self.add(Kind::<()>::Index, span),
+                ExprKind::Binary { op, .. } => self.add(&Kind::Binary(op), span),
+                ExprKind::Assign { op, .. } => self.add(&Kind::Assign(op), span),
+                ExprKind::Step { .. } => self.add(&Kind::<()>::Step, span),
+                ExprKind::Conditional { .. } => self.add(&Kind::<()>::Conditional, span),
+                ExprKind::Call { .. } => self.add(&Kind::<()>::Call, span),
+                ExprKind::BuiltIn { function, .. } => self.add(&Kind::BuiltIn(function), span),
+                ExprKind::Construct { constructor, .. } => self.add(&Kind::Construct(constructor), span),
+                ExprKind::Swizzle { components, .. } => self.add(&Kind::Swizzle(components), span),
+                ExprKind::Member { .. } => self.add(&Kind::<()>::Member, span),
+                ExprKind::Index { .. } | ExprKind::Length { .. } => self.add(&Kind::<()>::Index, span),
                 ExprKind::Sequence { .. } => {}
             }
             let from = pending.len();
@@ -289,7 +296,10 @@ mod tests {
     fn of(text: &str) -> Fingerprints {
         let mut files = Files::default();
         let file = files.add(File::new("a", text));
-        Fingerprints::of(&glsl::check(&files, file, &glsl::Options::default()).unwrap(), &files)
+        Fingerprints::of(
+            &glsl::check(&files, file, &glsl::Options::default()).unwrap(),
+            &files,
+        )
     }
 
     #[test]
@@ -298,12 +308,21 @@ mod tests {
         assert!(original.len() > 10, "{}", original.len());
         let (march, main) = ORIGINAL.split_once("void mainImage").unwrap();
         let reordered = format!("float march(vec3 o, vec3 d);\nvoid mainImage{main}\n{march}");
-        let renamed = ORIGINAL.replace("march", "go").replace("vec3 p ", "vec3 point ").replace("p.", "point.");
-        let renumbered = ORIGINAL.replace("1.5", "2.25").replace("99", "64").replace("-4", "7");
+        let renamed = ORIGINAL
+            .replace("march", "go")
+            .replace("vec3 p ", "vec3 point ")
+            .replace("p.", "point.");
+        let renumbered = ORIGINAL
+            .replace("1.5", "2.25")
+            .replace("99", "64")
+            .replace("-4", "7");
         let flat = ORIGINAL.split_whitespace().collect::<Vec<_>>().join(" ");
         for copy in [reordered, renamed, renumbered, flat] {
             let copy = of(&copy);
-            assert_eq!((original.shared(&copy), copy.len()), (original.len(), original.len()));
+            assert_eq!(
+                (original.shared(&copy), copy.len()),
+                (original.len(), original.len())
+            );
         }
         let named = format!("const float STEP = 0.001;\n{}", ORIGINAL.replace("0.001", "STEP"));
         assert_eq!(original.shared(&of(&named)), original.len());
@@ -319,16 +338,24 @@ mod tests {
         }");
         assert_eq!(original.shared(&other), 0);
         let (march, _) = ORIGINAL.split_once("void mainImage").unwrap();
-        let part = of(&format!("{march} void mainImage(out vec4 c, in vec2 p) {{ c = vec4(march(vec3(0), vec3(1))); }}"));
+        let part = of(&format!(
+            "{march} void mainImage(out vec4 c, in vec2 p) {{ c = vec4(march(vec3(0), vec3(1))); }}"
+        ));
         let lines = original.shared_lines(&part);
-        assert!(lines.first().unwrap()[0] >= 2 && lines.last().unwrap()[1] <= 10, "{lines:?}");
+        assert!(
+            lines.first().unwrap()[0] >= 2 && lines.last().unwrap()[1] <= 10,
+            "{lines:?}"
+        );
     }
 
     #[test]
     fn every_window_keeps_a_hash() {
         let hashes: Vec<u64> = (0..200_u64).map(|at| hash(&at)).collect();
         let places = winnow(&hashes);
-        assert!(places.windows(2).all(|pair| pair[1] - pair[0] <= WINDOW), "{places:?}");
+        assert!(
+            places.windows(2).all(|pair| pair[1] - pair[0] <= WINDOW),
+            "{places:?}"
+        );
         assert!(places.len() < 100);
         assert_eq!((winnow(&[]), winnow(&[7, 3])), (vec![], vec![1]));
     }

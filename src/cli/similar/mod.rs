@@ -69,7 +69,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     for group in groups(&pairs).iter().filter(|group| group.len() > 2) {
         let names: Vec<_> = group.iter().map(|&at| shaders[at].0.as_str()).collect();
-        terminal.result(&format!("group of {}: {}", grouped(group.len() as u64), names.join(", ")));
+        terminal.result(&format!(
+            "group of {}: {}",
+            grouped(group.len() as u64),
+            names.join(", ")
+        ));
     }
     let found = pairs.len() as u64;
     terminal.note(&format!(
@@ -100,7 +104,10 @@ fn read(paths: &[PathBuf], language: &LanguageArgs, terminal: &Terminal) -> Vec<
                 let fingerprints = Fingerprints::of(checked, &shader.files);
                 shaders.push((shader.name, fingerprints));
             }
-            Err(_) => terminal.warn(format_args!("{} is not compared: it does not compile", shader.name)),
+            Err(_) => terminal.warn(format_args!(
+                "{} is not compared: it does not compile",
+                shader.name
+            )),
         }
     }
     shaders
@@ -114,7 +121,11 @@ fn common(shaders: &[(String, Fingerprints)]) -> HashSet<u64> {
         *counts.entry(hash).or_default() += 1;
     }
     let is_common = |&(_, count): &(u64, usize)| shaders.len() >= ENOUGH && 2 * count > shaders.len();
-    counts.into_iter().filter(is_common).map(|(hash, _)| hash).collect()
+    counts
+        .into_iter()
+        .filter(is_common)
+        .map(|(hash, _)| hash)
+        .collect()
 }
 
 /// The pairs that share at least a part of the smaller shader, the most similar first.
@@ -153,9 +164,12 @@ fn groups(pairs: &[(usize, usize, f64)]) -> Vec<Vec<usize>> {
 
 /// Ranges of lines, for people.
 fn list(ranges: &[[usize; 2]]) -> String {
-    let range = |[first, last]: &[usize; 2]| match first == last {
-        true => first.to_string(),
-        false => format!("{first}-{last}"),
+    let range = |[first, last]: &[usize; 2]| {
+        if first == last {
+            first.to_string()
+        } else {
+            format!("{first}-{last}")
+        }
     };
     ranges.iter().map(range).collect::<Vec<_>>().join(",")
 }
