@@ -192,7 +192,7 @@ struct Text {
 fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnostics> {
     let deadline = &options.deadline;
     let too_slow = |overdue| Diagnostics::from(vec![codes::overdue(overdue)]);
-    let mut text = preprocess::preprocess(files, file, deadline);
+    let mut text = preprocess::preprocess(files, file, options.stage, deadline);
     deadline.check().map_err(too_slow)?;
     if text.incomplete {
         return Err(Diagnostics::new(text.diagnostics, files));

@@ -329,6 +329,16 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
         "o.x = f(iChannel0, vec2(1.5, 2.5) / 4.0).x + f(iChannel2, p).w + float(textureSize(iChannel0, 0).x);",
         5.75,
     ),
+    (
+        "vec4 f(sampler2D s, ivec2 at) { return texelFetch(s, at, 0); }",
+        "o.x = f(iChannel0, ivec2(1, 2) + int(f(iChannel1, ivec2(0)).x)).x + f(iChannel0, ivec2(-1, 2)).x;",
+        0.75,
+    ),
+    (
+        "uniform sampler2D other;",
+        "o.x = texelFetch(other, ivec2(1, 2), 0).x;",
+        0.75,
+    ),
     // Undefined behavior, as the GPU path defines it.
     (
         "",

@@ -12,7 +12,10 @@ fn copies_are_found_whatever_their_names_and_numbers() {
     let hw = folder.path().join("hw");
     fs::create_dir(&hw).unwrap();
     let original = MANY_OBJECTS.shader;
-    let copy = original.replace("sphere", "ball").replace("0.5", "0.25").replace("    ", "\t");
+    let copy = original
+        .replace("sphere", "ball")
+        .replace("0.5", "0.25")
+        .replace("    ", "\t");
     let mandelbrot = "void mainImage(out vec4 c, in vec2 p) {
         vec2 z = vec2(0), k = 3.0 * p / iResolution.xy - 2.0;
         int n = 0;
@@ -25,14 +28,21 @@ fn copies_are_found_whatever_their_names_and_numbers() {
         ("b", copy),
         ("c", mandelbrot.to_owned()),
         ("d", "void main() {".to_owned()),
-        ("e", "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }".to_owned()),
+        (
+            "e",
+            "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }".to_owned(),
+        ),
     ] {
         fs::write(hw.join(name).with_extension("glsl"), text).unwrap();
     }
     let run = toyproof(folder.path(), &["similar", "hw"]);
     let lines: Vec<_> = run.stdout.lines().collect();
     assert_eq!(run.code, 0, "{}", run.stderr);
-    assert!(lines[0].starts_with("100 %  hw/a.glsl:") && lines[1].starts_with("       hw/b.glsl:"), "{}", run.stdout);
+    assert!(
+        lines[0].starts_with("100 %  hw/a.glsl:") && lines[1].starts_with("       hw/b.glsl:"),
+        "{}",
+        run.stdout
+    );
     assert_eq!(lines.len(), 2, "{}", run.stdout);
     for message in [
         "warning: hw/d.glsl is not compared: it does not compile\n",

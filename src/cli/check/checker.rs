@@ -445,13 +445,6 @@ impl<'a> Checker<'a> {
             key = self.plan.frames.len() + frame.frame as usize;
         }
         let cached = reference.map(|reference| self.cached(reference, (index, key), frame));
-        let checked = shader.checked.as_ref().map_err(|unusable| match unusable {
-            Unusable::Unreadable(error) if shader.is_missing => Failure::Missing(error.reason.clone()),
-            Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
-            Unusable::Unrendered(error) => Failure::Unrendered(error.reason.clone()),
-            Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
-        })?;
-        let cached = reference.map(|reference| self.cached(reference, index, frame));
         let cached = cached.transpose()?;
         if let Some(passes) = &shader.passes {
             let renderers = passes::Renderers {
@@ -620,6 +613,9 @@ fn image(shader: &Shader) -> Result<&Checked, Failure> {
     match (&shader.checked, &shader.passes) {
         (Ok(checked), _) => Ok(checked),
         (Err(Unusable::Unrendered(_)), Some(passes)) => Ok(passes.image()),
+        (Err(Unusable::Unreadable(error)), _) if shader.is_missing => {
+            Err(Failure::Missing(error.reason.clone()))
+        }
         (Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)), _) => {
             Err(Failure::Unreadable(error.reason.clone()))
         }

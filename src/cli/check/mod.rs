@@ -3,8 +3,8 @@
 mod checker;
 mod donors;
 mod images;
-mod passes;
 mod merge;
+mod passes;
 mod plan;
 mod reference;
 mod reports;

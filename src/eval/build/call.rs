@@ -12,6 +12,8 @@ use crate::trace::CallId;
 /// An evaluated argument.
 struct Argument {
     values: Vec<Value>,
+    /// The channel of a sampler; none if it is not bound.
+    channel: Option<u8>,
     /// The part of a variable that is copied in when the call begins, if the values are not read before.
     copy_in: Option<LValue>,
     copy_out: Option<LValue>,
@@ -45,6 +47,9 @@ impl Builder<'_> {
         let mut copy_outs = Vec::new();
         for (at, (passed, &parameter)) in passed.into_iter().zip(parameters).enumerate() {
             if matches!(tree[parameter].ty, Type::Sampler(_)) {
+                // A later argument may call the same function with another sampler.
+                self.locations
+                    .insert(parameter, Location::Channel(passed.channel));
                 continue;
             }
             if let Some(copy_out) = &passed.copy_out
@@ -91,10 +96,9 @@ impl Builder<'_> {
     fn pass(&mut self, argument: ExprId, parameter: VariableId, may_change: bool) -> Result<Argument> {
         let ty = self.tree[parameter].ty;
         if matches!(ty, Type::Sampler(_)) {
-            let channel = self.channel(argument);
-            self.locations.insert(parameter, Location::Channel(channel));
             return Ok(Argument {
                 values: Vec::new(),
+                channel: self.channel(argument),
                 copy_in: None,
                 copy_out: None,
             });
@@ -112,6 +116,7 @@ impl Builder<'_> {
             };
             return Ok(Argument {
                 values,
+                channel: None,
                 copy_in,
                 copy_out: None,
             });
@@ -119,6 +124,7 @@ impl Builder<'_> {
         let copy_out = self.lvalue(argument)?;
         Ok(Argument {
             values: self.zeros(ty),
+            channel: None,
             copy_in: copy_out.clone().filter(|_| direction == Direction::InOut),
             copy_out,
         })

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::scope::Entity;
 use super::{Checker, Specifier};
+use crate::Stage;
 use crate::codes::Code;
 use crate::stage::Entry;
 use crate::token::Symbol;
@@ -242,7 +243,9 @@ impl Checker<'_> {
         let calls = std::mem::take(&mut self.calls);
         let mut reported = HashSet::new();
         for &(_, callee, at) in &calls {
-            if complete && self.tree[callee].body.is_none() && reported.insert(callee) {
+            // Common is compiled alone, but not linked.
+            let is_linked = self.stage != Stage::Common;
+            if complete && is_linked && self.tree[callee].body.is_none() && reported.insert(callee) {
                 let message = format!("`{}` is called but not defined", self.tree[callee].name);
                 self.report(
                     Code::Undefined

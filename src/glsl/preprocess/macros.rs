@@ -6,6 +6,7 @@ use std::rc::Rc;
 use toyproof_diagnostic::{Diagnostic, FileId, Span};
 
 use super::{PpToken, Preprocessor};
+use crate::Stage;
 use crate::codes::Code;
 use crate::keywords::Interner;
 use crate::token::{Punctuator, Symbol, TokenKind};
@@ -51,7 +52,8 @@ impl Macro {
     }
 
     /// The predefined macros: those of §3.4, and ShaderToy's `HW_PERFORMANCE`.
-    pub(super) fn predefined(file: FileId, interner: &mut Interner) -> HashMap<Symbol, Self> {
+    /// Common, compiled alone, has only those of §3.4.
+    pub(super) fn predefined(file: FileId, stage: Stage, interner: &mut Interner) -> HashMap<Symbol, Self> {
         let at = Place::plain(Span::new(file, 0, 0));
         let mut number = |text| {
             let token = PpToken {
@@ -74,7 +76,9 @@ impl Macro {
             ("GL_FRAGMENT_PRECISION_HIGH", one.clone(), true),
             ("HW_PERFORMANCE", one, false),
         ];
+        let is_defined = |is_language: bool| is_language || stage != Stage::Common;
         all.into_iter()
+            .filter(|(_, _, predefined)| is_defined(*predefined))
             .map(|(name, body, predefined)| {
                 let definition = Self {
                     predefined,

@@ -22,6 +22,7 @@ use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
 use super::codes::{Code, push_limited};
 use super::token::{Punctuator, Symbol, Token, TokenKind};
+use crate::Stage;
 use crate::keywords::Interner;
 
 /// Maximum length of a name in bytes (WebGL 2, §4.3.1).
@@ -61,8 +62,8 @@ const LOSES_NAMES: [Code; 5] = [
 
 /// Preprocesses one file to its end despite errors, or until the deadline.
 #[must_use]
-pub(crate) fn preprocess(files: &Files, file: FileId, deadline: &Deadline) -> Preprocessed {
-    let mut preprocessor = Preprocessor::new(files, file);
+pub(crate) fn preprocess(files: &Files, file: FileId, stage: Stage, deadline: &Deadline) -> Preprocessed {
+    let mut preprocessor = Preprocessor::new(files, file, stage);
     let mut tokens = Vec::new();
     loop {
         let mut token = preprocessor.next_expanded();
@@ -211,9 +212,9 @@ struct Preprocessor<'a> {
 }
 
 impl<'a> Preprocessor<'a> {
-    fn new(files: &'a Files, file: FileId) -> Self {
+    fn new(files: &'a Files, file: FileId, stage: Stage) -> Self {
         let mut interner = Interner::default();
-        let macros = Macro::predefined(file, &mut interner);
+        let macros = Macro::predefined(file, stage, &mut interner);
         let text = files.get(file).text();
         Self {
             text,

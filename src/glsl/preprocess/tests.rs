@@ -6,7 +6,7 @@ use super::*;
 fn expand(text: &str) -> String {
     let mut files = Files::default();
     let file = files.add(File::new("a", text));
-    let result = preprocess(&files, file, &Deadline::default());
+    let result = preprocess(&files, file, Stage::Image, &Deadline::default());
     if let Some(first) = result.diagnostics.first() {
         return first.code.to_string();
     }
@@ -168,7 +168,7 @@ fn hostile_macros_end_in_a_diagnostic() {
 fn tokens_keep_their_use_and_spelling() {
     let mut files = Files::default();
     let file = files.add(File::new("a", "#define F(x) x + b\n#define G F(c)\nF(a); G"));
-    let result = preprocess(&files, file, &Deadline::default());
+    let result = preprocess(&files, file, Stage::Image, &Deadline::default());
     let reported: Vec<_> = result.tokens[..7]
         .iter()
         .map(|token| (files.text(token.at.span), files.text(token.at.spelling)))

@@ -81,7 +81,9 @@ pub fn single_edit(files: &Files, file: FileId, errors: &Diagnostics, options: &
         deadline: Deadline::after(limit.min(MAX_DURATION)),
         ..options.clone()
     };
-    let tokens = preprocess(files, file, &options.deadline).tokens.len();
+    let tokens = preprocess(files, file, options.stage, &options.deadline)
+        .tokens
+        .len();
     let checks = MAX_CHECKS
         .min(MAX_CHECKED_BYTES / text.len().max(1))
         .min(MAX_CHECKED_TOKENS / tokens.max(1));

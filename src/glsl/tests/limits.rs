@@ -7,7 +7,7 @@ use super::{MAIN, check_text};
 use crate::tree::{
     self, Block, Condition, ExprId, ExprKind, Item, Label, Place, StatementKind, Tree, Type, VariableId,
 };
-use crate::{Checked, Options};
+use crate::{Checked, Options, Stage};
 
 /// Runs `work` on a stack of 2 MB, the default for threads.
 fn with_small_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
@@ -237,8 +237,8 @@ fn every_stage_stops_at_its_deadline() {
 
     let mut files = Files::default();
     let file = files.add(File::new("a", text.as_str()));
-    let whole = preprocess::preprocess(&files, file, &in_time.deadline);
-    let begun = preprocess::preprocess(&files, file, &over);
+    let whole = preprocess::preprocess(&files, file, Stage::Image, &in_time.deadline);
+    let begun = preprocess::preprocess(&files, file, Stage::Image, &over);
     assert!(begun.tokens.len() < whole.tokens.len());
     let parse = |options: &Options| {
         let checker = Checker::new(&whole, options, Channels::new(options));

@@ -56,6 +56,28 @@ fn cases(table: &str) {
 }
 
 #[test]
+fn common_alone_is_compiled_but_not_linked_and_has_no_macro_of_the_site() {
+    // The idiom of authors who name inputs in functions of Common.
+    let text = "
+        #ifndef HW_PERFORMANCE
+        uniform float iTime;
+        float defined_in_each_tab(vec2 p);
+        #endif
+        float scaled(vec2 p) { return iTime * defined_in_each_tab(p); }";
+    let mut files = Files::default();
+    let file = files.add(File::new("common.glsl", text));
+    let options = Options {
+        stage: Stage::Common,
+        ..Options::default()
+    };
+    assert!(check_declarations(&files, file, &options).is_ok());
+    let linked = format!("{text}\nvoid mainImage(out vec4 c, in vec2 p) {{ c = vec4(scaled(p)); }}");
+    let file = files.add(File::new("image.glsl", linked));
+    let errors = check(&files, file, &Options::default()).unwrap_err();
+    assert!(errors.first().unwrap().message.contains("defined_in_each_tab"));
+}
+
+#[test]
 fn grammar() {
     cases(
         "
