@@ -13,6 +13,7 @@ mod gradescope;
 mod inputs;
 mod names;
 mod new;
+mod passes;
 mod pool;
 mod project;
 mod reference;

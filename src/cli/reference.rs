@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image};
+use toyproof_translate::FloatMode;
 use toyproof_verify::{
     Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference,
     unbound,
@@ -15,6 +16,7 @@ use toyproof_verify::{
 
 use super::Terminal;
 use super::inputs::{LanguageArgs, shell_word};
+use super::passes::{Renderers, bind};
 use super::shader::{Shader, Unusable};
 use crate::cli::files::{self, Input, InputSource};
 use crate::report;
@@ -215,6 +217,22 @@ impl Evaluation<'_> {
     ) -> Result<Expected, ()> {
         let name = self.name;
         let spinner = terminal.spinner(name);
+        let mut frame = frame.clone();
+        let bound = shader.passes.as_ref().map_or(Ok(None), |passes| {
+            let renderers = Renderers {
+                worker: None,
+                float: FloatMode::Strict,
+                timeout: self.timeout,
+                pool: None,
+            };
+            bind::<f64>(passes, &mut frame, renderers)
+        });
+        bound.map_err(|failure| {
+            terminal.error(format_args!(
+                "the passes of the reference {name} cannot be evaluated: {failure}; no shader was checked"
+            ));
+        })?;
+        let frame = &frame;
         let evaluated = ShaderReference::new(checked, &shader.lints, frame, self.tolerance, self.timeout);
         spinner.finish_and_clear();
         let (reference, findings) = evaluated.map_err(|failure| {
@@ -313,6 +331,11 @@ fn read(
         folder: None,
     };
     let shader = Shader::load(&Ok(input), language, Deadline::after(timeout));
+    if let (Err(Unusable::Unrendered(_)), Some(passes)) = (&shader.checked, &shader.passes) {
+        let bytes = passes.project.to_json(&shader.files).into_bytes();
+        let checked = Box::new(passes.image().clone());
+        return Ok((Content::Shader(Box::new(shader), checked), bytes));
+    }
     match &shader.checked {
         Ok(checked) => {
             let bytes = shader.text(checked).as_bytes().to_vec();

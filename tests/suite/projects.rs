@@ -220,6 +220,31 @@ fn frames_of_a_project_follow_from_those_before() {
 }
 
 #[test]
+fn a_project_is_a_reference_for_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let homework = folder.join("homework");
+    fs::create_dir(&homework).unwrap();
+    for (folder, name) in [(folder, "solution"), (&homework, "right"), (&homework, "wrong")] {
+        assert_eq!(toyproof(folder, &["new", "project", name]).code, 0);
+    }
+    let buffer = folder.join("homework/wrong/buffer-a.glsl");
+    let text = fs::read_to_string(&buffer).unwrap();
+    // The sum forgets the previous samples from the fourth frame on.
+    fs::write(&buffer, text.replace("iFrame == 0", "iFrame == 0 || iFrame == 3")).unwrap();
+    let check = |frame: &str| {
+        let flags = ["check", "homework", "--reference", "solution", "--frame", frame];
+        let fixed = ["--device", "cpu", "--size", "32x18", "--format", "json"];
+        let run = toyproof(folder, &[&flags[..], &fixed].concat());
+        let report: Value =
+            serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{error}: {run:?}"));
+        [0, 1].map(|at| report["shaders"][at]["verdict"].as_str().unwrap().to_owned())
+    };
+    assert_eq!(check("2"), ["correct", "correct"]);
+    assert_eq!(check("5"), ["correct", "wrong"]);
+}
+
+#[test]
 fn states_that_do_not_fit_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -21,7 +21,6 @@ use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
 
 use super::Args;
 use super::images::{FIXED, IMAGES, ImageKind};
-use super::passes;
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
 use crate::assignment::Subject;
@@ -30,7 +29,7 @@ use crate::cli::inputs::{frame_flags, shell_word};
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
-use crate::cli::{Terminal, files, pool};
+use crate::cli::{Terminal, files, passes, pool};
 use crate::report::{self, CheckedFrame, Record};
 
 /// A shader to check.
@@ -453,7 +452,7 @@ impl<'a> Checker<'a> {
                 timeout: self.args.driver.timeout(),
                 pool: context.pool.as_ref(),
             };
-            if let Some(difference) = passes::bind(passes, frame, renderers)? {
+            if let Some(difference) = passes::bind::<f32>(passes, frame, renderers)? {
                 outcome.messages.push(Message::Warning(format!(
                     "{}: the driver and the CPU render {} differently in frame {} ({} pixels); such pixels depend on \
                      undefined behavior, or the driver is wrong",

@@ -4,7 +4,6 @@ mod checker;
 mod donors;
 mod images;
 mod merge;
-mod passes;
 mod plan;
 mod reference;
 mod reports;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use rayon::ThreadPool;
-use toyproof_eval as eval;
+use toyproof_eval::{self as eval, Number};
 use toyproof_glsl::Filter;
 use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame, Image, Texture};
@@ -13,7 +13,7 @@ use toyproof_translate::FloatMode;
 use toyproof_verify::Failure;
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
-use crate::cli::project::Passes;
+use super::project::Passes;
 
 /// The frame in which a project is checked if the user names none: a few frames of feedback.
 pub(super) const CHECKED_FRAME: i32 = 7;
@@ -42,12 +42,13 @@ pub(super) struct PassDifference {
 }
 
 /// Binds what the image reads in this frame: the textures that do not change, and the buffers after all passes of this
-/// frame and of those before it. They are in f32, so that the checks of the image find what this pass does wrong, not
-/// what earlier frames amplified. Returns the first difference of the driver's passes.
+/// frame and of those before it. A shader that is checked has them in f32, so that the checks of its image find what
+/// this pass does wrong, not what earlier frames amplified; a reference has them in f64. Returns the first difference of
+/// the driver's passes.
 ///
 /// # Errors
 /// Why the buffers cannot be rendered.
-pub(super) fn bind(
+pub(super) fn bind<N: Number>(
     passes: &Passes,
     frame: &mut Frame,
     renderers: Renderers<'_>,
@@ -66,7 +67,7 @@ pub(super) fn bind(
     } else {
         Vec::new()
     };
-    let mut playback = CpuPlayback::<f32>::new(&shader, &programs, None, timeout, None);
+    let mut playback = CpuPlayback::<N>::new(&shader, &programs, None, timeout, None);
     let mut difference = None;
     if has_history(passes) {
         let rate = f64::from(FRAME_RATE);
