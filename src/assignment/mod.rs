@@ -53,8 +53,8 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// Tests the functions of a shader, and checks its rules; adds the results to its record. `subject` is none if
-    /// the shader does not compile.
+    /// Tests the functions of a shader, and checks its rules; adds the results to its record. `subject` is
+    /// none if the shader does not compile.
     pub fn check_text(&self, subject: Option<&Subject>, record: &mut Record) {
         record.rules = self.rules.as_ref().map(|rules| match subject {
             Some(subject) => rules.check(subject.files, subject.checked, subject.text),

@@ -15,8 +15,8 @@ use crate::assignment::{Assignment, FILE_NAME, Reference};
 
 /// Create an autograder for Gradescope from an assignment
 ///
-/// The archive has the assignment, this program, and the scripts that Gradescope runs: `setup.sh` installs the
-/// driver, and `run_autograder` checks a submission and writes its marks. Upload it as it is.
+/// The archive has the assignment, this program, and the scripts that Gradescope runs: `setup.sh` installs
+/// the driver, and `run_autograder` checks a submission and writes its marks. Upload it as it is.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Example:

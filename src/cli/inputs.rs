@@ -157,8 +157,8 @@ pub(super) fn frame_flags(inputs: &FrameInputs) -> Vec<String> {
 pub(super) struct LanguageArgs {
     /// Accept desktop-GLSL extensions that WebGL 2 rejects
     ///
-    /// These are global variables initialized from uniforms, integers where floats are expected, and arrays of
-    /// arrays.
+    /// These are global variables initialized from uniforms, integers where floats are expected, and arrays
+    /// of arrays.
     #[arg(long)]
     lenient: bool,
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
@@ -174,8 +174,9 @@ pub(super) struct LanguageArgs {
 pub(super) struct DriverArgs {
     /// The device that runs shaders: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
     ///
-    /// `auto` selects lavapipe if it is installed, else the first Vulkan driver, else the CPU. `cpu` is toyproof's
-    /// own evaluator: it needs no driver. There is no toolchain check, since that compares a GPU with the CPU.
+    /// `auto` selects lavapipe if it is installed, else the first Vulkan driver, else the CPU. `cpu` is
+    /// toyproof's own evaluator: it needs no driver. There is no toolchain check, since that compares a GPU
+    /// with the CPU.
     #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = parse_device)]
     device: DeviceSelector,
     /// The float arithmetic: `strict` or `fast` [default: strict; for `convert`: fast]

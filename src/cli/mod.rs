@@ -123,8 +123,8 @@ pub enum Exit {
     Error,
 }
 
-/// The argument with which this program serves as the worker process of a command. It is not a command, so that
-/// it is neither listed nor suggested.
+/// The argument with which this program serves as the worker process of a command. It is not a command, so
+/// that it is neither listed nor suggested.
 pub const WORKER: &str = "__worker";
 
 /// Runs the program with these arguments, of which the first is the program's name.

@@ -41,10 +41,10 @@ pub(super) struct PassDifference {
     pub(super) pixels: usize,
 }
 
-/// Binds what the image reads in this frame: the textures that do not change, and the buffers after all passes of this
-/// frame and of those before it. A shader that is checked has them in f32, so that the checks of its image find what
-/// this pass does wrong, not what earlier frames amplified; a reference has them in f64. Returns the first difference of
-/// the driver's passes.
+/// Binds what the image reads in this frame: the textures that do not change, and the buffers after all
+/// passes of this frame and of those before it. A shader that is checked has them in f32, so that the checks
+/// of its image find what this pass does wrong, not what earlier frames amplified; a reference has them in
+/// f64. Returns the first difference of the driver's passes.
 ///
 /// # Errors
 /// Why the buffers cannot be rendered.
@@ -115,7 +115,8 @@ pub(super) fn bind<N: Number>(
     Ok(difference)
 }
 
-/// Compiles the passes for the driver in a strict run; none without a driver, which the check of the image reports.
+/// Compiles the passes for the driver in a strict run; none without a driver, which the check of the image
+/// reports.
 fn open<'a>(
     renderers: Renderers<'a>,
     shader: &PassShader<'_>,

@@ -48,6 +48,16 @@ impl Unusable {
     }
 }
 
+impl Unusable {
+    /// Prints why; `files` has the texts of the diagnostics.
+    pub(super) fn print(&self, files: &Files, terminal: &Terminal) {
+        match self {
+            Self::Invalid(diagnostics) => terminal.diagnostics(diagnostics, files),
+            Self::Unreadable(error) | Self::Unrendered(error) => terminal.error(error),
+        }
+    }
+}
+
 /// A file that cannot be read.
 #[derive(Debug, Clone)]
 pub(super) struct Unreadable {
@@ -186,8 +196,8 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Inp
     inputs
 }
 
-/// Makes the relative paths of inputs with equal ones start at their common folder, so that their outputs keep
-/// their folders: `a/x.glsl` and `b/x.glsl`.
+/// Makes the relative paths of inputs with equal ones start at their common folder, so that their outputs
+/// keep their folders: `a/x.glsl` and `b/x.glsl`.
 fn keep_folders(inputs: &mut [Result<Input, ReadError>]) {
     let mut equal: HashMap<PathBuf, Vec<&mut Input>> = HashMap::new();
     for input in inputs.iter_mut().flatten().filter(|input| input.path().is_some()) {

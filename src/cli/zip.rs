@@ -1,4 +1,5 @@
-//! Zip archives, as PKWARE's APPNOTE 6.3.10 describes them: read from untrusted sources, and written for Gradescope.
+//! Zip archives, as PKWARE's APPNOTE 6.3.10 describes them: read from untrusted sources, and written for
+//! Gradescope.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
@@ -218,7 +219,8 @@ fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
 /// The characters of code page 437 from 128.
 const CODE_PAGE_437: &str = "ÇüéâäàåçêëèïîìÄÅÉæÆôöòûùÿÖÜ¢£¥₧ƒáíóúñÑªº¿⌐¬½¼¡«»░▒▓│┤╡╢╖╕╣║╗╝╜╛┐└┴┬├─┼╞╟╚╔╩╦╠═╬╧╨╤╥╙╘╒╓╫╪┘┌█▄▌▐▀αßΓπΣσµτΦΘΩδ∞φε∩≡±≥≤⌠⌡÷≈°∙·√ⁿ²■\u{a0}";
 
-/// Decodes a name. Archives of macOS have UTF-8 without the flag; those of old Windows programs have code page 437.
+/// Decodes a name. Archives of macOS have UTF-8 without the flag; those of old Windows programs have code
+/// page 437.
 fn decode_name(bytes: &[u8], is_utf8: bool) -> String {
     match std::str::from_utf8(bytes) {
         Ok(name) => name.to_owned(),
@@ -351,8 +353,8 @@ mod tests {
         assert_eq!(CODE_PAGE_437.chars().count(), 128);
     }
 
-    /// Every truncation and every changed byte gives an error, or other files, but neither a panic nor a large
-    /// allocation.
+    /// Every truncation and every changed byte gives an error, or other files, but neither a panic nor a
+    /// large allocation.
     #[test]
     fn damaged_archives_are_errors() {
         let bytes = files();

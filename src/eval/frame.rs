@@ -101,8 +101,8 @@ impl<N: Number> Framebuffer<N> {
         self.flags.iter().filter(|&&flag| flag & UNDEFINED != 0).count() as u64
     }
 
-    /// Returns a texture in the precision of the number type. Discarded pixels have the texels of `over`, which has the
-    /// same size.
+    /// Returns a texture in the precision of the number type. Discarded pixels have the texels of `over`,
+    /// which has the same size.
     pub(crate) fn texture_over(self, over: &Texture) -> Texture {
         let Self {
             size,

@@ -384,8 +384,8 @@ impl Seed {
         Self { number, unit: 0 }
     }
 
-    /// A perturbation by units in the last place of f32: what rounding to f32 may change (Parker, “Monte Carlo
-    /// Arithmetic”, 1997, calls it a virtual precision).
+    /// A perturbation by units in the last place of f32: what rounding to f32 may change (Parker, “Monte
+    /// Carlo Arithmetic”, 1997, calls it a virtual precision).
     #[must_use]
     pub fn single(number: u64) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! Shaders with parameters: uniforms whose values are given for each point. Many variants of a shader, selected
-//! by parameters, are compiled once, and evaluated side by side at a few points each.
+//! Shaders with parameters: uniforms whose values are given for each point. Many variants of a shader,
+//! selected by parameters, are compiled once, and evaluated side by side at a few points each.
 
 use std::cell::RefCell;
 use std::time::Duration;
@@ -82,8 +82,8 @@ impl ParametricProgram {
 /// The cost of dispatching an instruction, relative to executing it for one chunk of pixels.
 const DISPATCH: f64 = 1.0;
 
-/// A point in the coordinates of `fragCoord`, with the values of the parameters there, in their order. A `bool`
-/// is 0 or 1.
+/// A point in the coordinates of `fragCoord`, with the values of the parameters there, in their order. A
+/// `bool` is 0 or 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Point<'v> {
     /// Where it is.

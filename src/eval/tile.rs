@@ -1,5 +1,5 @@
-//! Renders tiles. A *band* is a row of tiles; the pixels of a tile are one *batch*, which is stored in *chunks*
-//! of [`LANES`] pixels.
+//! Renders tiles. A *band* is a row of tiles; the pixels of a tile are one *batch*, which is stored in
+//! *chunks* of [`LANES`] pixels.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;

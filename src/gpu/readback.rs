@@ -17,7 +17,7 @@ pub(super) struct RowBuffer {
 }
 
 impl RowBuffer {
-    /// Creates a buffer for so many rows.
+    /// Creates a buffer for that many rows.
     pub(super) fn new(device: &Device, width: u32, rows: usize) -> Self {
         let bytes_per_row = (16 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.gpu.create_buffer(&wgpu::BufferDescriptor {
@@ -59,8 +59,8 @@ impl RowBuffer {
         commands.copy_texture_to_buffer(from, to, size);
     }
 
-    /// Reads so many rows from the buffer. The first row of a target has the smallest fragment coordinates: it is the
-    /// bottom.
+    /// Reads that many rows from the buffer. The first row of a target has the smallest fragment coordinates:
+    /// it is the bottom.
     pub(super) fn read(&self, device: &Device, rows: usize) -> Result<Image, Failure> {
         let slice = self.buffer.slice(..);
         slice.map_async(wgpu::MapMode::Read, |_| {});

@@ -276,8 +276,9 @@ impl Worker {
         }
     }
 
-    /// Compiles the passes of a shader, in the order of their graph, with the textures that do not change, and goes on
-    /// from a state, if there is one. Returns the name of the device. [`Self::play`] then renders the frames, until another job follows.
+    /// Compiles the passes of a shader, in the order of their graph, with the textures that do not change,
+    /// and goes on from a state, if there is one. Returns the name of the device. [`Self::play`] then renders
+    /// the frames, until another job follows.
     ///
     /// # Errors
     /// Why the passes cannot be rendered.
@@ -306,14 +307,20 @@ impl Worker {
         }
     }
 
-    /// Renders the next frame of the passes that were opened, if one is given, and returns these textures. The channels
-    /// of the frame do not count.
+    /// Renders the next frame of the passes that were opened, if one is given, and returns these textures.
+    /// The channels of the frame do not count.
     ///
     /// # Errors
     /// Why there is no image. The passes must then be opened again, and start with the first frame.
     pub fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Vec<Image>, Failure> {
         let mut images = Vec::with_capacity(wanted.len());
-        let job = Job::Play(frame.cloned().map(Box::new), wanted.to_vec());
+        let inputs = frame.map(|frame| {
+            Box::new(Frame {
+                channels: [const { None }; 4],
+                ..frame.clone()
+            })
+        });
+        let job = Job::Play(inputs, wanted.to_vec());
         match self.run_in_bands(&job, |image| images.push(image))? {
             Output::Completed => Ok(images),
             _ => Err(unexpected_reply()),

@@ -1,13 +1,13 @@
-//! Stand-ins for `ShaderToy`'s noise textures, which are not redistributable: the same on every machine, with the
-//! properties that shaders rely on.
+//! Stand-ins for `ShaderToy`'s noise textures, which are not redistributable: the same on every machine, with
+//! the properties that shaders rely on.
 
 use crate::{Image, pcg};
 
 /// A noise texture of `ShaderToy`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Noise {
-    /// 256×256 pixels. Green is red moved by 37 pixels to the right and 17 downwards, and alpha is blue moved alike, so
-    /// that one lookup gives two layers of volume noise.
+    /// 256×256 pixels. Green is red moved by 37 pixels to the right and 17 downwards, and alpha is blue moved
+    /// alike, so that one lookup gives two layers of volume noise.
     RgbaMedium,
     /// 64×64 pixels of independent components.
     RgbaSmall,

@@ -59,7 +59,8 @@ impl Texture {
         }
     }
 
-    /// The whole image in another size: the lower left part of what both have, zeros elsewhere, and no mipmaps.
+    /// The whole image in another size: the lower left part of what both have, zeros elsewhere, and no
+    /// mipmaps.
     #[must_use]
     pub fn cropped(&self, size: [u32; 2]) -> Self {
         match self {
@@ -142,9 +143,9 @@ impl<T: Copy + Default> Image<T> {
 }
 
 impl<T: Copy> Image<T> {
-    /// The image in half the size, rounded down, but at least 1 pixel: the next mipmap. Each pixel samples this image
-    /// at its center, between the nearest pixels: if the size is even, it is the mean of four. `mix(a, b, w)` is
-    /// `a·(1 − w) + b·w`.
+    /// The image in half the size, rounded down, but at least 1 pixel: the next mipmap. Each pixel samples
+    /// this image at its center, between the nearest pixels: if the size is even, it is the mean of four.
+    /// `mix(a, b, w)` is `a·(1 − w) + b·w`.
     #[must_use]
     pub fn halved(&self, mix: impl Fn(T, T, f64) -> T) -> Self {
         let [width, height] = self.size().map(|side| (side / 2).max(1));
@@ -163,8 +164,8 @@ impl<T: Copy> Image<T> {
     }
 }
 
-/// The two texels of a row of `length` whose centers enclose the center of texel `at` of a row of `half`, and the
-/// weight of the second. The quotient is rounded to f32, so that it has the same bits on a GPU.
+/// The two texels of a row of `length` whose centers enclose the center of texel `at` of a row of `half`, and
+/// the weight of the second. The quotient is rounded to f32, so that it has the same bits on a GPU.
 fn between(at: u32, half: u32, length: u32) -> (u32, u32, f64) {
     // The center is at (at + 1/2) · length / half − 1/2.
     let numerator = (2 * at + 1) * length - half;

@@ -117,8 +117,8 @@ pub fn log2<F: Float>(x: F) -> F {
     F::select(is_positive_normal(x), value, log_of_special(x))
 }
 
-/// The level of the mipmaps (OpenGL ES 3.0.6, equation 3.17): log₂ of the longer of two vectors, the derivatives of the
-/// coordinates in texels along x and y.
+/// The level of the mipmaps (OpenGL ES 3.0.6, equation 3.17): log₂ of the longer of two vectors, the
+/// derivatives of the coordinates in texels along x and y.
 ///
 /// # Panics
 /// If a vector has no components.

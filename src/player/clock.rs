@@ -14,8 +14,8 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// The inputs of a frame. Its time is computed, not summed up: a sum of 1/60 in f32 is wrong by seconds after an
-    /// hour.
+    /// The inputs of a frame. Its time is computed, not summed up: a sum of 1/60 in f32 is wrong by seconds
+    /// after an hour.
     #[must_use]
     pub fn frame(&self, number: i32) -> Frame {
         Frame {

@@ -17,8 +17,8 @@ pub trait Renderer {
     /// If there is not enough memory.
     fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Self::Texture, Self::Error>;
 
-    /// Renders the pass with this number over a texture, whose discarded pixels stay as they are. `frame` holds the
-    /// values of all inputs but the channels.
+    /// Renders the pass with this number over a texture, whose discarded pixels stay as they are. `frame`
+    /// holds the values of all inputs but the channels.
     ///
     /// # Errors
     /// If the pass fails.
@@ -114,8 +114,8 @@ impl<R: Renderer> Player<R> {
         }
     }
 
-    /// The textures of a buffer, the one that was completed last first: all that the next frame depends on, together
-    /// with the image.
+    /// The textures of a buffer, the one that was completed last first: all that the next frame depends on,
+    /// together with the image.
     #[must_use]
     pub fn buffer(&self, number: usize) -> Option<[&R::Texture; 2]> {
         let buffer = self.buffers[number].as_ref()?;
@@ -150,8 +150,8 @@ impl<R: Renderer> Player<R> {
         });
     }
 
-    /// Renders the next frame. If its size differs from that of the previous one, all textures keep their lower left
-    /// part.
+    /// Renders the next frame. If its size differs from that of the previous one, all textures keep their
+    /// lower left part.
     ///
     /// # Errors
     /// If a pass fails; the player must not be used again.

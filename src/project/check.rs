@@ -30,8 +30,8 @@ pub struct CheckedPass {
 /// The lints may take one part in this many of the time limit.
 const LINT_TIME_SHARE: u32 = 4;
 
-/// Checks all tabs of a project, and adds the texts that the compiler sees to `files`. The stage and the shapes of
-/// channels in `options` are those of the passes.
+/// Checks all tabs of a project, and adds the texts that the compiler sees to `files`. The stage and the
+/// shapes of channels in `options` are those of the passes.
 ///
 /// # Errors
 /// The diagnostics of all tabs, if one of them has an error; those about Common are reported once.
@@ -129,7 +129,8 @@ fn stage(kind: PassKind) -> Stage {
     }
 }
 
-/// The shapes of the channels: an unbound one is a `sampler2D`, unless the project does not say what is bound.
+/// The shapes of the channels: an unbound one is a `sampler2D`, unless the project does not say what is
+/// bound.
 fn channels(project: &Project, pass: &Pass) -> [Option<SamplerShape>; 4] {
     pass.inputs.each_ref().map(|input| match input {
         None if project.knows_inputs => Some(SamplerShape::D2),
@@ -165,8 +166,8 @@ fn joined(project: &Project, pass: &Pass, files: &mut Files) -> FileId {
 }
 
 impl Project {
-    /// The passes that the image needs and that are rendered before it: the buffers and the cube map that it reads, and
-    /// those that these read.
+    /// The passes that the image needs and that are rendered before it: the buffers and the cube map that it
+    /// reads, and those that these read.
     #[must_use]
     pub fn needed_by_image(&self) -> Vec<PassKind> {
         let mut needed = self.needed_by(&[PassKind::Image]);

@@ -1,4 +1,5 @@
-//! What is rendered of a project: its passes in the site's order, the textures that they read, and how they sample them.
+//! What is rendered of a project: its passes in the site's order, the textures that they read, and how they
+//! sample them.
 
 use toyproof_glsl::{Sampling, Wrap};
 use toyproof_image::{Noise, Texture};
@@ -78,8 +79,9 @@ impl Project {
         })
     }
 
-    /// How the channels of a pass are sampled. On the site, filter and wrap of a buffer belong to its texture: the filter
-    /// is that of the highest channel of the pass that reads it, and the wrap that of the last input in the file.
+    /// How the channels of a pass are sampled. On the site, filter and wrap of a buffer belong to its
+    /// texture: the filter is that of the highest channel of the pass that reads it, and the wrap that of the
+    /// last input in the file.
     pub(crate) fn sampling(&self, pass: &Pass) -> [Sampling; 4] {
         pass.inputs.each_ref().map(|input| {
             let Some(input) = input else {

@@ -56,10 +56,11 @@ pub const MAX_TAB_BYTES: usize = 1 << 20;
 pub struct Project {
     /// The text of Common.
     pub common: Option<FileId>,
-    /// The passes in the order of the file. Buffers run in this order; Cube A runs after them, and the image last.
+    /// The passes in the order of the file. Buffers run in this order; Cube A runs after them, and the image
+    /// last.
     pub passes: Vec<Pass>,
-    /// Whether the inputs are given. Otherwise channel *n* of every pass but Sound is assumed to read the *n*th buffer,
-    /// if there is one.
+    /// Whether the inputs are given. Otherwise channel *n* of every pass but Sound is assumed to read the
+    /// *n*th buffer, if there is one.
     pub knows_inputs: bool,
     document: Document,
 }

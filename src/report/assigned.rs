@@ -91,14 +91,15 @@ impl FunctionRecord {
 }
 
 impl Record {
-    /// Whether the shader has no fault: its verdict is good, no rule is violated, and all functions are right.
+    /// Whether the shader has no fault: its verdict is good, no rule is violated, and all functions are
+    /// right.
     #[must_use]
     pub fn is_passed(&self) -> bool {
         self.verdict.is_good() && self.faults().is_empty()
     }
 
-    /// The violated rules and the functions that are not right, each with a label. What a shader that does not
-    /// compile would violate is not known.
+    /// The violated rules and the functions that are not right, each with a label. What a shader that does
+    /// not compile would violate is not known.
     pub(super) fn faults(&self) -> Vec<(&'static str, String)> {
         let violations = self
             .rules

@@ -1,5 +1,5 @@
-//! An earlier report, and the verdicts that differ from it: after a correction of the reference, or with a new
-//! version of the program.
+//! An earlier report, and the verdicts that differ from it: after a correction of the reference, or with a
+//! new version of the program.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -77,7 +77,8 @@ impl Earlier {
         &self.name
     }
 
-    /// The shaders whose verdicts differ in a later report: in its order, and then those that it does not have.
+    /// The shaders whose verdicts differ in a later report: in its order, and then those that it does not
+    /// have.
     #[must_use]
     pub fn changes(&self, later: &Report) -> Vec<Change> {
         let mut gone = self.verdicts.clone();

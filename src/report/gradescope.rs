@@ -47,8 +47,8 @@ enum Status {
     Failed,
 }
 
-/// Formats the file: a test per mark of the rubric; for several shaders, each name starts with the shader's, and the
-/// one with the fewest points gives the score.
+/// Formats the file: a test per mark of the rubric; for several shaders, each name starts with the shader's,
+/// and the one with the fewest points gives the score.
 #[must_use]
 pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
     let tests = records.iter().flat_map(|record| {

@@ -7,8 +7,9 @@ use toyproof_verify::Verdict;
 
 use super::{Record, details};
 
-/// Formats the file. A fault of the shader, or a violated requirement of an assignment, is a failure; what prevented its verdict is an error; an
-/// inconclusive verdict is skipped. Characters that XML 1.0 forbids are removed.
+/// Formats the file. A fault of the shader, or a violated requirement of an assignment, is a failure; what
+/// prevented its verdict is an error; an inconclusive verdict is skipped. Characters that XML 1.0 forbids are
+/// removed.
 #[must_use]
 pub fn junit(records: &[Record]) -> String {
     let time = records.iter().map(time).sum();

@@ -117,8 +117,8 @@ impl FloatMode {
         lower_within(checked, passes, deadline)
     }
 
-    /// Lowers a shader for a host that filters textures itself: unlike [`Self::lower_within`], strict mode leaves their
-    /// lookups as they are.
+    /// Lowers a shader for a host that filters textures itself: unlike [`Self::lower_within`], strict mode
+    /// leaves their lookups as they are.
     ///
     /// # Errors
     /// If the deadline passes.

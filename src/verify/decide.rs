@@ -73,7 +73,8 @@ impl fmt::Display for Verdict {
 /// neither. Such rays form lines, so that a compact region of differing pixels is a mistake however small.
 pub const MAX_DIFFERING: f64 = 0.001;
 
-/// Whether the differing pixels of the algorithm check are a mistake: they are many, or form a compact region.
+/// Whether the differing pixels of the algorithm check are a mistake: they are many, or form a compact
+/// region.
 #[must_use]
 pub fn is_different(algorithm: &CheckSummary) -> bool {
     algorithm.share(algorithm.differing) > MAX_DIFFERING || algorithm.regions.largest_compact.is_some()

@@ -1,5 +1,5 @@
-//! Texture lookups: filters and mipmaps are exact operations, so that the evaluator in f32 and the strict GPU run have
-//! the same bits.
+//! Texture lookups: filters and mipmaps are exact operations, so that the evaluator in f32 and the strict GPU
+//! run have the same bits.
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};

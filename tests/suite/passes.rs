@@ -1,5 +1,5 @@
-//! Projects with several passes: the answers of `tests/passes`, on the evaluator in both precisions and by the driver,
-//! and faults that the answers reveal.
+//! Projects with several passes: the answers of `tests/passes`, on the evaluator in both precisions and by
+//! the driver, and faults that the answers reveal.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -46,7 +46,8 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
         .collect()
 }
 
-/// Also with a file that is not text, one that is there twice, and a shader that an expression of another repairs.
+/// Also with a file that is not text, one that is there twice, and a shader that an expression of another
+/// repairs.
 #[test]
 fn the_merged_report_is_that_of_a_single_process() {
     let folder = homework(1);

@@ -36,7 +36,8 @@ enum Task {
     },
     /// Print the smallest errors of scenes that are found, the table of docs/evidence/accuracy.md
     Sensitivity,
-    /// Compare the bits of the evaluator and of the strict GPU run, for the shaders of a folder that read no channel
+    /// Compare the bits of the evaluator and of the strict GPU run, for the shaders of a folder that read no
+    /// channel
     Corpus {
         /// The folder of shaders
         folder: PathBuf,
@@ -77,7 +78,8 @@ enum Task {
     },
     /// Measure how many wrong shaders are repaired, and at which lines
     Repairs {
-        /// A file with a line of JSON for each shader: `file`, `scene`, `group`, `lines`; the planted faults if none
+        /// A file with a line of JSON for each shader: `file`, `scene`, `group`, `lines`; the planted faults
+        /// if none
         manifest: Option<PathBuf>,
         /// Only shaders whose names contain this, or of this group
         #[arg(long, default_value = "")]
@@ -92,7 +94,8 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         correct: Option<PathBuf>,
     },
-    /// Print the verdicts that change where the exported shader of a scene is the reference instead of the scene
+    /// Print the verdicts that change where the exported shader of a scene is the reference instead of the
+    /// scene
     References {
         /// Only exercises whose names contain this
         #[arg(default_value = "")]

@@ -1,11 +1,11 @@
 //! Plays ShaderToy's projects in Chromium by the rules of the site's own page: the judge of `toyproof run`.
 //!
-//! A folder of results has `frame-0007-image.f32`, `frame-0007-buffer-a.f32` and so on: RGBA as 32-bit floats,
-//! little endian, bottom row first. Its `player.json` has the size, the passes, the frames, the tabs that do not
-//! compile with the messages of the compiler, and `failure`: why frames are missing.
+//! A folder of results has `frame-0007-image.f32`, `frame-0007-buffer-a.f32` and so on: RGBA as 32-bit
+//! floats, little endian, bottom row first. Its `player.json` has the size, the passes, the frames, the tabs
+//! that do not compile with the messages of the compiler, and `failure`: why frames are missing.
 //!
-//! A list has a line of JSON per project: `{"project": "a.json", "out": "a", "size": [64, 36], "frames": [0, 7]}`.
-//! Only `project` is required. The default of `out` is the name of the file, below `--out`.
+//! A list has a line of JSON per project: `{"project": "a.json", "out": "a", "size": [64, 36], "frames": [0,
+//! 7]}`. Only `project` is required. The default of `out` is the name of the file, below `--out`.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -73,16 +73,17 @@ impl Submission {
     }
 }
 
-/// Identifies this build of the program on this machine: the size of its file, in bytes, and the time of its last
-/// change.
+/// Identifies this build of the program on this machine: the size of its file, in bytes, and the time of its
+/// last change.
 pub(super) fn build() -> Option<String> {
     let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
     let identity: (u64, SystemTime) = (file.len(), file.modified().ok()?);
     Some(format!("{identity:?}"))
 }
 
-/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the assignment,
-/// the flags, and the contents of the files that they name. Also returns the size of the shader in bytes.
+/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the
+/// assignment, the flags, and the contents of the files that they name. Also returns the size of the shader
+/// in bytes.
 fn identity(
     found: &Input,
     args: &Args,
@@ -312,8 +313,11 @@ impl<'a> Checker<'a> {
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
             keep(out, stem, &IMAGES, findings.as_ref(), &mut outcome);
         }
+        // `debug` renders the image alone.
+        let has_history = shader.passes.as_ref().is_some_and(passes::has_history);
         if outcome.record.help.is_none() {
-            outcome.record.help = self.help(&outcome);
+            let help = self.help(&outcome);
+            outcome.record.help = help.filter(|help| !has_history || !help.starts_with("toyproof debug"));
         }
         outcome
     }
@@ -521,8 +525,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Searches a wrong shader for places where an expression of a correct one repairs it. Returns its record with
-    /// the fix, if there is one, and writes the image after the fix.
+    /// Searches a wrong shader for places where an expression of a correct one repairs it. Returns its record
+    /// with the fix, if there is one, and writes the image after the fix.
     pub(super) fn search_again(
         &self,
         context: &WorkerContext,

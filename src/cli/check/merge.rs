@@ -182,8 +182,8 @@ fn parse(arguments: &[String]) -> Result<Args, Problem> {
 /// The results of shaders, by the numbers of their shards and their keys, each with its folder.
 type ShardResults<'a> = HashMap<(u32, String), (&'a Path, Line)>;
 
-/// Reads the results in all folders. Of several results of one shader, which differ in their times, one is taken
-/// that does not depend on the order of the folders.
+/// Reads the results in all folders. Of several results of one shader, which differ in their times, one is
+/// taken that does not depend on the order of the folders.
 fn read_results(folders: &[(PathBuf, Manifest)]) -> io::Result<ShardResults<'_>> {
     let mut folders: Vec<_> = folders.iter().collect();
     folders.sort_by(|(a, _), (b, _)| a.cmp(b));

@@ -44,8 +44,8 @@ use crate::report::{self, Detail, Earlier, Hints, Layout, Record, Report, Rubric
 /// Check shaders against a reference, and give a verdict on each
 ///
 /// The reference of a shader is the scene that --scene names, or the shader or image that --reference names,
-/// else that of the assignment, else the .toml file beside the shader. A shader without one is `ok` if it renders:
-/// nothing is compared.
+/// else that of the assignment, else the .toml file beside the shader. A shader without one is `ok` if it
+/// renders: nothing is compared.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -84,20 +84,23 @@ pub(super) struct Args {
     out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
     ///
-    /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been interrupted.
+    /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been
+    /// interrupted.
     #[arg(long, requires = "out", help_heading = "Reports")]
     resume: bool,
-    /// Check only part K of N of the shaders, in a folder of its own; `toyproof merge` writes the report of all
+    /// Check only part K of N of the shaders, in a folder of its own; `toyproof merge` writes the report of
+    /// all
     ///
-    /// Each shader is in one of the N parts, which depends on the contents of all shaders. The parts take about
-    /// equally long. They may be checked at any time, in any order and on several machines; with --resume, a
-    /// part that was interrupted continues.
+    /// Each shader is in one of the N parts, which depends on the contents of all shaders. The parts take
+    /// about equally long. They may be checked at any time, in any order and on several machines; with
+    /// --resume, a part that was interrupted continues.
     #[arg(long, value_name = "K/N", requires = "out", help_heading = "Reports")]
     shard: Option<Shard>,
     /// List the verdicts that differ from an earlier report: a folder that --out wrote, or its verdict.json
     #[arg(long, value_name = "OLD", conflicts_with = "shard", help_heading = "Reports")]
     compare: Option<PathBuf>,
-    /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's results.json
+    /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's
+    /// results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
     /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
@@ -517,8 +520,8 @@ impl Batch<'_> {
         self.records.push((index, outcome.record));
     }
 
-    /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are listed
-    /// below their shader, and warnings are counted.
+    /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are
+    /// listed below their shader, and warnings are counted.
     fn print(&mut self, message: &Message, verdict: Verdict) {
         match message {
             Message::Diagnostics(diagnostics, _)

@@ -30,13 +30,14 @@ pub(super) struct Plan {
 /// A frame in which shaders are checked.
 pub(super) struct PlannedFrame {
     pub(super) inputs: FrameInputs,
-    /// With the channels loaded. Its size is the one of the inputs or the default; a scene or a reference image
-    /// may set another.
+    /// With the channels loaded. Its size is the one of the inputs or the default; a scene or a reference
+    /// image may set another.
     pub(super) frame: Frame,
 }
 
 impl Plan {
-    /// Reads what the arguments name, or the assignment that they name or that lies in the folder of all shaders.
+    /// Reads what the arguments name, or the assignment that they name or that lies in the folder of all
+    /// shaders.
     ///
     /// # Errors
     /// It is unusable; what is wrong with it has been printed.
@@ -163,9 +164,6 @@ fn read(path: &Path, terminal: &Terminal) -> Result<(Assignment, String), ()> {
         }
         Err(error) => Unusable::of(error, &mut files),
     };
-    match unusable {
-        Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
-        Unusable::Unreadable(error) | Unusable::Unrendered(error) => terminal.error(error),
-    }
+    unusable.print(&files, terminal);
     Err(())
 }

@@ -34,10 +34,9 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
         }
         Err(error) => Err(Unusable::of(error, &mut files)),
     };
-    rubric.map(Some).map_err(|unusable| match unusable {
-        Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
-        Unusable::Unreadable(error) | Unusable::Unrendered(error) => terminal.error(error),
-    })
+    rubric
+        .map(Some)
+        .map_err(|unusable| unusable.print(&files, terminal))
 }
 
 /// The file names of the reports, in the order in which they are written: once the last exists, all do.
@@ -106,8 +105,8 @@ pub(super) struct Line {
     pub(super) device: Option<String>,
 }
 
-/// The complete lines of `results.jsonl`, each with its result unless it cannot be parsed. A killed run leaves
-/// an incomplete last line.
+/// The complete lines of `results.jsonl`, each with its result unless it cannot be parsed. A killed run
+/// leaves an incomplete last line.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (&[u8], Option<Line>)> {
     let lines = bytes.split_inclusive(|&byte| byte == b'\n');
     let complete = lines.filter(|line| line.ends_with(b"\n"));

@@ -1,5 +1,5 @@
-//! A part of a batch, `--shard K/N`: which shaders are checked, and the file from which `merge` recognizes the parts
-//! of one batch.
+//! A part of a batch, `--shard K/N`: which shaders are checked, and the file from which `merge` recognizes
+//! the parts of one batch.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -20,8 +20,8 @@ pub(super) const MANIFEST_NAME: &str = "shard.json";
 /// The largest number of shards.
 const MAX_SHARDS: u32 = 10_000;
 
-/// A shard may exceed its share of the costs by this part, so that most shaders stay in their shard when others
-/// come and go.
+/// A shard may exceed its share of the costs by this part, so that most shaders stay in their shard when
+/// others come and go.
 const SLACK: f64 = 0.05;
 
 /// What every shader costs beside its length, in bytes of shader: rendering and comparing it.
@@ -82,8 +82,8 @@ struct Item {
 }
 
 /// Each item goes to the shard with its largest weight that has room: consistent hashing with bounded loads
-/// (Mirrokni, Thorup and Zadimoghaddam 2018), by rendezvous hashing (Thaler and Ravishankar 1998). The order of the
-/// items does not matter.
+/// (Mirrokni, Thorup and Zadimoghaddam 2018), by rendezvous hashing (Thaler and Ravishankar 1998). The order
+/// of the items does not matter.
 fn distribute(items: &[Item], shards: u32) -> Vec<u32> {
     let mut order: Vec<usize> = (0..items.len()).collect();
     order.sort_by_key(|&at| std::cmp::Reverse(items[at]));

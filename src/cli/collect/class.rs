@@ -131,8 +131,8 @@ pub(super) struct Students {
 }
 
 impl Students {
-    /// Reads a list: a line for each student, with the name or number that the download has, and then, after a `,`, `;`
-    /// or tab, the name to show.
+    /// Reads a list: a line for each student, with the name or number that the download has, and then, after
+    /// a `,`, `;` or tab, the name to show.
     pub(super) fn parse(text: &str) -> Self {
         let mut students = Self::default();
         for line in text.lines() {

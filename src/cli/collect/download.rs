@@ -23,8 +23,8 @@ const MAX_TEXT_BYTES: usize = 1 << 30;
 /// A file of a download.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Found {
-    /// Its path in the download; archives in it are components that end with `.zip`. The last component of an empty
-    /// folder is empty.
+    /// Its path in the download; archives in it are components that end with `.zip`. The last component of an
+    /// empty folder is empty.
     pub(super) path: Vec<String>,
     /// What it is, or why it cannot be read.
     pub(super) content: Result<Content, String>,
@@ -165,8 +165,8 @@ fn limit(path: &[String]) -> u64 {
     }
 }
 
-/// Removes the folder that has the folders of several students, as in an archive of a folder, unless Moodle or Canvas
-/// named it.
+/// Removes the folder that has the folders of several students, as in an archive of a folder, unless Moodle
+/// or Canvas named it.
 pub(super) fn without_common_folder(
     mut found: Vec<Found>,
     is_of_system: impl Fn(&str) -> bool,

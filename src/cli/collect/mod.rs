@@ -26,9 +26,10 @@ use crate::report::{Detail, Layout};
 
 /// Collect submissions from downloads into a folder for each student
 ///
-/// Reads what Moodle and Canvas let teachers download, or any archive or folder with a folder or a file for each
-/// student, and archives in them. Shaders are recognized by their names or by their texts, and saved as UTF-8. What
-/// is not a shader is reported and left out. `toyproof check` has a row for each student of the folder.
+/// Reads what Moodle and Canvas let teachers download, or any archive or folder with a folder or a file for
+/// each student, and archives in them. Shaders are recognized by their names or by their texts, and saved as
+/// UTF-8. What is not a shader is reported and left out. `toyproof check` has a row for each student of the
+/// folder.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -76,10 +77,7 @@ fn read_class(args: &Args, terminal: &Terminal) -> Result<Class, ()> {
         }
         Err(error) => Unusable::of(error, &mut files),
     };
-    match unusable {
-        Unusable::Invalid(diagnostics) => terminal.diagnostics(&diagnostics, &files),
-        Unusable::Unreadable(error) | Unusable::Unrendered(error) => terminal.error(error),
-    }
+    unusable.print(&files, terminal);
     Err(())
 }
 
@@ -180,8 +178,8 @@ impl Taken {
     }
 }
 
-/// Writes the shaders of all students that belong to an assignment, and the roster, and prints a line for each
-/// student.
+/// Writes the shaders of all students that belong to an assignment, and the roster, and prints a line for
+/// each student.
 fn write(
     folder: &Path,
     submissions: &[(String, &Student, &Submission)],

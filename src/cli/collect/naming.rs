@@ -20,8 +20,9 @@ pub(super) struct Student {
     pub(super) id: Option<String>,
 }
 
-/// The student of a file, by its path in the download, which is not empty: what the system wrote into the name of the
-/// file, of its archive or of its folder, else the folder, else the file's name without its extension.
+/// The student of a file, by its path in the download, which is not empty: what the system wrote into the
+/// name of the file, of its archive or of its folder, else the folder, else the file's name without its
+/// extension.
 pub(super) fn submitted(path: &[String]) -> Submitted {
     let (first, rest) = path.split_first().expect("the path is not empty");
     let is_file = rest.is_empty() || is_archive(first);
@@ -67,8 +68,9 @@ struct Named {
     is_late: bool,
 }
 
-/// Moodle: `Anna Smith_1234567_assignsubmission_file_shader.glsl`, or a folder `Anna Smith_1234567_assignsubmission_file`,
-/// with or without a last `_`; `onlinetext` instead of `file` where the text was typed.
+/// Moodle: `Anna Smith_1234567_assignsubmission_file_shader.glsl`, or a folder `Anna
+/// Smith_1234567_assignsubmission_file`, with or without a last `_`; `onlinetext` instead of `file` where the
+/// text was typed.
 fn moodle(name: &str) -> Option<Named> {
     let (student, rest) = name.split_once("_assignsubmission_")?;
     let (name, id) = student.rsplit_once('_')?;
@@ -86,8 +88,8 @@ fn moodle(name: &str) -> Option<Named> {
     })
 }
 
-/// Canvas: `smithanna_12345_678901_shader.glsl`, or `smithanna_LATE_12345_678901_shader.glsl`: the student's name and
-/// number, the number of the file and its name.
+/// Canvas: `smithanna_12345_678901_shader.glsl`, or `smithanna_LATE_12345_678901_shader.glsl`: the student's
+/// name and number, the number of the file and its name.
 fn canvas(name: &str) -> Option<Named> {
     let (student, rest) = name.split_once('_')?;
     let late = rest.strip_prefix("LATE_");
@@ -108,8 +110,8 @@ fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// A name as a component of a path on any system, without spaces: letters, digits, `-`, `_` and `.`, but no hidden
-/// file.
+/// A name as a component of a path on any system, without spaces: letters, digits, `-`, `_` and `.`, but no
+/// hidden file.
 pub(super) fn file_name(name: &str) -> String {
     let plain = name.chars().map(|character| match character {
         _ if character.is_alphanumeric() || "-_.".contains(character) => character,

@@ -53,8 +53,8 @@ impl Entry {
     }
 }
 
-/// Adds an error for each student of a collected folder who has no shader, in the order of the paths. Other folders
-/// have no roster.
+/// Adds an error for each student of a collected folder who has no shader, in the order of the paths. Other
+/// folders have no roster.
 ///
 /// # Errors
 /// The roster cannot be read.

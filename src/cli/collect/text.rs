@@ -21,8 +21,8 @@ pub(super) enum Content {
     Other(&'static str),
 }
 
-/// What a file is, by its name and its content, of which at most one byte more than [`MAX_BYTES`] is given. A file
-/// with the extension of a shader is one, other text is one if it has a `mainImage`.
+/// What a file is, by its name and its content, of which at most one byte more than [`MAX_BYTES`] is given. A
+/// file with the extension of a shader is one, other text is one if it has a `mainImage`.
 pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
     let path = Path::new(name);
     let is_expected = is_shader(path) || name.eq_ignore_ascii_case("project.toml");
@@ -53,8 +53,8 @@ pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
     }
 }
 
-/// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns none for what
-/// has control characters, and the name of the encoding unless it is UTF-8.
+/// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns none
+/// for what has control characters, and the name of the encoding unless it is UTF-8.
 fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
     let units = |from: fn([u8; 2]) -> u16| -> String {
         let units = bytes[2..].chunks_exact(2).map(|pair| from([pair[0], pair[1]]));

@@ -276,8 +276,8 @@ impl Runner<'_> {
         }
     }
 
-    /// A digest of everything that the frames of a sequence depend on, beginning with that of the shader: a record
-    /// with a different one is ignored.
+    /// A digest of everything that the frames of a sequence depend on, beginning with that of the shader: a
+    /// record with a different one is ignored.
     fn fingerprint(&self, mut hasher: DefaultHasher) -> String {
         let any = Frame {
             frame: 0,

@@ -1,6 +1,6 @@
-//! Fingerprints of a shader's structure, without names, numbers, layout and the order of its functions: winnowing
-//! (Schleimer, Wilkerson and Aiken, *Winnowing: Local Algorithms for Document Fingerprinting*, 2003) over the typed
-//! tree of each function.
+//! Fingerprints of a shader's structure, without names, numbers, layout and the order of its functions:
+//! winnowing (Schleimer, Wilkerson and Aiken, *Winnowing: Local Algorithms for Document Fingerprinting*,
+//! 2003) over the typed tree of each function.
 
 use std::collections::{HashMap, HashSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -219,7 +219,8 @@ impl Flat<'_> {
         }
     }
 
-    /// A declaration with a value is an assignment; one without is nothing, and so is a constant with a number.
+    /// A declaration with a value is an assignment; one without is nothing, and so is a constant with a
+    /// number.
     fn declare(&mut self, variable: VariableId, span: Span) {
         let declared = &self.tree[variable];
         let is_number = |value: ExprId| matches!(self.tree[value].kind, ExprKind::Literal(_));

@@ -14,9 +14,9 @@ use super::{Exit, Terminal};
 
 /// List pairs of shaders that share much of their structure
 ///
-/// Names, numbers, layout and the order of functions do not matter. Parts that more than half of the shaders have,
-/// and those of the shaders given with --except, such as a template, do not count. A pair is a reason to read both
-/// shaders, and proves nothing; it is not part of a verdict.
+/// Names, numbers, layout and the order of functions do not matter. Parts that more than half of the shaders
+/// have, and those of the shaders given with --except, such as a template, do not count. A pair is a reason
+/// to read both shaders, and proves nothing; it is not part of a verdict.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -155,8 +155,8 @@ impl Builder<'_> {
         })
     }
 
-    /// A lookup at normalized coordinates in one level, which has these sides. The steps are those of the text in
-    /// `toyproof_translate`.
+    /// A lookup at normalized coordinates in one level, which has these sides. The steps are those of the
+    /// text in `toyproof_translate`.
     fn filtered(&self, lookup: Filtered, at: [Value; 2], sizes: [Value; 2], level: Value) -> [Value; 4] {
         use Operation as O;
         let Sampling { filter, wrap } = lookup.sampling;

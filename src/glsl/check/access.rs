@@ -49,8 +49,8 @@ impl Checker<'_> {
         }
     }
 
-    /// The channel that a sampler of the author's own reads: its value is 0, the number of `iChannel0`. Other variables
-    /// are themselves.
+    /// The channel that a sampler of the author's own reads: its value is 0, the number of `iChannel0`. Other
+    /// variables are themselves.
     fn bound_texture(&self, variable: VariableId) -> VariableId {
         let own = &self.tree[variable];
         if own.kind != VariableKind::Uniform || !matches!(own.ty, Type::Sampler(_)) {

@@ -332,8 +332,8 @@ impl Place {
         Self { span, spelling: span }
     }
 
-    /// The place from `self` to `other`. If it does not lie within one macro expansion, `spelling` is the same
-    /// as `span`.
+    /// The place from `self` to `other`. If it does not lie within one macro expansion, `spelling` is the
+    /// same as `span`.
     #[must_use]
     pub fn to(self, other: Self) -> Self {
         let span = self.span.to(other.span);

@@ -1,7 +1,8 @@
-//! Expansion of filtered texture lookups into fetches of single texels and exact operations: for strict shaders only.
+//! Expansion of filtered texture lookups into fetches of single texels and exact operations: for strict
+//! shaders only.
 //!
-//! Drivers compute the weights of filters with few bits, and the level of mipmaps by their own formulas. The evaluator
-//! (`toyproof_eval`) computes the same steps as the text that is generated here.
+//! Drivers compute the weights of filters with few bits, and the level of mipmaps by their own formulas. The
+//! evaluator (`toyproof_eval`) computes the same steps as the text that is generated here.
 
 use std::fmt::Write as _;
 
@@ -211,8 +212,8 @@ pub(super) fn lookup_function(
     id
 }
 
-/// The body of a fetch of the texel `toyproof_p` in the level `toyproof_a`. Beyond the texture, browsers return zeros, and
-/// naga the texel at the edge.
+/// The body of a fetch of the texel `toyproof_p` in the level `toyproof_a`. Beyond the texture, browsers
+/// return zeros, and naga the texel at the edge.
 fn fetch_text(channel: u8) -> String {
     let texture = texture(channel);
     format!(
@@ -228,7 +229,8 @@ fn fetch_text(channel: u8) -> String {
     )
 }
 
-/// The size of a level. Mesa's software driver returns that of one level to all pixels that it computes together.
+/// The size of a level. Mesa's software driver returns that of one level to all pixels that it computes
+/// together.
 fn size_of_level(texture: &str, level: &str) -> String {
     format!("max(ivec2(uvec2(textureSize({texture}, 0)) >> uvec2(uint({level}) & 31u)), ivec2(1))")
 }
@@ -238,7 +240,8 @@ fn texture(channel: u8) -> String {
     format!("sampler2D(iChannel{channel}, iChannel{channel}_sampler)")
 }
 
-/// The body of a lookup at `toyproof_p`. With mipmaps, the level is `toyproof_a`; other arguments are ignored.
+/// The body of a lookup at `toyproof_p`. With mipmaps, the level is `toyproof_a`; other arguments are
+/// ignored.
 fn text(channel: u8, sampling: Sampling) -> String {
     let texture = texture(channel);
     if sampling.filter != Filter::Mipmap {

@@ -57,16 +57,16 @@ struct Sample {
 /// The levels by which colors are told apart: those of an image of 8 bits.
 const LEVELS: f64 = 255.0;
 
-/// The smallest number of levels that a usual curve must change and explain. It has no parameter, so that four
-/// agree by accident with a probability of less than 10⁻⁸.
+/// The smallest number of levels that a usual curve must change and explain. It has no parameter, so that
+/// four agree by accident with a probability of less than 10⁻⁸.
 const MIN_LEVELS_OF_USUAL: usize = 4;
 
 /// The smallest change of a level that counts.
 const MIN_CHANGE: f64 = 4.0 / LEVELS;
 
-/// The smallest number of levels on which a fitted curve must agree for several hues or channels. A curve can be
-/// fitted to any levels that are there once; only where different colors have a component in common does it
-/// say something about the others.
+/// The smallest number of levels on which a fitted curve must agree for several hues or channels. A curve can
+/// be fitted to any levels that are there once; only where different colors have a component in common does
+/// it say something about the others.
 const MIN_SHARED_LEVELS: usize = 24;
 
 /// The largest number of samples to which a curve is fitted.
@@ -75,8 +75,8 @@ const MAX_FITTED: usize = 1 << 16;
 /// The largest share of the samples that may be off the first fit, which they distort.
 const MAX_OUTLIERS: f64 = 0.02;
 
-/// The smallest share of the wrong pixels that differ by more than the tolerance of a curve. Where fewer than a
-/// hypothesis may leave unexplained do, the curve that changes nothing would explain the image.
+/// The smallest share of the wrong pixels that differ by more than the tolerance of a curve. Where fewer than
+/// a hypothesis may leave unexplained do, the curve that changes nothing would explain the image.
 const MIN_BEYOND_TOLERANCE: f64 = 0.2;
 
 /// Finds the color curve that explains the image: one function of all components of all pixels.

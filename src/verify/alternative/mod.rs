@@ -1,9 +1,9 @@
 //! Finds how a wrong image differs as a whole from the expected one: a shader that solves its task may be
 //! antialiased, mirrored or corrected for gamma, or read another input than was asked for.
 //!
-//! A hypothesis is tried at a few pixels and then confirmed: under it, the whole image must be correct by the same
-//! rules as any other. Most hypotheses evaluate the shader differently (a `View`: at other
-//! positions, or with other inputs), so that they apply to every kind of reference.
+//! A hypothesis is tried at a few pixels and then confirmed: under it, the whole image must be correct by the
+//! same rules as any other. Most hypotheses evaluate the shader differently (a `View`: at other positions, or
+//! with other inputs), so that they apply to every kind of reference.
 
 mod antialiasing;
 mod colors;

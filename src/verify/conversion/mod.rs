@@ -6,8 +6,8 @@
 //! no tolerance is needed: a conversion is proved if every pixel has the evaluator's bits.
 //!
 //! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves what is [`Written`], on a
-//! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without any
-//! worker.
+//! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
+//! any worker.
 
 mod proof;
 mod prover;
@@ -174,8 +174,8 @@ impl Conversion {
 }
 
 impl Converter {
-    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL that
-    /// our own writer cannot write, or that is not proved, is naga's.
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL
+    /// that our own writer cannot write, or that is not proved, is naga's.
     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.

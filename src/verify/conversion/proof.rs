@@ -157,9 +157,9 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     FRAMES.map(of).to_vec()
 }
 
-/// Renders what was read of a converted shader in each of the frames, and compares it with the shader: a proof
-/// for each artifact. `timeout` is the time limit of an image. The evaluator runs in `pool`, if there is one:
-/// in rayon's global pool, all rows of a slow shader could run before another shader's.
+/// Renders what was read of a converted shader in each of the frames, and compares it with the shader: a
+/// proof for each artifact. `timeout` is the time limit of an image. The evaluator runs in `pool`, if there
+/// is one: in rayon's global pool, all rows of a slow shader could run before another shader's.
 ///
 /// # Errors
 /// Returns why one of them, or the shader itself, has no images.
