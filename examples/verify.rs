@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         alternatives: None,
         search: None,
         frame: &frame,
+        from_start: None,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(10),
         pool: None,

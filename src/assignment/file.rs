@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, FileId, Files, nearest};
 use toyproof_image::{Channel, Frame, FrameInputs};
+use toyproof_project::{PassKind, Tab};
 use toyproof_toml::{Format, Literal, Located, Table};
 use toyproof_verify::alternative::{Difference, UnknownDifference};
 
@@ -159,11 +160,12 @@ fn reference(document: &mut Table, folder: &Path) -> Option<Reference> {
     }
 }
 
-/// Reads the path of a file that must exist, relative to the folder of the assignment.
+/// Reads the path of a file or a project that must exist, relative to the folder of the assignment.
 fn path(table: &mut Table, key: &'static str, folder: &Path) -> Option<Located<PathBuf>> {
     let Located { value: name, span } = table.optional::<String>(key)?;
     let value = folder.join(&name);
-    if !value.is_file() {
+    let image = value.join(Tab::Pass(PassKind::Image).file_name());
+    if !value.is_file() && !image.is_file() {
         let found = table.excerpt(span);
         table.reject(span, format!("there is no file {found}"), PATHS);
     }

@@ -3,14 +3,16 @@
 use std::time::Duration;
 
 use rayon::ThreadPool;
-use toyproof_eval::{self as eval, Number};
+use toyproof_diagnostic::Diagnostic;
+use toyproof_eval::{self as eval, Program};
 use toyproof_glsl::Filter;
 use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame, Image, Texture};
 use toyproof_player::{Clock, Source, Target};
-use toyproof_project::PassKind;
+use toyproof_project::{PassKind, Rendering};
 use toyproof_translate::FloatMode;
 use toyproof_verify::Failure;
+use toyproof_verify::growth::{Frames, Growth, follow};
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::project::Passes;
@@ -36,83 +38,172 @@ pub(super) struct Renderers<'a> {
 /// The first pass that the driver renders differently from the evaluator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PassDifference {
-    pub(super) pass: PassKind,
+    pub(super) pass: Target,
     pub(super) frame: i32,
     pub(super) pixels: usize,
 }
 
-/// Binds what the image reads in this frame: the textures that do not change, and the buffers after all
-/// passes of this frame and of those before it. A shader that is checked has them in f32, so that the checks
-/// of its image find what this pass does wrong, not what earlier frames amplified; a reference has them in
-/// f64. Returns the first difference of the driver's passes.
+/// What the frames before one contribute to its image.
+#[derive(Debug)]
+pub(super) struct BoundFrame {
+    /// The frame with what its channels read after double precision in all frames.
+    pub(super) double: Frame,
+    /// How far float32 is from that.
+    pub(super) growth: Growth,
+    /// Warnings about the buffers.
+    pub(super) notes: Vec<Diagnostic>,
+    /// The first difference of the driver's passes.
+    pub(super) difference: Option<PassDifference>,
+}
+
+/// A project that renders its image.
+struct Subject<'a> {
+    passes: &'a Passes,
+    rendering: &'a Rendering,
+    shader: PassShader<'a>,
+    programs: Vec<Program>,
+}
+
+/// Binds what the image of a shader reads in this frame: the textures that do not change, and the buffers
+/// after all passes of this frame and of those before it, in float32. Returns what the frames before it
+/// contribute, if the image depends on them.
 ///
 /// # Errors
 /// Why the buffers cannot be rendered.
-pub(super) fn bind<N: Number>(
+pub(super) fn bind(
     passes: &Passes,
     frame: &mut Frame,
     renderers: Renderers<'_>,
-) -> Result<Option<PassDifference>, Failure> {
-    let rendering = passes.rendering(PassKind::Image);
-    let rendering = rendering.map_err(|error| Failure::Unrendered(error.to_string()))?;
-    let shader = PassShader {
-        checked: passes.checked_of(&rendering).collect(),
-        graph: &rendering.graph,
-        media: &rendering.media,
-    };
+) -> Result<Option<BoundFrame>, Failure> {
     let (timeout, pool) = (renderers.timeout, renderers.pool);
-    let programs = if has_history(passes) {
-        let programs = || shader.programs(timeout);
-        within(pool, programs).map_err(|(_, refusal)| eval::Failure::Refused(refusal))?
-    } else {
-        Vec::new()
-    };
-    let mut playback = CpuPlayback::<N>::new(&shader, &programs, None, timeout, None);
+    let rendering = rendering(passes)?;
+    let subject = Subject::new(passes, &rendering, timeout, pool)?;
+    if !has_history(passes) {
+        *frame = subject.bound(frame, |_| None);
+        return Ok(None);
+    }
+    let clock = clock(frame);
+    let mut device = open(renderers, &subject.shader)?;
+    // The image of the last frame is compared with more care.
+    let targets: Vec<Target> = rendering.graph.passes().iter().map(|pass| pass.target).collect();
     let mut difference = None;
-    if has_history(passes) {
-        let rate = f64::from(FRAME_RATE);
-        let clock = Clock {
-            inputs: frame.clone(),
-            rate,
-            start: f64::from(frame.time) - f64::from(frame.frame) / rate,
+    let frames = Frames {
+        shader: &subject.shader,
+        programs: &subject.programs,
+        clock: &clock,
+        last: frame.frame,
+        timeout,
+        pool,
+    };
+    let history = follow(&frames, |inputs, playback| {
+        let Some(device) = device.as_mut().filter(|_| difference.is_none()) else {
+            return Ok(());
         };
-        let mut device = open(renderers, &shader)?;
-        // The image of the last frame is compared with more care.
-        let targets: Vec<Target> = rendering.graph.passes().iter().map(|pass| pass.target).collect();
+        let images = device.render(inputs, &targets).map_err(Failure::Gpu)?;
+        difference = images.iter().zip(&targets).find_map(|(image, &pass)| {
+            let pixels = differing(playback.texture(pass)?, image);
+            (pixels > 0).then_some(PassDifference {
+                pass,
+                frame: inputs.frame,
+                pixels,
+            })
+        });
+        Ok(())
+    })?;
+    let double = subject.bound(frame, |buffer| {
+        history.double.texture(Target::Buffer(buffer)).cloned()
+    });
+    *frame = subject.bound(frame, |buffer| {
+        history.single.texture(Target::Buffer(buffer)).cloned()
+    });
+    Ok(Some(BoundFrame {
+        double,
+        growth: history.growth,
+        notes: history.notes,
+        difference,
+    }))
+}
+
+/// Binds what the image of a reference reads in this frame, in double precision.
+///
+/// # Errors
+/// Why the buffers cannot be rendered.
+pub(super) fn bind_reference(passes: &Passes, frame: &mut Frame, timeout: Duration) -> Result<(), Failure> {
+    let rendering = rendering(passes)?;
+    let subject = Subject::new(passes, &rendering, timeout, None)?;
+    let mut playback = CpuPlayback::<f64>::new(&subject.shader, &subject.programs, None, timeout, None);
+    if has_history(passes) {
+        let clock = clock(frame);
         for number in 0..=frame.frame {
-            let inputs = clock.frame(number);
-            within(pool, || playback.render(&inputs)).map_err(|error| error.failure)?;
-            let Some(device) = device.as_mut().filter(|_| difference.is_none()) else {
-                continue;
-            };
-            let images = device.render(&inputs, &targets).map_err(Failure::Gpu)?;
-            difference = images.iter().enumerate().find_map(|(at, image)| {
-                let pixels = differing(playback.texture(targets[at])?, image);
-                (pixels > 0).then(|| PassDifference {
-                    pass: passes.project.passes[rendering.passes[at]].kind,
-                    frame: number,
-                    pixels,
-                })
-            });
+            let rendered = playback.render(&clock.frame(number));
+            rendered.map_err(|error| error.failure)?;
         }
     }
-    let image = rendering
-        .graph
-        .passes()
-        .iter()
-        .find(|pass| pass.target == Target::Image);
-    let inputs = image.map_or([None; 4], |image| image.inputs);
-    for (index, (channel, input)) in frame.channels.iter_mut().zip(inputs).enumerate() {
-        let has_mipmaps = passes.image().sampling[index].filter == Filter::Mipmap;
-        *channel = match (channel.take(), input) {
-            (Some(given), _) if has_mipmaps => Some(given.with_mipmaps()),
-            (Some(given), _) => Some(given),
-            (None, None) => None,
-            (None, Some(Source::Medium(number))) => rendering.media.get(number).cloned(),
-            (None, Some(Source::Buffer(number))) => playback.texture(Target::Buffer(number)).cloned(),
-        };
+    *frame = subject.bound(frame, |buffer| playback.texture(Target::Buffer(buffer)).cloned());
+    Ok(())
+}
+
+/// What renders the image.
+fn rendering(passes: &Passes) -> Result<Rendering, Failure> {
+    let rendering = passes.rendering(PassKind::Image);
+    rendering.map_err(|error| Failure::Unrendered(error.to_string()))
+}
+
+/// The inputs of the frames up to this one, at the site's rate.
+fn clock(frame: &Frame) -> Clock {
+    let rate = f64::from(FRAME_RATE);
+    Clock {
+        inputs: frame.clone(),
+        rate,
+        start: f64::from(frame.time) - f64::from(frame.frame) / rate,
     }
-    Ok(difference)
+}
+
+impl<'a> Subject<'a> {
+    /// Compiles the passes that the image depends on; none if it depends on no other.
+    fn new(
+        passes: &'a Passes,
+        rendering: &'a Rendering,
+        timeout: Duration,
+        pool: Option<&ThreadPool>,
+    ) -> Result<Self, Failure> {
+        let shader = PassShader {
+            checked: passes.checked_of(rendering).collect(),
+            graph: &rendering.graph,
+            media: &rendering.media,
+        };
+        let programs = if has_history(passes) {
+            let programs = || shader.programs(timeout);
+            within(pool, programs).map_err(|(_, refusal)| eval::Failure::Refused(refusal))?
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            passes,
+            rendering,
+            shader,
+            programs,
+        })
+    }
+
+    /// The frame with the channels of the image, where `buffer` returns the texture of a buffer.
+    fn bound(&self, frame: &Frame, buffer: impl Fn(usize) -> Option<Texture>) -> Frame {
+        let graph = self.shader.graph;
+        let image = graph.passes().iter().find(|pass| pass.target == Target::Image);
+        let inputs = image.map_or([None; 4], |image| image.inputs);
+        let mut bound = frame.clone();
+        for (index, (channel, input)) in bound.channels.iter_mut().zip(inputs).enumerate() {
+            let has_mipmaps = self.passes.image().sampling[index].filter == Filter::Mipmap;
+            *channel = match (channel.take(), input) {
+                (Some(given), _) if has_mipmaps => Some(given.with_mipmaps()),
+                (Some(given), _) => Some(given),
+                (None, None) => None,
+                (None, Some(Source::Medium(number))) => self.rendering.media.get(number).cloned(),
+                (None, Some(Source::Buffer(number))) => buffer(number),
+            };
+        }
+        bound
+    }
 }
 
 /// Compiles the passes for the driver in a strict run; none without a driver, which the check of the image

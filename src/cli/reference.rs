@@ -8,7 +8,6 @@ use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image};
-use toyproof_translate::FloatMode;
 use toyproof_verify::{
     Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference,
     unbound,
@@ -16,7 +15,7 @@ use toyproof_verify::{
 
 use super::Terminal;
 use super::inputs::{LanguageArgs, shell_word};
-use super::passes::{Renderers, bind};
+use super::passes::bind_reference;
 use super::shader::{Shader, Unusable};
 use crate::cli::files::{self, Input, InputSource};
 use crate::report;
@@ -218,15 +217,10 @@ impl Evaluation<'_> {
         let name = self.name;
         let spinner = terminal.spinner(name);
         let mut frame = frame.clone();
-        let bound = shader.passes.as_ref().map_or(Ok(None), |passes| {
-            let renderers = Renderers {
-                worker: None,
-                float: FloatMode::Strict,
-                timeout: self.timeout,
-                pool: None,
-            };
-            bind::<f64>(passes, &mut frame, renderers)
-        });
+        let bound = shader
+            .passes
+            .as_ref()
+            .map_or(Ok(()), |passes| bind_reference(passes, &mut frame, self.timeout));
         bound.map_err(|failure| {
             terminal.error(format_args!(
                 "the passes of the reference {name} cannot be evaluated: {failure}; no shader was checked"

@@ -58,6 +58,19 @@ impl<'a, N: Number> PassRenderer<'a, N> {
         if mipmaps { loaded.with_mipmaps() } else { loaded }
     }
 
+    /// A frame with these channels.
+    #[must_use]
+    pub fn bound(&self, frame: &Frame, channels: [Channel<'_, Texture>; 4]) -> Frame {
+        Frame {
+            channels: channels.map(|channel| match channel {
+                Channel::Unbound => None,
+                Channel::Texture(texture) => Some(texture.clone()),
+                Channel::Medium(number) => self.media.get(number).cloned(),
+            }),
+            ..frame.clone()
+        }
+    }
+
     /// The observations of each pass, over all frames.
     #[must_use]
     pub fn observations(&self) -> &[Observations] {
@@ -82,14 +95,7 @@ impl<N: Number> Renderer for PassRenderer<'_, N> {
         frame: &Frame,
         channels: [Channel<'_, Texture>; 4],
     ) -> Result<Texture, PassFailure> {
-        let frame = Frame {
-            channels: channels.map(|channel| match channel {
-                Channel::Unbound => None,
-                Channel::Texture(texture) => Some(texture.clone()),
-                Channel::Medium(number) => self.media.get(number).cloned(),
-            }),
-            ..frame.clone()
-        };
+        let frame = self.bound(frame, channels);
         let rendered = self.programs[pass].render(&frame, &self.settings);
         let Rendered {
             framebuffer,

@@ -118,6 +118,10 @@ codes! {
     NeverWritten "W0604" "A read of an uninitialized variable",
     UnboundChannel "W0605" "A channel without an image",
     SlowCompilation "W0606" "A shader that takes the driver too long to compile",
+    // Findings over the frames of a project.
+    NanInBuffer "W0607" "NaN in a buffer",
+    NeverInitialized "W0608" "A buffer that stays zero",
+    VisibleGrowth "W0609" "Rounding errors that become visible over frames",
 }
 
 /// The error about a shader that takes too long to compile, in any stage.

@@ -1,11 +1,11 @@
-//! The order in which `ShaderToy` renders the passes of a shader over frames, for any renderer: the evaluator in each
-//! precision, and a graphics driver.
+//! The order in which `ShaderToy` renders the passes of a shader over frames, for any renderer: the evaluator
+//! in each precision, and a graphics driver.
 //!
-//! In a frame, the buffers are rendered in the order of the graph, and then the image. Each buffer has two textures: a
-//! pass reads the one that was completed last, and renders into the other. So a pass reads a buffer that precedes it
-//! as of this frame, and itself or a later one as of the previous frame. Both textures are zero at first and never
-//! cleared, so that a discarded pixel of a buffer keeps its value of two frames ago, and one of the image that of the
-//! previous frame.
+//! In a frame, the buffers are rendered in the order of the graph, and then the image. Each buffer has two
+//! textures: a pass reads the one that was completed last, and renders into the other. So a pass reads a
+//! buffer that precedes it as of this frame, and itself or a later one as of the previous frame. Both
+//! textures are zero at first and never cleared, so that a discarded pixel of a buffer keeps its value of two
+//! frames ago, and one of the image that of the previous frame.
 //!
 //! ```
 //! use toyproof_image::Frame;
@@ -44,6 +44,8 @@ mod clock;
 mod play;
 mod state;
 
+use std::fmt;
+
 pub use clock::Clock;
 pub use play::{Channel, Player, Renderer};
 use serde::{Deserialize, Serialize};
@@ -77,6 +79,15 @@ pub enum Target {
     Buffer(usize),
     /// The image.
     Image,
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Buffer(number) => write!(f, "Buffer {}", char::from(b'A' + *number as u8)),
+            Self::Image => f.write_str("Image"),
+        }
+    }
 }
 
 /// What an input reads.

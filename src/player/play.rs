@@ -128,6 +128,21 @@ impl<R: Renderer> Player<R> {
         Some([last?, other?])
     }
 
+    /// What a pass read in the last frame.
+    ///
+    /// # Panics
+    /// If there is no such pass.
+    #[must_use]
+    pub fn inputs(&self, pass: usize) -> [Channel<'_, R::Texture>; 4] {
+        let from = &self.graph.passes()[pass..];
+        channels(&self.graph, pass, |number| {
+            let [last, other] = self.buffer(number)?;
+            // A buffer that was rendered since then held its previous frame.
+            let is_rendered_since = from.iter().any(|pass| pass.target == Target::Buffer(number));
+            Some(if is_rendered_since { other } else { last })
+        })
+    }
+
     /// The size of the textures: none before the first frame.
     pub(crate) fn size(&self) -> Option<[u32; 2]> {
         self.size
@@ -163,16 +178,11 @@ impl<R: Renderer> Player<R> {
                 Some(texture) => texture,
                 None => self.renderer.zeros(frame.size, false)?,
             };
-            let inputs = self.graph.passes()[number].inputs;
-            let channels = inputs.map(|input| match input {
-                None => Channel::Unbound,
-                Some(Source::Medium(medium)) => Channel::Medium(medium),
-                Some(Source::Buffer(buffer)) => {
-                    let buffer = self.buffers[buffer].as_ref();
-                    let last = buffer.and_then(|buffer| buffer.textures[buffer.last].as_ref());
-                    last.map_or(Channel::Unbound, Channel::Texture)
-                }
-            });
+            let last = |buffer: usize| {
+                let buffer = self.buffers[buffer].as_ref()?;
+                buffer.textures[buffer.last].as_ref()
+            };
+            let channels = channels(&self.graph, number, last);
             let drawn = self.renderer.draw(number, over, frame, channels)?;
             match target {
                 Target::Image => self.image = Some(drawn),
@@ -225,4 +235,17 @@ impl<R: Renderer> Player<R> {
         }
         Ok(())
     }
+}
+
+/// What a pass reads, where `texture` returns the texture of a buffer.
+fn channels<'t, T>(
+    graph: &Graph,
+    pass: usize,
+    texture: impl Fn(usize) -> Option<&'t T>,
+) -> [Channel<'t, T>; 4] {
+    graph.passes()[pass].inputs.map(|input| match input {
+        None => Channel::Unbound,
+        Some(Source::Medium(medium)) => Channel::Medium(medium),
+        Some(Source::Buffer(buffer)) => texture(buffer).map_or(Channel::Unbound, Channel::Texture),
+    })
 }

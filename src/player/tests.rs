@@ -95,6 +95,17 @@ fn earlier_passes_are_read_as_of_this_frame_and_later_ones_as_of_the_previous() 
             "2.2 over 2.1: 1.2 0.2 zeros8",
         ]
     );
+    let read = |pass| {
+        let textures = player
+            .inputs(pass)
+            .into_iter()
+            .filter_map(|channel| match channel {
+                Channel::Texture(name) => Some(name.as_str()),
+                _ => None,
+            });
+        textures.collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!([0, 1, 2].map(read), ["1.1 0.1", "0.2", "1.2 0.2 zeros8"]);
     assert_eq!(player.buffer(0).unwrap(), ["1.2", "1.1"]);
     assert_eq!(player.buffer(3), None);
 }

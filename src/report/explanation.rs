@@ -24,7 +24,7 @@ pub struct Explanation {
 }
 
 /// The terms, each with its id and its definition.
-pub(super) const TERMS: [(&str, &str, &str); 21] = [
+pub(super) const TERMS: [(&str, &str, &str); 22] = [
     (
         "correct",
         "correct",
@@ -45,6 +45,12 @@ pub(super) const TERMS: [(&str, &str, &str); 21] = [
         "unstable",
         "The algorithm is correct, but some pixels differ visibly because float32 is not precise enough for it, or \
          because these pixels are ill-conditioned.",
+    ),
+    (
+        "chaotic",
+        "chaotic",
+        "Each frame of the shader is right and precise, but feedback through its buffers amplifies rounding errors \
+         until images differ visibly, in any precision.",
     ),
     (
         "inconclusive",

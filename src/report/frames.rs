@@ -41,6 +41,10 @@ pub struct FrameRecord {
     /// The image against the reference.
     #[serde(rename = "image")]
     pub comparison: Option<Comparison>,
+    /// The largest difference of a component between float32 and double precision, both from the first frame
+    /// on; null if the image depends on no other frame.
+    #[serde(default)]
+    pub growth: Option<f64>,
 }
 
 impl FrameRecord {
@@ -67,6 +71,10 @@ impl FrameRecord {
             precision: record.precision.clone(),
             toolchain: record.toolchain.clone(),
             comparison: record.comparison.clone(),
+            growth: record
+                .growth
+                .as_ref()
+                .and_then(|growth| Some(growth.frames.last()?.max_abs)),
         }
     }
 

@@ -59,7 +59,7 @@ fn status(verdict: Verdict) -> Option<TestCaseStatus> {
             Some(TestCaseStatus::non_success(NonSuccessKind::Failure))
         }
         Verdict::Timeout | Verdict::Error => Some(TestCaseStatus::non_success(NonSuccessKind::Error)),
-        Verdict::Inconclusive | Verdict::Ok => Some(TestCaseStatus::skipped()),
+        Verdict::Chaotic | Verdict::Inconclusive | Verdict::Ok => Some(TestCaseStatus::skipped()),
     }
 }
 

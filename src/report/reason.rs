@@ -154,6 +154,7 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
             plural(share.count, "differs", "differ"),
             percentage(*share)
         )),
+        Reason::Growth(growth) => Statement::new(growth.sentence()).details(growth.consequences()),
         &Reason::Agrees {
             differing,
             excluded,

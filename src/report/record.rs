@@ -11,7 +11,7 @@ use toyproof_verify::repair::SearchResult;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
-use super::{FrameRecord, FunctionRecord, Repair, RulesRecord, Suspect};
+use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -110,6 +110,10 @@ pub struct Record {
     /// The likely cause of the verdict in the shader's text; null if none is known.
     #[serde(default)]
     pub cause: Option<Position>,
+    /// How far float32 is from double precision after several frames; null if the image depends on no other
+    /// frame.
+    #[serde(default)]
+    pub growth: Option<GrowthRecord>,
     /// The results in the frames of an assignment, of which the first with the worst verdict gives everything
     /// above; null without an assignment.
     #[serde(default)]
@@ -147,6 +151,7 @@ impl Record {
             suspects: Vec::new(),
             is_search_cut: false,
             cause: None,
+            growth: None,
             frames: None,
             rules: None,
             functions: Vec::new(),
@@ -454,7 +459,7 @@ mod tests {
     use crate::report::frames::samples::in_frames;
     use crate::report::record::samples::{every_verdict, record};
     use crate::report::repair::samples::{repaired, suspected};
-    use crate::report::{Hints, repair};
+    use crate::report::{Hints, growth, repair};
 
     #[test]
     fn reports_follow_the_schema_and_broken_ones_do_not() {
@@ -477,6 +482,10 @@ mod tests {
         hidden.redact(Hints::Line);
         records.push(hidden);
         records.push(in_frames([Verdict::Correct, Verdict::Wrong]));
+        records.push(Record {
+            growth: Some(growth::samples::chaotic(5)),
+            ..record(Verdict::Chaotic)
+        });
         let report = Report::new(Some("x".to_owned()), records);
         let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert!(
@@ -489,6 +498,8 @@ mod tests {
             ("/shaders/10/fix/edits", serde_json::json!([])),
             ("/shaders/10/fix/alternatives/0/agreeing", "many".into()),
             ("/shaders/11/suspects/0/score", 2.into()),
+            ("/shaders/15/growth/cause", "fate".into()),
+            ("/shaders/15/growth/frames/0/differing", (-1).into()),
             ("/shaders/13/frames/0/size", serde_json::json!([0, 4])),
             ("/shaders/13/frames/1/verdict", "splendid".into()),
             ("/shaders/0/verdict", "splendid".into()),

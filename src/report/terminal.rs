@@ -32,8 +32,8 @@ pub struct Layout {
     pub names: usize,
     /// The width of the terminal in columns; none where lines are not wrapped, as in a file.
     pub width: Option<usize>,
-    /// Whether errors, or the warnings of a shader without a good verdict, are listed below the shader, as they
-    /// are where their source lines are not shown.
+    /// Whether errors, or the warnings of a shader without a good verdict, are listed below the shader, as
+    /// they are where their source lines are not shown.
     pub lists_diagnostics: bool,
 }
 
@@ -410,7 +410,7 @@ fn style(verdict: Verdict) -> Style {
     let color = match verdict {
         Verdict::Ok => None,
         Verdict::Correct => Some(AnsiColor::Green),
-        Verdict::Unstable | Verdict::Inconclusive => Some(AnsiColor::Yellow),
+        Verdict::Unstable | Verdict::Chaotic | Verdict::Inconclusive => Some(AnsiColor::Yellow),
         _ => Some(AnsiColor::Red),
     };
     Style::new().fg_color(color.map(Into::into)).bold()

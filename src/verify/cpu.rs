@@ -29,6 +29,8 @@ pub(super) fn evaluate_at(program: &Program, frame: &Frame, places: &Places) -> 
 pub(super) struct Evaluator<'a> {
     program: &'a Program,
     frame: &'a Frame,
+    /// The frame with what earlier frames render in double precision; none if it does not depend on them.
+    double_frame: Option<&'a Frame>,
     /// Set when the images are no longer needed.
     stop: &'a AtomicBool,
     /// The deadline of all images.
@@ -37,6 +39,8 @@ pub(super) struct Evaluator<'a> {
     /// and with substitutes.
     single: [TimeBudget; 2],
     double: [TimeBudget; 2],
+    /// The time left for the image in f64 of what earlier frames render in f32.
+    step: TimeBudget,
     /// The time left for all perturbed images.
     perturbed: TimeBudget,
 }
@@ -50,6 +54,8 @@ pub(super) struct Band {
     pub(super) single: Image,
     /// In f64, rounded once at the end.
     pub(super) double: Image,
+    /// The same of what earlier frames render in f32, where the frame depends on them.
+    pub(super) step: Option<Image>,
     /// Pixels whose color depends on undefined behavior, in f32 or in f64.
     pub(super) undefined: Vec<bool>,
     /// Observations in f32.
@@ -66,8 +72,8 @@ pub(super) struct Evaluated {
 }
 
 impl<'a> Evaluator<'a> {
-    /// Creates an evaluator with the time limits `each` for an image and `perturbed` for all perturbed ones, and
-    /// a deadline for all.
+    /// Creates an evaluator with the time limits `each` for an image and `perturbed` for all perturbed ones,
+    /// and a deadline for all.
     pub(super) fn new(
         program: &'a Program,
         frame: &'a Frame,
@@ -79,12 +85,19 @@ impl<'a> Evaluator<'a> {
         Self {
             program,
             frame,
+            double_frame: None,
             stop,
             deadline,
             single: pair(),
             double: pair(),
+            step: TimeBudget::new(each),
             perturbed: TimeBudget::new(perturbed),
         }
+    }
+
+    /// Renders another frame in f64: one with what earlier frames render in double precision.
+    pub(super) fn with_double(self, double_frame: Option<&'a Frame>) -> Self {
+        Self { double_frame, ..self }
     }
 
     pub(super) fn program(&self) -> &'a Program {
@@ -93,21 +106,22 @@ impl<'a> Evaluator<'a> {
 
     /// Renders some rows in f32 alone.
     pub(super) fn single(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
-        self.evaluate::<f32>(rows, &self.single)
+        self.evaluate::<f32>(self.frame, rows, &self.single)
     }
 
     /// Renders some rows in f64 alone.
     pub(super) fn double(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
-        self.evaluate::<f64>(rows, &self.double)
+        self.evaluate::<f64>(self.double_frame.unwrap_or(self.frame), rows, &self.double)
     }
 
     fn evaluate<N: Number>(
         &self,
+        frame: &Frame,
         rows: &Range<u32>,
         [budget, substituted]: &[TimeBudget; 2],
     ) -> Result<Evaluated, Failure> {
-        let rendered = self.render_as::<N>(rows, UndefinedPolicy::Observed, budget)?;
-        let undefined = self.undefined_pixels::<N>(rows, &rendered, substituted);
+        let rendered = self.render_as::<N>(frame, rows, UndefinedPolicy::Observed, budget)?;
+        let undefined = self.undefined_pixels::<N>(frame, rows, &rendered, substituted);
         Ok(Evaluated {
             image: rendered.image,
             undefined,
@@ -115,30 +129,36 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// Renders some rows. Calls `report_iterations` with the largest number of loop iterations of a pixel in f32 as
-    /// soon as it is known.
+    /// Renders some rows. Calls `report_iterations` with the largest number of loop iterations of a pixel in
+    /// f32 as soon as it is known.
     pub(super) fn render(
         &self,
         rows: &Range<u32>,
         report_iterations: impl FnOnce(u32),
     ) -> Result<Band, Failure> {
-        let single = self.render_as::<f32>(rows, UndefinedPolicy::Observed, &self.single[0])?;
+        let frame = self.frame;
+        let single = self.render_as::<f32>(frame, rows, UndefinedPolicy::Observed, &self.single[0])?;
         report_iterations(single.observations.max_iterations);
-        let mut undefined = self.undefined_pixels::<f32>(rows, &single, &self.single[1]);
+        let mut undefined = self.undefined_pixels::<f32>(frame, rows, &single, &self.single[1]);
         let double = self.double(rows)?;
+        let step = self
+            .double_frame
+            .map(|_| self.render_as::<f64>(frame, rows, UndefinedPolicy::Plain, &self.step))
+            .transpose()?;
         for (undefined, undefined_in_double) in undefined.iter_mut().zip(double.undefined) {
             *undefined |= undefined_in_double;
         }
         Ok(Band {
             single: single.image,
             double: double.image,
+            step: step.map(|step| step.image),
             undefined,
             observed: single.observations,
         })
     }
 
-    /// Renders some rows in f64 with every operation perturbed by a unit of the seed or not at all, at least in
-    /// the `wanted` pixels; none if the time limit is exceeded.
+    /// Renders some rows in f64 with every operation perturbed by a unit of the seed or not at all, at least
+    /// in the `wanted` pixels; none if the time limit is exceeded.
     pub(super) fn perturbed(&self, rows: &Range<u32>, seed: Seed, wanted: &[bool]) -> Option<Image> {
         self.perturbed.spend(self.deadline, |deadline| {
             let settings = Settings::<RandomRounding> {
@@ -148,7 +168,8 @@ impl<'a> Evaluator<'a> {
                 wanted: Some(wanted),
                 ..Settings::default()
             };
-            let rendered = self.program.render_rows(self.frame, rows.clone(), &settings);
+            let frame = self.double_frame.unwrap_or(self.frame);
+            let rendered = self.program.render_rows(frame, rows.clone(), &settings);
             rendered.ok().map(|rendered| rendered.image)
         })
     }
@@ -157,6 +178,7 @@ impl<'a> Evaluator<'a> {
     /// limit is exceeded, all of them count.
     fn undefined_pixels<N: Number>(
         &self,
+        frame: &Frame,
         rows: &Range<u32>,
         default_image: &RenderedF32,
         budget: &TimeBudget,
@@ -172,7 +194,8 @@ impl<'a> Evaluator<'a> {
             if undefined == candidates {
                 break;
             }
-            let Ok(substituted) = self.render_as::<N>(rows, UndefinedPolicy::Substitute(substituted), budget)
+            let Ok(substituted) =
+                self.render_as::<N>(frame, rows, UndefinedPolicy::Substitute(substituted), budget)
             else {
                 return candidates;
             };
@@ -192,6 +215,7 @@ impl<'a> Evaluator<'a> {
 
     fn render_as<N: Number>(
         &self,
+        frame: &Frame,
         rows: &Range<u32>,
         undefined: UndefinedPolicy,
         budget: &TimeBudget,
@@ -203,7 +227,7 @@ impl<'a> Evaluator<'a> {
                 interrupt: Some(self.stop),
                 ..Settings::default()
             };
-            self.program.render_rows(self.frame, rows.clone(), &settings)
+            self.program.render_rows(frame, rows.clone(), &settings)
         })
     }
 }

@@ -13,6 +13,7 @@ use crate::alternative::Difference;
 use crate::compare::{
     CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, Regions, ReplicateTest, SEEN,
 };
+use crate::growth::{GrowthCause, VisibleGrowth};
 
 /// The verdict on a shader, in the order of precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -30,6 +31,8 @@ pub enum Verdict {
     Wrong,
     /// Its algorithm is right, but float32 is not precise enough for it.
     Unstable,
+    /// Each frame is right and precise, but feedback amplifies rounding errors until images differ.
+    Chaotic,
     /// It cannot be decided.
     Inconclusive,
     /// Its image agrees with the reference.
@@ -61,6 +64,7 @@ impl fmt::Display for Verdict {
             Self::Error => "error",
             Self::Wrong => "wrong",
             Self::Unstable => "unstable",
+            Self::Chaotic => "chaotic",
             Self::Inconclusive => "inconclusive",
             Self::Correct => "correct",
             Self::Ok => "ok",
@@ -138,6 +142,8 @@ pub struct Checks {
 pub struct CheckEvidence {
     /// The three checks.
     pub checks: Checks,
+    /// The visible difference that earlier frames cause between float32 and double precision.
+    pub growth: Option<VisibleGrowth>,
     /// The comparison of means, where the shader differs from its scene only by its random numbers.
     pub random_numbers: Option<OtherRandomNumbers>,
     /// The pixels in which rounding decides whether a ray hits the surface that it starts from, where there
@@ -246,6 +252,9 @@ pub enum Reason {
     IllConditioned(Share),
     /// These pixels differ visibly between float32 and double precision: `unstable`.
     Imprecise(Share),
+    /// The image differs visibly between float32 and double precision because earlier frames do: `chaotic` or
+    /// `unstable`, by its cause.
+    Growth(VisibleGrowth),
     /// The shader agrees with its reference: `correct`.
     Agrees {
         /// The pixels that differ, which are few.
@@ -353,7 +362,7 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
             } else if let Some(random_numbers) = &evidence.random_numbers {
                 by_means(random_numbers, &evidence.checks)
             } else {
-                by_checks(&evidence.checks)
+                by_checks(&evidence.checks, evidence.growth)
             }
         }
     }
@@ -385,8 +394,8 @@ fn without_image(failure: &Failure) -> Verdict {
     }
 }
 
-/// The verdict by the three checks, pixel by pixel.
-fn by_checks(checks: &Checks) -> (Verdict, Reason) {
+/// The verdict by the three checks, pixel by pixel, and by the growth of errors over frames.
+fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>) -> (Verdict, Reason) {
     if let Some(toolchain) = &checks.toolchain {
         let differing = Share::differing(toolchain);
         if toolchain.max_abs > SEEN
@@ -403,6 +412,12 @@ fn by_checks(checks: &Checks) -> (Verdict, Reason) {
     };
     let differing = Share::differing(algorithm);
     if is_different(algorithm) {
+        // Two right formulas differ as much where double precision is not precise enough either.
+        if let Some(growth) = growth
+            && matches!(growth.cause, GrowthCause::Chaos { in_double: true, .. })
+        {
+            return (Verdict::Chaotic, Reason::Growth(growth));
+        }
         let regions = algorithm.regions;
         return (Verdict::Wrong, Reason::AlgorithmDiffers { differing, regions });
     }
@@ -422,6 +437,13 @@ fn by_checks(checks: &Checks) -> (Verdict, Reason) {
         && imprecise.ratio() > MAX_UNSTABLE
     {
         return (Verdict::Unstable, Reason::Imprecise(imprecise));
+    }
+    if let Some(growth) = growth {
+        let verdict = match growth.cause {
+            GrowthCause::Chaos { .. } => Verdict::Chaotic,
+            GrowthCause::Step { .. } | GrowthCause::Accumulation => Verdict::Unstable,
+        };
+        return (verdict, Reason::Growth(growth));
     }
     let tied = checks.precision.as_ref().map_or(0, |precision| precision.tied);
     let reason = Reason::Agrees {
@@ -460,7 +482,8 @@ fn by_means(random: &OtherRandomNumbers, checks: &Checks) -> (Verdict, Reason) {
         },
     };
     if verdict == Verdict::Correct {
-        let others = by_checks(&random.other_pixels);
+        // Other random numbers in float32 are no growth of errors.
+        let others = by_checks(&random.other_pixels, None);
         if others.0 != Verdict::Correct {
             return others;
         }

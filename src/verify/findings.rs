@@ -143,6 +143,7 @@ impl Findings {
                 precision: summary(&self.precision),
                 toolchain: summary(&self.toolchain),
             },
+            growth: case.from_start.and_then(|from_start| from_start.growth),
             ..CheckEvidence::default()
         };
         self.decide(evidence.clone().into());
@@ -188,8 +189,8 @@ impl Findings {
         self.locate_loss_of_precision(case, program, deadline);
     }
 
-    /// Whether a wrong shader is right but for a permitted difference. Then the verdict and the algorithm check are
-    /// those without it.
+    /// Whether a wrong shader is right but for a permitted difference. Then the verdict and the algorithm
+    /// check are those without it.
     fn is_permitted(&mut self, case: &Case, program: &Program, evidence: &mut CheckEvidence) -> bool {
         let permitted = case
             .alternatives
@@ -299,8 +300,8 @@ impl Findings {
         }
     }
 
-    /// Searches for edits that repair a wrong image, and for the lines that it depends on. `reseeding` is there if
-    /// the shader's means were compared.
+    /// Searches for edits that repair a wrong image, and for the lines that it depends on. `reseeding` is
+    /// there if the shader's means were compared.
     fn search_for_repair(
         &mut self,
         case: &Case,

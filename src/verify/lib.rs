@@ -59,6 +59,7 @@
 //!     search: None,
 //!     alternatives: None,
 //!     frame: &frame,
+//!     from_start: None,
 //!     float: FloatMode::Strict,
 //!     timeout: Duration::from_secs(10),
 //!     pool: None,
@@ -103,6 +104,7 @@
 
 mod acne;
 pub mod alternative;
+mod buffers;
 pub mod compare;
 pub mod contain;
 #[cfg(feature = "gpu")]
@@ -112,6 +114,7 @@ pub mod debug;
 mod decide;
 mod expected;
 mod findings;
+pub mod growth;
 pub mod mistake;
 mod notes;
 #[cfg(feature = "gpu")]
@@ -158,6 +161,7 @@ pub use self::notes::unbound;
 pub use self::on_gpu::{GpuFailure, Worker};
 use crate::alternative::Alternatives;
 use crate::contain::Panic;
+use crate::growth::VisibleGrowth;
 use crate::mistake::Hypotheses;
 use crate::repair::SearchOptions;
 use crate::session::VerifySession;
@@ -175,8 +179,10 @@ pub struct Case<'a> {
     pub hypotheses: Option<&'a Hypotheses>,
     /// What a wrong image is compared with as a whole; none if it is not.
     pub alternatives: Option<Alternatives<'a>>,
-    /// The frame.
+    /// The frame. The textures of its channels are in float32.
     pub frame: &'a Frame,
+    /// What earlier frames contribute; none if the frame does not depend on them.
+    pub from_start: Option<FromStart<'a>>,
     /// How to search for repairs of a wrong shader; none if not at all.
     pub search: Option<SearchOptions<'a>>,
     /// How far the driver may rearrange arithmetic. If it may, there is no toolchain check.
@@ -186,6 +192,15 @@ pub struct Case<'a> {
     /// The thread pool of the evaluator and the tracer; rayon's global pool if none. There, a slow shader's
     /// rows could run before another shader's, whose time limit elapses meanwhile.
     pub pool: Option<&'a ThreadPool>,
+}
+
+/// A frame that depends on earlier ones.
+#[derive(Debug, Clone, Copy)]
+pub struct FromStart<'a> {
+    /// The frame with what earlier ones rendered in double precision.
+    pub double: &'a Frame,
+    /// The visible difference of that to float32, if there is one.
+    pub growth: Option<VisibleGrowth>,
 }
 
 /// Why there is no image of a shader.
@@ -263,13 +278,10 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     let limit = if worker.is_some() { longest } else { case.timeout };
     let (counts, iteration_counts) = mpsc::channel();
     let evaluator = match &program {
-        Ok(program) => Ok(Evaluator::new(
-            program,
-            case.frame,
-            [limit, longest],
-            deadline,
-            &stop,
-        )),
+        Ok(program) => Ok(
+            Evaluator::new(program, case.frame, [limit, longest], deadline, &stop)
+                .with_double(case.from_start.map(|from_start| from_start.double)),
+        ),
         Err(refusal) => Err((*refusal).into()),
     };
     let session = VerifySession::new(case, evaluator, deadline, counts);

@@ -99,8 +99,8 @@ fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
     }
 }
 
-/// Reports reads of a variable in pixels that did not write it: at the read that a lint suspects, otherwise at
-/// the declaration; not at all if a lint has reported the variable.
+/// Reports reads of a variable in pixels that did not write it: at the read that a lint suspects, otherwise
+/// at the declaration; not at all if a lint has reported the variable.
 fn never_written(observed: &Observed, lints: &Lints) -> Option<Diagnostic> {
     let declared = observed.site.at.span;
     let is_same = |warning: &&Diagnostic| warning.related.iter().any(|(span, _)| *span == declared);
@@ -140,9 +140,21 @@ pub(super) fn cause(
     check: &CheckResult,
 ) -> Option<Diagnostic> {
     let deadline = deadline.min(Instant::now() + case.timeout);
+    let pixels = sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS);
+    lost_digits(program, case.frame, &pixels, deadline)
+}
+
+/// Returns the place at which most of a few of these pixels, spread over them, diverge between f32 and f64;
+/// none if the deadline is exceeded.
+pub(super) fn lost_digits(
+    program: &Program,
+    frame: &Frame,
+    pixels: &[[u32; 2]],
+    deadline: Instant,
+) -> Option<Diagnostic> {
     let mut causes = BTreeMap::<u32, (u64, Diagnostic)>::new();
-    for pixel in sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS) {
-        let explained = explain(program, case.frame, pixel, Some(deadline));
+    for pixel in spread(pixels.len(), MAX_EXPLAINED_PIXELS).map(|at| pixels[at]) {
+        let explained = explain(program, frame, pixel, Some(deadline));
         let diagnostic = explained
             .ok()
             .and_then(|explanation| diagnostic(&explanation, pixel));
@@ -219,16 +231,17 @@ pub(super) fn sample_pixels(check: &CheckResult, size: [u32; 2], max_count: usiz
     let Some(status) = status else {
         return Vec::new();
     };
-    let all = of(status).count();
-    let count = all.min(max_count);
     let mut left = of(status).enumerate();
-    let chosen = (0..count).filter_map(|at| {
-        let chosen = (2 * at + 1) * all / (2 * count);
-        left.find(|&(number, _)| number == chosen)
-    });
-    chosen
+    spread(of(status).count(), max_count)
+        .filter_map(|chosen| left.find(|&(number, _)| number == chosen))
         .map(|(_, at)| [(at % width) as u32, (at / width) as u32])
         .collect()
+}
+
+/// At most `max_count` numbers below `all`, evenly spaced.
+fn spread(all: usize, max_count: usize) -> impl Iterator<Item = usize> {
+    let count = all.min(max_count);
+    (0..count).map(move |at| (2 * at + 1) * all / (2 * count))
 }
 
 fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, Diagnostic)> {

@@ -103,6 +103,16 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
         self.player.texture(target)
     }
 
+    /// The frame that was rendered last, as one of its passes read it: with that pass's channels.
+    ///
+    /// # Panics
+    /// If there is no such pass.
+    #[must_use]
+    pub fn bound(&self, pass: usize, frame: &Frame) -> Frame {
+        let channels = self.player.inputs(pass);
+        self.player.renderer().bound(frame, channels)
+    }
+
     /// The state after a frame.
     #[must_use]
     pub fn state(&self, frame: i32) -> State {

@@ -6,14 +6,17 @@ use std::path::Path;
 use std::time::Duration;
 
 use toyproof::assignment::Assignment;
-use toyproof::diagnostic::{Deadline, Diagnostic, File, Files, human};
+use toyproof::diagnostic::{Deadline, Diagnostic, File, FileId, Files, human};
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::image::{Frame, noise};
 use toyproof::lint::lint;
-use toyproof::project::{self, Project, Tab};
+use toyproof::player::Clock;
+use toyproof::project::{self, Buffer, PassKind, Project, Tab};
 use toyproof::report::{Explanation, Rubric, explanations};
 use toyproof::scene::{self, Scene};
 use toyproof::translate::FloatMode;
+use toyproof::verify::growth::{Frames, follow};
+use toyproof::verify::playback::PassShader;
 use toyproof::verify::{Case, Expected, verify};
 
 use crate::architecture::sources;
@@ -116,6 +119,13 @@ fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>,
                 .and_then(|project| project::check(&project, &mut files, &glsl::Options::default()));
             (checked.map_or_else(Vec::from, |checked| checked.warnings), files)
         }
+        "glsl buffer" => {
+            let buffer = files.add(File::new("buffer-a.glsl", example.text));
+            let code = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }";
+            let image = files.add(File::new("image.glsl", code));
+            let warnings = warnings_over_frames(&mut files, buffer, image);
+            (warnings, files)
+        }
         "toml rubric" => {
             let file = files.add(File::new("example.toml", example.text));
             (
@@ -150,6 +160,7 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
         alternatives: None,
         search: None,
         frame: &frame,
+        from_start: None,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
         pool: None,
@@ -162,6 +173,43 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
             .unwrap_or_default(),
     );
     all
+}
+
+/// The number of the last frame in which the examples with buffers are rendered.
+const LAST_FRAME: i32 = 60;
+
+/// The warnings on Buffer A, which reads itself, over its frames; the image shows it.
+fn warnings_over_frames(files: &mut Files, buffer: FileId, image: FileId) -> Vec<Diagnostic> {
+    let kinds = [PassKind::Buffer(Buffer::A), PassKind::Image];
+    let tabs: Vec<_> = kinds.map(Tab::Pass).into_iter().zip([buffer, image]).collect();
+    let project = Project::from_folder(files, None, &tabs).unwrap();
+    let passes = project::check(&project, files, &glsl::Options::default()).unwrap();
+    let rendering = project.rendering(&[PassKind::Image]).unwrap();
+    let timeout = Duration::from_secs(60);
+    let shader = PassShader {
+        checked: passes.passes.iter().map(|pass| &pass.checked).collect(),
+        graph: &rendering.graph,
+        media: &rendering.media,
+    };
+    let programs = shader.programs(timeout).unwrap();
+    let inputs = Frame {
+        size: [16, 9],
+        ..Frame::default()
+    };
+    let frames = Frames {
+        shader: &shader,
+        programs: &programs,
+        clock: &Clock {
+            inputs,
+            rate: 60.0,
+            start: 0.0,
+        },
+        last: LAST_FRAME,
+        timeout,
+        pool: None,
+    };
+    let history = follow(&frames, |_, _| Ok(())).unwrap();
+    passes.warnings.into_iter().chain(history.notes).collect()
 }
 
 #[test]

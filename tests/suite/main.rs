@@ -36,6 +36,7 @@ mod fuzzed;
 mod generate;
 mod generated;
 mod glslang;
+mod growth;
 #[cfg(target_os = "linux")]
 mod hostile;
 mod limits;

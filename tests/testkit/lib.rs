@@ -324,6 +324,7 @@ fn check_expected(
         alternatives: None,
         search,
         frame: &frame,
+        from_start: None,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
         pool: None,

@@ -170,6 +170,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
         alternatives: None,
         search: Some(options),
         frame: &frame,
+        from_start: None,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(20),
         pool: None,

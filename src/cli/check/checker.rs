@@ -17,7 +17,7 @@ use toyproof_scene::Scene;
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
-use toyproof_verify::{Case, Failure, Findings, Verdict, verify};
+use toyproof_verify::{Case, Failure, Findings, FromStart, Verdict, verify};
 
 use super::Args;
 use super::images::{FIXED, IMAGES, ImageKind};
@@ -27,10 +27,12 @@ use crate::assignment::Subject;
 use crate::cli::files::{Input, ReadError};
 use crate::cli::inputs::{frame_flags, shell_word};
 use crate::cli::names::{Names, with_suffix};
+use crate::cli::passes::{self, BoundFrame, Renderers};
+use crate::cli::project::Passes;
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
-use crate::cli::{Terminal, files, passes, pool};
-use crate::report::{self, CheckedFrame, Record};
+use crate::cli::{Terminal, files, pool};
+use crate::report::{self, CheckedFrame, GrowthRecord, Record};
 
 /// A shader to check.
 pub(super) struct Submission {
@@ -408,7 +410,9 @@ impl<'a> Checker<'a> {
                     None => None,
                 };
             }
-            Verdict::Missing | Verdict::Error | Verdict::Correct | Verdict::Ok => return None,
+            Verdict::Missing | Verdict::Error | Verdict::Chaotic | Verdict::Correct | Verdict::Ok => {
+                return None;
+            }
         };
         let check = check.as_ref()?;
         let pixel = check.worst.as_ref().or(check.first.as_ref())?;
@@ -449,21 +453,10 @@ impl<'a> Checker<'a> {
         }
         let cached = reference.map(|reference| self.cached(reference, (index, key), frame));
         let cached = cached.transpose()?;
-        if let Some(passes) = &shader.passes {
-            let renderers = passes::Renderers {
-                worker: context.worker.as_mut(),
-                float: self.args.driver.float(),
-                timeout: self.args.driver.timeout(),
-                pool: context.pool.as_ref(),
-            };
-            if let Some(difference) = passes::bind::<f32>(passes, frame, renderers)? {
-                outcome.messages.push(Message::Warning(format!(
-                    "{}: the driver and the CPU render {} differently in frame {} ({} pixels); such pixels depend on \
-                     undefined behavior, or the driver is wrong",
-                    shader.name, difference.pass, difference.frame, difference.pixels
-                )));
-            }
-        }
+        let from_start = match &shader.passes {
+            Some(passes) => self.bind(context, outcome, shader, passes, frame)?,
+            None => None,
+        };
         let frame = &*frame;
         if let (Some(Reference::Scene(scene)), Some(cached)) = (reference, &cached)
             && let Some(conditioning) = cached.conditioning()
@@ -492,6 +485,10 @@ impl<'a> Checker<'a> {
             search: (explains && !has_history && self.args.search > 0.0)
                 .then(|| self.search_options(shader, checked)),
             frame,
+            from_start: from_start.as_ref().map(|bound| FromStart {
+                double: &bound.double,
+                growth: bound.growth.visible,
+            }),
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),
@@ -525,6 +522,44 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Binds what the image of a project reads in a frame, and reports what its passes do in the frames up to
+    /// it.
+    fn bind(
+        &self,
+        context: &mut WorkerContext,
+        outcome: &mut Outcome,
+        shader: &Shader,
+        passes: &Passes,
+        frame: &mut Frame,
+    ) -> Result<Option<BoundFrame>, Failure> {
+        let renderers = Renderers {
+            worker: context.worker.as_mut(),
+            float: self.args.driver.float(),
+            timeout: self.args.driver.timeout(),
+            pool: context.pool.as_ref(),
+        };
+        let Some(mut bound) = passes::bind(passes, frame, renderers)? else {
+            return Ok(None);
+        };
+        outcome.report(std::mem::take(&mut bound.notes), &shader.files);
+        outcome.record.growth = Some(GrowthRecord::new(&bound.growth));
+        let errors = bound.growth.frames.iter().map(|error| error.max_abs);
+        outcome.messages.push(Message::Detail(format!(
+            "{}: over frames 0 to {}, float32 and double precision differ by at most {:.2e}",
+            shader.name,
+            frame.frame,
+            errors.fold(0.0, f64::max)
+        )));
+        if let Some(difference) = bound.difference {
+            outcome.messages.push(Message::Warning(format!(
+                "{}: the driver and the CPU render {} differently in frame {} ({} pixels); such pixels depend on \
+                 undefined behavior, or the driver is wrong",
+                shader.name, difference.pass, difference.frame, difference.pixels
+            )));
+        }
+        Ok(Some(bound))
+    }
+
     /// Searches a wrong shader for places where an expression of a correct one repairs it. Returns its record
     /// with the fix, if there is one, and writes the image after the fix.
     pub(super) fn search_again(
@@ -551,6 +586,7 @@ impl<'a> Checker<'a> {
                 ..self.search_options(&shader, checked)
             }),
             frame: &frame,
+            from_start: None,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),

@@ -1,0 +1,248 @@
+//! Rounding errors over the frames of a project: their causes, and the verdicts that follow.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::program::toyproof;
+
+/// An image that shows Buffer A.
+const SHOWN: &str = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }";
+
+/// The logistic map, in which errors about double from frame to frame.
+const LOGISTIC: &str = "
+void mainImage(out vec4 c, in vec2 p) {
+    float x = texelFetch(iChannel0, ivec2(p), 0).x;
+    if (iFrame == 0) x = p.x / iResolution.x;
+    c = vec4(3.9 * x * (1.0 - x), 0.0, 0.0, 1.0);
+}";
+
+/// A hash that float32 cannot compute, in the first frame alone.
+const HASHED: &str = "
+float hash(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
+void mainImage(out vec4 c, in vec2 p) {
+    vec4 last = texelFetch(iChannel0, ivec2(p), 0);
+    if (iFrame == 0) last = vec4(hash(p));
+    c = mix(last, vec4(0.5), 0.01);
+}";
+
+/// A sum of tenths, which is an integer every ten frames.
+const SUMMED: &str = "
+void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0) + 0.1; }";
+
+/// Checks a project of Buffer A and the image on the CPU.
+fn check(buffer: &str, image: &str, reference: Option<&str>, frame: &str) -> (Value, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, buffer: &str| {
+        let folder = folder.path().join(name);
+        fs::create_dir(&folder).unwrap();
+        fs::write(folder.join("buffer-a.glsl"), buffer).unwrap();
+        fs::write(folder.join("image.glsl"), image).unwrap();
+    };
+    write("own", buffer);
+    let mut arguments = vec![
+        "check", "own", "--frame", frame, "--size", "32x18", "--device", "cpu",
+    ];
+    arguments.extend(["--format", "json", "-v"]);
+    if let Some(reference) = reference {
+        write("other", reference);
+        arguments.extend(["--reference", "other"]);
+    }
+    let run = toyproof(folder.path(), &arguments);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{error}: {run:?}"));
+    (report["shaders"][0].clone(), run.stderr)
+}
+
+fn codes(shader: &Value) -> Vec<&str> {
+    let diagnostics = shader["diagnostics"].as_array().unwrap();
+    diagnostics
+        .iter()
+        .map(|one| one["code"].as_str().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_chaotic_project_is_chaotic_only_where_the_difference_is_visible() {
+    let (shader, _) = check(LOGISTIC, SHOWN, Some(LOGISTIC), "10");
+    assert_eq!(
+        (&shader["verdict"], &shader["growth"]["cause"]),
+        (&"correct".into(), &Value::Null)
+    );
+    let (shader, _) = check(LOGISTIC, SHOWN, Some(LOGISTIC), "30");
+    assert_eq!(shader["verdict"], "chaotic", "{shader}");
+    let growth = &shader["growth"];
+    assert_eq!(growth["cause"], "chaos");
+    // Between two digits, errors are multiplied by e^0.5 at this rate, the map's Lyapunov exponent.
+    let doubling = growth["doubling"].as_f64().unwrap();
+    assert!((0.9..2.5).contains(&doubling), "{doubling}");
+    let first = growth["first_visible"].as_i64().unwrap();
+    assert!((11..30).contains(&first), "{first}");
+    let frames = growth["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 31);
+    let error = |frame: usize| frames[frame]["max_abs"].as_f64().unwrap();
+    assert!(error(0) < 1e-6 && error(30) > 0.1, "{} {}", error(0), error(30));
+    assert_eq!(codes(&shader), ["W0609"]);
+}
+
+#[test]
+fn a_wrong_project_is_wrong_until_chaos_reaches_double_precision() {
+    let wrong = LOGISTIC.replace("3.9", "3.8");
+    let verdict = |frame| check(&wrong, SHOWN, Some(LOGISTIC), frame).0["verdict"].clone();
+    assert_eq!(verdict("3"), "wrong");
+    assert_eq!(verdict("30"), "wrong");
+    // A right formula is as far from the reference.
+    assert_eq!(verdict("150"), "chaotic");
+    let rewritten = LOGISTIC.replace("3.9 * x * (1.0 - x)", "3.9 * (x - x * x)");
+    let verdict = |frame| check(&rewritten, SHOWN, Some(LOGISTIC), frame).0["verdict"].clone();
+    assert_eq!(verdict("10"), "correct");
+    assert_eq!(verdict("30"), "chaotic");
+    assert_eq!(verdict("150"), "chaotic");
+}
+
+#[test]
+fn an_imprecise_frame_is_blamed_with_its_pass_and_line() {
+    let (shader, _) = check(HASHED, SHOWN, Some(HASHED), "10");
+    assert_eq!(
+        (&shader["verdict"], &shader["growth"]["cause"]),
+        (&"unstable".into(), &"step".into())
+    );
+    let reason = shader["reason"].as_str().unwrap();
+    assert!(reason.contains("Buffer A does so in frame 0 already"), "{reason}");
+    let diagnostics = shader["diagnostics"].as_array().unwrap();
+    let lost = diagnostics.iter().find(|one| one["code"] == "W0602").unwrap();
+    assert_eq!(lost["line"], 2, "{lost}");
+    assert!(
+        lost["file"].as_str().unwrap().ends_with("buffer-a.glsl"),
+        "{lost}"
+    );
+    // Without a reference, the shader is not at fault, but warned.
+    let (shader, _) = check(HASHED, SHOWN, None, "10");
+    assert_eq!(shader["verdict"], "ok");
+    assert_eq!(codes(&shader), ["W0005", "W0602", "W0609"]);
+}
+
+#[test]
+fn errors_that_add_up_are_no_chaos() {
+    let fraction = SHOWN.replace(
+        "c = texelFetch(iChannel0, ivec2(p), 0)",
+        "c = fract(texelFetch(iChannel0, ivec2(p), 0))",
+    );
+    assert_ne!(fraction, SHOWN);
+    // The sum of ten tenths is below 1 in double precision, and above it in float32.
+    let (shader, _) = check(SUMMED, &fraction, Some(SUMMED), "9");
+    assert_eq!(
+        (&shader["verdict"], &shader["growth"]["cause"]),
+        (&"unstable".into(), &"accumulation".into()),
+        "{shader}"
+    );
+    let (shader, _) = check(SUMMED, &fraction, Some(SUMMED), "8");
+    assert_eq!(shader["verdict"], "correct");
+}
+
+#[test]
+fn exact_projects_agree_in_all_frames() {
+    let life = "
+    float cell(ivec2 p) { return texelFetch(iChannel0, p, 0).x; }
+    void mainImage(out vec4 c, in vec2 p) {
+        ivec2 q = ivec2(p);
+        float n = -cell(q);
+        for (int i = 0; i < 9; i++) n += cell(q + ivec2(i % 3 - 1, i / 3 - 1));
+        c = vec4(n == 3.0 || n == 2.0 && cell(q) == 1.0 ? 1.0 : 0.0);
+        if (iFrame == 0) c = vec4((q.x * q.x + 3 * q.y * q.x + q.y) % 5 < 2 ? 1.0 : 0.0);
+    }";
+    let (shader, stderr) = check(life, SHOWN, Some(life), "60");
+    assert_eq!(shader["verdict"], "correct");
+    assert!(
+        shader["growth"]["frames"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|one| one["max_abs"] == 0.0)
+    );
+    let words = "over frames 0 to 60, float32 and double precision differ by at most 0.00e0";
+    assert!(stderr.contains(words), "{stderr}");
+}
+
+#[test]
+fn the_first_nan_of_a_buffer_is_reported_with_its_line_frame_and_pixel() {
+    let buffer = "
+    void mainImage(out vec4 c, in vec2 p) {
+        vec4 last = texelFetch(iChannel0, ivec2(p), 0);
+        c = 0.5 * last + vec4(sqrt(p.x - float(iFrame)));
+    }";
+    let (shader, _) = check(buffer, SHOWN, None, "7");
+    let diagnostics = shader["diagnostics"].as_array().unwrap();
+    let nan = diagnostics.iter().find(|one| one["code"] == "W0607").unwrap();
+    // The root of −0.5 in the first column of frame 1.
+    assert_eq!(
+        nan["message"],
+        "18 pixels of Buffer A become NaN in frame 1, first (0, 0)"
+    );
+    assert_eq!((&nan["line"], &nan["column"]), (&4.into(), &31.into()), "{nan}");
+    let note = nan["notes"][0].as_str().unwrap();
+    assert!(
+        note.ends_with("in frame 7, 126 pixels of Buffer A are NaN"),
+        "{note}"
+    );
+    // NaN that vanishes again is no fault.
+    let vanishing = buffer
+        .replace("sqrt(p.x - float(iFrame))", "iFrame == 2 ? sqrt(p.x - 9.0) : 1.0")
+        .replace("0.5 * last", "vec4(0.0)");
+    let (shader, _) = check(&vanishing, SHOWN, None, "7");
+    assert_eq!(codes(&shader), [""; 0], "{shader}");
+}
+
+#[test]
+fn a_buffer_that_nothing_initializes_is_reported_unless_the_mouse_may() {
+    let fading = "void mainImage(out vec4 c, in vec2 p) { c = 0.99 * texelFetch(iChannel0, ivec2(p), 0); }";
+    let (shader, _) = check(fading, SHOWN, None, "7");
+    assert_eq!(codes(&shader), ["W0608"]);
+    let drawn = fading.replace("c = 0.99", "c = step(distance(p, iMouse.xy), 0.1) + 0.99");
+    assert_ne!(drawn, fading);
+    let driven = fading.replace("; }", "; if (iMouse.z > 0.0) c = vec4(1.0); }");
+    assert_eq!(codes(&check(&driven, SHOWN, None, "7").0), [""; 0]);
+    assert_eq!(codes(&check(&drawn, SHOWN, None, "7").0), [""; 0]);
+}
+
+#[test]
+fn growth_is_reported_in_the_frames_of_an_assignment() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |path: &str, text: &str| {
+        let path = folder.path().join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    for project in ["solution", "homework/a"] {
+        write(&format!("{project}/buffer-a.glsl"), LOGISTIC);
+        write(&format!("{project}/image.glsl"), SHOWN);
+    }
+    write(
+        "assignment.toml",
+        "reference = \"solution\"\n[[frame]]\nframe = 5\n[[frame]]\nframe = 30\n",
+    );
+    let arguments = [
+        "check",
+        "homework",
+        "--assignment",
+        "assignment.toml",
+        "--size",
+        "16x9",
+        "--format",
+        "json",
+    ];
+    let run = toyproof(
+        Path::new(folder.path()),
+        &[&arguments[..], &["--device", "cpu"]].concat(),
+    );
+    let report: Value = serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{error}: {run:?}"));
+    let shader = &report["shaders"][0];
+    assert_eq!(shader["verdict"], "chaotic", "{run:?}");
+    let growth = |frame: usize| shader["frames"][frame]["growth"].as_f64().unwrap();
+    assert!(
+        growth(0) < 1e-4 && growth(1) > 0.01,
+        "{} {}",
+        growth(0),
+        growth(1)
+    );
+}
