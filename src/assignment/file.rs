@@ -188,6 +188,7 @@ fn frame(table: &mut Table, folder: &Path) -> FrameInputs {
         frame: table.count_or("frame", [0, i32::MAX as u32], 0) as i32,
         mouse: mouse(table),
         date: date(table),
+        script: None,
         channels: ["channel0", "channel1", "channel2", "channel3"].map(|key| channel(table, key, folder)),
     }
 }

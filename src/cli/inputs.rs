@@ -2,17 +2,19 @@
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Duration;
 
 use clap::ValueEnum;
-use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_diagnostic::{Deadline, Files, human, path_name};
 use toyproof_glsl as glsl;
 use toyproof_gpu::{AdapterSelector, Worker};
 use toyproof_image::output::Originals;
-use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, check_size};
+use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
+use toyproof_project as project;
 use toyproof_translate::FloatMode;
 
-use super::{Terminal, WORKER};
+use super::{Terminal, WORKER, files};
 
 /// The longest time limit.
 const MAX_TIME_LIMIT: Duration = Duration::from_secs(24 * 60 * 60);
@@ -44,6 +46,9 @@ pub(super) struct FrameArgs {
     /// iMouse, in pixels [default: 0,0,0,0]
     #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true, hide_short_help = true)]
     mouse: Option<[f32; 4]>,
+    /// What the user does with the mouse and the keyboard over the frames: a TOML file with `[[mouse]]` and `[[key]]` events
+    #[arg(long, visible_alias = "keys", value_name = "FILE", value_parser = parse_script, conflicts_with = "mouse", hide_short_help = true)]
+    mouse_script: Vec<Arc<Script>>,
     /// iDate: year, month from 0 to 11, day, seconds since midnight
     #[arg(long, value_name = "Y,M,D,S", value_parser = parse_date, allow_hyphen_values = true, hide_short_help = true)]
     date: Option<[f32; 4]>,
@@ -70,6 +75,7 @@ impl FrameArgs {
             frame,
             mouse,
             date,
+            mouse_script,
             ..
         } = self;
         let is_given = [
@@ -78,6 +84,7 @@ impl FrameArgs {
             frame.is_some(),
             mouse.is_some(),
             date.is_some(),
+            !mouse_script.is_empty(),
         ];
         is_given.contains(&true) || self.channels().iter().any(|channel| channel.is_some())
     }
@@ -107,19 +114,45 @@ impl FrameArgs {
             .map_or(0.0, |time| f64::from(time) - f64::from(number) / rate)
     }
 
+    /// All events of the mouse and the keyboard.
+    fn script(&self) -> Option<Arc<Script>> {
+        let (first, others) = self.mouse_script.split_first()?;
+        let all = others
+            .iter()
+            .fold(Arc::clone(first), |all, one| Arc::new(all.and(one)));
+        Some(all)
+    }
+
     /// The frame that the flags describe.
     pub(super) fn inputs(&self) -> FrameInputs {
+        let script = self.script();
+        let frame = self.frame.unwrap_or_default();
+        let scripted = script.as_ref().and_then(|script| script.mouse(frame));
         FrameInputs {
             size: self.size,
             time: self.time.unwrap_or_default(),
-            frame: self.frame.unwrap_or_default(),
-            mouse: self.mouse.unwrap_or(IDLE_MOUSE),
+            frame,
+            mouse: scripted.or(self.mouse).unwrap_or(IDLE_MOUSE),
             date: self.date.unwrap_or_default(),
+            script,
             channels: self
                 .channels()
                 .map(|channel| channel.as_deref().map(Channel::named)),
         }
     }
+}
+
+/// Reads a script of the mouse and the keyboard.
+fn parse_script(path: &str) -> Result<Arc<Script>, String> {
+    let text = files::read_text(Path::new(path)).map_err(|error| error.to_string())?;
+    let mut files = Files::default();
+    let file = files.add(text);
+    project::parse_script(&files, file)
+        .map(Arc::new)
+        .map_err(|errors| {
+            let errors = errors.iter().map(|error| human(error, &files, None, false));
+            format!("\n{}", errors.collect::<String>().trim_end())
+        })
 }
 
 /// The flags that describe a frame, for a command that the user may run.

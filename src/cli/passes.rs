@@ -200,6 +200,7 @@ impl<'a> Subject<'a> {
                 (None, None) => None,
                 (None, Some(Source::Medium(number))) => self.rendering.media.get(number).cloned(),
                 (None, Some(Source::Buffer(number))) => buffer(number),
+                (None, Some(Source::Keyboard)) => Some(frame.keys.texture()),
             };
         }
         bound

@@ -26,10 +26,8 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let Some(folder) = &args.write else {
-        for (name, text) in course_files() {
-            if let Some(stem) = name.strip_suffix(".toml") {
-                terminal.result(&format!("{stem:<24} {}", title(name, text)));
-            }
+        for (stem, text) in course_scenes() {
+            terminal.result(&format!("{stem:<24} {}", title(stem, text)));
         }
         terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Exit::Success;
@@ -70,10 +68,9 @@ fn title(name: &str, text: &str) -> String {
 
 /// The built-in scenes by their names.
 pub(super) fn builtin_scenes() -> impl Iterator<Item = (String, Scene)> {
-    course_files().filter_map(|(name, text)| {
-        let stem = name.strip_suffix(".toml")?;
+    course_scenes().filter_map(|(stem, text)| {
         let mut files = Files::default();
-        let file = files.add(File::new(name, text));
+        let file = files.add(File::new(stem, text));
         Some((stem.to_owned(), scene::parse(&files, file).ok()?))
     })
 }
@@ -94,15 +91,13 @@ pub(super) fn read_scene(path: &Path) -> Result<File, String> {
 pub(super) fn builtin_name(path: &Path) -> Option<&'static str> {
     let path = path.to_str()?;
     let stem = path.strip_suffix(".toml").unwrap_or(path);
-    let mut names = course_files().filter_map(|(name, _)| name.strip_suffix(".toml"));
-    names.find(|name| *name == stem)
+    course_scenes().map(|(name, _)| name).find(|name| *name == stem)
 }
 
 fn builtin_scene(path: &Path) -> Result<File, String> {
     let name = path_name(path);
     let stem = name.strip_suffix(".toml").unwrap_or(&name);
-    let scenes = || course_files().filter_map(|(name, text)| Some((name.strip_suffix(".toml")?, text)));
-    if let Some((stem, text)) = scenes().find(|(known, _)| *known == stem) {
+    if let Some((stem, text)) = course_scenes().find(|(known, _)| *known == stem) {
         return Ok(File::new(format!("{stem}.toml"), text));
     }
     let is_near = |known: &str| {
@@ -110,8 +105,9 @@ fn builtin_scene(path: &Path) -> Result<File, String> {
         let (number, title) = known.split_once('-').unwrap_or(("", known));
         stem == number || stem == title
     };
-    let near = scenes().map(|(known, _)| known).find(|known| is_near(known));
-    let help = match near.or_else(|| nearest(stem, scenes().map(|(known, _)| known))) {
+    let known = || course_scenes().map(|(known, _)| known);
+    let near = known().find(|known| is_near(known));
+    let help = match near.or_else(|| nearest(stem, known())) {
         Some(near) => format!("did you mean the built-in scene `{near}`?"),
         None => "`toyproof scenes` lists the built-in scenes".to_owned(),
     };
@@ -122,10 +118,23 @@ fn builtin_scene(path: &Path) -> Result<File, String> {
 
 static COURSE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
 
-/// All files of the course, sorted by name: shaders (`NN-name.glsl`) and their scenes (`NN-name.toml`).
+/// The scenes of the course by their names, in order.
+fn course_scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
+    // The other TOML files are those of projects, in folders.
+    let is_scene = |name: &&str| !name.contains('/');
+    course_files().filter_map(move |(name, text)| {
+        let stem = name.strip_suffix(".toml").filter(is_scene)?;
+        Some((stem, text))
+    })
+}
+
+/// All files of the course, sorted by name: shaders (`NN-name.glsl`, or the files of a project in the folder
+/// `NN-name`) and their scenes (`NN-name.toml`).
 fn course_files() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let projects = COURSE.dirs().flat_map(Dir::files);
     let mut files: Vec<_> = COURSE
         .files()
+        .chain(projects)
         .filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)))
         .collect();
     files.sort_unstable();

@@ -66,6 +66,7 @@ impl<'a, N: Number> PassRenderer<'a, N> {
                 Channel::Unbound => None,
                 Channel::Texture(texture) => Some(texture.clone()),
                 Channel::Medium(number) => self.media.get(number).cloned(),
+                Channel::Keyboard => Some(frame.keys.texture()),
             }),
             ..frame.clone()
         }

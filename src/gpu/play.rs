@@ -217,8 +217,9 @@ impl Renderer for PassRenderer {
             let channels = channels.map(|channel| {
                 let texture = match channel {
                     Channel::Unbound => return None,
-                    Channel::Texture(texture) => texture,
-                    Channel::Medium(number) => self.media.get(number)?,
+                    Channel::Texture(texture) => texture.clone(),
+                    Channel::Medium(number) => self.media.get(number)?.clone(),
+                    Channel::Keyboard => upload(&self.device.gpu, &self.device.queue, &frame.keys.texture()),
                 };
                 let size = [texture.width(), texture.height()];
                 Some((texture.create_view(&Default::default()), size))

@@ -1,11 +1,12 @@
 //! The inputs of one frame: the values that ShaderToy provides to a shader, and their uniform block.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use bytemuck::bytes_of;
 use serde::{Deserialize, Serialize};
 
-use crate::Texture;
+use crate::{Keys, Script, Texture};
 
 /// All inputs of a shader for the frame that it renders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,6 +25,11 @@ pub struct Frame {
     pub mouse: [f32; 4],
     /// `iDate`: year, month from 0, day, seconds since midnight.
     pub date: [f32; 4],
+    /// The keyboard.
+    pub keys: Keys,
+    /// What the user does over the frames of a run, of which the mouse and the keyboard of this one follow.
+    #[serde(skip)]
+    pub script: Option<Arc<Script>>,
     /// The textures of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.
     pub channels: [Option<Texture>; 4],
 }
@@ -39,6 +45,8 @@ impl Default for Frame {
             frame: 0,
             mouse: IDLE_MOUSE,
             date: [0.0; 4],
+            keys: Keys::default(),
+            script: None,
             channels: [const { None }; 4],
         }
     }
@@ -80,6 +88,21 @@ struct Block {
 pub const BLOCK_BYTES: usize = size_of::<Block>();
 
 impl Frame {
+    /// The frame with another number and time, with the mouse and the keyboard that it has by the script.
+    #[must_use]
+    pub fn at(&self, number: i32, time: f32) -> Self {
+        let scripted = self.script.as_ref();
+        Self {
+            frame: number,
+            time,
+            mouse: scripted
+                .and_then(|script| script.mouse(number))
+                .unwrap_or(self.mouse),
+            keys: scripted.map_or(self.keys, |script| script.keys(number)),
+            ..self.clone()
+        }
+    }
+
     /// All rows of the frame.
     #[must_use]
     pub fn rows(&self) -> Range<u32> {

@@ -1,8 +1,9 @@
 //! The inputs of a frame as a user describes them: the files of its channels are not read yet.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::{Frame, IDLE_MOUSE, Image, ImageError, Texture, noise, read};
+use crate::{Frame, IDLE_MOUSE, Image, ImageError, Script, Texture, noise, read};
 
 /// The inputs of a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,8 @@ pub struct FrameInputs {
     pub mouse: [f32; 4],
     /// `iDate`: year, month from 0, day, seconds since midnight.
     pub date: [f32; 4],
+    /// The mouse and the keyboard over the frames of a run, in place of `mouse`.
+    pub script: Option<Arc<Script>>,
     /// The textures of `iChannel0` to `iChannel3`; none for black.
     pub channels: [Option<Channel>; 4],
 }
@@ -29,6 +32,7 @@ impl Default for FrameInputs {
             frame: 0,
             mouse: IDLE_MOUSE,
             date: [0.0; 4],
+            script: None,
             channels: [const { None }; 4],
         }
     }
@@ -90,14 +94,14 @@ impl FrameInputs {
             let loaded = channel.as_ref().map(Channel::load).transpose()?;
             *image = loaded.map(Texture::from);
         }
-        Ok(Frame {
+        let inputs = Frame {
             size: self.size.unwrap_or(Frame::default().size),
-            time: self.time,
-            frame: self.frame,
             mouse: self.mouse,
             date: self.date,
+            script: self.script.clone(),
             channels,
             ..Frame::default()
-        })
+        };
+        Ok(inputs.at(self.frame, self.time))
     }
 }

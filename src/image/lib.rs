@@ -15,16 +15,20 @@
 mod file;
 mod frame;
 mod frame_inputs;
+mod keys;
 mod noise;
 pub mod output;
 mod rgb8;
+mod script;
 mod texture;
 
 pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown};
 pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs};
+pub use keys::{KeySet, Keys};
 pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;
+pub use script::{InputEvent, Script};
 use serde::{Deserialize, Serialize};
 pub use texture::Texture;
 use thiserror::Error;

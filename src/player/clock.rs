@@ -5,7 +5,7 @@ use toyproof_image::Frame;
 /// The inputs of the frames of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
-    /// The size, the mouse and the date of all frames.
+    /// The size and the date of all frames, and their mouse and keyboard or the script for those.
     pub inputs: Frame,
     /// The frames in a second.
     pub rate: f64,
@@ -18,12 +18,11 @@ impl Clock {
     /// after an hour.
     #[must_use]
     pub fn frame(&self, number: i32) -> Frame {
+        let time = self.start + f64::from(number) / self.rate;
         Frame {
-            frame: number,
-            time: (self.start + f64::from(number) / self.rate) as f32,
             time_delta: (1.0 / self.rate) as f32,
             frame_rate: self.rate as f32,
-            ..self.inputs.clone()
+            ..self.inputs.at(number, time as f32)
         }
     }
 }

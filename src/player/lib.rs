@@ -97,6 +97,8 @@ pub enum Source {
     Buffer(usize),
     /// The texture with this number among those that do not change.
     Medium(usize),
+    /// The keyboard.
+    Keyboard,
 }
 
 impl Graph {
@@ -153,7 +155,7 @@ impl Source {
     fn buffer(self) -> Option<usize> {
         match self {
             Self::Buffer(number) => Some(number),
-            Self::Medium(_) => None,
+            Self::Medium(_) | Self::Keyboard => None,
         }
     }
 }

@@ -46,6 +46,8 @@ pub enum Channel<'a, T> {
     Texture(&'a T),
     /// The texture with this number among those that do not change.
     Medium(usize),
+    /// The keyboard of the frame.
+    Keyboard,
 }
 
 /// The state of a graph between two frames.
@@ -246,6 +248,7 @@ fn channels<'t, T>(
     graph.passes()[pass].inputs.map(|input| match input {
         None => Channel::Unbound,
         Some(Source::Medium(medium)) => Channel::Medium(medium),
+        Some(Source::Keyboard) => Channel::Keyboard,
         Some(Source::Buffer(buffer)) => texture(buffer).map_or(Channel::Unbound, Channel::Texture),
     })
 }

@@ -34,9 +34,6 @@ pub struct Replaced {
 #[error("reads {0}, which is not rendered yet")]
 pub struct NotRendered(pub PassKind);
 
-/// Width and height of the keyboard's texture.
-const KEYBOARD: [u32; 2] = [256, 3];
-
 impl Project {
     /// The image and these passes, with all passes that they depend on, for the renderers.
     ///
@@ -131,40 +128,33 @@ struct Media {
 impl Media {
     /// What an input reads in the graph; none for black.
     fn source(&mut self, input: &Input) -> Option<player::Source> {
-        if let Source::Buffer(buffer) = input.source {
-            return Some(player::Source::Buffer(buffer as usize));
+        match input.source {
+            Source::Buffer(buffer) => return Some(player::Source::Buffer(buffer as usize)),
+            Source::Keyboard => return Some(player::Source::Keyboard),
+            _ => {}
         }
         let has_mipmaps = input.sampler.filter == Filter::Mipmap;
         let key = (input.source.clone(), has_mipmaps, input.sampler.vflip);
         if let Some(known) = self.known.iter().position(|known| *known == key) {
             return Some(player::Source::Medium(known));
         }
-        let image = match &input.source {
-            Source::Keyboard => {
-                let [width, height] = KEYBOARD;
-                let idle = vec![[0.0, 0.0, 0.0, 1.0]; width as usize * height as usize];
-                Some(toyproof_image::Image::new(width, height, idle))
-            }
-            source => {
-                let noise = noise(source);
-                let replaced = Replaced {
-                    source: source.clone(),
-                    has_stand_in: noise.is_some(),
-                };
-                if !self.replaced.contains(&replaced) {
-                    self.replaced.push(replaced);
-                }
-                // A picture stands upright if it is flipped on its way to the texture.
-                let upright = noise.map(Noise::image);
-                upright.map(|image| {
-                    if input.sampler.vflip {
-                        image
-                    } else {
-                        image.upside_down()
-                    }
-                })
-            }
+        let noise = noise(&input.source);
+        let replaced = Replaced {
+            source: input.source.clone(),
+            has_stand_in: noise.is_some(),
         };
+        if !self.replaced.contains(&replaced) {
+            self.replaced.push(replaced);
+        }
+        // An image stands upright if it is flipped on its way to the texture.
+        let upright = noise.map(Noise::image);
+        let image = upright.map(|image| {
+            if input.sampler.vflip {
+                image
+            } else {
+                image.upside_down()
+            }
+        });
         let texture = Texture::from(image?);
         self.textures.push(if has_mipmaps {
             texture.with_mipmaps()

@@ -30,6 +30,7 @@ mod lint;
 mod media;
 mod node;
 mod read;
+mod script;
 
 use std::fmt;
 
@@ -42,6 +43,7 @@ pub use self::folder::PROJECT_FILE;
 pub use self::graph::{NotRendered, Rendering, Replaced};
 pub use self::media::{Medium, SourceType};
 use self::node::Node;
+pub use self::script::parse_script;
 
 /// The code of errors in the syntax of a project's JSON or TOML.
 const INVALID_SYNTAX: &str = "E0507";

@@ -4,12 +4,15 @@ use glam::DVec3;
 
 use super::{Color, Point};
 
+/// The largest number of samples per pixel.
+pub const MAX_SAMPLES: u32 = 65_536;
+
 /// How the image is sampled and tone-mapped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Film {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Samples per pixel, averaged; ≥ 1.
+    /// Samples per pixel, averaged; from 1 to [`MAX_SAMPLES`].
     pub samples: u32,
     /// The source of sample positions and random numbers.
     pub sampler: Sampler,

@@ -28,7 +28,7 @@ mod template;
 use std::ops::Range;
 
 pub use file::parse;
-pub use film::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
+pub use film::{Camera, Figure, Film, Integrator, MAX_SAMPLES, Outline, Projection, Sampler, ToneMap};
 pub use material::{Background, Disney, Fresnel, Light, Material, Model, Pattern, PatternKind, Space};
 pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;

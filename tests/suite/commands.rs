@@ -106,7 +106,7 @@ fn the_course_is_correct_and_its_json_follows_the_schema() {
     let schema: Value = serde_json::from_str(toyproof::report::SCHEMA).unwrap();
     jsonschema::validate(&schema, &json).unwrap();
     let shaders = json["shaders"].as_array().unwrap();
-    assert_eq!(shaders.len(), 15);
+    assert_eq!(shaders.len(), 16);
     for shader in shaders {
         assert_eq!(shader["verdict"], "correct", "{shader}");
         let stem = Path::new(shader["shader"].as_str().unwrap())

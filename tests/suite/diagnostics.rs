@@ -133,6 +133,11 @@ fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>,
                 files,
             )
         }
+        "toml script" => {
+            let file = files.add(File::new("script.toml", example.text));
+            let script = project::parse_script(&files, file);
+            (script.err().unwrap_or_default().into(), files)
+        }
         "toml assignment" => {
             let file = files.add(File::new("assignment.toml", example.text));
             let assignment = Assignment::parse(&files, file, Path::new("glsl"));

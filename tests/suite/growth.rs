@@ -219,22 +219,17 @@ fn growth_is_reported_in_the_frames_of_an_assignment() {
     }
     write(
         "assignment.toml",
-        "reference = \"solution\"\n[[frame]]\nframe = 5\n[[frame]]\nframe = 30\n",
+        "reference = \"solution\"\n[[frame]]\nframe = 5\nsize = [16, 9]\n[[frame]]\nframe = 30\nsize = [16, 9]\n",
     );
     let arguments = [
         "check",
         "homework",
         "--assignment",
         "assignment.toml",
-        "--size",
-        "16x9",
         "--format",
         "json",
     ];
-    let run = toyproof(
-        Path::new(folder.path()),
-        &[&arguments[..], &["--device", "cpu"]].concat(),
-    );
+    let run = toyproof(folder.path(), &[&arguments[..], &["--device", "cpu"]].concat());
     let report: Value = serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{error}: {run:?}"));
     let shader = &report["shaders"][0];
     assert_eq!(shader["verdict"], "chaotic", "{run:?}");
@@ -245,4 +240,98 @@ fn growth_is_reported_in_the_frames_of_an_assignment() {
         growth(0),
         growth(1)
     );
+}
+
+/// Checks the progressive path tracer of the course with an edit of Buffer A, in a frame.
+fn check_progressive(edit: (&str, &str), flags: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let course = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/16-progressive");
+    let own = folder.path().join("own");
+    fs::create_dir(&own).unwrap();
+    for entry in fs::read_dir(&course).unwrap() {
+        let path = entry.unwrap().path();
+        let mut text = fs::read_to_string(&path).unwrap();
+        if path.ends_with("buffer-a.glsl") {
+            assert!(text.contains(edit.0), "{}", edit.0);
+            text = text.replace(edit.0, edit.1);
+        }
+        fs::write(own.join(path.file_name().unwrap()), text).unwrap();
+    }
+    let fixed = [
+        "check",
+        "own",
+        "--scene",
+        "16-progressive",
+        "--device",
+        "cpu",
+        "--format",
+        "json",
+    ];
+    let run = toyproof(folder.path(), &[&fixed[..], flags].concat());
+    let report: Value = serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{error}: {run:?}"));
+    report["shaders"][0].clone()
+}
+
+#[test]
+fn a_progressive_path_tracer_agrees_with_its_scene_in_every_frame() {
+    // Without a frame, as many as the scene has samples.
+    for flags in [
+        &["--size", "48x27"][..],
+        &["--size", "48x27", "--frame", "0"],
+        &["--size", "48x27", "--frame", "21"],
+    ] {
+        let shader = check_progressive(("", ""), flags);
+        assert_eq!(shader["verdict"], "correct", "{flags:?} {shader}");
+        assert_eq!(shader["algorithm"]["differing"], 0, "{flags:?}");
+    }
+    let frames = check_progressive(("", ""), &["--size", "48x27"])["growth"]["frames"].clone();
+    assert_eq!(frames.as_array().unwrap().len(), 16);
+}
+
+/// Other random numbers, the same in expectation.
+const OTHER_NUMBERS: (&str, &str) = (
+    "startSample(fragCoord, iFrame)",
+    "startSample(fragCoord, 7 * iFrame + 1000)",
+);
+
+#[test]
+fn a_progressive_path_tracer_with_other_random_numbers_is_compared_by_its_mean() {
+    let flags = ["--size", "160x90", "--frame", "15"];
+    let brighter = format!("{}; spheres[1].color *= 1.2", OTHER_NUMBERS.1);
+    let wrong = check_progressive((OTHER_NUMBERS.0, &brighter), &flags);
+    assert_eq!(wrong["verdict"], "wrong", "{wrong}");
+    // So few samples do not suffice to call it correct, but it is not wrong.
+    let shader = check_progressive(OTHER_NUMBERS, &flags);
+    assert_eq!(shader["verdict"], "inconclusive", "{shader}");
+    for shader in [wrong, shader] {
+        let details = shader["details"].to_string();
+        assert!(details.contains("means were compared instead"), "{details}");
+    }
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn the_mean_of_many_pixels_shows_that_a_progressive_path_tracer_is_correct() {
+    let shader = check_progressive(OTHER_NUMBERS, &["--size", "640x360", "--frame", "15"]);
+    assert_eq!(shader["verdict"], "correct", "{shader}");
+    let reason = shader["reason"].as_str().unwrap();
+    assert!(reason.starts_with("the mean of"), "{reason}");
+}
+
+#[test]
+fn mistakes_of_a_progressive_path_tracer_are_wrong() {
+    for edit in [
+        // The first sample is lost.
+        ("iFrame == 0 ? vec4(0.0)", "iFrame <= 1 ? vec4(0.0)"),
+        ("throughput *= albedo", "throughput *= albedo * facing"),
+        ("vec4(color, 1.0)", "vec4(color, 1.1)"),
+        // A moving average instead of the mean.
+        (
+            "sum = previous + vec4(color, 1.0)",
+            "sum = mix(previous, vec4(color, 1.0), 0.1)",
+        ),
+    ] {
+        let shader = check_progressive(edit, &["--size", "48x27"]);
+        assert_eq!(shader["verdict"], "wrong", "{edit:?} {}", shader["reason"]);
+    }
 }

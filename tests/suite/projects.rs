@@ -486,3 +486,66 @@ fn hostile_json_is_refused_with_a_place() {
         assert!(!folder.join("x").exists());
     }
 }
+
+#[test]
+fn a_script_moves_the_mouse_and_presses_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let code = "
+    void mainImage(out vec4 c, in vec2 p) {
+        vec4 keys = vec4(texelFetch(iChannel0, ivec2(32, 0), 0).x, texelFetch(iChannel0, ivec2(32, 1), 0).x,
+            texelFetch(iChannel0, ivec2(32, 2), 0).x, float(textureSize(iChannel0, 0).x) / 256.0);
+        c = p.x < 1.0 ? keys : iMouse;
+    }";
+    let mut image = pass("image", "4dfGRr", code);
+    image["inputs"] = json!([{
+        "id": "4dXGRr", "filepath": "/presets/tex00.jpg", "type": "keyboard", "channel": 0, "published": 1,
+        "sampler": {"filter": "nearest", "wrap": "clamp", "vflip": "true", "srgb": "false", "internal": "byte"},
+    }]);
+    let project = page(&json!([image])).to_string();
+    let script = "[[mouse]]\nframe = 2\npress = [5, 3]\n[[mouse]]\nframe = 4\nrelease = true\n\
+                  [[key]]\nframe = 1\npress = \"space\"\n[[key]]\nframe = 3\nrelease = \"space\"\n";
+    write(folder, &[("keys.json", &project), ("script.toml", script)]);
+    let shown = |frame: &str, flags: &[&str]| {
+        let fixed = [
+            "run",
+            "keys.json",
+            "-o",
+            "i.exr",
+            "--size",
+            "2x1",
+            "--mouse-script",
+            "script.toml",
+        ];
+        let run = toyproof(folder, &[&fixed[..], &["--frame", frame], flags].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let image = image::read(&folder.join("i.exr")).unwrap();
+        [image.get(0, 0), image.get(1, 0)]
+    };
+    let [cpu, f64] = [&["--device", "cpu"][..], &["--precision", "f64"]];
+    let mut devices = vec![cpu, f64];
+    if require_driver() {
+        devices.push(&[]);
+    }
+    for device in devices {
+        // The image's alpha is always 1.
+        assert_eq!(shown("0", device), [[0.0, 0.0, 0.0, 1.0]; 2], "{device:?}");
+        assert_eq!(shown("1", device)[0], [1.0, 1.0, 1.0, 1.0], "{device:?}");
+        assert_eq!(
+            shown("2", device),
+            [[1.0, 0.0, 1.0, 1.0], [5.0, 3.0, 5.0, 1.0]],
+            "{device:?}"
+        );
+        assert_eq!(
+            shown("4", device),
+            [[0.0, 0.0, 1.0, 1.0], [5.0, 3.0, -5.0, 1.0]],
+            "{device:?}"
+        );
+    }
+    let refused = toyproof(
+        folder,
+        &["run", "keys.json", "-o", "i.png", "--keys", "keys.json"],
+    );
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("error[E0509]"), "{}", refused.stderr);
+}

@@ -13,7 +13,7 @@ use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{FRAME_RATE, Frame, FrameInputs, output};
-use toyproof_scene::Scene;
+use toyproof_scene::{MAX_SAMPLES, Sampler, Scene};
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
@@ -446,12 +446,17 @@ impl<'a> Checker<'a> {
         if has_history && self.plan.assignment.is_none() && !matches!(reference, Some(Reference::Given(_))) {
             // The reference has the time of the frame that the user does not name.
             if !self.args.frame.is_moment_given() {
-                frame.frame = passes::CHECKED_FRAME;
-                frame.time = passes::CHECKED_FRAME as f32 / FRAME_RATE;
+                let scene = match reference {
+                    Some(Reference::Scene(scene)) => scene.scene.as_ref().ok(),
+                    _ => None,
+                };
+                let samples = scene.and_then(accumulated_samples);
+                let number = samples.map_or(passes::CHECKED_FRAME, |samples| samples as i32 - 1);
+                *frame = frame.at(number, number as f32 / FRAME_RATE);
             }
             key = self.plan.frames.len() + frame.frame as usize;
         }
-        let cached = reference.map(|reference| self.cached(reference, (index, key), frame));
+        let cached = reference.map(|reference| self.cached(reference, (index, key), has_history, frame));
         let cached = cached.transpose()?;
         let from_start = match &shader.passes {
             Some(passes) => self.bind(context, outcome, shader, passes, frame)?,
@@ -574,7 +579,7 @@ impl<'a> Checker<'a> {
         let reference = self.references.find(submission.input.as_ref().ok()?)?;
         let index = record.shown_frame();
         let mut frame = self.plan.frames[index].frame.clone();
-        let cached = self.cached(&reference, (index, index), &mut frame).ok()?;
+        let cached = self.cached(&reference, (index, index), false, &mut frame).ok()?;
         let case = Case {
             checked,
             lints: &shader.lints,
@@ -628,11 +633,13 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a shader is compared with in the planned frame with this index, which gets its size.
+    /// What a shader is compared with in the planned frame with this index, which gets its size. A project that depends
+    /// on earlier frames, and so `has_history`, has accumulated a sample in each of them.
     fn cached(
         &self,
         reference: &Reference,
         (index, key): (usize, usize),
+        has_history: bool,
         frame: &mut Frame,
     ) -> Result<Arc<CachedReference>, Failure> {
         match reference {
@@ -640,11 +647,22 @@ impl<'a> Checker<'a> {
                 let mut scene: Scene = scene.scene.clone()?;
                 frame.size = self.plan.frames[index].inputs.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
+                if has_history && accumulated_samples(&scene).is_some() {
+                    scene.film.samples = (frame.frame as u32).saturating_add(1).min(MAX_SAMPLES);
+                }
                 Ok(self.scenes.get(scene, key, frame))
             }
             Reference::Given(given) => Ok(Arc::clone(&given.cached[index])),
         }
     }
+}
+
+/// The number of samples of a stochastic scene that a project may take one by one, a frame for each.
+fn accumulated_samples(scene: &Scene) -> Option<u32> {
+    let film = &scene.film;
+    // The grid of stratified samples depends on their number.
+    let is_sequence = film.sampler.is_stochastic() && film.sampler != Sampler::Stratified;
+    is_sequence.then_some(film.samples)
 }
 
 /// The tree of the image, with whatever it reads.

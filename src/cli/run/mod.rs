@@ -285,7 +285,11 @@ impl Runner<'_> {
             ..self.frame.clone()
         };
         postcard::to_stdvec(&any).unwrap_or_default().hash(&mut hasher);
-        format!("{:?} {:?}", self.args.precision, self.args.driver).hash(&mut hasher);
+        format!(
+            "{:?} {:?} {:?}",
+            self.args.precision, self.args.driver, self.frame.script
+        )
+        .hash(&mut hasher);
         format!("{:016x}", hasher.finish())
     }
 

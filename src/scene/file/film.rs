@@ -4,11 +4,10 @@ use glam::DVec3;
 use toyproof_diagnostic::Span;
 use toyproof_toml::Table;
 
+use super::super::film::MAX_SAMPLES;
 use super::super::{Camera, Figure, Film, Integrator, Outline, Projection, Sampler, ToneMap};
 use super::checks::Checks;
 
-/// The maximum number of samples per pixel.
-const MAX_SAMPLES: u32 = 65_536;
 /// The maximum number of path segments.
 const MAX_DEPTH: u32 = 1_000;
 
