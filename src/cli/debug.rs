@@ -6,15 +6,18 @@ use std::time::{Duration, Instant};
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_eval::{Failure, Program};
 use toyproof_glsl::Checked;
-use toyproof_image::Frame;
+use toyproof_image::{FRAME_RATE, Frame};
+use toyproof_project::PassKind;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
-use toyproof_verify::debug;
+use toyproof_verify::{self as verify, debug};
 
 use super::check::Scenes;
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
+use super::passes;
+use super::project::Passes;
 use super::reference::{GivenReference, ReferenceArgs};
-use super::run::not_evaluated;
+use super::run::{not_evaluated, parse_pass};
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
 use crate::cli::files::{Input, ReadError};
@@ -35,6 +38,9 @@ pub(super) struct Args {
     /// The pixel: x from the left, y from the bottom, starting at 0
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
+    /// The pass of a project: `image`, or `buffer-a` to `buffer-d` [default: image]
+    #[arg(long, value_name = "PASS", value_parser = parse_pass, hide_short_help = true)]
+    pass: Option<PassKind>,
     #[command(flatten)]
     reference: ReferenceArgs,
     /// The format of standard output: `human` shows what each line stores and decides (-v: every
@@ -71,6 +77,16 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     };
     let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
+    let kind = args.pass.unwrap_or(PassKind::Image);
+    if let Some(passes) = &shader.passes
+        && (passes::has_history(passes) || kind != PassKind::Image)
+    {
+        return print_pass(args, (&shader, passes), kind, frame, scene, terminal).unwrap_or_else(|exit| exit);
+    }
+    if kind != PassKind::Image {
+        terminal.error(format_args!("{} is no project with buffers", shader.name));
+        return Exit::Error;
+    }
     match &shader.checked {
         Ok(checked) => {
             let reference = Reference { scene, given };
@@ -85,6 +101,49 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Exit::Error
         }
     }
+}
+
+/// Prints the trace of the pixel of a pass of a project, and where its difference comes from.
+fn print_pass(
+    args: &Args,
+    (shader, passes): (&Shader, &Passes),
+    kind: PassKind,
+    mut frame: Frame,
+    scene: Option<Scene>,
+    terminal: &Terminal,
+) -> Result<Exit, Exit> {
+    let Some(at) = passes.project.passes.iter().position(|pass| pass.kind == kind) else {
+        terminal.error(format_args!("{}: there is no {kind}", shader.name));
+        terminal.help("name one of its passes with --pass");
+        return Err(Exit::Error);
+    };
+    if !args.frame.is_moment_given() {
+        let number = passes::default_frame(scene.as_ref());
+        frame = frame.at(number, number as f32 / FRAME_RATE);
+    }
+    let spinner = terminal.spinner(&shader.name);
+    let trail = passes::follow_back(passes, kind, args.pixel, &frame, args.timeout);
+    spinner.finish_and_clear();
+    let trail = trail.map_err(|failure| match failure {
+        verify::Failure::Cpu(failure) => not_evaluated(&failure, shader, terminal),
+        other => {
+            terminal.error(format_args!("{}: {other}", shader.name));
+            Exit::Error
+        }
+    })?;
+    let scene = scene.filter(|_| kind == PassKind::Image).map(|mut scene| {
+        passes::accumulate(&mut scene, frame.frame);
+        scene
+    });
+    let expected = scene.map(|scene| expected_color(scene, &frame, args.pixel));
+    let (trace, _) = traced(
+        args,
+        (shader, &passes.checked[at]),
+        &trail.frame,
+        expected,
+        terminal,
+    )?;
+    print(args, &trace.after(&trail), terminal)
 }
 
 /// What the expected color comes from.
@@ -158,7 +217,10 @@ fn print_trace(
         }
     };
     let (trace, _) = traced(args, shader, frame, expected, terminal)?;
-    let trace = trace.beside(reference);
+    print(args, &trace.beside(reference), terminal)
+}
+
+fn print(args: &Args, trace: &report::PixelTrace, terminal: &Terminal) -> Result<Exit, Exit> {
     match args.format {
         Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Err(Exit::Error),
         Format::Json => {}

@@ -46,7 +46,8 @@ pub(super) struct FrameArgs {
     /// iMouse, in pixels [default: 0,0,0,0]
     #[arg(long, value_name = "X,Y[,Z,W]", value_parser = parse_mouse, allow_hyphen_values = true, hide_short_help = true)]
     mouse: Option<[f32; 4]>,
-    /// What the user does with the mouse and the keyboard over the frames: a TOML file with `[[mouse]]` and `[[key]]` events
+    /// What the user does with the mouse and the keyboard over the frames: a TOML file with `[[mouse]]` and
+    /// `[[key]]` events
     #[arg(long, visible_alias = "keys", value_name = "FILE", value_parser = parse_script, conflicts_with = "mouse", hide_short_help = true)]
     mouse_script: Vec<Arc<Script>>,
     /// iDate: year, month from 0 to 11, day, seconds since midnight
@@ -214,8 +215,8 @@ pub(super) struct DriverArgs {
     device: DeviceSelector,
     /// The float arithmetic: `strict` or `fast` [default: strict; for `convert`: fast]
     ///
-    /// strict: no reassociation or contraction; sin, pow and the like are expanded to operations with the same
-    /// bits on every device. fast: native functions, and the driver may rearrange arithmetic.
+    /// strict: no reassociation or contraction; sin, pow and the like are expanded to operations with the
+    /// same bits on every device. fast: native functions, and the driver may rearrange arithmetic.
     #[arg(long, value_enum, value_name = "MODE", hide_possible_values = true)]
     float: Option<Float>,
     /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m)

@@ -10,15 +10,17 @@ use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame, Image, Texture};
 use toyproof_player::{Clock, Source, Target};
 use toyproof_project::{PassKind, Rendering};
+use toyproof_scene::{MAX_SAMPLES, Sampler, Scene};
 use toyproof_translate::FloatMode;
 use toyproof_verify::Failure;
 use toyproof_verify::growth::{Frames, Growth, follow};
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
+use toyproof_verify::trail::{Trail, trail};
 
 use super::project::Passes;
 
-/// The frame in which a project is checked if the user names none: a few frames of feedback.
-pub(super) const CHECKED_FRAME: i32 = 7;
+/// The frame in which a project is checked if nothing suggests another: a few frames of feedback.
+const CHECKED_FRAME: i32 = 7;
 
 /// Whether the image depends on earlier frames: it reads other passes.
 pub(super) fn has_history(passes: &Passes) -> bool {
@@ -76,7 +78,7 @@ pub(super) fn bind(
     renderers: Renderers<'_>,
 ) -> Result<Option<BoundFrame>, Failure> {
     let (timeout, pool) = (renderers.timeout, renderers.pool);
-    let rendering = rendering(passes)?;
+    let rendering = rendering(passes, PassKind::Image)?;
     let subject = Subject::new(passes, &rendering, timeout, pool)?;
     if !has_history(passes) {
         *frame = subject.bound(frame, |_| None);
@@ -129,7 +131,7 @@ pub(super) fn bind(
 /// # Errors
 /// Why the buffers cannot be rendered.
 pub(super) fn bind_reference(passes: &Passes, frame: &mut Frame, timeout: Duration) -> Result<(), Failure> {
-    let rendering = rendering(passes)?;
+    let rendering = rendering(passes, PassKind::Image)?;
     let subject = Subject::new(passes, &rendering, timeout, None)?;
     let mut playback = CpuPlayback::<f64>::new(&subject.shader, &subject.programs, None, timeout, None);
     if has_history(passes) {
@@ -143,9 +145,63 @@ pub(super) fn bind_reference(passes: &Passes, frame: &mut Frame, timeout: Durati
     Ok(())
 }
 
-/// What renders the image.
-fn rendering(passes: &Passes) -> Result<Rendering, Failure> {
-    let rendering = passes.rendering(PassKind::Image);
+/// Follows the difference between float32 and double precision in a pixel of a pass back through passes and
+/// frames.
+///
+/// # Errors
+/// Why the passes cannot be rendered.
+pub(super) fn follow_back(
+    passes: &Passes,
+    kind: PassKind,
+    pixel: [u32; 2],
+    frame: &Frame,
+    timeout: Duration,
+) -> Result<Trail, Failure> {
+    let rendering = rendering(passes, kind)?;
+    let subject = Subject::new(passes, &rendering, timeout, None)?;
+    let frames = Frames {
+        shader: &subject.shader,
+        programs: &subject.programs,
+        clock: &clock(frame),
+        last: frame.frame,
+        timeout,
+        pool: None,
+    };
+    trail(&frames, target(kind), pixel)
+}
+
+/// The target of a pass that is rendered.
+pub(super) fn target(kind: PassKind) -> Target {
+    match kind {
+        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
+        _ => Target::Image,
+    }
+}
+
+/// The frame in which a project is compared with a scene, or with nothing, if the user names none.
+pub(super) fn default_frame(scene: Option<&Scene>) -> i32 {
+    let samples = scene.and_then(accumulated_samples);
+    samples.map_or(CHECKED_FRAME, |samples| samples as i32 - 1)
+}
+
+/// The number of samples of a stochastic scene that a project may take one by one, a frame for each.
+fn accumulated_samples(scene: &Scene) -> Option<u32> {
+    let film = &scene.film;
+    // The grid of stratified samples depends on their number.
+    let is_sequence = film.sampler.is_stochastic() && film.sampler != Sampler::Stratified;
+    is_sequence.then_some(film.samples)
+}
+
+/// Gives a scene the number of samples that a project has accumulated in a frame.
+pub(super) fn accumulate(scene: &mut Scene, frame: i32) {
+    if accumulated_samples(scene).is_some() {
+        scene.film.samples = (frame as u32).saturating_add(1).min(MAX_SAMPLES);
+    }
+}
+
+/// What renders a pass.
+fn rendering(passes: &Passes, kind: PassKind) -> Result<Rendering, Failure> {
+    let rendering = passes.rendering(kind);
     rendering.map_err(|error| Failure::Unrendered(error.to_string()))
 }
 
@@ -172,7 +228,7 @@ impl<'a> Subject<'a> {
             graph: &rendering.graph,
             media: &rendering.media,
         };
-        let programs = if has_history(passes) {
+        let programs = if rendering.graph.passes().len() > 1 {
             let programs = || shader.programs(timeout);
             within(pool, programs).map_err(|(_, refusal)| eval::Failure::Refused(refusal))?
         } else {

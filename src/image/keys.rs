@@ -35,8 +35,8 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// The texture of 256×3 texels: a column for each key, and the rows held, pressed and toggled, from the bottom up.
-    /// Red is 1 or 0.
+    /// The texture of 256×3 texels: a column for each key, and the rows held, pressed and toggled, from the
+    /// bottom up. Red is 1 or 0.
     #[must_use]
     pub fn texture(&self) -> Texture {
         let rows = [self.held, self.pressed, self.toggled];

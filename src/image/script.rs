@@ -24,8 +24,8 @@ pub enum InputEvent {
 }
 
 impl Script {
-    /// The script of these events, each before the frame with the given number is rendered. Events of one frame keep
-    /// their order.
+    /// The script of these events, each before the frame with the given number is rendered. Events of one
+    /// frame keep their order.
     #[must_use]
     pub fn new(mut events: Vec<(i32, InputEvent)>) -> Self {
         events.sort_by_key(|&(frame, _)| frame);

@@ -87,12 +87,14 @@ pub(super) mod samples {
         let error = FrameError {
             max_abs: 0.25,
             differing,
+            worst: Some([1, 2]),
         };
         GrowthRecord::new(&Growth {
             frames: vec![error; frames],
             first_visible: Some(3),
             visible: Some(VisibleGrowth {
                 differing,
+                worst: [1, 2],
                 since: 3,
                 cause: GrowthCause::Chaos {
                     doubling: 1.5,

@@ -7,6 +7,7 @@ use toyproof_diagnostic::{Files, Span, grouped};
 use toyproof_eval::{Event, EventKind, TraceSchema, TraceValue};
 use toyproof_glsl::tree::{Scalar, Tree, Type};
 use toyproof_verify::debug::{Explanation, Step, digits};
+use toyproof_verify::trail::Trail;
 
 /// The trace of a pixel in f32 and in f64, in terms of the source text.
 #[derive(Debug, Serialize)]
@@ -33,6 +34,19 @@ pub struct PixelTrace {
     steps: Vec<TraceStep>,
     /// The trace of the reference shader in the same pixel; null without one.
     reference: Option<Box<PixelTrace>>,
+    /// Where the difference of a project's pixel comes from, back through passes and frames; null for a
+    /// single shader.
+    trail: Option<Vec<TrailStep>>,
+}
+
+/// A pixel through which a difference came.
+#[derive(Debug, Serialize)]
+struct TrailStep {
+    frame: i32,
+    pass: String,
+    pixel: [u32; 2],
+    f32: [Component; 4],
+    f64: [Component; 4],
 }
 
 /// One step.
@@ -109,6 +123,23 @@ impl PixelTrace {
             cut: explanation.is_cut,
             steps: lines.collect(),
             reference: None,
+            trail: None,
+        }
+    }
+
+    /// Adds where the difference comes from, from the first frame on.
+    #[must_use]
+    pub fn after(self, trail: &Trail) -> Self {
+        let steps = trail.hops.iter().map(|hop| TrailStep {
+            frame: hop.frame,
+            pass: hop.target.to_string(),
+            pixel: hop.pixel,
+            f32: hop.single.map(Component::Float),
+            f64: hop.double.map(Component::Float),
+        });
+        Self {
+            trail: Some(steps.collect()),
+            ..self
         }
     }
 
@@ -189,6 +220,53 @@ fn calls(subject: &TracedPixel<'_>, schema: &TraceSchema, event: &Event) -> (Str
         .call
         .map_or("mainImage", |id| &subject.tree[schema.call(id).function].name);
     (function.to_owned(), lines)
+}
+
+/// The most pixels of a trail that are shown, half of them at each end.
+const MAX_TRAIL: usize = 12;
+
+/// Formats where a difference comes from: the pixels that hand it on, the last frame first. Empty if the
+/// pixel does not differ.
+fn trail_lines(trail: &[TrailStep]) -> String {
+    let Some(first) = trail.first().filter(|first| first.f32 != first.f64) else {
+        return "\nFrom the first frame on, float32 and double precision render the same here.\n".to_owned();
+    };
+    let mut text = format!(
+        "\nFrom the first frame on, the difference comes from\n{:>7}  {:10} {:>12}  {:>NUMBER_WIDTH$} {:>NUMBER_WIDTH$}\n",
+        "frame", "pass", "pixel", "f32", "f64"
+    );
+    // The component that differs most in the pixel that was asked for.
+    let difference = |at: usize| match (first.f32[at], first.f64[at]) {
+        (Component::Float(single), Component::Float(double)) => (single - double).abs(),
+        _ => 0.0,
+    };
+    let component = (0..3).fold(0, |most, at| {
+        if difference(at) > difference(most) {
+            at
+        } else {
+            most
+        }
+    });
+    for (index, step) in trail.iter().enumerate() {
+        if trail.len() > MAX_TRAIL && index >= MAX_TRAIL / 2 && index < trail.len() - MAX_TRAIL / 2 {
+            if index == MAX_TRAIL / 2 {
+                let hidden = trail.len() - MAX_TRAIL;
+                let _ = writeln!(text, "{:>7}  {hidden} more", "…");
+            }
+            continue;
+        }
+        let [x, y] = step.pixel;
+        let _ = writeln!(
+            text,
+            "{:>7}  {:10} {:>12}  {:>NUMBER_WIDTH$} {:>NUMBER_WIDTH$}",
+            step.frame,
+            step.pass,
+            format!("({x}, {y})"),
+            step.f32[component].digits(true),
+            step.f64[component].digits(false)
+        );
+    }
+    text
 }
 
 /// The line that a span starts in.
@@ -345,6 +423,9 @@ impl PixelTrace {
             writer
                 .text
                 .push_str("  … the remaining steps were not recorded: the trace is too long\n");
+        }
+        if let Some(trail) = &self.trail {
+            writer.text.push_str(&trail_lines(trail));
         }
         if let Some(reference) = &self.reference {
             writer.text.push_str("\nreference: ");

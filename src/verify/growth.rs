@@ -68,6 +68,8 @@ pub struct FrameError {
     pub max_abs: f64,
     /// The pixels that differ visibly.
     pub differing: Share,
+    /// The pixel with the largest difference; none if none differs visibly.
+    pub worst: Option<[u32; 2]>,
 }
 
 /// A difference that is visible in the last frame.
@@ -75,6 +77,8 @@ pub struct FrameError {
 pub struct VisibleGrowth {
     /// The pixels of the last frame that differ visibly.
     pub differing: Share,
+    /// The one of them with the largest difference.
+    pub worst: [u32; 2],
     /// The first frame in which as many do.
     pub since: i32,
     /// Why.
@@ -147,7 +151,11 @@ impl VisibleGrowth {
 
     fn diagnostic(&self) -> Diagnostic {
         let warning = Diagnostic::warning(Code::VisibleGrowth.as_str(), self.sentence());
-        self.consequences().into_iter().fold(warning, Diagnostic::note)
+        let [x, y] = self.worst;
+        let hint =
+            format!("`toyproof debug` with `--pixel {x},{y}` follows the difference back to where it arises");
+        let warning = self.consequences().into_iter().fold(warning, Diagnostic::note);
+        warning.note(hint)
     }
 }
 
@@ -187,6 +195,7 @@ pub fn follow<'a>(
             };
             let growth = VisibleGrowth {
                 differing: last.differing,
+                worst: last.worst.unwrap_or_default(),
                 since,
                 cause,
             };
@@ -241,6 +250,7 @@ fn image_error<A: Number, B: Number>(
     Some(FrameError {
         max_abs: summary.max_abs,
         differing: Share::differing(&summary),
+        worst: summary.worst.map(|pixel| [pixel.x, pixel.y]),
     })
 }
 

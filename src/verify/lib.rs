@@ -131,6 +131,7 @@ mod sample_loops;
 mod session;
 mod silhouette_precision;
 mod stochastic;
+pub mod trail;
 
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc;

@@ -332,3 +332,77 @@ fn mistakes_of_a_progressive_path_tracer_are_wrong() {
         assert_eq!(shader["verdict"], "wrong", "{edit:?} {}", shader["reason"]);
     }
 }
+
+/// Writes a project that spreads the digits of Buffer B, which loses them in its only frame, through Buffer A.
+fn write_spreading(folder: &Path) {
+    let files = [
+        ("image.glsl", "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p).yx, 0); }"),
+        // From left to right, one texel per frame.
+        (
+            "buffer-a.glsl",
+            "void mainImage(out vec4 c, in vec2 p) {
+                ivec2 q = ivec2(p);
+                c = q.x == 0 ? texelFetch(iChannel1, ivec2(3, 2), 0) : texelFetch(iChannel0, q - ivec2(1, 0), 0);
+            }",
+        ),
+        (
+            "buffer-b.glsl",
+            "void mainImage(out vec4 c, in vec2 p) {
+                float x = 1.0e6 + 0.1 * p.x;
+                c = vec4(x - 1.0e6);
+            }",
+        ),
+    ];
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
+}
+
+#[test]
+fn debug_follows_a_difference_back_through_passes_and_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    write_spreading(folder.path());
+    let debug = |flags: &[&str]| {
+        let fixed = ["debug", ".", "--size", "8x8", "--frame", "9"];
+        let run = toyproof(folder.path(), &[&fixed[..], flags].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        run.stdout
+    };
+    let json: Value = serde_json::from_str(&debug(&["--pixel", "5,2", "--format", "json"])).unwrap();
+    let hops: Vec<_> = json["trail"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|hop| {
+            let pass = hop["pass"].as_str().unwrap();
+            (
+                hop["frame"].as_i64().unwrap(),
+                pass.to_owned(),
+                hop["pixel"].clone(),
+            )
+        })
+        .collect();
+    let hop = |frame, pass: &str, x: u32, y: u32| (frame, pass.to_owned(), serde_json::json!([x, y]));
+    // Image (5, 2) reads A (2, 5), two frames after A (0, 5), which reads Buffer B of the frame before.
+    let expected = [
+        hop(9, "Image", 5, 2),
+        hop(9, "Buffer A", 2, 5),
+        hop(8, "Buffer A", 1, 5),
+        hop(7, "Buffer A", 0, 5),
+        hop(6, "Buffer B", 3, 2),
+    ];
+    assert_eq!(hops, expected);
+    // The pass in which it arises shows the line.
+    let text = debug(&["--pixel", "3,2", "--pass", "buffer-b"]);
+    assert!(text.contains("float x = 1.0e6 + 0.1 * p.x"), "{text}");
+    assert!(text.contains("      9  Buffer B         (3, 2)"), "{text}");
+    let refused = toyproof(
+        folder.path(),
+        &["debug", ".", "--pixel", "0,0", "--pass", "buffer-d"],
+    );
+    assert!(
+        refused.stderr.contains("there is no Buffer D"),
+        "{}",
+        refused.stderr
+    );
+}

@@ -13,7 +13,7 @@ use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
 use toyproof_image as image;
 use toyproof_image::{FRAME_RATE, Frame, FrameInputs, output};
-use toyproof_scene::{MAX_SAMPLES, Sampler, Scene};
+use toyproof_scene::Scene;
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
@@ -315,11 +315,8 @@ impl<'a> Checker<'a> {
         if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
             keep(out, stem, &IMAGES, findings.as_ref(), &mut outcome);
         }
-        // `debug` renders the image alone.
-        let has_history = shader.passes.as_ref().is_some_and(passes::has_history);
         if outcome.record.help.is_none() {
-            let help = self.help(&outcome);
-            outcome.record.help = help.filter(|help| !has_history || !help.starts_with("toyproof debug"));
+            outcome.record.help = self.help(&outcome);
         }
         outcome
     }
@@ -450,8 +447,7 @@ impl<'a> Checker<'a> {
                     Some(Reference::Scene(scene)) => scene.scene.as_ref().ok(),
                     _ => None,
                 };
-                let samples = scene.and_then(accumulated_samples);
-                let number = samples.map_or(passes::CHECKED_FRAME, |samples| samples as i32 - 1);
+                let number = passes::default_frame(scene);
                 *frame = frame.at(number, number as f32 / FRAME_RATE);
             }
             key = self.plan.frames.len() + frame.frame as usize;
@@ -633,8 +629,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a shader is compared with in the planned frame with this index, which gets its size. A project that depends
-    /// on earlier frames, and so `has_history`, has accumulated a sample in each of them.
+    /// What a shader is compared with in the planned frame with this index, which gets its size. A project
+    /// that depends on earlier frames, and so `has_history`, has accumulated a sample in each of them.
     fn cached(
         &self,
         reference: &Reference,
@@ -647,22 +643,14 @@ impl<'a> Checker<'a> {
                 let mut scene: Scene = scene.scene.clone()?;
                 frame.size = self.plan.frames[index].inputs.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
-                if has_history && accumulated_samples(&scene).is_some() {
-                    scene.film.samples = (frame.frame as u32).saturating_add(1).min(MAX_SAMPLES);
+                if has_history {
+                    passes::accumulate(&mut scene, frame.frame);
                 }
                 Ok(self.scenes.get(scene, key, frame))
             }
             Reference::Given(given) => Ok(Arc::clone(&given.cached[index])),
         }
     }
-}
-
-/// The number of samples of a stochastic scene that a project may take one by one, a frame for each.
-fn accumulated_samples(scene: &Scene) -> Option<u32> {
-    let film = &scene.film;
-    // The grid of stratified samples depends on their number.
-    let is_sequence = film.sampler.is_stochastic() && film.sampler != Sampler::Stratified;
-    is_sequence.then_some(film.samples)
 }
 
 /// The tree of the image, with whatever it reads.

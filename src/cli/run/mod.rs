@@ -2,6 +2,8 @@
 
 mod project;
 
+pub(in crate::cli) use project::parse_pass;
+
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -56,7 +58,7 @@ pub(in crate::cli) struct Args {
     #[arg(long, value_name = "N", default_value_t = 60.0, value_parser = parse_rate, hide_short_help = true)]
     fps: f64,
     /// The pass of a project to show: `image`, or `buffer-a` to `buffer-d` [default: image]
-    #[arg(long, value_name = "PASS", value_parser = project::parse_pass, hide_short_help = true)]
+    #[arg(long, value_name = "PASS", value_parser = parse_pass, hide_short_help = true)]
     pass: Option<PassKind>,
     /// The buffers of a project: read from this file, if it exists, and written to it after the last frame
     ///

@@ -16,13 +16,14 @@ use toyproof_project::{PassKind, Rendering, Tab};
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::{Precision, Rendered, Runner, not_evaluated};
+use crate::cli::passes::target;
 use crate::cli::project::Passes;
 use crate::cli::sequence::{Frames, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{Exit, Terminal};
 
 /// Parses the name of a pass whose texture can be shown: `image`, or `buffer-a` to `buffer-d`.
-pub(super) fn parse_pass(text: &str) -> Result<PassKind, String> {
+pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     let shown = Tab::ALL.into_iter().filter_map(|tab| match tab {
         Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_))) => Some((tab.name(), kind)),
         _ => None,
@@ -33,14 +34,6 @@ pub(super) fn parse_pass(text: &str) -> Result<PassKind, String> {
         let names: Vec<_> = shown.iter().map(|(name, _)| *name).collect();
         format!("expected one of {}", names.join(", "))
     })
-}
-
-/// The target of a pass that is rendered.
-fn target(kind: PassKind) -> Target {
-    match kind {
-        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
-        _ => Target::Image,
-    }
 }
 
 /// Reports the inputs whose media are replaced or black.
