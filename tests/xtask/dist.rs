@@ -165,8 +165,9 @@ impl Release {
             cargo
         };
         if target == Target::LinuxStaticArm {
-            // Rust's target has the C library and the start files, so its own linker is enough.
-            compiler.env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER", "rust-lld");
+            // Rust's target has musl itself; any linker for the architecture will do.
+            let linker = "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER";
+            compiler.env(linker, "aarch64-linux-gnu-gcc");
         }
         compiler.args(["--release", "--locked", "--target", &name]);
         run(compiler.env("SOURCE_DATE_EPOCH", self.date.to_string()))?;
