@@ -63,7 +63,7 @@ check() {
     # Shaders that compile have no message at a line.
     jq --raw-output '
         def data: gsub("%"; "%25") | gsub("\r"; "%0D") | gsub("\n"; "%0A");
-        def property: data | gsub(":"; "%3A") | gsub(","; "%2C");
+        def property: ltrimstr("./") | data | gsub(":"; "%3A") | gsub(","; "%2C");
         .shaders[] | select(.verdict | IN("correct", "ok", "invalid") | not)
         | "::error file=\(.shader | property),line=\(.fix.line // .suspects[0].line // 1),title=\(.verdict)::\(.reason | data)"
     ' "$report/verdict.json"
