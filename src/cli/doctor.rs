@@ -110,7 +110,11 @@ fn examine(device: &DeviceSelector) -> Result<Report, String> {
         DeviceSelector::Gpu(adapter) => adapter,
         DeviceSelector::Cpu => {
             report.selected = Some("cpu".to_owned());
-            report.reason = Some("named by --device");
+            report.reason = Some(if inputs::LOADS_DRIVERS {
+                "named by --device"
+            } else {
+                inputs::STATIC_PROGRAM
+            });
             return Ok(report);
         }
     };

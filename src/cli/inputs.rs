@@ -19,6 +19,12 @@ use super::{Terminal, WORKER, files};
 /// The longest time limit.
 const MAX_TIME_LIMIT: Duration = Duration::from_secs(24 * 60 * 60);
 
+/// Whether this program can load Vulkan drivers: a statically linked one has no dynamic linker.
+pub(super) const LOADS_DRIVERS: bool = !cfg!(all(target_env = "musl", target_feature = "crt-static"));
+/// The reason, and a way out.
+pub(super) const STATIC_PROGRAM: &str = "this program is linked statically and cannot load Vulkan drivers; \
+                                         the packages for glibc can: the .deb, the wheel, or *-linux-gnu.tar.gz";
+
 /// Returns whether a file may be written without overwriting one of the inputs; prints an error if not.
 pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal) -> bool {
     let loses = originals.would_lose(path);
@@ -413,6 +419,8 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
 pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {
     match text {
         "cpu" => Ok(DeviceSelector::Cpu),
+        "auto" if !LOADS_DRIVERS => Ok(DeviceSelector::Cpu),
+        _ if !LOADS_DRIVERS => Err(STATIC_PROGRAM.to_owned()),
         text => parse_adapter(text).map(DeviceSelector::Gpu),
     }
 }

@@ -13,7 +13,9 @@ use toyproof_lint::Lints;
 use toyproof_scene::{Scene, export};
 
 use super::check::Scenes;
-use super::inputs::{FrameArgs, LanguageArgs, parse_adapter, parse_time_limit, worker};
+use super::inputs::{
+    FrameArgs, LOADS_DRIVERS, LanguageArgs, STATIC_PROGRAM, parse_adapter, parse_time_limit, worker,
+};
 use super::render::load_scene;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
@@ -192,6 +194,10 @@ fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<
     };
     let adapters = match selector {
         "cpu" => return Ok(Vec::new()),
+        "all" if !LOADS_DRIVERS => {
+            terminal.warn(format_args!("{STATIC_PROGRAM}; measuring only the CPU"));
+            return Ok(Vec::new());
+        }
         "all" => {
             let mut probe = worker(AdapterSelector::Auto, budget)
                 .map_err(fail)?

@@ -13,6 +13,7 @@ mod autograder;
 mod bad_input;
 mod batch;
 mod browser;
+mod code_hosts;
 mod collected;
 mod commands;
 mod containment;

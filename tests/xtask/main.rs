@@ -1,8 +1,9 @@
-//! `cargo xtask`: tables and measurements of the documents, and expected texts of the tests.
+//! `cargo xtask`: tables and measurements of the documents, expected texts of the tests, and releases.
 
-#![expect(clippy::print_stdout, reason = "a command prints")]
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command prints")]
 
 mod corpus;
+mod dist;
 mod faults;
 mod page;
 mod player;
@@ -52,6 +53,8 @@ enum Task {
         /// The folder of WGSL files, with the same names
         converted: PathBuf,
     },
+    /// Build the files of a release: archives, and packages for Debian and Python, with their checksums
+    Dist(dist::Arguments),
     /// Measure how long Chromium takes to open a report
     Page {
         /// The report.html
@@ -120,6 +123,12 @@ fn main() -> ExitCode {
         Task::Sensitivity => sensitivity::print_table(),
         Task::Corpus { folder, limit } => corpus::compare_bits(&folder, limit),
         Task::Conversions { shaders, converted } => corpus::compare_conversions(&shaders, &converted),
+        Task::Dist(arguments) => {
+            if let Err(error) = dist::build(&arguments) {
+                eprintln!("error: {error}");
+                return ExitCode::FAILURE;
+            }
+        }
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
         Task::Player(arguments) => player::play(&arguments),
         Task::Projects {
