@@ -55,7 +55,11 @@ struct Target {
 ///
 /// # Errors
 /// If the graph is of another version, or the device cannot play it.
-pub(crate) async fn render(graph: &Path, [width, height]: [u32; 2], frames: u32) -> Result<Vec<u8>, Box<dyn Error>> {
+pub(crate) async fn render(
+    graph: &Path,
+    [width, height]: [u32; 2],
+    frames: u32,
+) -> Result<Vec<u8>, Box<dyn Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = instance
         .request_adapter(&wgpu::RequestAdapterOptions::default())
