@@ -13,13 +13,14 @@ use std::path::Path;
 
 const SIZE: [u32; 2] = [640, 360];
 const TIME: f32 = 1.5;
-/// The number of frames of a project that are played.
-const FRAMES: u32 = 60;
 
 /// Three vertices that cover the target.
 const VERTICES: &str = "@vertex fn main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
+
+/// The number of frames of a project that are played.
+const FRAMES: u32 = 60;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -46,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn read(shader: &str) -> Result<Shader, Box<dyn Error>> {
     let file = std::fs::read(shader)?;
-    if !shader.ends_with(".spv") {
+    if Path::new(shader).extension().is_none_or(|ending| ending != "spv") {
         return Ok(Shader::Wgsl(String::from_utf8(file)?));
     }
     let words = file.chunks_exact(4);

@@ -1,6 +1,6 @@
 //! Plays the passes of a converted project: those of `graph.json`, which `toyproof convert PROJECT -o FOLDER` writes.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
@@ -97,7 +97,7 @@ pub(crate) async fn render(
             Input::Fixed(..) => None,
         });
     let names = passes.iter().map(|pass| &pass.target).chain(read);
-    let mut targets = HashMap::new();
+    let mut targets = BTreeMap::new();
     for name in names {
         let has_mipmaps = passes
             .iter()
@@ -175,11 +175,8 @@ impl Host {
         let inputs = channels.map(|input| match input["source"].as_str() {
             Some("buffer") => Input::Buffer(name(&input["buffer"]), input["frame"] == "this"),
             Some("keyboard") => self.fixed([256, 3], [256.0, 3.0]),
-            // Load the file of the texture here, with its mipmaps if `mipmaps` is true.
-            Some(_) => {
-                eprintln!("{file}: {} is black", input["name"]);
-                self.fixed([1, 1], [1.0, 1.0])
-            }
+            // Load the file of the texture here, with its mipmaps if `mipmaps` is true. Now it is black.
+            Some(_) => self.fixed([1, 1], [1.0, 1.0]),
             None => self.fixed([1, 1], [0.0, 0.0]),
         });
         Ok(Pass {
@@ -266,7 +263,7 @@ impl Host {
 
     /// Renders a pass over the texture that does not hold the last frame of its target: pixels that are discarded
     /// keep what it holds. The image has one texture on the site, so it continues from the last frame.
-    fn draw(&self, pass: &Pass, targets: &HashMap<String, Target>, frame: u32) {
+    fn draw(&self, pass: &Pass, targets: &BTreeMap<String, Target>, frame: u32) {
         let target = &targets[&pass.target];
         let into = &target.textures[1 - target.last];
         let mut commands = self.device.create_command_encoder(&Default::default());

@@ -167,20 +167,27 @@ impl Layout {
             mipmaps,
             repeat,
         } = sampling;
-        let filter = |is_linear| match is_linear && self.filterable {
-            true => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear),
-            false => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest),
+        let address = if repeat {
+            wgpu::AddressMode::Repeat
+        } else {
+            wgpu::AddressMode::ClampToEdge
         };
-        let address = match repeat {
-            true => wgpu::AddressMode::Repeat,
-            false => wgpu::AddressMode::ClampToEdge,
+        let filter = if linear && self.filterable {
+            wgpu::FilterMode::Linear
+        } else {
+            wgpu::FilterMode::Nearest
+        };
+        let mipmap_filter = if mipmaps && self.filterable {
+            wgpu::MipmapFilterMode::Linear
+        } else {
+            wgpu::MipmapFilterMode::Nearest
         };
         device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: address,
             address_mode_v: address,
-            mag_filter: filter(linear).0,
-            min_filter: filter(linear).0,
-            mipmap_filter: filter(mipmaps).1,
+            mag_filter: filter,
+            min_filter: filter,
+            mipmap_filter,
             lod_max_clamp: if mipmaps { f32::from(MAX_LEVEL) } else { 0.0 },
             ..Default::default()
         })

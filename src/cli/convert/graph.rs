@@ -449,3 +449,78 @@ impl From<WrapName> for Wrap {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl::Options;
+    use toyproof_project::check;
+
+    use super::*;
+
+    /// Buffer A reads Buffer B, which reads Buffer A; the image reads both, and noise.
+    const PROJECT: &str = r#"{"ver": "0.1", "info": {}, "renderpass": [
+        {"type": "image", "name": "Image", "description": "", "outputs": [], "code": "CODE", "inputs": [
+            {"channel": 0, "type": "buffer", "id": "4dXGR8", "filepath": "", "sampler": {"filter": "linear", "wrap": "clamp"}},
+            {"channel": 1, "type": "texture", "id": "Xsf3zn", "filepath": "", "sampler": {"filter": "mipmap", "wrap": "repeat"}},
+            {"channel": 2, "type": "texture", "id": "4dfGRn", "filepath": "", "sampler": {"filter": "linear", "wrap": "repeat"}}]},
+        {"type": "buffer", "name": "", "description": "", "outputs": [{"id": "4dXGR8", "channel": 0}], "code": "CODE", "inputs": [
+            {"channel": 0, "type": "buffer", "id": "XsXGR8", "filepath": "", "sampler": {"filter": "nearest", "wrap": "clamp"}}]},
+        {"type": "buffer", "name": "", "description": "", "outputs": [{"id": "XsXGR8", "channel": 0}], "code": "CODE", "inputs": [
+            {"channel": 3, "type": "buffer", "id": "4dXGR8", "filepath": "", "sampler": {"filter": "linear", "wrap": "clamp"}}]}]}"#;
+
+    #[test]
+    fn a_written_graph_is_read_again_and_its_faults_are_found() {
+        let json = PROJECT.replace("CODE", "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }");
+        let mut files = Files::default();
+        let file = files.add(File::new("project.json", json));
+        let project = Project::from_json(&mut files, file).unwrap();
+        let passes = check(&project, &mut files, &Options::default()).unwrap().passes;
+        let rendering = project.rendering(&[PassKind::Image]).unwrap();
+        let checked: Vec<_> = rendering.passes.iter().map(|&at| &passes[at].checked).collect();
+        let played = Played::new(&project, &rendering, &checked);
+        let names = ["a", "b", "image"].map(str::to_owned);
+        let text = played.file("waves", "wgsl", "main", &names).to_json();
+        let read = played.read(&text).unwrap();
+        assert_eq!(read.graph, played.graph);
+        let sampling: Vec<_> = checked.iter().map(|checked| checked.sampling).collect();
+        assert_eq!(read.sampling, sampling);
+        // A photograph is not available, and replaced by noise of its own.
+        let media = read.graph.passes()[2].inputs.map(|input| match input {
+            Some(player::Source::Medium(number)) => Some(number),
+            _ => None,
+        });
+        assert_eq!(media, [None, Some(0), Some(1), None]);
+        assert_ne!(played.media[0].size(), played.media[1].size());
+
+        for (from, to, why) in [
+            ("\"version\": 1", "\"version\": 2", "version"),
+            (
+                "\"previous\"",
+                "\"this\"",
+                "Buffer A reads buffer-b of another frame",
+            ),
+            (
+                "\"this\"",
+                "\"previous\"",
+                "Buffer B reads buffer-a of another frame",
+            ),
+            (
+                "\"target\": \"image\"",
+                "\"target\": \"buffer-c\"",
+                "other passes",
+            ),
+            (
+                "\"buffer\": \"buffer-b\"",
+                "\"buffer\": \"image\"",
+                "which is not a buffer",
+            ),
+            ("\"filter\": \"nearest\"", "\"filter\": \"best\"", "best"),
+            ("\"mipmaps\": false,", "", "mipmaps"),
+        ] {
+            assert!(text.contains(from), "{text}");
+            let error = played.read(&text.replacen(from, to, 1)).unwrap_err();
+            assert!(error.contains(why), "{error}");
+        }
+    }
+}

@@ -37,11 +37,13 @@ Examples:
   toyproof convert mine.glsl > mine.wgsl
   toyproof convert mine.glsl -o mine.wgsl --verify
   toyproof convert shaders -o converted --to spv
+  toyproof convert waves -o converted --verify
 
 Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of 208 bytes \
 (std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4] 32 and \
 iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is at \
-binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared.
+binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared. \
+The passes of a project go to a folder, with graph.json, which says how they are played.
 
 Exit code: 0 if every shader was written (with --verify: and proved), 1 if a shader is at fault, 2 for any other \
 error, such as a conversion that is not proved.";
@@ -52,7 +54,7 @@ error, such as a conversion that is not proved.";
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = HOSTS)]
 pub(super) struct Args {
-    /// Shaders: files, folders, or - for standard input
+    /// Shaders and projects: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
     /// The output: a file (.wgsl .spv .metal .hlsl .frag), a folder, or - for standard output
@@ -170,22 +172,15 @@ impl To {
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders, terminal);
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
-    let inputs: Vec<_> = inputs
-        .into_iter()
-        .map(|input| {
-            let has_passes = input.as_ref().is_ok_and(project::has_passes);
-            (input, has_passes)
-        })
-        .collect();
-    let written = match inputs[..] {
+    let has_passes = |input: &Result<Input, ReadError>| input.as_ref().is_ok_and(project::has_passes);
+    let written = match &inputs[..] {
         _ if several => Written::Shaders,
-        [(_, true)] => Written::Passes,
+        [project] if has_passes(project) => Written::Passes,
         _ => Written::One,
     };
     let Some(output) = output(args, written, terminal) else {
         return Exit::Error;
     };
-    let standard = output == Path::new("-");
     let Some(to) = target_language(args, &output, written, terminal) else {
         return Exit::Error;
     };
@@ -219,28 +214,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         language: &args.language,
         driver: &args.driver,
     };
-    let one = standard || (!several && (!output.is_dir() || written == Written::Passes));
-    let suffix = format!(".{}", to.extension());
-    let mut names = Names::new(&[&suffix], &[]);
-    let jobs = inputs.into_iter().map(|(input, has_passes)| {
-        let path = match (one, &input) {
-            (true, _) | (false, Err(_)) => output.clone(),
-            (false, Ok(found)) => {
-                let path = output.join(names.assign(found));
-                if has_passes {
-                    path
-                } else {
-                    with_suffix(&path, &suffix)
-                }
-            }
-        };
-        Job {
-            input,
-            path,
-            has_passes,
-        }
-    });
-    let jobs: Vec<Job> = jobs.collect();
+    let jobs = jobs(inputs, written, &output, to);
     let originals = jobs
         .iter()
         .filter_map(|job| job.input.as_ref().ok()?.path())
@@ -274,6 +248,37 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         start: Instant::now(),
     }
     .convert(&jobs, &settings)
+}
+
+/// Returns the output path of each input.
+fn jobs(inputs: Vec<Result<Input, ReadError>>, written: Written, output: &Path, to: To) -> Vec<Job> {
+    let is_output = match written {
+        Written::One => !output.is_dir(),
+        Written::Passes => true,
+        Written::Shaders => false,
+    };
+    let suffix = format!(".{}", to.extension());
+    let mut names = Names::new(&[&suffix], &[]);
+    let jobs = inputs.into_iter().map(|input| {
+        let has_passes = input.as_ref().is_ok_and(project::has_passes);
+        let path = match &input {
+            Ok(found) if !is_output => {
+                let path = output.join(names.assign(found));
+                if has_passes {
+                    path
+                } else {
+                    with_suffix(&path, &suffix)
+                }
+            }
+            _ => output.to_owned(),
+        };
+        Job {
+            input,
+            path,
+            has_passes,
+        }
+    });
+    jobs.collect()
 }
 
 /// Returns the language that the arguments or the extension of the output name; prints an error if they
@@ -503,7 +508,6 @@ impl Batch<'_> {
     fn write(&self, job: &Job, converted: &mut Result<Conversion, Refusal>) -> bool {
         match converted {
             Ok(converted) if converted.status.is_proved() || self.args.force => {
-                // The images of a batch wait here for their turn; their bytes need not.
                 std::mem::take(&mut converted.files).iter().all(|file| {
                     let inside = file.name.as_ref().map(|name| job.path.join(name));
                     let path = inside.as_ref().unwrap_or(&job.path);
@@ -562,6 +566,9 @@ impl Batch<'_> {
         } else {
             Exit::Error
         };
+        let fallback = converted.fallback.as_ref().map_or_else(String::new, |why| {
+            format!("; written by naga, since toyproof's writer failed: {why}")
+        });
         let (status, message) = match &converted.status {
             ProofStatus::NotRequested => (Status::Converted, String::new()),
             ProofStatus::Proved(Proved::File(proof, readers)) => {
@@ -569,12 +576,7 @@ impl Batch<'_> {
                 if let Some((_, shown)) = readers.browser {
                     let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
                 }
-                if let Some(why) = &converted.fallback {
-                    let _ = write!(
-                        message,
-                        "; written by naga, since toyproof's writer failed: {why}"
-                    );
-                }
+                message += &fallback;
                 (Status::Proved, message)
             }
             ProofStatus::Proved(Proved::Source(proof)) => {
@@ -590,6 +592,7 @@ impl Batch<'_> {
                 if proof.readers.is_empty() {
                     let _ = write!(message, ", up to naga's {} writer", self.to.name());
                 }
+                message += &fallback;
                 (Status::Proved, message)
             }
             ProofStatus::NotProved(why) if written => {
