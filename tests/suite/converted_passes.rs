@@ -322,7 +322,6 @@ fn the_rust_host_renders_what_run_renders() {
     if !require_driver() {
         return;
     }
-    const SIZE: [u32; 2] = [64, 36];
     let folder = tempfile::tempdir().unwrap();
     for name in ["reads-later", "mipmap-feedback", "discard-two-frames-back"] {
         let run = convert(name, folder.path(), &[]);
@@ -342,7 +341,7 @@ fn the_rust_host_renders_what_run_renders() {
         let run = toyproof(root(), &arguments);
         assert_eq!(run.code, 0, "{name}: {}", run.stderr);
         let expected = image::read(Path::new(png)).unwrap();
-        let actual = played(folder.path(), SIZE, 10);
+        let actual = played(folder.path(), [64, 36], 10);
         let expected = expected
             .pixels()
             .iter()
