@@ -1,7 +1,12 @@
-//! A host for converted shaders: renders one frame of a WGSL or SPIR-V file to a PNG.
+//! A host for converted shaders: renders one frame of a WGSL or SPIR-V file to a PNG, or the 60th frame of a
+//! project's passes.
 //!
 //!     toyproof convert glsl/02-sphere.glsl -o sphere.wgsl --verify
 //!     cargo run --example host -- sphere.wgsl sphere.png
+//!     toyproof convert waves -o converted --verify
+//!     cargo run --example host -- converted/graph.json waves.png
+
+mod passes;
 
 use std::error::Error;
 use std::path::Path;
@@ -14,28 +19,40 @@ const VERTICES: &str = "@vertex fn main(@builtin(vertex_index) i: u32) -> @built
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
+/// The number of frames of a project that are played.
+const FRAMES: u32 = 60;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let (Some(shader), Some(image)) = (arguments.next(), arguments.next()) else {
-        return Err("usage: host SHADER.wgsl|SHADER.spv IMAGE.png".into());
+        return Err("usage: host SHADER.wgsl|SHADER.spv|GRAPH.json IMAGE.png".into());
     };
-    let file = std::fs::read(&shader)?;
-    let shader = if Path::new(&shader)
+    let pixels = if Path::new(&shader)
         .extension()
-        .is_some_and(|ending| ending == "spv")
+        .is_some_and(|ending| ending == "json")
     {
-        let words = file.chunks_exact(4);
-        Shader::Spirv(
-            words
-                .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
-                .collect(),
-        )
+        let rows = pollster::block_on(passes::render(Path::new(&shader), SIZE, FRAMES))?;
+        // Row 0 is the bottom of the image.
+        rows.chunks(4 * SIZE[0] as usize)
+            .rev()
+            .flatten()
+            .copied()
+            .collect()
     } else {
-        Shader::Wgsl(String::from_utf8(file)?)
+        pollster::block_on(render(&read(&shader)?))?
     };
-    let pixels = pollster::block_on(render(&shader))?;
     image::save_buffer(image, &pixels, SIZE[0], SIZE[1], image::ColorType::Rgba8)?;
     Ok(())
+}
+
+fn read(shader: &str) -> Result<Shader, Box<dyn Error>> {
+    let file = std::fs::read(shader)?;
+    if Path::new(shader).extension().is_none_or(|ending| ending != "spv") {
+        return Ok(Shader::Wgsl(String::from_utf8(file)?));
+    }
+    let words = file.chunks_exact(4);
+    let words = words.map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+    Ok(Shader::Spirv(words.collect()))
 }
 
 /// The content of a file.

@@ -75,6 +75,15 @@ impl Passes {
     }
 }
 
+/// Whether the image of an input reads other passes: not of one that cannot be read.
+pub(super) fn has_passes(input: &Input) -> bool {
+    let Ok(Texts::Project(texts)) = files::read(input) else {
+        return false;
+    };
+    let project = parse(texts, &mut Files::default());
+    project.is_ok_and(|project| !project.needed_by_image().is_empty())
+}
+
 /// Checks all tabs of a project. The warnings are those about all tabs.
 pub(super) fn check(
     texts: ProjectTexts,

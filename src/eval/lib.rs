@@ -81,7 +81,7 @@ pub use frame::Framebuffer;
 pub use number::{Number, RandomRounding, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
 pub use parametric::{ParametricProgram, Point, PointEvaluator};
-pub use passes::{PassFailure, PassRenderer};
+pub use passes::{PassFailure, PassRenderer, bound};
 pub use program::Program;
 pub use render::{Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
 pub use trace::{

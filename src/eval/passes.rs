@@ -61,21 +61,27 @@ impl<'a, N: Number> PassRenderer<'a, N> {
     /// A frame with these channels.
     #[must_use]
     pub fn bound(&self, frame: &Frame, channels: [Channel<'_, Texture>; 4]) -> Frame {
-        Frame {
-            channels: channels.map(|channel| match channel {
-                Channel::Unbound => None,
-                Channel::Texture(texture) => Some(texture.clone()),
-                Channel::Medium(number) => self.media.get(number).cloned(),
-                Channel::Keyboard => Some(frame.keys.texture()),
-            }),
-            ..frame.clone()
-        }
+        bound(frame, channels, self.media)
     }
 
     /// The observations of each pass, over all frames.
     #[must_use]
     pub fn observations(&self) -> &[Observations] {
         &self.observations
+    }
+}
+
+/// A frame with these channels, of which some read `media`.
+#[must_use]
+pub fn bound(frame: &Frame, channels: [Channel<'_, Texture>; 4], media: &[Texture]) -> Frame {
+    Frame {
+        channels: channels.map(|channel| match channel {
+            Channel::Unbound => None,
+            Channel::Texture(texture) => Some(texture.clone()),
+            Channel::Medium(number) => media.get(number).cloned(),
+            Channel::Keyboard => Some(frame.keys.texture()),
+        }),
+        ..frame.clone()
     }
 }
 

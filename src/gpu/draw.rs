@@ -170,7 +170,7 @@ impl Device {
                     let views = compiled.layout.views(&self.gpu, &self.queue, frame);
                     compiled
                         .layout
-                        .bind(&self.gpu, &self.queue, &frame.block(), &views)
+                        .bind(&self.gpu, &self.queue, &frame.block(), &views, Default::default())
                 },
                 target,
                 readback,

@@ -43,7 +43,7 @@ use std::time::Duration;
 
 pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
 pub use draw::{DrawOutput, LocalRenderer};
-pub use protocol::{Readback, ShaderArtifact};
+pub use protocol::{ChannelSampling, PlayedPasses, Readback, ShaderArtifact};
 pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
 use serde::{Deserialize, Serialize};
 pub use serve::{MAX_MEMORY_BYTES, serve};

@@ -6,9 +6,10 @@ use toyproof_image::{BLOCK_BYTES, Frame};
 use toyproof_translate::naga_ir::Shape;
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device,
-    PipelineLayout, RenderPipeline, ShaderModule, ShaderStages, TextureView,
+    PipelineLayout, RenderPipeline, Sampler, ShaderModule, ShaderStages, TextureView,
 };
 
+use super::protocol::ChannelSampling;
 use super::texture::{FORMAT, black, dimension, upload};
 
 /// Vertex shader with three vertices that cover the target, and three more outside of it: drawing those
@@ -136,24 +137,14 @@ impl Layout {
         queue: &wgpu::Queue,
         block: &[u8],
         views: &[TextureView; 4],
+        sampling: [ChannelSampling; 4],
     ) -> BindGroup {
         let block = uniform(device, queue, block);
-        let filter = if self.filterable {
-            wgpu::FilterMode::Linear
-        } else {
-            wgpu::FilterMode::Nearest
-        };
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            address_mode_u: wgpu::AddressMode::Repeat,
-            address_mode_v: wgpu::AddressMode::Repeat,
-            mag_filter: filter,
-            min_filter: filter,
-            ..Default::default()
-        });
-        let pairs = views.iter().flat_map(|view| {
+        let samplers = sampling.map(|sampling| self.sampler(device, sampling));
+        let pairs = views.iter().zip(&samplers).flat_map(|(view, sampler)| {
             [
                 wgpu::BindingResource::TextureView(view),
-                wgpu::BindingResource::Sampler(&sampler),
+                wgpu::BindingResource::Sampler(sampler),
             ]
         });
         let entries: Vec<_> = (0..)
@@ -167,6 +158,44 @@ impl Layout {
         })
     }
 }
+
+impl Layout {
+    /// The sampler of a channel. Without mipmaps, GLSL reads the largest level whatever level is asked for.
+    fn sampler(&self, device: &Device, sampling: ChannelSampling) -> Sampler {
+        let ChannelSampling {
+            linear,
+            mipmaps,
+            repeat,
+        } = sampling;
+        let address = if repeat {
+            wgpu::AddressMode::Repeat
+        } else {
+            wgpu::AddressMode::ClampToEdge
+        };
+        let filter = if linear && self.filterable {
+            wgpu::FilterMode::Linear
+        } else {
+            wgpu::FilterMode::Nearest
+        };
+        let mipmap_filter = if mipmaps && self.filterable {
+            wgpu::MipmapFilterMode::Linear
+        } else {
+            wgpu::MipmapFilterMode::Nearest
+        };
+        device.create_sampler(&wgpu::SamplerDescriptor {
+            address_mode_u: address,
+            address_mode_v: address,
+            mag_filter: filter,
+            min_filter: filter,
+            mipmap_filter,
+            lod_max_clamp: if mipmaps { f32::from(MAX_LEVEL) } else { 0.0 },
+            ..Default::default()
+        })
+    }
+}
+
+/// The number of the smallest mipmap that a texture may have.
+const MAX_LEVEL: u8 = 32;
 
 #[expect(
     unsafe_code,

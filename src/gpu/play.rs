@@ -13,7 +13,7 @@ use wgpu::{TextureUsages, TextureView, TextureViewDescriptor};
 use super::Failure;
 use super::device::Device;
 use super::draw::{Compiled, Program};
-use super::protocol::Readback;
+use super::protocol::{ChannelSampling, Readback};
 use super::texture::{extent, flat, upload, write};
 
 /// Renders passes on a device.
@@ -21,6 +21,8 @@ use super::texture::{extent, flat, upload, write};
 pub(super) struct PassRenderer {
     device: Device,
     passes: Vec<Compiled>,
+    /// The samplers of each pass.
+    sampling: Vec<[ChannelSampling; 4]>,
     media: Vec<wgpu::Texture>,
     /// Renders a mipmap from the next larger one; compiled if a buffer has mipmaps.
     halving: OnceLock<Compiled>,
@@ -31,6 +33,7 @@ impl PassRenderer {
     pub(super) fn new(
         device: Device,
         programs: &[Program],
+        sampling: Vec<[ChannelSampling; 4]>,
         media: &[Texture],
     ) -> Result<Self, (Device, Failure)> {
         let passes = programs.iter().map(|program| device.compile(program)).collect();
@@ -41,6 +44,7 @@ impl PassRenderer {
                     .map(|texture| upload(&device.gpu, &device.queue, texture))
                     .collect(),
                 passes,
+                sampling,
                 halving: OnceLock::new(),
                 device,
             }),
@@ -76,6 +80,7 @@ impl PassRenderer {
         compiled: &Compiled,
         frame: &Frame,
         channels: [Option<(TextureView, [u32; 2])>; 4],
+        sampling: [ChannelSampling; 4],
         target: &TextureView,
     ) -> Result<(), Failure> {
         let Device { gpu, queue, .. } = &self.device;
@@ -90,7 +95,9 @@ impl PassRenderer {
                 .filter(|_| compiled.layout.is_flat(channel));
             view.map_or_else(|| compiled.layout.unbound(gpu, queue, channel), |(view, _)| view)
         });
-        let bindings = compiled.layout.bind(gpu, queue, &frame.block_with(sizes), &views);
+        let bindings = compiled
+            .layout
+            .bind(gpu, queue, &frame.block_with(sizes), &views, sampling);
         let mut commands = gpu.create_command_encoder(&Default::default());
         {
             let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -137,7 +144,8 @@ impl PassRenderer {
                 size,
                 ..Frame::default()
             };
-            self.submit(halving, &frame, [Some(of(level - 1)), None, None, None], &target)?;
+            let channels = [Some(of(level - 1)), None, None, None];
+            self.submit(halving, &frame, channels, Default::default(), &target)?;
         }
         Ok(())
     }
@@ -224,7 +232,8 @@ impl Renderer for PassRenderer {
                 let size = [texture.width(), texture.height()];
                 Some((texture.create_view(&Default::default()), size))
             });
-            self.submit(&self.passes[pass], frame, channels, &level_view(&over, 0))?;
+            let (compiled, sampling) = (&self.passes[pass], self.sampling[pass]);
+            self.submit(compiled, frame, channels, sampling, &level_view(&over, 0))?;
             self.make_mipmaps(&over)
         })?;
         Ok(over)

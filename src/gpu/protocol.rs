@@ -4,6 +4,7 @@ use std::io::{self, Read, Write};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{self as player, Graph, State};
 use toyproof_translate::backend::Target;
@@ -31,6 +32,8 @@ pub(super) enum Job {
     RenderArtifact(Box<ShaderArtifact>, Vec<Frame>, AdapterSelector),
     /// Compile the passes of a shader, whose frames the next jobs render.
     OpenPlayer(Box<PlayJob>),
+    /// Go on from a state.
+    RestorePlayer(Box<State>),
     /// Render the next frame, if there is one, and read textures back.
     Play(Option<Box<Frame>>, Vec<Readback>),
     /// Count the pixels of a frame in which the driver terminates a loop.
@@ -50,14 +53,57 @@ pub(super) struct DrawJob {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct PlayJob {
     /// In the order of the graph.
-    pub(super) passes: Vec<Lowered>,
+    pub(super) passes: PlayedPasses,
+    /// The samplers of each pass.
+    pub(super) sampling: Vec<[ChannelSampling; 4]>,
     pub(super) graph: Graph,
     /// The textures that do not change.
     pub(super) media: Vec<Texture>,
     /// Where to go on.
     pub(super) state: Option<State>,
-    pub(super) float: FloatMode,
     pub(super) selector: AdapterSelector,
+}
+
+/// The code of the passes of a shader.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum PlayedPasses {
+    /// As they are lowered.
+    Lowered(Vec<Lowered>, FloatMode),
+    /// As they are converted. Operations in which drivers differ are expanded to operations on which they
+    /// agree, with strict arithmetic.
+    Converted(Vec<ShaderArtifact>),
+}
+
+/// How the sampler of a channel reads its texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ChannelSampling {
+    /// Whether texels are interpolated.
+    pub linear: bool,
+    /// Whether mipmaps are used, and interpolated.
+    pub mipmaps: bool,
+    /// Whether the texture is repeated; otherwise its edge is.
+    pub repeat: bool,
+}
+
+impl Default for ChannelSampling {
+    /// Linear and repeated, with the mipmaps that the texture has.
+    fn default() -> Self {
+        Self {
+            linear: true,
+            mipmaps: true,
+            repeat: true,
+        }
+    }
+}
+
+impl From<Sampling> for ChannelSampling {
+    fn from(sampling: Sampling) -> Self {
+        Self {
+            linear: sampling.filter != Filter::Nearest,
+            mipmaps: sampling.filter == Filter::Mipmap,
+            repeat: sampling.wrap == Wrap::Repeat,
+        }
+    }
 }
 
 /// A texture of the passes of a shader.
@@ -92,6 +138,13 @@ pub enum ShaderArtifact {
     /// The words of a SPIR-V file, or those that a different compiler produced from a file, and the shapes of
     /// channels 0 to 3.
     Words(Vec<u32>, [Shape; 4]),
+}
+
+impl ShaderArtifact {
+    /// Whether row 0 of its target is the top of the image.
+    pub(super) fn is_upside_down(&self) -> bool {
+        matches!(self, Self::Wgsl(hosted) if hosted.upside_down)
+    }
 }
 
 /// A reply of the worker: any number of phases and bands of the image, from the bottom up, and then the

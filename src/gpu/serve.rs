@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Instant;
 
 use toyproof_image::Frame;
-use toyproof_player::Player;
+use toyproof_player::{Player, State};
 use toyproof_translate::backend::{Target, emit, spirv};
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
@@ -16,7 +16,7 @@ use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
 use super::play::{self, DevicePlayer, PassRenderer};
 use super::protocol::{
-    DrawJob, ForeignSpirv, Job, Output, PlayJob, Readback, Reply, ShaderArtifact, receive, send,
+    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply, ShaderArtifact, receive, send,
 };
 use super::quirks::loop_probe::{self, Probe};
 use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
@@ -88,6 +88,7 @@ impl<W: Write> Server<W> {
                     self.catch_panics(|server| server.render(*artifact, &frames, &selector))
                 }
                 Job::OpenPlayer(play_job) => self.catch_panics(|server| server.open_player(*play_job)),
+                Job::RestorePlayer(state) => self.catch_panics(|server| server.restore_player(&state)),
                 Job::Play(frame, wanted) => {
                     self.catch_panics(|server| server.play(frame.as_deref(), &wanted))
                 }
@@ -205,22 +206,8 @@ impl<W: Write> Server<W> {
         selector: &AdapterSelector,
     ) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
-        let program = on_translator_thread(move || {
-            let (words, channels) = match artifact {
-                ShaderArtifact::Wgsl(hosted) => {
-                    let module =
-                        ValidModule::of_wgsl(&hosted.text).map_err(|error| Failure::Reread(error.0))?;
-                    words_and_channels(&loop_steps::with_steps_last(&module).map_err(Failure::naga)?)?
-                }
-                ShaderArtifact::Lowered(lowered) => {
-                    words_and_channels(&ValidModule::parse(&lowered).map_err(Failure::refused)?)?
-                }
-                ShaderArtifact::Words(words, channels) => (words, channels),
-            };
-            let words = spirv::expanded(&words).map_err(Failure::naga)?;
-            Ok(Program::from_words(words, channels, FloatMode::Strict))
-        })?;
+        let upside_down = artifact.is_upside_down();
+        let program = on_translator_thread(move || artifact_program(artifact))?;
         self.open(selector)?;
         let mut images = Vec::new();
         self.phase(Phase::Compiling)?;
@@ -243,23 +230,23 @@ impl<W: Write> Server<W> {
             graph,
             media,
             state,
-            float,
+            sampling,
             selector,
         } = play_job;
-        let programs = on_translator_thread(move || play::programs(&passes, float))?;
+        let programs = on_translator_thread(move || match passes {
+            PlayedPasses::Lowered(passes, float) => play::programs(&passes, float),
+            PlayedPasses::Converted(artifacts) => artifacts.into_iter().map(artifact_program).collect(),
+        })?;
         self.open(&selector)?;
         self.phase(Phase::Compiling)?;
         let (selector, device) = self.device.take().ok_or_else(device_lost)?;
-        match PassRenderer::new(device, &programs, &media) {
+        match PassRenderer::new(device, &programs, sampling, &media) {
             Ok(renderer) => {
                 let name = renderer.device_name();
-                let mut player = Player::new(graph, renderer);
+                self.player = Some((selector, Player::new(graph, renderer)));
                 if let Some(state) = state {
-                    player.restore(&state, |renderer, texture, mipmaps| {
-                        renderer.load(texture, mipmaps)
-                    })?;
+                    self.restore_player(&state)?;
                 }
-                self.player = Some((selector, player));
                 Ok(Output::Opened(name))
             }
             Err((device, failure)) => {
@@ -267,6 +254,14 @@ impl<W: Write> Server<W> {
                 Err(failure)
             }
         }
+    }
+
+    fn restore_player(&mut self, state: &State) -> Result<Output, Failure> {
+        let Some((_, player)) = &mut self.player else {
+            return Err(device_lost());
+        };
+        player.restore(state, PassRenderer::load)?;
+        Ok(Output::Completed)
     }
 
     fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Output, Failure> {
@@ -348,6 +343,22 @@ impl<W: Write> Server<W> {
             None => Err(device_lost()),
         }
     }
+}
+
+/// The program of a converted shader, with operations in which drivers differ expanded.
+fn artifact_program(artifact: ShaderArtifact) -> Result<Program, Failure> {
+    let (words, channels) = match artifact {
+        ShaderArtifact::Wgsl(hosted) => {
+            let module = ValidModule::of_wgsl(&hosted.text).map_err(|error| Failure::Reread(error.0))?;
+            words_and_channels(&loop_steps::with_steps_last(&module).map_err(Failure::naga)?)?
+        }
+        ShaderArtifact::Lowered(lowered) => {
+            words_and_channels(&ValidModule::parse(&lowered).map_err(Failure::refused)?)?
+        }
+        ShaderArtifact::Words(words, channels) => (words, channels),
+    };
+    let words = spirv::expanded(&words).map_err(Failure::naga)?;
+    Ok(Program::from_words(words, channels, FloatMode::Strict))
 }
 
 /// The SPIR-V words of a module and the shapes of its textures.

@@ -15,7 +15,8 @@ use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::protocol::{
-    DrawJob, ForeignSpirv, Job, Output, PlayJob, Readback, Reply, ShaderArtifact, receive, send,
+    ChannelSampling, DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply,
+    ShaderArtifact, receive, send,
 };
 use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, device, quirks};
 
@@ -276,33 +277,46 @@ impl Worker {
         }
     }
 
-    /// Compiles the passes of a shader, in the order of their graph, with the textures that do not change,
-    /// and goes on from a state, if there is one. Returns the name of the device. [`Self::play`] then renders
-    /// the frames, until another job follows.
+    /// Compiles the passes of a shader, in the order of their graph, with the samplers of each and the
+    /// textures that do not change, and goes on from a state, if there is one. Returns the name of the device.
+    /// [`Self::play`] then renders the frames, until another job follows.
     ///
     /// # Errors
     /// Why the passes cannot be rendered.
     pub fn open_player(
         &mut self,
-        passes: Vec<Lowered>,
+        passes: PlayedPasses,
+        sampling: Vec<[ChannelSampling; 4]>,
         graph: Graph,
         media: Vec<Texture>,
         state: Option<State>,
-        float: FloatMode,
     ) -> Result<String, Failure> {
-        if let Some(diagnostic) = passes.iter().find_map(Lowered::too_deep) {
+        if let PlayedPasses::Lowered(passes, _) = &passes
+            && let Some(diagnostic) = passes.iter().find_map(Lowered::too_deep)
+        {
             return Err(Failure::Invalid(vec![diagnostic.clone()]));
         }
         let job = Job::OpenPlayer(Box::new(PlayJob {
             passes,
+            sampling,
             graph,
             media,
             state,
-            float,
             selector: self.selector.clone(),
         }));
         match self.run(&job)? {
             Output::Opened(device) => Ok(device),
+            _ => Err(unexpected_reply()),
+        }
+    }
+
+    /// Lets the passes that were opened go on from a state.
+    ///
+    /// # Errors
+    /// Why the state's textures cannot be made.
+    pub fn restore_player(&mut self, state: State) -> Result<(), Failure> {
+        match self.run(&Job::RestorePlayer(Box::new(state)))? {
+            Output::Completed => Ok(()),
             _ => Err(unexpected_reply()),
         }
     }

@@ -11,7 +11,8 @@ use toyproof_player::{Graph, Player, State, Target};
 use {
     crate::{GpuFailure, Worker},
     toyproof_diagnostic::{Deadline, Overdue},
-    toyproof_gpu::Readback,
+    toyproof_glsl::Sampling,
+    toyproof_gpu::{PlayedPasses, Readback},
     toyproof_image::Image,
     toyproof_player::BUFFERS,
     toyproof_translate::FloatMode,
@@ -162,16 +163,35 @@ impl<'a> DevicePlayback<'a> {
             .iter()
             .map(|checked| float.lower_within(checked, &deadline));
         let lowered = lowered.collect::<Result<Vec<_>, _>>()?;
+        let sampling = shader.checked.iter().map(|checked| checked.sampling).collect();
+        let passes = PlayedPasses::Lowered(lowered, float);
+        Self::open_passes(worker, passes, sampling, shader.graph, shader.media, state)
+            .map_err(PlaybackFailure::Gpu)
+    }
+
+    /// Like [`Self::open`], with the code and the samplers of each pass.
+    ///
+    /// # Errors
+    /// If the passes cannot be compiled.
+    pub fn open_passes(
+        worker: &'a mut Worker,
+        passes: PlayedPasses,
+        sampling: Vec<[Sampling; 4]>,
+        graph: &Graph,
+        media: &[Texture],
+        state: Option<&State>,
+    ) -> Result<Self, GpuFailure> {
+        let sampling = sampling.into_iter().map(|of_pass| of_pass.map(Into::into));
         let device = worker.open_player(
-            lowered,
-            shader.graph.clone(),
-            shader.media.to_vec(),
+            passes,
+            sampling.collect(),
+            graph.clone(),
+            media.to_vec(),
             state.cloned(),
-            float,
         )?;
         Ok(Self {
             worker,
-            graph: shader.graph.clone(),
+            graph: graph.clone(),
             device,
         })
     }
@@ -189,6 +209,14 @@ impl<'a> DevicePlayback<'a> {
     pub fn render(&mut self, frame: &Frame, wanted: &[Target]) -> Result<Vec<Image>, GpuFailure> {
         let wanted: Vec<_> = wanted.iter().copied().map(Readback::Last).collect();
         self.worker.play(Some(frame), &wanted)
+    }
+
+    /// Goes on from a state.
+    ///
+    /// # Errors
+    /// If the driver fails; the playback is then over.
+    pub fn restore(&mut self, state: &State) -> Result<(), GpuFailure> {
+        self.worker.restore_player(state.clone())
     }
 
     /// The state after a frame, which was rendered last.

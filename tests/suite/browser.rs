@@ -280,7 +280,7 @@ fn example_hosts_render_conversions() {
 
 /// The flags with which Chromium shows WebGL and WebGPU canvases on a machine without a GPU. The guide lists
 /// those of WebGPU.
-const SOFTWARE_RENDERING: [&str; 8] = [
+pub(crate) const SOFTWARE_RENDERING: [&str; 8] = [
     "--hide-scrollbars",
     "--use-gl=angle",
     "--use-angle=swiftshader",
@@ -322,7 +322,7 @@ fn example_hosts_report_errors() {
 
 /// Whether a window shows red increasing to the right and green increasing upward, on a canvas of 640 by
 /// 360 pixels that starts 8 pixels from its top left.
-fn shows_the_ramps(shot: &[u8]) -> bool {
+pub(crate) fn shows_the_ramps(shot: &[u8]) -> bool {
     let shown = image::load_from_memory(shot).unwrap().into_rgb8();
     [[0, 0], [639, 0], [0, 359], [400, 100]]
         .into_iter()

@@ -18,6 +18,7 @@ mod collected;
 mod commands;
 mod containment;
 mod conversion;
+mod converted_passes;
 mod debug;
 mod derivatives;
 mod diagnostics;

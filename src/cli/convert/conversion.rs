@@ -7,19 +7,22 @@ use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_glsl as glsl;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
+use toyproof_project::PassKind;
 use toyproof_translate::wgsl::Unprintable;
 use toyproof_verify::conversion::{
-    Conversion, ConvertError, Converter, FRAMES, FallbackReason, Proved, Prover, Runner, Source, WgslError,
+    self, ConvertError, Converter, FRAMES, FallbackReason, PassesProof, Proved, Prover, Runner, Source,
+    Unproved, WgslError,
 };
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable};
 use super::super::{Exit, pool};
-use super::header;
+use super::{To, header};
 use crate::cli::files::{Input, ReadError};
 
 /// The settings of a batch, the same for every shader.
 pub(super) struct Settings<'a> {
+    pub(super) to: To,
     pub(super) converter: Converter,
     pub(super) verify: bool,
     /// The path of Chromium; none without `--browser`.
@@ -38,12 +41,19 @@ pub(super) struct WorkerContext {
     pool: Option<ThreadPool>,
 }
 
-/// A file to write, and what was proved of it.
-pub(super) struct ConvertedFile {
-    pub(super) bytes: Vec<u8>,
+/// The files to write, and what was proved of them.
+pub(super) struct Conversion {
+    pub(super) files: Vec<OutputFile>,
     pub(super) status: ProofStatus,
     /// Why naga's writer was used instead of our own.
     pub(super) fallback: Option<FallbackReason>,
+}
+
+/// A file to write.
+pub(super) struct OutputFile {
+    /// Its name in the folder of a project; none for the one file of a shader.
+    pub(super) name: Option<String>,
+    pub(super) bytes: Vec<u8>,
 }
 
 /// The status of a conversion's proof.
@@ -52,6 +62,8 @@ pub(super) enum ProofStatus {
     NotRequested,
     /// It is proved.
     Proved(Proved),
+    /// All passes are proved.
+    ProvedPasses(PassesProof),
     /// It is not proved, for this reason.
     NotProved(String),
 }
@@ -80,6 +92,14 @@ impl Refusal {
             Self::Unreadable(_) => Exit::Error,
         }
     }
+
+    /// Names the pass to which a message without a position applies.
+    pub(super) fn of_pass(self, pass: PassKind) -> Self {
+        match self {
+            Self::Message(why, exit) => Self::Message(format!("{pass}: {why}"), exit),
+            other => other,
+        }
+    }
 }
 
 impl Settings<'_> {
@@ -101,9 +121,12 @@ impl Settings<'_> {
         &self,
         context: &mut Result<WorkerContext, String>,
         input: &Result<Input, ReadError>,
-    ) -> (Shader, Result<ConvertedFile, Refusal>) {
+    ) -> (Shader, Result<Conversion, Refusal>) {
         let shader = Shader::load(input, self.language, Deadline::after(self.driver.timeout()));
         let converted = match (&shader.checked, context) {
+            (Ok(_) | Err(Unusable::Unrendered(_)), Err(error)) => {
+                Err(Refusal::Message(error.clone(), Exit::Error))
+            }
             (Ok(checked), Ok(context)) => {
                 let source = Source {
                     checked,
@@ -111,15 +134,31 @@ impl Settings<'_> {
                 };
                 self.convert_checked(context, source, &shader.name)
             }
-            (Ok(_), Err(error)) => Err(Refusal::Message(error.clone(), Exit::Error)),
+            (Err(Unusable::Unrendered(error)), Ok(context)) => match &shader.passes {
+                Some(passes) => {
+                    let (translator, mut prover) = self.parts(context);
+                    self.convert_project(translator, prover.as_mut(), &shader, passes)
+                }
+                None => Err(Refusal::Unreadable(error.reason.clone())),
+            },
             (Err(Unusable::Invalid(diagnostics)), _) => {
                 Err(Refusal::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
             }
-            (Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)), _) => {
-                Err(Refusal::Unreadable(error.reason.clone()))
-            }
+            (Err(Unusable::Unreadable(error)), _) => Err(Refusal::Unreadable(error.reason.clone())),
         };
         (shader, converted)
+    }
+
+    /// The process that translates, and what proves, if proofs are requested.
+    fn parts<'c>(&self, context: &'c mut WorkerContext) -> (&'c mut Worker, Option<Prover<'c>>) {
+        let runner = context.runner.as_mut().filter(|_| self.verify);
+        let prover = runner.map(|worker| Prover {
+            runner: Runner::Driver(worker),
+            browser: context.browser.as_mut(),
+            timeout: self.driver.timeout(),
+            pool: context.pool.as_ref(),
+        });
+        (&mut context.translator, prover)
     }
 
     fn convert_checked(
@@ -127,43 +166,40 @@ impl Settings<'_> {
         context: &mut WorkerContext,
         source: Source,
         name: &str,
-    ) -> Result<ConvertedFile, Refusal> {
-        let runner = context.runner.as_mut().filter(|_| self.verify);
-        let mut prover = runner.map(|worker| Prover {
-            runner: Runner::Driver(worker),
-            browser: context.browser.as_mut(),
-            timeout: self.driver.timeout(),
-            pool: context.pool.as_ref(),
-        });
-        let converted = self
-            .converter
-            .convert(source, &mut context.translator, prover.as_mut());
-        let Conversion {
+    ) -> Result<Conversion, Refusal> {
+        let (translator, mut prover) = self.parts(context);
+        let converted = self.converter.convert(source, translator, prover.as_mut());
+        let conversion::Conversion {
             written,
             proof,
             fallback,
         } = converted.map_err(refusal)?;
-        let status = match proof {
-            Some(Ok(proved)) => ProofStatus::Proved(proved),
+        let status = self.status(proof.map(|proof| proof.map(ProofStatus::Proved)));
+        let mut bytes = written.into_bytes();
+        if let Some(target) = self.converter.target {
+            header::insert(&mut bytes, target, name, &status);
+        }
+        Ok(Conversion {
+            files: vec![OutputFile { name: None, bytes }],
+            status,
+            fallback,
+        })
+    }
+
+    /// The status of a proof, if there is a prover.
+    pub(super) fn status(&self, proof: Option<Result<ProofStatus, Unproved>>) -> ProofStatus {
+        match proof {
+            Some(Ok(proved)) => proved,
             Some(Err(unproved)) => ProofStatus::NotProved(unproved.to_string()),
             None if self.verify => ProofStatus::NotProved(
                 "verification needs a Vulkan driver, which --device cpu excludes".to_owned(),
             ),
             None => ProofStatus::NotRequested,
-        };
-        let mut bytes = written.into_bytes();
-        if let Some(target) = self.converter.target {
-            header::insert(&mut bytes, target, name, &status);
         }
-        Ok(ConvertedFile {
-            bytes,
-            status,
-            fallback,
-        })
     }
 }
 
-fn refusal(error: ConvertError) -> Refusal {
+pub(super) fn refusal(error: ConvertError) -> Refusal {
     match error {
         ConvertError::Overdue(overdue) => {
             Refusal::Diagnostics(vec![glsl::overdue(overdue)], Exit::ShaderFault)

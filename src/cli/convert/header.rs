@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use toyproof_diagnostic::{grouped, plural};
 use toyproof_translate::backend::{Target, spirv};
-use toyproof_verify::conversion::{Against, FRAMES, Proof, Proved, Rgb8Comparison};
+use toyproof_verify::conversion::{
+    Against, FRAMES, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, Proved, Rgb8Comparison,
+};
 
 use super::conversion::ProofStatus;
 
@@ -68,6 +70,7 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
             let _ = writeln!(head, "// The module, run on {},", proof.device);
             settings(&mut head, proof);
         }
+        ProofStatus::ProvedPasses(proof) => passes(&mut head, proof),
         ProofStatus::NotProved(why) => {
             let why: String = why
                 .chars()
@@ -99,6 +102,50 @@ fn settings(head: &mut String, proof: &Proof) {
     head.push_str("// Functions with implementation-defined precision, such as sin, were replaced by the evaluator's.\n");
 }
 
+/// Appends what was proved of the passes of a project.
+fn passes(head: &mut String, proof: &PassesProof) {
+    let readers: Vec<_> = proof.readers.iter().map(ToString::to_string).collect();
+    if readers.is_empty() {
+        head.push_str(
+            "// Proved: the modules that these texts were written from. No compiler for the texts was installed.\n",
+        );
+        let _ = writeln!(head, "// The modules, played on {},", proof.device);
+    } else {
+        let readers = readers.join(" and ");
+        let _ = writeln!(
+            head,
+            "// Proved: this file and those of the other passes, as read by {readers} and played on {},",
+            proof.device
+        );
+    }
+    let pixels = describe_passes(proof);
+    let _ = writeln!(
+        head,
+        "// render the same textures as the original does there with strict arithmetic: {pixels}."
+    );
+    let sizes = PASS_SIZES.map(|[width, height]| format!("{width}x{height}"));
+    let last = PASS_FRAMES - 1;
+    let _ = writeln!(
+        head,
+        "// Frames: 0 to {last} at {}; textures that are not available hold noise.",
+        sizes.join(" and ")
+    );
+    head.push_str("// Functions with implementation-defined precision, such as sin, were replaced by the evaluator's.\n");
+    if let Some(validator) = &proof.validator {
+        let _ = writeln!(head, "// {validator} accepts them.");
+    }
+}
+
+/// Describes how many pixels of all passes are equal.
+pub(super) fn describe_passes(proof: &PassesProof) -> String {
+    let passes = proof.passes.len() as u64;
+    let (pixels, undefined) = (proof.pixels(), proof.undefined());
+    format!(
+        "{passes} passes: {}",
+        describe_equal(pixels - undefined, pixels, undefined)
+    )
+}
+
 /// Describes the difference between a browser's images.
 pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
     let by = match format!("{:.2}", shown.max * 255.0).as_str() {
@@ -111,7 +158,11 @@ pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
 
 /// Describes how many pixels are equal.
 pub(super) fn describe_proof(proof: &Proof) -> String {
-    let undefined = match proof.undefined() {
+    describe_equal(proof.equal(), proof.pixels(), proof.undefined())
+}
+
+fn describe_equal(equal: u64, pixels: u64, undefined: u64) -> String {
+    let undefined = match undefined {
         0 => String::new(),
         undefined => format!(
             "; {} {} on undefined behavior and {} left out",
@@ -122,8 +173,8 @@ pub(super) fn describe_proof(proof: &Proof) -> String {
     };
     format!(
         "{} of {} pixels equal, bit for bit{undefined}",
-        grouped(proof.equal()),
-        grouped(proof.pixels())
+        grouped(equal),
+        grouped(pixels)
     )
 }
 

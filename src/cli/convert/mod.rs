@@ -1,7 +1,10 @@
 //! `toyproof convert`
 
 mod conversion;
+mod graph;
 mod header;
+mod passes;
+mod script;
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
@@ -20,12 +23,12 @@ use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
 use toyproof_verify::conversion::{Converter, Proved};
 
-use self::conversion::{ConvertedFile, ProofStatus, Refusal, Settings};
+use self::conversion::{Conversion, ProofStatus, Refusal, Settings};
 use super::inputs::{DriverArgs, Format, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
-use super::{Exit, Terminal};
+use super::{Exit, Terminal, project};
 use crate::cli::files::{self, Input, ReadError};
 use crate::report::{Detail, Layout};
 
@@ -34,11 +37,13 @@ Examples:
   toyproof convert mine.glsl > mine.wgsl
   toyproof convert mine.glsl -o mine.wgsl --verify
   toyproof convert shaders -o converted --to spv
+  toyproof convert waves -o converted --verify
 
 Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of 208 bytes \
 (std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4] 32 and \
 iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is at \
-binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared.
+binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared. \
+The passes of a project go to a folder, with graph.json, which says how they are played.
 
 Exit code: 0 if every shader was written (with --verify: and proved), 1 if a shader is at fault, 2 for any other \
 error, such as a conversion that is not proved.";
@@ -49,7 +54,7 @@ error, such as a conversion that is not proved.";
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = HOSTS)]
 pub(super) struct Args {
-    /// Shaders: files, folders, or - for standard input
+    /// Shaders and projects: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
     /// The output: a file (.wgsl .spv .metal .hlsl .frag), a folder, or - for standard output
@@ -135,6 +140,15 @@ impl To {
         self.target().map_or("lowered.glsl", Target::extension)
     }
 
+    /// The name of the entry point.
+    fn entry_point(self) -> &'static str {
+        match self {
+            // Metal reserves `main`.
+            Self::Metal => "main_",
+            _ => "main",
+        }
+    }
+
     /// Its name on the command line.
     pub(super) fn name(self) -> String {
         let value = self.to_possible_value();
@@ -158,11 +172,16 @@ impl To {
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs = find(&args.shaders, terminal);
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
-    let Some(output) = output(args, several, terminal) else {
+    let has_passes = |input: &Result<Input, ReadError>| input.as_ref().is_ok_and(project::has_passes);
+    let written = match &inputs[..] {
+        _ if several => Written::Shaders,
+        [project] if has_passes(project) => Written::Passes,
+        _ => Written::One,
+    };
+    let Some(output) = output(args, written, terminal) else {
         return Exit::Error;
     };
-    let standard = output == Path::new("-");
-    let Some(to) = target_language(args, &output, several, terminal) else {
+    let Some(to) = target_language(args, &output, written, terminal) else {
         return Exit::Error;
     };
     if let Err(error) = check_target(args, to) {
@@ -183,6 +202,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         return Exit::Error;
     }
     let settings = Settings {
+        to,
         converter: Converter {
             target: to.target(),
             style: args.style.into(),
@@ -194,22 +214,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         language: &args.language,
         driver: &args.driver,
     };
-    let one = standard || (!several && !output.is_dir());
-    let suffix = format!(".{}", to.extension());
-    let mut names = Names::new(&[&suffix], &[]);
-    let jobs = inputs.into_iter().map(|input| {
-        let path = match (one, &input) {
-            (true, _) | (false, Err(_)) => output.clone(),
-            (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), &suffix),
-        };
-        Job { input, path }
-    });
-    let jobs: Vec<Job> = jobs.collect();
+    let jobs = jobs(inputs, written, &output, to);
     let originals = jobs
         .iter()
         .filter_map(|job| job.input.as_ref().ok()?.path())
         .collect();
-    if !jobs.iter().all(|job| may_write(&job.path, &originals, terminal)) {
+    if !jobs
+        .iter()
+        .all(|job| may_write(&job.last_file(), &originals, terminal))
+    {
         return Exit::Error;
     }
     let names: Vec<_> = jobs.iter().map(Job::name).collect();
@@ -237,10 +250,42 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     .convert(&jobs, &settings)
 }
 
+/// Returns the output path of each input.
+fn jobs(inputs: Vec<Result<Input, ReadError>>, written: Written, output: &Path, to: To) -> Vec<Job> {
+    let is_output = match written {
+        Written::One => !output.is_dir(),
+        Written::Passes => true,
+        Written::Shaders => false,
+    };
+    let suffix = format!(".{}", to.extension());
+    let mut names = Names::new(&[&suffix], &[]);
+    let jobs = inputs.into_iter().map(|input| {
+        let has_passes = input.as_ref().is_ok_and(project::has_passes);
+        let path = match &input {
+            Ok(found) if !is_output => {
+                let path = output.join(names.assign(found));
+                if has_passes {
+                    path
+                } else {
+                    with_suffix(&path, &suffix)
+                }
+            }
+            _ => output.to_owned(),
+        };
+        Job {
+            input,
+            path,
+            has_passes,
+        }
+    });
+    jobs.collect()
+}
+
 /// Returns the language that the arguments or the extension of the output name; prints an error if they
 /// disagree, or if the output cannot take the results.
-fn target_language(args: &Args, output: &Path, several: bool, terminal: &Terminal) -> Option<To> {
+fn target_language(args: &Args, output: &Path, written: Written, terminal: &Terminal) -> Option<To> {
     let standard = output == Path::new("-");
+    let several = written != Written::One;
     let of_extension = (!standard && !output.is_dir()).then(|| To::of(output)).flatten();
     let to = match (args.to, of_extension) {
         (Some(to), Some(of)) if !to.may_end_as(of) => {
@@ -264,7 +309,7 @@ fn target_language(args: &Args, output: &Path, several: bool, terminal: &Termina
         return None;
     };
     if several && (standard || of_extension.is_some()) {
-        needs_folder(output, terminal);
+        needs_folder(written, output, terminal);
         return None;
     }
     if standard && to == To::Spv && io::stdout().is_terminal() {
@@ -292,24 +337,46 @@ fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
 }
 
 /// Returns the output that the arguments name, or its default; prints an error if several shaders have none.
-fn output(args: &Args, several: bool, terminal: &Terminal) -> Option<PathBuf> {
+fn output(args: &Args, written: Written, terminal: &Terminal) -> Option<PathBuf> {
     match &args.output {
         Some(output) => Some(output.clone()),
-        None if several => {
-            needs_folder(Path::new("-"), terminal);
+        None if written == Written::One => Some(PathBuf::from("-")),
+        None => {
+            needs_folder(written, Path::new("-"), terminal);
             None
         }
-        None => Some(PathBuf::from("-")),
     }
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Written {
+    /// A shader, as one file.
+    One,
+    /// The passes of a project.
+    Passes,
+    /// Several shaders or projects.
+    Shaders,
 }
 
 /// A shader and its output path.
 struct Job {
     input: Result<Input, ReadError>,
+    /// A file, or the folder of a project with several passes.
     path: PathBuf,
+    has_passes: bool,
 }
 
 impl Job {
+    /// The file that is written last.
+    fn last_file(&self) -> PathBuf {
+        if self.has_passes {
+            self.path.join(graph::GRAPH_FILE)
+        } else {
+            self.path.clone()
+        }
+    }
+
     fn name(&self) -> String {
         match &self.input {
             Ok(input) => input.name(),
@@ -386,7 +453,7 @@ impl Status {
 }
 
 /// A shader, its result, and whether its file was written.
-type Finished = (Shader, Result<ConvertedFile, Refusal>, bool);
+type Finished = (Shader, Result<Conversion, Refusal>, bool);
 
 impl Batch<'_> {
     fn convert(mut self, jobs: &[Job], settings: &Settings) -> Exit {
@@ -438,11 +505,14 @@ impl Batch<'_> {
     }
 
     /// Writes a conversion if it is proved or forced; returns whether it was written.
-    fn write(&self, job: &Job, converted: &mut Result<ConvertedFile, Refusal>) -> bool {
+    fn write(&self, job: &Job, converted: &mut Result<Conversion, Refusal>) -> bool {
         match converted {
             Ok(converted) if converted.status.is_proved() || self.args.force => {
-                let bytes = std::mem::take(&mut converted.bytes);
-                self.terminal.write_output(&self.output, &job.path, &bytes)
+                std::mem::take(&mut converted.files).iter().all(|file| {
+                    let inside = file.name.as_ref().map(|name| job.path.join(name));
+                    let path = inside.as_ref().unwrap_or(&job.path);
+                    self.terminal.write_output(&self.output, path, &file.bytes)
+                })
             }
             _ => false,
         }
@@ -490,12 +560,15 @@ impl Batch<'_> {
         });
     }
 
-    fn status(&self, converted: &ConvertedFile, written: bool) -> (Status, String, Exit) {
+    fn status(&self, converted: &Conversion, written: bool) -> (Status, String, Exit) {
         let exit = if written && converted.status.is_proved() {
             Exit::Success
         } else {
             Exit::Error
         };
+        let fallback = converted.fallback.as_ref().map_or_else(String::new, |why| {
+            format!("; written by naga, since toyproof's writer failed: {why}")
+        });
         let (status, message) = match &converted.status {
             ProofStatus::NotRequested => (Status::Converted, String::new()),
             ProofStatus::Proved(Proved::File(proof, readers)) => {
@@ -503,12 +576,7 @@ impl Batch<'_> {
                 if let Some((_, shown)) = readers.browser {
                     let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
                 }
-                if let Some(why) = &converted.fallback {
-                    let _ = write!(
-                        message,
-                        "; written by naga, since toyproof's writer failed: {why}"
-                    );
-                }
+                message += &fallback;
                 (Status::Proved, message)
             }
             ProofStatus::Proved(Proved::Source(proof)) => {
@@ -517,6 +585,14 @@ impl Batch<'_> {
                 if self.to == To::Hlsl {
                     message += "; install glslang-tools to verify the text too";
                 }
+                (Status::Proved, message)
+            }
+            ProofStatus::ProvedPasses(proof) => {
+                let mut message = header::describe_passes(proof);
+                if proof.readers.is_empty() {
+                    let _ = write!(message, ", up to naga's {} writer", self.to.name());
+                }
+                message += &fallback;
                 (Status::Proved, message)
             }
             ProofStatus::NotProved(why) if written => {
@@ -582,13 +658,17 @@ impl Batch<'_> {
     }
 }
 
-/// Reports that several shaders cannot be written to one file.
-fn needs_folder(output: &Path, terminal: &Terminal) {
+/// Reports that several files cannot be written to one.
+fn needs_folder(written: Written, output: &Path, terminal: &Terminal) {
     let output = if output == Path::new("-") {
         "standard output".to_owned()
     } else {
         path_name(output)
     };
-    terminal.error(format_args!("several shaders cannot be written to {output}"));
+    let what = match written {
+        Written::Passes => "the passes of a project",
+        Written::One | Written::Shaders => "several shaders",
+    };
+    terminal.error(format_args!("{what} cannot be written to {output}"));
     terminal.help("name a folder with -o");
 }

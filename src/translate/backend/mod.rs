@@ -197,6 +197,12 @@ fn write_glsl(module: &ValidModule) -> Result<String, TranslateError> {
         entry_point: ENTRY_POINT.to_owned(),
         multiview: None,
     };
+    // Browsers check fetches themselves. GLSL ES 3.00 has no function for the number of levels, which a check
+    // would need.
+    let bounds = naga::proc::BoundsCheckPolicies {
+        image_load: naga::proc::BoundsCheckPolicy::Unchecked,
+        ..BOUNDS
+    };
     let mut text = String::new();
     glsl::Writer::new(
         &mut text,
@@ -204,7 +210,7 @@ fn write_glsl(module: &ValidModule) -> Result<String, TranslateError> {
         module.info(),
         &options,
         &pipeline,
-        BOUNDS,
+        bounds,
     )
     .and_then(|mut writer| writer.write())
     .map_err(TranslateError::new)?;

@@ -56,7 +56,7 @@ impl Writer<'_> {
             B::RoundEven | B::Round => "round",
             B::Faceforward => "faceForward",
             B::DFdx => "dpdx",
-            B::DFdy if self.style.is_upside_down() => {
+            B::DFdy if self.style.is_upside_down(self.cx.stage) => {
                 let operand = Self::list(texts);
                 return Ok(Text {
                     code: format!("-dpdy({operand})"),

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::Diagnostic;
+use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, Input, Place, Sampler, SamplerShape, Swizzle, Type, VariableId, VariableKind,
 };
@@ -112,9 +113,10 @@ impl Style {
         code.split(' ')
     }
 
-    /// Whether y points down in the host's coordinates, which inverts the sign of its derivatives.
-    pub(super) fn is_upside_down(self) -> bool {
-        self != Self::Plain
+    /// Whether y points down in the host's coordinates, which inverts the sign of its derivatives. Buffers are
+    /// as in GLSL in every host that has them.
+    pub(super) fn is_upside_down(self, stage: Stage) -> bool {
+        self != Self::Plain && stage == Stage::Image
     }
 
     /// The name of a channel's texture.
@@ -232,6 +234,8 @@ impl Writer<'_> {
             "channels" => !channels.is_empty(),
             "position" => self.reads_position,
             "startup" => self.cx.startup_function.is_some(),
+            "image" => self.cx.stage == Stage::Image,
+            "buffer" => self.cx.stage != Stage::Image,
             "inout" => brings_color,
             "out" => !brings_color,
             _ => match MEMBERS.iter().position(|member| member.0 == condition) {
@@ -420,9 +424,15 @@ pub struct Hosted {
 const FRAME: &str = include_str!("styles/frame.wgsl");
 
 impl Style {
-    /// Embeds a shader printed in this style in a stand-in for its host, which reads our uniform block.
+    /// Embeds an image printed in this style in a stand-in for its host, which reads our uniform block.
     #[must_use]
     pub fn hosted(self, text: &str) -> Hosted {
+        self.hosted_in(text, Stage::Image)
+    }
+
+    /// Embeds a pass printed in this style in a stand-in for its host.
+    #[must_use]
+    pub fn hosted_in(self, text: &str, stage: Stage) -> Hosted {
         let Some(host) = self.host_template() else {
             return Hosted {
                 text: text.to_owned(),
@@ -431,13 +441,15 @@ impl Style {
         };
         let reads = |condition: &str| match channel_number(condition) {
             Some(channel) => text.contains(&format!("{},", self.texture(channel))),
+            None if condition == "image" => stage == Stage::Image,
+            None if condition == "buffer" => stage != Stage::Image,
             None if self.is_in_uniform_block(Input::Mouse) => text.contains(&format!("inputs.{condition}")),
             None => text.contains("shadertoy_mouse"),
         };
         let [before, after] = around_shader(host).map(|part| fill(part, reads, &[]));
         Hosted {
             text: format!("{FRAME}{before}{}{after}", self.adapted(text)),
-            upside_down: true,
+            upside_down: self.is_upside_down(stage),
         }
     }
 
@@ -498,7 +510,7 @@ mod tests {
 
     #[test]
     fn templates_have_known_conditions_and_values_only() {
-        const CONDITIONS: [&str; 7] = [
+        const CONDITIONS: [&str; 9] = [
             "derivatives",
             "inputs",
             "channels",
@@ -506,6 +518,8 @@ mod tests {
             "startup",
             "out",
             "inout",
+            "image",
+            "buffer",
         ];
         const VALUES: [&str; 7] = [
             "$members",

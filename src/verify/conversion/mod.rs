@@ -9,6 +9,8 @@
 //! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
 //! any worker.
 
+mod original;
+mod passes;
 mod proof;
 mod prover;
 mod tool;
@@ -18,6 +20,10 @@ mod tests;
 
 use std::time::Duration;
 
+pub use passes::{
+    PASS_FRAMES, PASS_SIZES, PassComparison, Passes, PassesConversion, PassesProof, PixelDifference,
+    ReadGraph,
+};
 pub use proof::{Against, FRAMES, Proof, Rgb8Comparison, Runner, TestFrame, compare_with_original, frames};
 pub use prover::{Proved, Prover, Reader, Readers, Unproved};
 use thiserror::Error;
@@ -189,14 +195,14 @@ impl Converter {
             let lowered = self.lower(source)?;
             return Conversion::new(source, Written::Lowered(lowered), prover);
         };
-        if target != Target::Wgsl || self.float == FloatMode::Strict {
+        if !self.prints_wgsl() {
             let written = self.write_with_naga(source, target, translator)?;
             return Conversion::new(source, written, prover);
         }
         let own = self
             .write_wgsl(source, translator)
             .and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
-        let is_plain = self.style == Style::Plain;
+        let is_plain = self.may_fall_back();
         let own = match own {
             Ok(own) if is_plain && own.is_replaceable() => Ok(own),
             Err(ConvertError::Unwritable(error)) if is_plain => Err(error),
@@ -223,6 +229,16 @@ impl Converter {
             // Neither is proved: the readable one is better.
             (Ok(own), _) => Ok(own),
         }
+    }
+
+    /// Whether our own writer prints the files.
+    fn prints_wgsl(&self) -> bool {
+        self.target == Some(Target::Wgsl) && self.float == FloatMode::Fast
+    }
+
+    /// Whether naga can write what our own writer cannot.
+    fn may_fall_back(&self) -> bool {
+        self.prints_wgsl() && self.style == Style::Plain
     }
 
     fn lower(&self, source: Source) -> Result<Lowered, ConvertError> {

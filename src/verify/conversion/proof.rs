@@ -8,7 +8,7 @@ use rayon::ThreadPool;
 use toyproof_diagnostic::{Deadline, File, Files, short};
 use toyproof_eval::{self as eval, Observed, Program, Refusal};
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::{self as glsl, Checked, Stage};
 use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_translate::FloatMode;
@@ -290,7 +290,7 @@ impl Runner<'_> {
                 let text = module.and_then(|module| {
                     roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))
                 });
-                let written = read_shadertoy(&text.map_err(Failure::Gpu)?, timeout)?;
+                let written = read_shadertoy(&text.map_err(Failure::Gpu)?, Stage::Image, timeout)?;
                 let stop = AtomicBool::new(false);
                 let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;
                 let images = singles.into_iter().map(|single| {
@@ -307,10 +307,11 @@ impl Runner<'_> {
 }
 
 /// Reads a converted shader, as `ShaderToy` would run it, with our own front end.
-pub(super) fn read_shadertoy(text: &str, timeout: Duration) -> Result<Checked, Unproved> {
+pub(super) fn read_shadertoy(text: &str, stage: Stage, timeout: Duration) -> Result<Checked, Unproved> {
     let mut files = Files::default();
     let file = files.add(File::new("written", text));
     let options = glsl::Options {
+        stage,
         deadline: Deadline::after(timeout),
         ..glsl::Options::default()
     };
@@ -338,6 +339,14 @@ fn strict_images(
     frames.iter().map(image).collect()
 }
 
+/// Why there is no program for the evaluator.
+pub(super) fn refused(refusal: Refusal) -> Failure {
+    match refusal {
+        Refusal::TooSlow(overdue) => Failure::Overdue(overdue),
+        refusal => Failure::Cpu(eval::Failure::from(refusal)),
+    }
+}
+
 /// Evaluates the shader in every frame.
 pub(super) fn evaluate(
     checked: &Checked,
@@ -345,11 +354,7 @@ pub(super) fn evaluate(
     timeout: Duration,
     stop: &AtomicBool,
 ) -> Result<Vec<Evaluated>, Failure> {
-    let program =
-        Program::within(checked, timeout * EVALUATOR_TIME_FACTOR).map_err(|refusal| match refusal {
-            Refusal::TooSlow(overdue) => Failure::Overdue(overdue),
-            refusal => Failure::Cpu(eval::Failure::from(refusal)),
-        })?;
+    let program = Program::within(checked, timeout * EVALUATOR_TIME_FACTOR).map_err(refused)?;
     let single = |frame: &Frame| -> Result<Evaluated, Failure> {
         let deadline = Instant::now() + timeout * TOTAL_TIME_FACTOR;
         let limits = [timeout * EVALUATOR_TIME_FACTOR; 2];

@@ -6,7 +6,7 @@ use std::time::Duration;
 use rayon::ThreadPool;
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Files, Overdue, grouped, plural};
-use toyproof_eval::Fault;
+use toyproof_eval::{Fault, Observed};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_gpu::browser::{self, Chromium, Text};
@@ -17,6 +17,7 @@ use toyproof_translate::backend::{Target, roundtrip, spirv};
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 
+use super::passes::PassComparison;
 use super::proof::{Against, Proof, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy};
 use super::tool::{self, ToolError};
 use super::{Source, Written};
@@ -137,6 +138,9 @@ pub enum Unproved {
         /// The reference.
         against: Against,
     },
+    /// A pass of a shader with several differs from the original's on the same driver.
+    #[error("{}", differing_passes(.0))]
+    PassesDiffer(Vec<PassComparison>),
     /// Every pixel depends on undefined behavior.
     #[error("every pixel depends on undefined behavior, such as {} at {at}", fault.words())]
     FullyUndefined {
@@ -213,12 +217,7 @@ impl Prover<'_> {
     /// # Errors
     /// Returns why it is not proved.
     pub fn prove(&mut self, source: Source, written: &Written) -> Result<Proved, Unproved> {
-        let validator = match written {
-            Written::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes())?,
-            Written::Naga { target, bytes, .. } => tool::validate(*target, bytes)?,
-            // Only their hosts complete them.
-            Written::Wgsl(..) | Written::Lowered(_) => None,
-        };
+        let validator = validate(written)?;
         let mut readings = self.readings(source.checked, written)?;
         let is_unread = readings.is_empty();
         if let (true, Written::Naga { lowered, .. }) = (is_unread, written) {
@@ -247,7 +246,7 @@ impl Prover<'_> {
     }
 
     /// What each available reader reads of a file.
-    fn readings(
+    pub(super) fn readings(
         &self,
         checked: &Checked,
         written: &Written,
@@ -257,7 +256,10 @@ impl Prover<'_> {
                 return Ok(vec![(Reader::Naga, ShaderArtifact::Lowered(lowered.clone()))]);
             }
             Written::Wgsl(text, style) => {
-                return Ok(vec![(Reader::Naga, ShaderArtifact::Wgsl(style.hosted(text)))]);
+                return Ok(vec![(
+                    Reader::Naga,
+                    ShaderArtifact::Wgsl(style.hosted_in(text, checked.stage)),
+                )]);
             }
             Written::Naga { target, bytes, .. } => (*target, bytes),
         };
@@ -274,7 +276,7 @@ impl Prover<'_> {
             }
             Target::Glsl => {
                 let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
-                let again = read_shadertoy(&text, self.timeout)?;
+                let again = read_shadertoy(&text, checked.stage, self.timeout)?;
                 let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
                 let lowered = lowered.map_err(Unproved::Overdue)?;
                 readings.push((Reader::FrontEnd, ShaderArtifact::Lowered(lowered)));
@@ -305,11 +307,11 @@ impl Prover<'_> {
             self.timeout,
             self.pool,
         )?;
-        if let Some(unproved) = proofs
-            .first()
-            .and_then(|proof| fully_undefined(proof, source.files))
+        if let Some(proof) = proofs.first()
+            && let Some(by) = proof.undefined_by
+            && proof.undefined() == proof.pixels()
         {
-            return Err(unproved);
+            return Err(fully_undefined(by, source.files));
         }
         let different = proofs.iter().zip(&readers).find(|(proof, _)| !proof.holds());
         if let Some((proof, reader)) = different {
@@ -326,8 +328,23 @@ impl Prover<'_> {
     }
 }
 
+fn differing_passes(passes: &[PassComparison]) -> String {
+    let differing = passes.iter().filter(|pass| pass.differing > 0);
+    differing.map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+/// Validates a file with an external tool, if one is installed; returns its name and version.
+pub(super) fn validate(written: &Written) -> Result<Option<String>, ToolError> {
+    match written {
+        Written::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
+        Written::Naga { target, bytes, .. } => tool::validate(*target, bytes),
+        // Only their hosts complete them.
+        Written::Wgsl(..) | Written::Lowered(_) => Ok(None),
+    }
+}
+
 /// The first channel whose texture is black in the compared frames.
-fn unobserved(checked: &Checked) -> Option<Unproved> {
+pub(super) fn unobserved(checked: &Checked) -> Option<Unproved> {
     let channels = checked.channels.iter().enumerate();
     channels
         .filter_map(|(channel, shape)| match shape {
@@ -340,17 +357,14 @@ fn unobserved(checked: &Checked) -> Option<Unproved> {
 }
 
 /// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.
-fn fully_undefined(proof: &Proof, files: &Files) -> Option<Unproved> {
-    let by = proof
-        .undefined_by
-        .filter(|_| proof.undefined() == proof.pixels())?;
+pub(super) fn fully_undefined(by: Observed, files: &Files) -> Unproved {
     let span = by.site.at.span;
     let place = files.position(span);
     let name = files.name(span);
-    Some(Unproved::FullyUndefined {
+    Unproved::FullyUndefined {
         fault: by.site.fault,
         at: format!("{name}:{}:{}", place.line, place.column),
-    })
+    }
 }
 
 /// Renders a conversion and its original in a browser: their 8-bit colors may differ by at most 1/255. Returns

@@ -25,5 +25,6 @@ fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f; //? out
     var color: vec4f = vec4f(0.0, 0.0, 0.0, 1.0); //? inout
     $main_image(&color, position.xy);
-    return vec4f(color.xyz, 1.0);
+    return vec4f(color.xyz, 1.0); //? image
+    return color; //? buffer
 }

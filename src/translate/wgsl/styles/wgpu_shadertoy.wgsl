@@ -8,5 +8,6 @@ fn shader_main(frag_coord: vec2f) -> vec4f {
     var color: vec4f; //? out
     var color: vec4f = vec4f(0.0, 0.0, 0.0, 1.0); //? inout
     $main_image(&color, frag_coord);
-    return vec4f(color.xyz, 1.0);
+    return vec4f(color.xyz, 1.0); //? image
+    return color; //? buffer
 }

@@ -22,5 +22,6 @@ $shader
     i_time_delta = toyproof_frame.time_delta;
     i_frame = u32(toyproof_frame.frame);
     i_framerate = toyproof_frame.frame_rate;
-    return shader_main(vec2f(position.x, i_resolution.y - position.y));
+    return shader_main(vec2f(position.x, i_resolution.y - position.y)); //? image
+    return shader_main(position.xy); //? buffer
 }

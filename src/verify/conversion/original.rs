@@ -1,0 +1,276 @@
+//! The frames of a shader with several passes, with which those of its conversion are compared.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+use toyproof_diagnostic::Deadline;
+use toyproof_eval::{Observed, Program, bound};
+use toyproof_gpu::{PlayedPasses, ShaderArtifact, Worker};
+use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture};
+use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Target};
+use toyproof_translate::FloatMode;
+
+use super::passes::{PASS_FRAMES, PASS_SIZES, PassComparison, Passes, ReadGraph};
+use super::prover::Unproved;
+use crate::cpu::{Evaluated, Evaluator};
+use crate::playback::DevicePlayback;
+use crate::{EVALUATOR_TIME_FACTOR, Failure, within};
+
+/// The frames of the original shader.
+pub(super) struct Original {
+    frames: Vec<PlayedFrame>,
+    pub(super) device: String,
+    /// The undefined operation that occurs in most pixels of a pass in a frame, and that pass.
+    pub(super) undefined_by: Option<(usize, Observed)>,
+}
+
+/// A frame of the original shader.
+pub(super) struct PlayedFrame {
+    pub(super) inputs: Frame,
+    /// All textures after the frame, in f32.
+    state: State,
+    /// The pixels of each pass that depend on undefined behavior.
+    undefined: Vec<Vec<bool>>,
+}
+
+impl Original {
+    /// Renders the original strictly, with the driver's filters, and finds its undefined pixels.
+    pub(super) fn play(
+        passes: &Passes,
+        worker: &mut Worker,
+        timeout: Duration,
+        pool: Option<&ThreadPool>,
+    ) -> Result<Self, Unproved> {
+        let deadline = Deadline::after(timeout);
+        let lowered = passes.sources.iter();
+        let lowered = lowered.map(|source| FloatMode::Strict.lower_for_host(source.checked, &deadline));
+        let lowered = lowered
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(Unproved::Overdue)?;
+        let code = PlayedPasses::Lowered(lowered, FloatMode::Strict);
+        let sampling = passes
+            .sources
+            .iter()
+            .map(|source| source.checked.sampling)
+            .collect();
+        let mut playback =
+            DevicePlayback::open_passes(worker, code, sampling, passes.graph, passes.media, None)
+                .map_err(Failure::Gpu)?;
+        let device = playback.device().to_owned();
+        let mut frames = Vec::new();
+        for size in PASS_SIZES {
+            playback
+                .restore(&start(passes.graph, size))
+                .map_err(Failure::Gpu)?;
+            for inputs in inputs(size) {
+                playback.render(&inputs, &[]).map_err(Failure::Gpu)?;
+                let state = playback.state(&inputs).map_err(Failure::Gpu)?;
+                frames.push(PlayedFrame {
+                    inputs,
+                    state,
+                    undefined: Vec::new(),
+                });
+            }
+        }
+        let observe = || observe(passes, &mut frames, timeout);
+        let undefined_by = within(pool, observe)?;
+        Ok(Self {
+            frames,
+            device,
+            undefined_by,
+        })
+    }
+
+    /// Renders what was read of a conversion, and compares each pass.
+    pub(super) fn compare(
+        &self,
+        passes: &Passes,
+        worker: &mut Worker,
+        artifacts: Vec<ShaderArtifact>,
+        graph: &ReadGraph,
+    ) -> Result<Vec<PassComparison>, Failure> {
+        let upside_down = artifacts
+            .iter()
+            .any(|artifact| matches!(artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down));
+        let code = PlayedPasses::Converted(artifacts);
+        let sampling = graph.sampling.clone();
+        let mut playback =
+            DevicePlayback::open_passes(worker, code, sampling, &graph.graph, passes.media, None)
+                .map_err(Failure::Gpu)?;
+        let targets: Vec<Target> = passes.graph.passes().iter().map(|pass| pass.target).collect();
+        let mut comparisons: Vec<_> = targets.iter().copied().map(PassComparison::new).collect();
+        // No frame has been rendered.
+        let mut size = [0; 2];
+        for frame in &self.frames {
+            if frame.inputs.size != size {
+                size = frame.inputs.size;
+                playback
+                    .restore(&start(passes.graph, size))
+                    .map_err(Failure::Gpu)?;
+            }
+            let images = playback.render(&frame.inputs, &targets).map_err(Failure::Gpu)?;
+            let mut has_same_bits = true;
+            for ((comparison, image), undefined) in comparisons.iter_mut().zip(images).zip(&frame.undefined) {
+                let image = if upside_down && comparison.target == Target::Image {
+                    image.upside_down()
+                } else {
+                    image
+                };
+                has_same_bits &= comparison.add(frame, &image, undefined);
+            }
+            if !has_same_bits {
+                playback.restore(&frame.state).map_err(Failure::Gpu)?;
+            }
+        }
+        Ok(comparisons)
+    }
+}
+
+impl PlayedFrame {
+    /// What a pass rendered.
+    pub(super) fn texture(&self, target: Target) -> Arc<Image> {
+        let texture = match target {
+            Target::Image => self.state.image.as_ref(),
+            Target::Buffer(number) => self.state.buffers[number].as_ref().map(|[last, _]| last),
+        };
+        let texture = texture.expect("the state has every texture of the graph");
+        texture.to_single().swap_remove(0)
+    }
+}
+
+/// The state before the first frame.
+fn start(graph: &Graph, size: [u32; 2]) -> State {
+    State {
+        frame: -1,
+        size,
+        buffers: std::array::from_fn(|buffer| graph.uses(buffer).then(|| [zeros(size), zeros(size)])),
+        image: None,
+    }
+}
+
+fn zeros([width, height]: [u32; 2]) -> Texture {
+    Image::new(width, height, vec![[0.0; 4]; (width * height) as usize]).into()
+}
+
+/// The frames that are played in a size. In the second, the mouse is dragged from the third frame on.
+fn inputs(size: [u32; 2]) -> impl Iterator<Item = Frame> {
+    let is_second = size == PASS_SIZES[1];
+    let clock = Clock {
+        inputs: Frame {
+            size,
+            date: [2026.0, 10.0, 2.0, if is_second { 3_661.5 } else { 0.0 }],
+            ..Frame::default()
+        },
+        rate: f64::from(FRAME_RATE),
+        start: 0.0,
+    };
+    (0..PASS_FRAMES).map(move |number| Frame {
+        mouse: if is_second && number > 1 {
+            let pressed = if number == 2 { 30.0 } else { -30.0 };
+            [40.0 + number as f32, 30.0 + number as f32, 42.0, pressed]
+        } else {
+            IDLE_MOUSE
+        },
+        ..clock.frame(number)
+    })
+}
+
+/// Finds the undefined pixels of all passes and frames, and the undefined operation of most pixels.
+fn observe(
+    passes: &Passes,
+    frames: &mut [PlayedFrame],
+    timeout: Duration,
+) -> Result<Option<(usize, Observed)>, Failure> {
+    let limit = timeout * EVALUATOR_TIME_FACTOR;
+    let programs = passes
+        .sources
+        .iter()
+        .map(|source| Program::within(source.checked, limit));
+    let programs: Vec<Program> = programs
+        .collect::<Result<_, _>>()
+        .map_err(super::proof::refused)?;
+    let observer = Observer {
+        programs: &programs,
+        media: passes.media,
+        limit,
+        rendered: Vec::new(),
+        undefined: Vec::new(),
+        undefined_by: None,
+    };
+    let mut player = Player::new(passes.graph.clone(), observer);
+    for frame in frames {
+        // The textures of another size are zeros.
+        let rendered = passes
+            .graph
+            .passes()
+            .iter()
+            .map(|pass| frame.texture(pass.target));
+        player.renderer_mut().rendered = rendered.collect();
+        player.render(&frame.inputs)?;
+        frame.undefined = std::mem::take(&mut player.renderer_mut().undefined);
+    }
+    Ok(player.renderer().undefined_by)
+}
+
+/// Finds the undefined pixels of passes; their textures are those that the driver rendered, so that it and the
+/// evaluator never part.
+struct Observer<'a> {
+    programs: &'a [Program],
+    media: &'a [Texture],
+    /// The time limit of an image.
+    limit: Duration,
+    /// What the driver rendered in this frame, for each pass.
+    rendered: Vec<Arc<Image>>,
+    /// The undefined pixels of each pass of this frame.
+    undefined: Vec<Vec<bool>>,
+    undefined_by: Option<(usize, Observed)>,
+}
+
+impl Renderer for Observer<'_> {
+    type Texture = Texture;
+    type Error = Failure;
+
+    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Texture, Failure> {
+        let zeros = zeros(size);
+        Ok(if mipmaps { zeros.with_mipmaps() } else { zeros })
+    }
+
+    fn draw(
+        &mut self,
+        pass: usize,
+        over: Texture,
+        frame: &Frame,
+        channels: [Channel<'_, Texture>; 4],
+    ) -> Result<Texture, Failure> {
+        let frame = bound(frame, channels, self.media);
+        let deadline = Instant::now() + 2 * self.limit;
+        let stop = AtomicBool::new(false);
+        let evaluator = Evaluator::new(&self.programs[pass], &frame, [self.limit; 2], deadline, &stop);
+        let Evaluated {
+            undefined, observed, ..
+        } = evaluator.single(&frame.rows())?;
+        if observed.beyond_cap > 0 {
+            return Err(Failure::LoopTruncated(observed.beyond_cap));
+        }
+        self.undefined.push(undefined);
+        let faults = observed
+            .faults
+            .iter()
+            .filter(|observed| observed.site.fault.is_undefined());
+        let most = faults.map(|&observed| (pass, observed)).chain(self.undefined_by);
+        self.undefined_by = most.max_by_key(|(_, observed)| observed.pixels);
+        let texture = Texture::from(Image::clone(&self.rendered[pass]));
+        Ok(if over.levels() > 1 {
+            texture.with_mipmaps()
+        } else {
+            texture
+        })
+    }
+
+    /// Starts again: the frames of another size are another run.
+    fn resized(&mut self, texture: Texture, size: [u32; 2]) -> Result<Texture, Failure> {
+        self.zeros(size, texture.levels() > 1)
+    }
+}
