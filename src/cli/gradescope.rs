@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
 use toyproof_image::FrameInputs;
+use toyproof_project::{PROJECT_FILE, Tab};
 
 use super::check::read_assignment;
 use super::terminal::file_size;
@@ -112,15 +113,26 @@ fn pack(args: &Args, path: &Path, assignment: &Assignment) -> Result<Vec<u8>, St
     zip::pack(&packed).map_err(|error| with_path(&args.output, error))
 }
 
-/// The files that an assignment names.
+/// The files that an assignment names; of a project, the files in its folder.
 fn named_files(assignment: &Assignment) -> Vec<PathBuf> {
     let reference = match &assignment.reference {
         Reference::Scene(path) | Reference::Given { path, .. } => path.clone(),
     };
+    let names = Tab::ALL
+        .into_iter()
+        .map(Tab::file_name)
+        .chain([PROJECT_FILE.to_owned()]);
+    let mut files: Vec<_> = if reference.is_dir() {
+        names
+            .map(|name| reference.join(name))
+            .filter(|path| path.is_file())
+            .collect()
+    } else {
+        vec![reference]
+    };
     let channels = assignment.frames.iter().flat_map(FrameInputs::files);
-    std::iter::once(reference)
-        .chain(channels.map(Path::to_owned))
-        .collect()
+    files.extend(channels.map(Path::to_owned));
+    files
 }
 
 /// Whether a program is an ELF file of 64 bits for x86-64.

@@ -183,3 +183,36 @@ fn assignments_that_cannot_be_packed_are_rejected() {
         "scene.toml is not a program for Linux on x86-64",
     );
 }
+
+#[test]
+fn the_folder_of_a_project_is_packed_as_a_reference() {
+    let folder = assignment();
+    let folder = folder.path();
+    let solution = folder.join("task/solution");
+    fs::create_dir(&solution).unwrap();
+    let shown = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }";
+    fs::write(solution.join("image.glsl"), shown).unwrap();
+    fs::write(solution.join("buffer-a.glsl"), SPHERE.shader).unwrap();
+    fs::write(solution.join("notes.txt"), "not part of it").unwrap();
+    let text = ASSIGNMENT.replace("scene = \"scenes/sphere.toml\"", "reference = \"solution\"");
+    fs::write(folder.join("task/assignment.toml"), text).unwrap();
+    let arguments = [
+        "gradescope",
+        "task",
+        "--program",
+        "program",
+        "-o",
+        "autograder.zip",
+    ];
+    let packed = toyproof(folder, &arguments);
+    assert_eq!(packed.code, 0, "{}", packed.stderr);
+    let root = folder.join("unpacked");
+    unpack(&fs::read(folder.join("autograder.zip")).unwrap(), &root);
+    let packed = root.join("assignment/solution");
+    assert_eq!(fs::read_to_string(packed.join("image.glsl")).unwrap(), shown);
+    assert_eq!(
+        fs::read_to_string(packed.join("buffer-a.glsl")).unwrap(),
+        SPHERE.shader
+    );
+    assert!(!packed.join("notes.txt").exists());
+}

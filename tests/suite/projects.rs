@@ -132,7 +132,7 @@ fn the_template_is_checked_rendered_and_exported() {
         2,
         "nothing is overwritten"
     );
-    let refused = toyproof(folder, &["debug", "waves", "--pixel", "1,1"]);
+    let refused = toyproof(folder, &["trade", "waves", "-o", "trade"]);
     assert_eq!(refused.code, 2);
     assert!(
         refused

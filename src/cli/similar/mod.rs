@@ -9,7 +9,7 @@ use toyproof_diagnostic::{Deadline, grouped, plural};
 
 use self::fingerprint::Fingerprints;
 use super::inputs::LanguageArgs;
-use super::shader::{Shader, find};
+use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
 
 /// List pairs of shaders that share much of their structure
@@ -104,10 +104,13 @@ fn read(paths: &[PathBuf], language: &LanguageArgs, terminal: &Terminal) -> Vec<
                 let fingerprints = Fingerprints::of(checked, &shader.files);
                 shaders.push((shader.name, fingerprints));
             }
-            Err(_) => terminal.warn(format_args!(
-                "{} is not compared: it does not compile",
-                shader.name
-            )),
+            Err(unusable) => {
+                let reason = match unusable {
+                    Unusable::Unrendered(error) => &error.reason,
+                    _ => "it does not compile",
+                };
+                terminal.warn(format_args!("{} is not compared: {reason}", shader.name));
+            }
         }
     }
     shaders
