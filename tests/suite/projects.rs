@@ -543,3 +543,23 @@ fn a_script_moves_the_mouse_and_presses_keys() {
     assert_eq!(refused.code, 2);
     assert!(refused.stderr.contains("error[E0509]"), "{}", refused.stderr);
 }
+
+#[test]
+fn a_warm_up_starts_so_many_frames_before_the_first_that_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let count = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0) + vec4(1.0, float(iFrame), 0.0, 0.0); }";
+    let shown = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }";
+    write(folder, &[("sum/buffer-a.glsl", count), ("sum/image.glsl", shown)]);
+    let first = |flags: &[&str]| {
+        let fixed = ["run", "sum", "-o", "i.exr", "--size", "1x1", "--device", "cpu"];
+        let run = toyproof(folder, &[&fixed[..], flags].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let [frames, sum, ..] = image::read(&folder.join("i.exr")).unwrap().get(0, 0);
+        [frames, sum]
+    };
+    assert_eq!(first(&["--frame", "20"]), [21.0, 210.0]);
+    assert_eq!(first(&["--frame", "20", "--warm-up", "2"]), [3.0, 57.0]);
+    assert_eq!(first(&["--frame", "20", "--warm-up", "0"]), [1.0, 20.0]);
+    assert_eq!(first(&["--frame", "2", "--warm-up", "50"]), [3.0, 3.0]);
+}

@@ -347,7 +347,11 @@ impl Runner<'_> {
                 )));
             }
             Some(state) => state.frame + 1,
-            None if has_history => 0,
+            None if has_history => self.args.warm_up.map_or(0, |frames| {
+                first
+                    .saturating_sub(i32::try_from(frames).unwrap_or(i32::MAX))
+                    .max(0)
+            }),
             None => first,
         };
         Ok(Schedule {
@@ -415,10 +419,11 @@ impl Runner<'_> {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
         }
         format!(
-            "{:?} {:?} {}",
+            "{:?} {:?} {} {:?}",
             passes.project.to_json(&shader.files),
             self.args.pass,
-            self.args.fps
+            self.args.fps,
+            self.args.warm_up
         )
         .hash(&mut hasher);
         let fingerprint = self.fingerprint(hasher);
