@@ -220,7 +220,7 @@ impl Prover<'_> {
             }
         }
         let Runner::Driver(worker) = &mut self.runner else {
-            return Err(Unproved::Binary);
+            return Err(Unproved::PassesWithoutDriver);
         };
         let original = Original::play(passes, worker, self.timeout, self.pool)?;
         let mut proofs = Vec::new();

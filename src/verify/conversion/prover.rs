@@ -105,6 +105,9 @@ pub enum Unproved {
     /// The evaluator does not run SPIR-V.
     #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
     Binary,
+    /// The evaluator does not play converted passes.
+    #[error("several passes can be verified only with a Vulkan driver")]
+    PassesWithoutDriver,
     /// There is no driver to run it.
     #[error("a proof requires a Vulkan driver: {0}")]
     NoDriver(gpu::Failure),
