@@ -37,6 +37,8 @@ pub struct PixelTrace {
     /// Where the difference of a project's pixel comes from, back through passes and frames; null for a
     /// single shader.
     trail: Option<Vec<TrailStep>>,
+    /// Whether the difference comes from an earlier frame than the trail has.
+    trail_cut: bool,
 }
 
 /// A pixel through which a difference came.
@@ -124,6 +126,7 @@ impl PixelTrace {
             steps: lines.collect(),
             reference: None,
             trail: None,
+            trail_cut: false,
         }
     }
 
@@ -139,6 +142,7 @@ impl PixelTrace {
         });
         Self {
             trail: Some(steps.collect()),
+            trail_cut: trail.is_cut,
             ..self
         }
     }
@@ -426,6 +430,11 @@ impl PixelTrace {
         }
         if let Some(trail) = &self.trail {
             writer.text.push_str(&trail_lines(trail));
+            if self.trail_cut {
+                let line =
+                    "  … it comes from earlier frames, which were not kept: they take too much memory\n";
+                writer.text.push_str(line);
+            }
         }
         if let Some(reference) = &self.reference {
             writer.text.push_str("\nreference: ");

@@ -34,8 +34,8 @@ pub struct Trail {
     pub frame: Frame,
     /// From the pixel that was asked for back to the earliest one.
     pub hops: Vec<Hop>,
-    /// Whether the difference arises in the last of them; otherwise earlier frames were not kept.
-    pub is_complete: bool,
+    /// Whether the difference comes from a frame that was not kept, before the last of them.
+    pub is_cut: bool,
 }
 
 /// The largest total size of the textures that are kept, in bytes.
@@ -91,7 +91,7 @@ pub fn trail(frames: &Frames, target: Target, pixel: [u32; 2]) -> Result<Trail, 
             return Ok(Trail {
                 frame,
                 hops,
-                is_complete: true,
+                is_cut: false,
             });
         };
         let source = passes
@@ -111,7 +111,7 @@ pub fn trail(frames: &Frames, target: Target, pixel: [u32; 2]) -> Result<Trail, 
     Ok(Trail {
         frame,
         hops,
-        is_complete: false,
+        is_cut: true,
     })
 }
 

@@ -392,6 +392,7 @@ fn debug_follows_a_difference_back_through_passes_and_frames() {
         hop(6, "Buffer B", 3, 2),
     ];
     assert_eq!(hops, expected);
+    assert_eq!(json["trail_cut"], false);
     // The pass in which it arises shows the line.
     let text = debug(&["--pixel", "3,2", "--pass", "buffer-b"]);
     assert!(text.contains("float x = 1.0e6 + 0.1 * p.x"), "{text}");

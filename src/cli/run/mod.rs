@@ -60,9 +60,10 @@ pub(in crate::cli) struct Args {
     /// The pass of a project to show: `image`, or `buffer-a` to `buffer-d` [default: image]
     #[arg(long, value_name = "PASS", value_parser = parse_pass, hide_short_help = true)]
     pass: Option<PassKind>,
-    /// The number of frames of a project to render before the first one that is shown, instead of all from frame 0 on
+    /// The number of frames of a project to render before the first one that is shown, instead of all
     ///
-    /// For long runs of shaders whose buffers forget. Buffers are zero before, and what a shader does in frame 0 alone is left out.
+    /// For shaders whose buffers forget what was long ago. Buffers are zero at first, and what a shader does in
+    /// frame 0 alone does not happen.
     #[arg(long, value_name = "N", conflicts_with = "state", hide_short_help = true)]
     warm_up: Option<u32>,
     /// The buffers of a project: read from this file, if it exists, and written to it after the last frame
