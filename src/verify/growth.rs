@@ -99,7 +99,7 @@ pub enum GrowthCause {
     },
     /// Errors grow exponentially, and those of double precision as fast as those of float32.
     Chaos {
-        /// The number of frames in which errors double where they grow fastest.
+        /// The number of frames in which errors double, from the frame n to 2n between which they grow most.
         doubling: f64,
         /// Whether the last frame differs visibly in double precision, too, if its roundings are perturbed.
         in_double: bool,
@@ -191,7 +191,7 @@ pub fn follow<'a>(
                     notes.extend(note);
                     step
                 }
-                None => classify(frames, distance(&double, &single))?,
+                None => classify(frames, distance(&double, &single, f64::INFINITY))?,
             };
             let growth = VisibleGrowth {
                 differing: last.differing,
@@ -314,8 +314,9 @@ fn differing_texels(double: &Texture, single: &Texture) -> Vec<[u32; 2]> {
 /// sums.
 const EXPONENTIAL: f64 = 16.0;
 
-/// The first frame from which on growth is measured: the first frames initialize the buffers.
-const FIRST_MEASURED: usize = 3;
+/// A difference of double precision beyond which growth is not measured: where `fract` or a comparison decides
+/// differently, an error jumps, whatever made it.
+const JUMP: f64 = 1.0 / 1024.0;
 
 /// The ratio of the errors of float32 and of double precision where both are amplified alike: that of their
 /// units in the last place.
@@ -336,17 +337,11 @@ fn classify(frames: &Frames, single_distance: f64) -> Result<GrowthCause, Failur
         let inputs = frames.clock.frame(number);
         double.render(&inputs).map_err(failure)?;
         perturbed.render(&inputs).map_err(failure)?;
-        distances.push(distance(&double, &perturbed));
+        distances.push(distance(&double, &perturbed, JUMP));
     }
-    let doublings = (FIRST_MEASURED..=distances.len().saturating_sub(1) / 2).filter_map(|number| {
-        let amplification = distances[2 * number] / distances[number];
-        let is_exponential = amplification > EXPONENTIAL && amplification.is_finite();
-        is_exponential.then(|| number as f64 / amplification.log2())
-    });
-    let doubling = doublings.min_by(f64::total_cmp);
-    let last = distances.last().copied().unwrap_or_default();
+    let last = distance(&double, &perturbed, f64::INFINITY);
     let is_amplified_alike = last * UNIT_RATIO * UNIT_RATIO_SLACK >= single_distance;
-    Ok(match doubling {
+    Ok(match doubling(&distances) {
         Some(doubling) if is_amplified_alike => {
             let error = image_error(&double, &perturbed);
             let in_double = error.is_some_and(|error| error.differing.ratio() > MAX_UNSTABLE);
@@ -356,16 +351,29 @@ fn classify(frames: &Frames, single_distance: f64) -> Result<GrowthCause, Failur
     })
 }
 
+/// The number of frames in which errors double, from the frame n to 2n between which they grow most; none if
+/// they do not grow exponentially. The distance of each frame is given. Growth must last from n to 4n: the
+/// error of a value that all texels read may be zero by chance until one frame, and ordinary in the next.
+fn doubling(distances: &[f64]) -> Option<f64> {
+    let amplification = |frame: usize| distances[2 * frame] / distances[frame];
+    let is_exponential = |frame: usize| (EXPONENTIAL..f64::INFINITY).contains(&amplification(frame));
+    let starts = 1..=distances.len().saturating_sub(1) / 4;
+    let lasting = starts.filter(|&start| is_exponential(start) && is_exponential(2 * start));
+    let frames = lasting.flat_map(|start| [start, 2 * start]);
+    let fastest = frames.max_by(|&a, &b| amplification(a).total_cmp(&amplification(b)))?;
+    Some(fastest as f64 / amplification(fastest).log2())
+}
+
 /// The root mean square difference of the texels of two playbacks, relative to those larger than 1, in the
-/// pass in which it is largest.
-fn distance<A: Number, B: Number>(expected: &CpuPlayback<A>, actual: &CpuPlayback<B>) -> f64 {
+/// pass in which it is largest. Differences above `most` are left out.
+fn distance<A: Number, B: Number>(expected: &CpuPlayback<A>, actual: &CpuPlayback<B>, most: f64) -> f64 {
     let targets = (0..BUFFERS).map(Target::Buffer).chain([Target::Image]);
     let of_target = |target| {
         let [expected, actual] = [expected.texture(target)?, actual.texture(target)?].map(texels);
         let pairs = expected.as_flattened().iter().zip(actual.as_flattened());
         let squares = pairs.map(|(expected, actual)| {
             let difference = (expected - actual) / expected.abs().max(1.0);
-            if difference.is_finite() {
+            if difference.is_finite() && difference.abs() <= most {
                 difference * difference
             } else {
                 0.0
@@ -384,5 +392,34 @@ fn texels(texture: &Texture) -> Vec<[f64; 4]> {
     match texture {
         Texture::Single(levels) => widened(&levels[0]),
         Texture::Double(levels) => widened(&levels[0]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    fn distances(distance: impl Fn(f64) -> f64) -> Vec<f64> {
+        (0..=60).map(|frame| distance(f64::from(frame))).collect()
+    }
+
+    #[test]
+    fn exponential_growth_is_told_from_sums() {
+        for doubling in [0.5, 1.0, 2.5] {
+            let found = super::doubling(&distances(|frame| (2e-16 * (frame / doubling).exp2()).min(1e-3)));
+            // The frames between which errors grow most include one in which they no longer can.
+            let ratio = found.unwrap() / doubling;
+            assert!((1.0 - 1e-9..1.1).contains(&ratio), "{doubling}: {found:?}");
+        }
+        let sums = [
+            distances(|_| 0.0),
+            distances(|frame| 1e-16 * frame.sqrt()),
+            distances(|frame| 1e-16 * frame),
+            distances(|frame| 1e-16 * frame * frame),
+            // A shared value happens to be exact until frame 3, and a texel wraps around in frame 20.
+            distances(|frame| if frame < 4.0 { 1e-17 } else { 1e-12 * frame }),
+            distances(|frame| if frame < 20.0 { 1e-16 * frame } else { 1e-5 }),
+        ];
+        for (number, sum) in sums.iter().enumerate() {
+            assert_eq!(super::doubling(sum), None, "{number}");
+        }
     }
 }
