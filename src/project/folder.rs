@@ -444,7 +444,11 @@ fn report_unknown(node: &Node, known: &[&'static str], errors: &mut Vec<Diagnost
         .iter()
         .filter(|member| !known.contains(&member.key.as_str()))
     {
+        let is_tab = Tab::ALL.iter().any(|tab| tab.name() == key);
         let help = match nearest(key, known.iter().copied()) {
+            None if is_tab => {
+                format!("a tab has the table `[[pass]]` with `tab = \"{key}\"` and its `inputs`")
+            }
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("expected {}", list_of(known)),
         };

@@ -374,15 +374,20 @@ fn errors_of_a_project_file_have_a_line_and_a_column() {
         let first = errors.lines().next().unwrap();
         assert_eq!(first, format!("project.toml:{expected}"), "{text}");
     }
-    let mut files = Files::default();
-    let tabs = folder(&mut files, &["image", "buffer-a"]);
-    let toml = files.add(File::new(PROJECT_FILE, "[[pass]]\ntab = \"image\"\n"));
-    let errors = Project::from_folder(&files, Some(toml), &tabs)
-        .unwrap_err()
-        .to_string();
+    let errors = |text: &str| {
+        let mut files = Files::default();
+        let tabs = folder(&mut files, &["image", "buffer-a"]);
+        let toml = files.add(File::new(PROJECT_FILE, text));
+        Project::from_folder(&files, Some(toml), &tabs).unwrap_err()
+    };
     assert_eq!(
-        errors,
+        errors("[[pass]]\ntab = \"image\"\n").to_string(),
         "error[E0508]: buffer-a.glsl is not listed in project.toml"
+    );
+    let of_table = errors("[buffer-a]\niChannel0 = \"buffer-a\"\n");
+    assert_eq!(
+        of_table[0].helps,
+        ["a tab has the table `[[pass]]` with `tab = \"buffer-a\"` and its `inputs`"]
     );
 }
 

@@ -119,3 +119,25 @@ fn every_lookup_has_the_same_bits_on_the_cpu() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+#[test]
+fn fetches_beyond_a_texture_are_zeros_in_fast_runs() {
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
+    let text = "void mainImage(out vec4 color, in vec2 p) {
+        color = vec4(texelFetch(iChannel0, ivec2(p) - 4, 0).xyz, 1.0);
+    }";
+    let mut files = Files::default();
+    let file = files.add(File::new("fetches", text.to_owned()));
+    let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
+    let frame = Frame {
+        size: [12, 11],
+        channels: [Some(texture(5, 3, false)), None, None, None],
+        ..Frame::default()
+    };
+    let own = Program::new(&checked).unwrap();
+    let own = own.render::<f32>(&frame, &Settings::default()).unwrap();
+    let drawn = worker.draw(FloatMode::Fast.lower(&checked), frame, FloatMode::Fast);
+    assert_eq!(own.framebuffer.image(), drawn.unwrap().image());
+}

@@ -80,7 +80,7 @@ pub(super) struct Args {
     /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences, and
     /// NAME-fixed.png where a fix was found. For all: report.html, report.csv, verdict.json, junit.xml and
     /// report.sarif.
-    #[arg(long, value_name = "DIR", help_heading = "Reports")]
+    #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
     ///

@@ -8,11 +8,12 @@ use std::fmt;
 use std::path::Path;
 
 use naga::back::{glsl, hlsl, msl, wgsl};
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::{Expression, SampleLevel, ShaderStage};
 use serde::{Deserialize, Serialize};
 
 use crate::TranslateError;
-use crate::naga_ir::ValidModule;
+use crate::naga_ir::{Fetches, ValidModule};
 
 /// A language that a shader can be converted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -92,15 +93,28 @@ pub fn emit(module: &ValidModule, target: Target) -> Result<Vec<u8>, TranslateEr
 const ENTRY_POINT: &str = "main";
 
 /// Clamps out-of-range indices everywhere: without a policy drivers differ, and some crash.
-const BOUNDS: naga::proc::BoundsCheckPolicies = {
-    use naga::proc::BoundsCheckPolicy::Restrict;
-    naga::proc::BoundsCheckPolicies {
+const BOUNDS: BoundsCheckPolicies = {
+    use BoundsCheckPolicy::Restrict;
+    BoundsCheckPolicies {
         index: Restrict,
         buffer: Restrict,
         image_load: Restrict,
         binding_array: Restrict,
     }
 };
+
+/// [`BOUNDS`], and what the module's language requires of texels beyond a texture.
+fn bounds(module: &ValidModule) -> BoundsCheckPolicies {
+    BoundsCheckPolicies {
+        image_load: match module.fetches() {
+            // On Mesa's software driver, naga's own check is wrong where the level varies between pixels.
+            Fetches::Checked => BoundsCheckPolicy::Unchecked,
+            Fetches::Zeros => BoundsCheckPolicy::ReadZeroSkipWrite,
+            Fetches::Edge => BoundsCheckPolicy::Restrict,
+        },
+        ..BOUNDS
+    }
+}
 
 /// The bindings that a module uses, with their classes in register-based languages.
 fn bindings(module: &ValidModule) -> impl Iterator<Item = (naga::ResourceBinding, Class)> {
@@ -171,7 +185,7 @@ fn write_msl(module: &ValidModule) -> Result<String, TranslateError> {
         lang_version: (2, 0),
         per_entry_point_map: [(ENTRY_POINT.to_owned(), resources)].into(),
         fake_missing_bindings: false,
-        bounds_check_policies: BOUNDS,
+        bounds_check_policies: bounds(module),
         force_loop_bounding: false,
         ..msl::Options::default()
     };
@@ -199,8 +213,8 @@ fn write_glsl(module: &ValidModule) -> Result<String, TranslateError> {
     };
     // Browsers check fetches themselves. GLSL ES 3.00 has no function for the number of levels, which a check
     // would need.
-    let bounds = naga::proc::BoundsCheckPolicies {
-        image_load: naga::proc::BoundsCheckPolicy::Unchecked,
+    let bounds = BoundsCheckPolicies {
+        image_load: BoundsCheckPolicy::Unchecked,
         ..BOUNDS
     };
     let mut text = String::new();

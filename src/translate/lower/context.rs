@@ -35,8 +35,8 @@ pub(crate) struct LoweringContext {
     pub(crate) helpers: HashMap<FunctionId, String>,
     /// The channels that such a text names.
     pub(crate) helper_inputs: HashMap<FunctionId, VariableId>,
-    /// Whether all fetches of texels stay within their textures.
-    pub(crate) limits_fetches: bool,
+    /// Whether all fetches of texels check that these are within their textures.
+    pub(crate) checks_fetches: bool,
     /// The diagnostic for a shader that nests deeper than drivers support.
     pub(crate) too_deep: Option<Diagnostic>,
     helper_ids: HashMap<(Helper, Type, Type), FunctionId>,
@@ -57,7 +57,7 @@ impl LoweringContext {
             moved: HashSet::new(),
             helpers: HashMap::new(),
             helper_inputs: HashMap::new(),
-            limits_fetches: false,
+            checks_fetches: false,
             too_deep: None,
             helper_ids: HashMap::new(),
             expansions: HashMap::new(),

@@ -21,7 +21,7 @@ const IVEC2: Type = Type::Vector(Scalar::Int, 2);
 
 /// Expands the lookups of channels with two dimensions.
 pub(super) fn expand_lookups(cx: &mut LoweringContext) {
-    cx.limits_fetches = true;
+    cx.checks_fetches = true;
     cx.each_expression(|cx, id| {
         let ExprKind::BuiltIn { function, arguments } = &cx.tree[id].kind else {
             return;
@@ -30,7 +30,7 @@ pub(super) fn expand_lookups(cx: &mut LoweringContext) {
         if let Some(lookup) = Lookup::of(cx, function, &arguments) {
             lookup.expand(cx, id, arguments[1..].to_vec());
         } else if function.is_texture() {
-            cx.limits_fetches = false;
+            cx.checks_fetches = false;
         }
     });
 }

@@ -24,7 +24,18 @@ pub enum Shape {
 pub struct ValidModule {
     module: Module,
     info: ModuleInfo,
-    limits_fetches: bool,
+    fetches: Fetches,
+}
+
+/// What a fetch of a texel beyond its texture returns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fetches {
+    /// There is none, since the shader checks its texels or fetches none.
+    Checked,
+    /// Zeros, as in browsers.
+    Zeros,
+    /// The texel at the edge, as in wgpu: WGSL allows any texel.
+    Edge,
 }
 
 impl ValidModule {
@@ -40,9 +51,9 @@ impl ValidModule {
         &self.info
     }
 
-    /// Whether all fetches of texels stay within their textures.
-    pub(crate) fn limits_fetches(&self) -> bool {
-        self.limits_fetches
+    /// What a fetch of a texel beyond its texture returns.
+    pub(crate) fn fetches(&self) -> Fetches {
+        self.fetches
     }
 
     /// Parses and validates a lowered shader and removes unused items.
@@ -59,10 +70,13 @@ impl ValidModule {
                     .collect::<Vec<_>>()
             })?;
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-        let validated = Self::validate(module).map(|valid| Self {
-            limits_fetches: lowered.limits_fetches(),
-            ..valid
-        });
+        // naga's Metal writer adds declarations to modules with a policy of zeros, whether these fetch or not.
+        let fetches = if lowered.checks_fetches() || !has_fetches(&module) {
+            Fetches::Checked
+        } else {
+            Fetches::Zeros
+        };
+        let validated = Self::validate(module).map(|valid| Self { fetches, ..valid });
         validated.map_err(|error| {
             let span = error
                 .spans()
@@ -101,7 +115,7 @@ impl ValidModule {
         Ok(Self {
             module,
             info,
-            limits_fetches: false,
+            fetches: Fetches::Edge,
         })
     }
 
@@ -123,6 +137,15 @@ impl ValidModule {
         }
         shapes
     }
+}
+
+fn has_fetches(module: &Module) -> bool {
+    let entry_points = module.entry_points.iter().map(|entry| &entry.function);
+    let functions = module.functions.iter().map(|(_, function)| function);
+    functions.chain(entry_points).any(|function| {
+        let mut expressions = function.expressions.iter();
+        expressions.any(|(_, expression)| matches!(expression, naga::Expression::ImageLoad { .. }))
+    })
 }
 
 fn naga_diagnostic(code: &'static str, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {

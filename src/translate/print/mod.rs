@@ -35,7 +35,7 @@ pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered
     }
     printer.epilogue();
     printer.out.refuse(cx.too_deep.clone());
-    printer.out.limits_fetches = cx.limits_fetches;
+    printer.out.checks_fetches = cx.checks_fetches;
     Ok(printer.out)
 }
 
@@ -205,7 +205,7 @@ pub struct Lowered {
     runs: Vec<(u32, Option<Span>)>,
     /// The reason why no driver may run it.
     too_deep: Option<Diagnostic>,
-    limits_fetches: bool,
+    checks_fetches: bool,
 }
 
 impl Lowered {
@@ -237,12 +237,12 @@ impl Lowered {
         self.too_deep.as_ref()
     }
 
-    /// Sets the reason why no driver may run it, if any.
-    /// Whether all fetches of texels stay within their textures: such a shader is strict.
-    pub(crate) fn limits_fetches(&self) -> bool {
-        self.limits_fetches
+    /// Whether all fetches of texels check that these are within their textures: such a shader is strict.
+    pub(crate) fn checks_fetches(&self) -> bool {
+        self.checks_fetches
     }
 
+    /// Sets the reason why no driver may run it, if any.
     fn refuse(&mut self, too_deep: Option<Diagnostic>) {
         self.too_deep = too_deep;
     }

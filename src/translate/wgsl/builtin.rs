@@ -178,9 +178,37 @@ impl Writer<'_> {
             }
             (B::TextureLod, 2) => format!("textureSampleLevel({pair}, {list})"),
             (B::TextureGrad, 3) => format!("textureSampleGrad({pair}, {list})"),
-            (B::TexelFetch, 2) => format!("textureLoad({texture}, {list})"),
+            (B::TexelFetch, 2) => {
+                let function = self.texel_fetch(tree[sampler].ty);
+                format!("{function}({texture}, {list})")
+            }
             _ => return Err(Unprintable::Construct("this texture function")),
         };
         Ok(Text::primary(code))
+    }
+
+    /// Adds the function that fetches a texel of a texture of this type, and returns its name: beyond the
+    /// texture, WGSL's `textureLoad` returns any texel or zeros.
+    fn texel_fetch(&mut self, sampler: Type) -> String {
+        let is_volume = matches!(sampler, Type::Sampler(sampler) if sampler.shape == SamplerShape::D3);
+        let (stem, size) = if is_volume {
+            ("texel_fetch_3d", 3)
+        } else {
+            ("texel_fetch", 2)
+        };
+        let is_taken = |word: &str| self.names.all.contains(word);
+        let function = super::names::free(stem, is_taken);
+        self.helpers.insert(
+            function.clone(),
+            format!(
+                "// `texelFetch` of GLSL: zeros beyond the texture, where `textureLoad` may return any texel.\n\
+                 fn {function}(source: texture_{size}d<f32>, texel: vec{size}i, level: i32) -> vec4f {{\n    \
+                 if level < 0 || level >= i32(textureNumLevels(source))\n        \
+                 || any(vec{size}u(texel) >= textureDimensions(source, level)) {{\n        \
+                 return vec4f();\n    }}\n    \
+                 return textureLoad(source, texel, level);\n}}\n"
+            ),
+        );
+        function
     }
 }

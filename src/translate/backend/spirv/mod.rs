@@ -9,9 +9,8 @@ use ::spirv::{Capability, Decoration, GlslStd450Op, Op};
 pub use expand::expanded;
 use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
-use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use super::{BOUNDS, ENTRY_POINT, bindings};
+use super::{ENTRY_POINT, bindings, bounds};
 use crate::TranslateError;
 use crate::naga_ir::ValidModule;
 
@@ -21,15 +20,6 @@ use crate::naga_ir::ValidModule;
 /// # Errors
 /// naga's message, if it cannot write the module.
 pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
-    let bounds = if module.limits_fetches() {
-        // On Mesa's software driver, naga's own limit is wrong where the level varies between pixels.
-        BoundsCheckPolicies {
-            image_load: BoundsCheckPolicy::Unchecked,
-            ..BOUNDS
-        }
-    } else {
-        BOUNDS
-    };
     let options = Options {
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
         binding_map: bindings(module)
@@ -43,7 +33,7 @@ pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
             })
             .collect(),
         fake_missing_bindings: false,
-        bounds_check_policies: bounds,
+        bounds_check_policies: bounds(module),
         force_loop_bounding: false,
         ..Options::default()
     };
