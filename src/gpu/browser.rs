@@ -16,6 +16,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use thiserror::Error;
+use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{Frame, Image};
 
 /// Why a browser rendered nothing.
@@ -103,11 +104,16 @@ impl Chromium {
         }
     }
 
-    /// Renders the frames of a shader. Channels with an image are two-dimensional.
+    /// Renders the frames of a shader. Channels are two-dimensional; those without a texture are black.
     ///
     /// # Errors
     /// Why there are no images.
-    pub fn render(&mut self, text: Text, frames: &[Frame]) -> Result<Vec<Image>, Failure> {
+    pub fn render(
+        &mut self,
+        text: Text,
+        sampling: [Sampling; 4],
+        frames: &[Frame],
+    ) -> Result<Vec<Image>, Failure> {
         let (language, text) = match text {
             Text::Glsl(text) => ("glsl", text),
             Text::Wgsl(text) => ("wgsl", text),
@@ -117,7 +123,8 @@ impl Chromium {
             None => BrowserConnection::launch(&self.program, PAGE_HTML, Instant::now() + START_TIMEOUT)?,
         };
         let frames_json: Vec<Value> = frames.iter().map(frame_json).collect();
-        let job = json!({"language": language, "text": text, "frames": frames_json});
+        let sampling = sampling.map(sampling_json);
+        let job = json!({"language": language, "text": text, "sampling": sampling, "frames": frames_json});
         let answer = connection.call(&format!("toyproof({job})"), self.timeout)?;
         if let Some(reason) = answer["refused"].as_str() {
             // A browser that lost its context cannot render any more.
@@ -143,12 +150,24 @@ impl Chromium {
     }
 }
 
+fn sampling_json(Sampling { filter, wrap }: Sampling) -> Value {
+    let filter = match filter {
+        Filter::Nearest => "nearest",
+        Filter::Linear => "linear",
+        Filter::Mipmap => "mipmap",
+    };
+    json!({"filter": filter, "repeats": wrap == Wrap::Repeat})
+}
+
 fn frame_json(frame: &Frame) -> Value {
-    let channels = frame.channels.iter().enumerate().filter_map(|(number, texture)| {
-        let image = texture.as_ref()?.to_single().swap_remove(0);
+    let level = |image: &Image| {
         let [width, height] = image.size();
         let pixels = BASE64_STANDARD.encode(bytemuck::cast_slice::<_, u8>(image.pixels()));
-        Some(json!({"number": number, "width": width, "height": height, "pixels": pixels}))
+        json!({"width": width, "height": height, "pixels": pixels})
+    };
+    let channels = frame.channels.iter().map(|texture| match texture {
+        Some(texture) => texture.to_single().iter().map(|image| level(image)).collect(),
+        None => vec![level(&Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]))],
     });
     json!({
         "width": frame.size[0],

@@ -13,7 +13,7 @@ use std::{env, fs};
 
 use serde_json::json;
 use toyproof::diagnostic::{Deadline, File, Files};
-use toyproof::glsl::{Options, check};
+use toyproof::glsl::{Options, Sampling, check};
 use toyproof::gpu::Worker;
 use toyproof::gpu::browser::{Chromium, Failure, Text, as_shadertoy};
 use toyproof::image::Frame;
@@ -48,7 +48,7 @@ fn frames() -> Vec<Frame> {
 }
 
 fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, Failure> {
-    let images = browser.render(text, &frames())?;
+    let images = browser.render(text, [Sampling::default(); 4], &frames())?;
     Ok(images.iter().flat_map(|image| image.pixels().to_vec()).collect())
 }
 

@@ -55,13 +55,7 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
             if let Some(validator) = &readers.validator {
                 let _ = writeln!(head, "// {validator} accepts it.");
             }
-            if let Some((name, shown)) = &readers.browser {
-                let _ = writeln!(
-                    head,
-                    "// {name} on SwiftShader renders these frames like the original with WebGL 2: {}.",
-                    describe_browser(*shown)
-                );
-            }
+            in_browser(&mut head, readers.browser.as_ref());
         }
         ProofStatus::Proved(Proved::Source(proof)) => {
             head.push_str(
@@ -102,6 +96,17 @@ fn settings(head: &mut String, proof: &Proof) {
     head.push_str("// Functions with implementation-defined precision, such as sin, were replaced by the evaluator's.\n");
 }
 
+/// Appends what a browser rendered, if one did.
+fn in_browser(head: &mut String, browser: Option<&(String, Rgb8Comparison)>) {
+    if let Some((name, shown)) = browser {
+        let _ = writeln!(
+            head,
+            "// {name} on SwiftShader renders these frames like the original with WebGL 2: {}.",
+            describe_browser(*shown)
+        );
+    }
+}
+
 /// Appends what was proved of the passes of a project.
 fn passes(head: &mut String, proof: &PassesProof) {
     let readers: Vec<_> = proof.readers.iter().map(ToString::to_string).collect();
@@ -134,6 +139,7 @@ fn passes(head: &mut String, proof: &PassesProof) {
     if let Some(validator) = &proof.validator {
         let _ = writeln!(head, "// {validator} accepts them.");
     }
+    in_browser(head, proof.browser.as_ref());
 }
 
 /// Describes how many pixels of all passes are equal.
@@ -146,8 +152,15 @@ pub(super) fn describe_passes(proof: &PassesProof) -> String {
     )
 }
 
+/// What a line of the terminal says of a browser's images, if there are any.
+pub(super) fn in_chromium(browser: Option<&(String, Rgb8Comparison)>) -> String {
+    browser.map_or_else(String::new, |(_, shown)| {
+        format!("; in Chromium {}", describe_browser(*shown))
+    })
+}
+
 /// Describes the difference between a browser's images.
-pub(super) fn describe_browser(shown: Rgb8Comparison) -> String {
+fn describe_browser(shown: Rgb8Comparison) -> String {
     let by = match format!("{:.2}", shown.max * 255.0).as_str() {
         _ if shown.max == 0.0 => String::new(),
         "0.00" => " by as much as 0.01/255".to_owned(),

@@ -573,9 +573,7 @@ impl Batch<'_> {
             ProofStatus::NotRequested => (Status::Converted, String::new()),
             ProofStatus::Proved(Proved::File(proof, readers)) => {
                 let mut message = header::describe_proof(proof);
-                if let Some((_, shown)) = readers.browser {
-                    let _ = write!(message, "; in Chromium {}", header::describe_browser(shown));
-                }
+                message += &header::in_chromium(readers.browser.as_ref());
                 message += &fallback;
                 (Status::Proved, message)
             }
@@ -589,6 +587,7 @@ impl Batch<'_> {
             }
             ProofStatus::ProvedPasses(proof) => {
                 let mut message = header::describe_passes(proof);
+                message += &header::in_chromium(proof.browser.as_ref());
                 if proof.readers.is_empty() {
                     let _ = write!(message, ", up to naga's {} writer", self.to.name());
                 }

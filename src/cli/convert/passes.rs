@@ -96,9 +96,6 @@ impl Settings<'_> {
                 style.name(),
                 Style::WgpuShadertoy.name()
             ),
-            Style::Plain | Style::WgpuShadertoy if self.browser.is_some() => {
-                "its image reads other passes, which --browser does not run; leave out --browser".to_owned()
-            }
             Style::Plain | Style::WgpuShadertoy => return Ok(()),
         };
         Err(Refusal::Message(refused, Exit::Error))

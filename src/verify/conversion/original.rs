@@ -7,13 +7,16 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 use toyproof_diagnostic::Deadline;
 use toyproof_eval::{Observed, Program, bound};
+use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{PlayedPasses, ShaderArtifact, Worker};
 use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Target};
 use toyproof_translate::FloatMode;
 
 use super::passes::{PASS_FRAMES, PASS_SIZES, PassComparison, Passes, ReadGraph};
-use super::prover::Unproved;
+use super::proof::Rgb8Comparison;
+use super::prover::{Unproved, in_browser};
+use super::{Source, Written};
 use crate::cpu::{Evaluated, Evaluator};
 use crate::playback::DevicePlayback;
 use crate::{EVALUATOR_TIME_FACTOR, Failure, within};
@@ -22,6 +25,8 @@ use crate::{EVALUATOR_TIME_FACTOR, Failure, within};
 pub(super) struct Original {
     frames: Vec<PlayedFrame>,
     pub(super) device: String,
+    /// Each pass in every frame, with the textures that it reads.
+    drawn: Vec<Vec<Frame>>,
     /// The undefined operation that occurs in most pixels of a pass in a frame, and that pass.
     pub(super) undefined_by: Option<(usize, Observed)>,
 }
@@ -75,12 +80,37 @@ impl Original {
             }
         }
         let observe = || observe(passes, &mut frames, timeout);
-        let undefined_by = within(pool, observe)?;
+        let Observations { drawn, undefined_by } = within(pool, observe)?;
         Ok(Self {
             frames,
             device,
+            drawn,
             undefined_by,
         })
+    }
+
+    /// Renders each pass and its conversion in a browser, in every frame from the textures that the original
+    /// read. Returns the browser's name and the comparison; none for languages that browsers do not run.
+    pub(super) fn compare_in_browser(
+        &self,
+        browser: &mut Chromium,
+        sources: &[Source],
+        written: &[&Written],
+    ) -> Result<Option<(String, Rgb8Comparison)>, Unproved> {
+        let mut all: Option<(String, Rgb8Comparison)> = None;
+        for (pass, (source, written)) in sources.iter().zip(written).enumerate() {
+            let undefined = self.frames.iter().map(|frame| frame.undefined[pass].clone());
+            let undefined: Vec<_> = undefined.collect();
+            let Some((name, shown)) = in_browser(browser, *source, written, &self.drawn[pass], &undefined)?
+            else {
+                return Ok(None);
+            };
+            match &mut all {
+                Some((_, all)) => all.add(shown),
+                None => all = Some((name, shown)),
+            }
+        }
+        Ok(all)
     }
 
     /// Renders what was read of a conversion, and compares each pass.
@@ -177,12 +207,16 @@ fn inputs(size: [u32; 2]) -> impl Iterator<Item = Frame> {
     })
 }
 
-/// Finds the undefined pixels of all passes and frames, and the undefined operation of most pixels.
-fn observe(
-    passes: &Passes,
-    frames: &mut [PlayedFrame],
-    timeout: Duration,
-) -> Result<Option<(usize, Observed)>, Failure> {
+/// What the evaluator found of all passes and frames.
+struct Observations {
+    /// Each pass in every frame, with the textures that it reads.
+    drawn: Vec<Vec<Frame>>,
+    /// The undefined operation that occurs in most pixels of a pass in a frame, and that pass.
+    undefined_by: Option<(usize, Observed)>,
+}
+
+/// Finds the undefined pixels of all passes and frames.
+fn observe(passes: &Passes, frames: &mut [PlayedFrame], timeout: Duration) -> Result<Observations, Failure> {
     let limit = timeout * EVALUATOR_TIME_FACTOR;
     let programs = passes
         .sources
@@ -197,7 +231,10 @@ fn observe(
         limit,
         rendered: Vec::new(),
         undefined: Vec::new(),
-        undefined_by: None,
+        observations: Observations {
+            drawn: vec![Vec::new(); programs.len()],
+            undefined_by: None,
+        },
     };
     let mut player = Player::new(passes.graph.clone(), observer);
     for frame in frames {
@@ -211,7 +248,7 @@ fn observe(
         player.render(&frame.inputs)?;
         frame.undefined = std::mem::take(&mut player.renderer_mut().undefined);
     }
-    Ok(player.renderer().undefined_by)
+    Ok(player.into_renderer().observations)
 }
 
 /// Finds the undefined pixels of passes; their textures are those that the driver rendered, so that it and the
@@ -225,7 +262,7 @@ struct Observer<'a> {
     rendered: Vec<Arc<Image>>,
     /// The undefined pixels of each pass of this frame.
     undefined: Vec<Vec<bool>>,
-    undefined_by: Option<(usize, Observed)>,
+    observations: Observations,
 }
 
 impl Renderer for Observer<'_> {
@@ -255,12 +292,15 @@ impl Renderer for Observer<'_> {
             return Err(Failure::LoopTruncated(observed.beyond_cap));
         }
         self.undefined.push(undefined);
+        self.observations.drawn[pass].push(frame);
         let faults = observed
             .faults
             .iter()
             .filter(|observed| observed.site.fault.is_undefined());
-        let most = faults.map(|&observed| (pass, observed)).chain(self.undefined_by);
-        self.undefined_by = most.max_by_key(|(_, observed)| observed.pixels);
+        let most = faults
+            .map(|&observed| (pass, observed))
+            .chain(self.observations.undefined_by);
+        self.observations.undefined_by = most.max_by_key(|(_, observed)| observed.pixels);
         let texture = Texture::from(Image::clone(&self.rendered[pass]));
         Ok(if over.levels() > 1 {
             texture.with_mipmaps()

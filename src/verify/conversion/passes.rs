@@ -10,7 +10,7 @@ use toyproof_image::{Image, Texture};
 use toyproof_player::{Graph, Target};
 
 use super::original::{Original, PlayedFrame};
-use super::proof::Runner;
+use super::proof::{Rgb8Comparison, Runner};
 use super::prover::{Prover, Reader, Unproved, fully_undefined, unobserved, validate};
 use super::{ConvertError, Converter, FallbackReason, Source, Written};
 
@@ -62,6 +62,8 @@ pub struct PassesProof {
     pub readers: Vec<Reader>,
     /// The name and version of the validator that accepts the files.
     pub validator: Option<String>,
+    /// The name and version of the browser that renders each pass like the original.
+    pub browser: Option<(String, Rgb8Comparison)>,
 }
 
 /// The comparison of a pass with its original, over all frames.
@@ -233,12 +235,17 @@ impl Prover<'_> {
             proofs.push(proof);
             readers.push(reader);
         }
+        let browser = match &mut self.browser {
+            Some(browser) => original.compare_in_browser(browser, passes.sources, written)?,
+            None => None,
+        };
         let proof = PassesProof {
             // There is at least one reader.
             passes: proofs.swap_remove(0),
             device: original.device,
             readers: if is_read { readers } else { Vec::new() },
             validator,
+            browser,
         };
         match original.undefined_by {
             Some((pass, by)) if proof.undefined() == proof.pixels() => {

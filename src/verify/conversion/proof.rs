@@ -251,6 +251,13 @@ impl Rgb8Comparison {
         }
         shown
     }
+
+    /// Includes the comparison of other frames.
+    pub(super) fn add(&mut self, other: Self) {
+        self.pixels += other.pixels;
+        self.differing += other.differing;
+        self.max = self.max.max(other.max);
+    }
 }
 
 /// The smallest difference that a screen shows; the last bits of two correct programs may change a color by

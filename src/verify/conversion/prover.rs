@@ -235,7 +235,7 @@ impl Prover<'_> {
             return Ok(Proved::Source(proof));
         }
         let browser = match &mut self.browser {
-            Some(browser) => in_browser(browser, source, written, &proof, &frames)?,
+            Some(browser) => in_browser(browser, source, written, &frames, &proof.undefined_at)?,
             None => None,
         };
         Ok(Proved::File(
@@ -370,29 +370,31 @@ pub(super) fn fully_undefined(by: Observed, files: &Files) -> Unproved {
     }
 }
 
-/// Renders a conversion and its original in a browser: their 8-bit colors may differ by at most 1/255. Returns
-/// the browser's name and the comparison; none for languages that browsers do not run.
-fn in_browser(
+/// Renders a conversion and its original in a browser: their 8-bit colors may differ by at most 1/255, except
+/// in the pixels of each frame that are undefined. Returns the browser's name and the comparison; none for
+/// languages that browsers do not run.
+pub(super) fn in_browser(
     browser: &mut Chromium,
     source: Source,
     written: &Written,
-    proof: &Proof,
     frames: &[Frame],
+    undefined: &[Vec<bool>],
 ) -> Result<Option<(String, Rgb8Comparison)>, Unproved> {
     let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
     if source.checked.reads_textures() && !source.checked.channels.iter().all(is_flat) {
         return Err(Unproved::BrowserChannel);
     }
     let original = browser::as_shadertoy(source.text());
+    let sampling = source.checked.sampling;
     let render_original = |browser: &mut Chromium| {
-        let images = browser.render(Text::Glsl(&original), frames);
+        let images = browser.render(Text::Glsl(&original), sampling, frames);
         images.map_err(Unproved::BrowserOriginal)
     };
     let (original, converted) = match written {
         Written::Wgsl(text, style) => {
-            let hosted = style.hosted(text);
+            let hosted = style.hosted_in(text, source.checked.stage);
             let original = render_original(browser)?;
-            let images = browser.render(Text::Wgsl(&hosted.text), frames);
+            let images = browser.render(Text::Wgsl(&hosted.text), sampling, frames);
             let images = images.map_err(Unproved::Browser)?;
             if hosted.upside_down {
                 (original, images.iter().map(Image::upside_down).collect())
@@ -407,12 +409,12 @@ fn in_browser(
         } => {
             let original = render_original(browser)?;
             let text = String::from_utf8_lossy(bytes);
-            let images = browser.render(Text::Glsl(&text), frames);
+            let images = browser.render(Text::Glsl(&text), sampling, frames);
             (original, images.map_err(Unproved::Browser)?)
         }
         Written::Naga { .. } | Written::Lowered(_) => return Ok(None),
     };
-    let shown = Rgb8Comparison::of(&original, &converted, &proof.undefined_at);
+    let shown = Rgb8Comparison::of(&original, &converted, undefined);
     if shown.differing > 0 {
         return Err(Unproved::BrowserDiffers(shown));
     }
