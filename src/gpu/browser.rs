@@ -81,6 +81,7 @@ uniform float iChannelTime[4];
 uniform vec3 iChannelResolution[4];
 uniform vec4 iMouse, iDate;
 uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
+uniform struct {{ sampler2D sampler; vec3 size; float time; int loaded; }} iCh0, iCh1, iCh2, iCh3;
 out vec4 shadertoy_out_color;
 #line 1
 {shader}

@@ -525,6 +525,21 @@ fn the_image_tab_has_assertions() {
     assert!(result.unwrap_err().contains("unknown function `st_assert`"));
 }
 
+#[test]
+fn the_image_tab_has_structures_of_channels() {
+    let image =
+        |expression: &str| format!("void mainImage(out vec4 c, in vec2 p) {{ c = vec4({expression}); }}");
+    let errors = |expression: &str| checked(&[("image", &image(expression))]).2.unwrap_err();
+    assert!(errors("iCh2.sizes").contains("`iCh2` has no member `sizes`; did you mean `size`?"));
+    assert!(errors("iCh2").contains("only members can be used"));
+    assert!(errors("iCh4.size").contains("`iCh4` is not declared"));
+    let (_, _, result) = checked_in_buffer(&image("iCh0.time"));
+    assert!(result.unwrap_err().contains("`iCh0` is not declared"));
+    // An author's variable of this name is his own.
+    let (_, _, result) = checked(&[("image", &format!("vec4 iCh0 = vec4(1); {}", image("iCh0.zzzz")))]);
+    assert!(result.is_ok());
+}
+
 fn checked_in_buffer(buffer: &str) -> (Project, Files, Result<CheckedProject, String>) {
     checked(&[("image", PLAIN), ("buffer-a", buffer)])
 }

@@ -263,6 +263,12 @@ static PROGRAMS: &[(&str, &str, f64)] = &[
     ),
     (
         "",
+        "float zero = p.x - p.y, nan = zero / zero; o.x = min(nan, 1.0) + 10.0 * min(2.0, nan) + 100.0 * max(nan, 3.0) + 1000.0 * max(4.0, nan) \
+      + 10000.0 * clamp(nan, 5.0, 6.0);",
+        54_321.0,
+    ),
+    (
+        "",
         "o.x = uintBitsToFloat(floatBitsToUint(p.x) + (1u << 23)) + float(floatBitsToInt(1.0) >> 23);",
         128.0,
     ),

@@ -76,10 +76,9 @@ apply! {
     MulAdd(a: F, b: F, c: F) F = |noise| a.mul(b, noise).add(c, noise);
     MulSub(a: F, b: F, c: F) F = |noise| a.mul(b, noise).sub(c, noise);
     SubMul(a: F, b: F, c: F) F = |noise| c.sub(a.mul(b, noise), noise);
-    // For zeros of different signs the second operand, as in lavapipe and SwiftShader. So it is if an operand
-    // is NaN, as in SwiftShader; lavapipe returns the other one.
-    Min(a: F, b: F) F = |_| if a < b { a } else { b };
-    Max(a: F, b: F) F = |_| if a > b { a } else { b };
+    // For zeros of different signs the second operand, and of NaN and a number the number, as in lavapipe.
+    Min(a: F, b: F) F = |_| if a < b || b.is_nan() { a } else { b };
+    Max(a: F, b: F) F = |_| if a > b || b.is_nan() { a } else { b };
     Neg(a: F) F = |_| a.neg();
     Abs(a: F) F = |_| a.abs();
     Sqrt(a: F) F = |noise| a.sqrt(noise);

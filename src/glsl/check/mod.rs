@@ -5,6 +5,7 @@
 
 mod access;
 mod call;
+mod channel_input;
 mod declare;
 mod fixit;
 mod function;

@@ -127,6 +127,16 @@ impl Parser<'_> {
         Ok(self.check.field(base, name, at))
     }
 
+    /// Parses `.size` after `iCh0`.
+    fn channel_member(&mut self, channel: u8, input: Place) -> Parsed<ExprId> {
+        if !self.is(Punctuator::Dot) {
+            return Ok(self.check.unselected_channel_input(channel, input));
+        }
+        self.next();
+        let (member, at) = self.name()?;
+        Ok(self.check.channel_member(channel, member, input.to(at)))
+    }
+
     fn primary(&mut self) -> Parsed<ExprId> {
         let token = self.token();
         match token.kind {
@@ -158,6 +168,9 @@ impl Parser<'_> {
                 Word::Reserved if !self.check.is_declared(symbol) => self.unexpected("an expression"),
                 Word::Name | Word::Reserved => {
                     self.next();
+                    if let Some(channel) = self.check.channel_input(symbol) {
+                        return self.channel_member(channel, token.at);
+                    }
                     if !self.is(Punctuator::LeftParen) {
                         return Ok(self.check.name(symbol, token.at));
                     }

@@ -12,7 +12,7 @@ use super::edits::{Constants, candidates, donor_candidates};
 use super::probe::Probes;
 use super::shader::Shader;
 use super::trials::Trial;
-use super::under_test::{ShaderUnderTest, WAVE};
+use super::under_test::{ShaderUnderTest, UNLIMITED, WAVE};
 use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
 use crate::mistake::NoisyPixel;
 use crate::{Case, CheckResult};
@@ -149,7 +149,9 @@ struct Found {
 impl Search<'_> {
     /// Searches for edits after which the probes are right: single ones, donors, then pairs.
     fn run(&mut self, probes: &Probes, budget: f64) {
-        let Some(mut tested) = ShaderUnderTest::new(self.case, self.shader, probes, budget, self.deadline)
+        // The check has rendered the shader, so its loops end.
+        let Some(mut tested) =
+            ShaderUnderTest::new(self.case, self.shader, probes, UNLIMITED, budget, self.deadline)
         else {
             return;
         };
@@ -264,8 +266,8 @@ impl Search<'_> {
     }
 
     /// Tries a second edit after each of the most promising first ones.
-    fn pairs(&mut self, tested: &ShaderUnderTest, probes: &Probes, partial: Vec<Trial>, mut budget: f64) {
-        let firsts = firsts(tested, partial);
+    fn pairs(&mut self, whole: &ShaderUnderTest, probes: &Probes, partial: Vec<Trial>, mut budget: f64) {
+        let firsts = firsts(whole, partial);
         let count = firsts.len();
         for (at, first) in firsts.iter().enumerate() {
             if budget <= 0.0 || Instant::now() >= self.deadline {
@@ -280,6 +282,7 @@ impl Search<'_> {
                 self.case,
                 &shader,
                 probes,
+                whole.max_iterations,
                 budget / (count - at) as f64,
                 self.deadline,
             ) else {

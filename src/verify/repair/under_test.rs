@@ -36,6 +36,9 @@ pub(super) const WAVE: usize = 8 * GROUP;
 const ITERATION_FACTOR: u32 = 8;
 const MIN_ITERATIONS: u32 = 2000;
 
+/// A number of loop iterations that is no limit.
+pub(super) const UNLIMITED: u32 = u32::MAX >> 4;
+
 /// The time limit for compiling a group.
 const COMPILE_LIMIT: Duration = Duration::from_secs(2);
 
@@ -62,7 +65,8 @@ pub(super) struct ShaderUnderTest<'a> {
     deadline: Instant,
     /// The colors of the shader at the probes.
     before: Vec<[f64; 3]>,
-    max_iterations: u32,
+    /// The number of loop iterations after which an edited pixel is given up.
+    pub(super) max_iterations: u32,
     /// The suspicion of each site and of each statement.
     sites: Vec<Suspicion>,
     statements: Vec<Suspicion>,
@@ -76,12 +80,13 @@ pub(super) struct ShaderUnderTest<'a> {
 type Worked<T> = (Vec<T>, f64);
 
 impl<'a> ShaderUnderTest<'a> {
-    /// Evaluates the shader at the probes and measures how suspicious its parts are; none if it cannot be
-    /// evaluated, or is right at all probes.
+    /// Evaluates the shader at the probes, with at most so many loop iterations in a pixel, and measures how
+    /// suspicious its parts are; none if it cannot be evaluated, or is right at all probes.
     pub(super) fn new(
         case: &'a Case<'a>,
         shader: &'a Shader<'a>,
         probes: &Probes,
+        max_iterations: u32,
         budget: f64,
         deadline: Instant,
     ) -> Option<Self> {
@@ -91,7 +96,7 @@ impl<'a> ShaderUnderTest<'a> {
             probes: probes.clone(),
             deadline,
             before: Vec::new(),
-            max_iterations: u32::MAX >> 4,
+            max_iterations,
             sites: Vec::new(),
             statements: Vec::new(),
             work: 0.0,
