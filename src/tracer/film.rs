@@ -1,52 +1,14 @@
-//! From the samples of a pixel to its color: tone mapping, means over other sets of samples, adaptive
-//! sampling.
+//! From the samples of a pixel to its color: means over other sets of samples, adaptive sampling.
 
 use rayon::prelude::*;
 use toyproof_image::Image;
-use toyproof_scene::{Film, Integrator, Sampler, ToneMap};
+use toyproof_scene::{Integrator, Sampler};
 
 use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream};
+use crate::transfer::{inverse_tone_map, tone_map, tone_map_slope};
 use crate::{Kernel, Tracer, tile};
-
-/// Applies the tone mapping operator and then gamma to one component. The result is monotonic.
-pub(super) fn tone_map<T: Real>(film: &Film, component: T) -> T {
-    let mapped = match film.tone_map {
-        ToneMap::None => component,
-        ToneMap::Reinhard => component / (component + T::one()),
-    };
-    if film.gamma == 1.0 {
-        mapped
-    } else {
-        mapped.power(T::from_f64(film.gamma.recip()))
-    }
-}
-
-/// Inverts [`tone_map`]; infinite for values that the operator cannot produce.
-pub(super) fn inverse_tone_map(film: &Film, tone_mapped: f64) -> f64 {
-    let mapped = if film.gamma == 1.0 {
-        tone_mapped
-    } else {
-        tone_mapped.max(0.0).powf(film.gamma)
-    };
-    match film.tone_map {
-        ToneMap::None => mapped,
-        ToneMap::Reinhard if mapped < 1.0 => mapped / (1.0 - mapped),
-        ToneMap::Reinhard => f64::INFINITY,
-    }
-}
-
-/// Computes the derivative of [`tone_map`] by central differences. Components below `MIN_COMPONENT`, where
-/// the derivative of the gamma curve is unbounded, get the derivative at `MIN_COMPONENT`.
-pub(super) fn tone_map_slope(film: &Film, component: f64) -> f64 {
-    const MIN_COMPONENT: f64 = 1e-3;
-    const RELATIVE_STEP: f64 = 1e-4;
-    let at = component.max(MIN_COMPONENT);
-    let [low, high] =
-        [at * (1.0 - RELATIVE_STEP), at * (1.0 + RELATIVE_STEP)].map(|component| tone_map(film, component));
-    (high - low) / (2.0 * RELATIVE_STEP * at)
-}
 
 impl Tracer<f64> {
     /// Returns the sampler of the scene, or `None` if it takes the pixel centers.
@@ -268,35 +230,5 @@ impl<T: Real> Tracer<T> {
             sum = sum + self.sample(sample, &Exact);
         }
         (sum / T::from_f64(f64::from(count))).to_array().map(Real::to_f64)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn inverse_tone_map_inverts_and_slope_is_the_derivative() {
-        for (operator, gamma) in [
-            (ToneMap::None, 1.0),
-            (ToneMap::Reinhard, 1.0),
-            (ToneMap::Reinhard, 2.2),
-        ] {
-            let film = Film {
-                size: [1, 1],
-                samples: 1,
-                sampler: Sampler::Center,
-                max_depth: 1,
-                integrator: Integrator::Whitted,
-                tone_map: operator,
-                gamma,
-            };
-            for component in [0.01, 0.3, 1.0, 7.0] {
-                let tone_mapped = tone_map(&film, component);
-                assert!((inverse_tone_map(&film, tone_mapped) - component).abs() < 1e-9 * component);
-                let rise = tone_map(&film, component + 1e-6) - tone_mapped;
-                assert!((rise / 1e-6 / tone_map_slope(&film, component) - 1.0).abs() < 1e-3);
-            }
-        }
     }
 }

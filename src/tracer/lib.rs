@@ -37,6 +37,7 @@ mod spheres;
 #[cfg(test)]
 mod tests;
 mod tile;
+mod transfer;
 mod world;
 
 use std::ops::Range;
@@ -222,7 +223,7 @@ impl<T: Real> Tracer<T> {
             sum = sum + self.sample(sample, &Exact);
         }
         let mean = sum / T::from_f64(f64::from(count));
-        mean.to_array().map(|c| film::tone_map(&self.film, c))
+        mean.to_array().map(|c| transfer::tone_map(&self.film, c))
     }
 
     fn sample(&self, sample: Sample, policy: &impl RayEpsilonPolicy<T>) -> T::Vec3 {

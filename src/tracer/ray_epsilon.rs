@@ -12,7 +12,7 @@ use crate::real::Real;
 use crate::sampler::{Sample, SampleStream};
 use crate::shape::Primitive;
 use crate::world::World;
-use crate::{Kernel, Tracer, film};
+use crate::{Kernel, Tracer, transfer};
 
 /// How secondary rays start and how shadow rays treat lights. [`Exact`] compiles to no code.
 pub(super) trait RayEpsilonPolicy<T: Real> {
@@ -266,7 +266,7 @@ impl Tracer<f64> {
                 sum.high[i] += range.high[i];
             }
         }
-        let mean = |total: f64| film::tone_map(&self.film, total / f64::from(count));
+        let mean = |total: f64| transfer::tone_map(&self.film, total / f64::from(count));
         ColorRange {
             low: sum.low.map(mean),
             high: sum.high.map(mean),
@@ -305,7 +305,7 @@ impl Tracer<f64> {
             sum += self.sample(sample, epsilons);
         }
         let mean = sum / f64::from(count);
-        mean.to_array().map(|c| film::tone_map(&self.film, c))
+        mean.to_array().map(|c| transfer::tone_map(&self.film, c))
     }
 
     /// Returns the families of epsilons that a shader of the scene may use: offsets along the normal or along

@@ -10,8 +10,9 @@ use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream, Strata, centered};
 use crate::spheres::{NO_SURFACE, PACKET_RAYS, Packet, PacketHits};
+use crate::transfer::tone_map_all;
 use crate::world::PathState;
-use crate::{Kernel, Tracer, film};
+use crate::{Kernel, Tracer};
 
 /// Side of a tile in pixels.
 pub(super) const TILE_SIDE: u32 = 8;
@@ -60,9 +61,11 @@ impl<T: Real> Tracer<T> {
         let count = T::from_f64(f64::from(self.film.samples));
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, self.film.sampler, 0);
+            let means: [[T; 3]; PACKET_RAYS] = sums.map(|sum| (sum / count).to_array());
+            let mut components: [T; 3 * PACKET_RAYS] = std::array::from_fn(|at| means[at / 3][at % 3]);
+            tone_map_all(&self.film, self.level, &mut components);
             tile.for_each_pixel(self.film.size[0], |at, in_band| {
-                let mean = (sums[at] / count).to_array();
-                let [r, g, b] = mean.map(|c| film::tone_map(&self.film, c).to_f64() as f32);
+                let [r, g, b] = [0, 1, 2].map(|axis| components[3 * at + axis].to_f64() as f32);
                 pixels[in_band] = [r, g, b, 1.0];
             });
         }
