@@ -1,15 +1,24 @@
-/* Embree's sphere geometry, timed on the caller's rays.
+/* Embree, timed on the caller's rays: its own sphere geometry, and a user geometry whose callback intersects a whole packet
+ * with a sphere, which the compiler vectorizes.
  *
  * Standard input, binary, in the machine's byte order: the numbers of spheres and rays (two uint32), the spheres (x, y, z,
  * radius), the rays (origin, direction, nearest t), all float32. Then commands, a byte each:
  *   1  meet all rays one by one      8  eight at a time       i  the number of each ray's sphere
+ *   u  user geometry: sixteen at a time, 8 by 2 pixels of an image that is WIDTH pixels wide     j  as i, of the last command
  * Standard output: the seconds of processor time that building took, then for each command the seconds (float64), or for i
  * uint32s, UINT32_MAX for none. */
 #include <embree3/rtcore.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
+enum { WIDTH = 640, PACKET = 16 };
 
 static double now(void) {
     struct timespec t;
@@ -26,7 +35,57 @@ static void tell(const void *from, size_t size, size_t count) {
     fflush(stdout);
 }
 
+/* Of each sphere: x, y, z, radius. */
+static float (*sphere)[4];
+
+static void bounds(const struct RTCBoundsFunctionArguments *of) {
+    const float *s = sphere[of->primID];
+    *of->bounds_o = (struct RTCBounds){.lower_x = s[0] - s[3], .lower_y = s[1] - s[3], .lower_z = s[2] - s[3],
+        .upper_x = s[0] + s[3], .upper_y = s[1] + s[3], .upper_z = s[2] + s[3]};
+}
+
+/* Intersects a packet of N rays, whose fields are arrays in the order of RTCRayHitN. The discriminant is that of the point of
+ * the ray nearest to the center. Directions have unit length. */
+static inline __attribute__((always_inline)) void intersect_packet(const struct RTCIntersectFunctionNArguments *of, int n) {
+    const float *s = sphere[of->primID], x = s[0], y = s[1], z = s[2], radius2 = s[3] * s[3];
+    const int *valid = of->valid;
+    uint32_t id = of->primID;
+    float *ox = (float *)of->rayhit, *oy = ox + n, *oz = oy + n, *tnear = oz + n, *dx = tnear + n, *dy = dx + n, *dz = dy + n;
+    float *tfar = dz + 2 * n;
+    uint32_t *prim = (uint32_t *)(tfar + 9 * n), *geom = prim + n;
+#pragma GCC ivdep
+    for (int i = 0; i < n; i++) {
+        float cx = x - ox[i], cy = y - oy[i], cz = z - oz[i], along = cx * dx[i] + cy * dy[i] + cz * dz[i];
+        float fx = cx - along * dx[i], fy = cy - along * dy[i], fz = cz - along * dz[i];
+        float disc = radius2 - (fx * fx + fy * fy + fz * fz), half = sqrtf(disc < 0 ? 0 : disc);
+        float near = along - half, t = near > tnear[i] ? near : along + half;
+        int is_hit = (valid[i] != 0) & (disc >= 0) & (t > tnear[i]) & (t < tfar[i]);
+        tfar[i] = is_hit ? t : tfar[i];
+        prim[i] = is_hit ? id : prim[i];
+        geom[i] = is_hit ? 0 : geom[i];
+    }
+}
+
+static void intersect(const struct RTCIntersectFunctionNArguments *of) {
+    switch (of->N) {
+    case 16: return intersect_packet(of, 16);
+    case 8: return intersect_packet(of, 8);
+    case 4: return intersect_packet(of, 4);
+    case 1: return intersect_packet(of, 1);
+    default: abort();
+    }
+}
+
+/* A packet's rays in the order of its pixels: two rows of eight. */
+static uint32_t pixel(uint32_t packet, int i) {
+    uint32_t in_row = WIDTH / 8, row = packet / in_row, column = packet % in_row;
+    return (2 * row + i / 8) * WIDTH + 8 * column + i % 8;
+}
+
 int main(void) {
+#ifdef __SSE__
+    _mm_setcsr(_mm_getcsr() | 0x8040); /* Embree's manual: denormals are zero. */
+#endif
     uint32_t counts[2];
     take(counts, sizeof counts, 1);
     uint32_t spheres = counts[0], rays = counts[1];
@@ -38,7 +97,13 @@ int main(void) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     float *points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, spheres);
     take(points, 16, spheres);
+    sphere = (float(*)[4])points;
     take(ray, sizeof *ray, rays);
+    uint32_t packets = rays / PACKET;
+    float(*packed)[7][PACKET] = aligned_alloc(64, (packets + 1) * sizeof *packed);
+    for (uint32_t packet = 0; packet < packets; packet++)
+        for (int i = 0; i < PACKET; i++)
+            for (int part = 0; part < 7; part++) packed[packet][part][i] = ray[pixel(packet, i) % rays][part];
     double start = now();
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
@@ -46,9 +111,19 @@ int main(void) {
     double seconds = now() - start;
     tell(&seconds, sizeof seconds, 1);
 
+    RTCScene user_scene = rtcNewScene(device);
+    RTCGeometry user = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(user, spheres);
+    rtcSetGeometryBoundsFunction(user, (RTCBoundsFunction)bounds, 0);
+    rtcSetGeometryIntersectFunction(user, intersect);
+    rtcCommitGeometry(user);
+    rtcAttachGeometry(user_scene, user);
+    rtcCommitScene(user_scene);
+
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    int all[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+    _Alignas(64) int all[PACKET];
+    for (int i = 0; i < PACKET; i++) all[i] = -1;
     for (int command; (command = getchar()) != EOF;) {
         start = now();
         if (command == '8') {
@@ -67,7 +142,27 @@ int main(void) {
                 for (int i = 0; i < 8; i++)
                     ids[at + i] = hit.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? UINT32_MAX : hit.hit.primID[i];
             }
-        } else {
+        } else if (command == 'u') {
+            context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+            for (uint32_t packet = 0; packet < packets; packet++) {
+                struct RTCRayHit16 hit;
+                memcpy(hit.ray.org_x, packed[packet][0], sizeof hit.ray.org_x);
+                memcpy(hit.ray.org_y, packed[packet][1], sizeof hit.ray.org_y);
+                memcpy(hit.ray.org_z, packed[packet][2], sizeof hit.ray.org_z);
+                memcpy(hit.ray.dir_x, packed[packet][3], sizeof hit.ray.dir_x);
+                memcpy(hit.ray.dir_y, packed[packet][4], sizeof hit.ray.dir_y);
+                memcpy(hit.ray.dir_z, packed[packet][5], sizeof hit.ray.dir_z);
+                memcpy(hit.ray.tnear, packed[packet][6], sizeof hit.ray.tnear);
+                for (int i = 0; i < PACKET; i++) {
+                    hit.ray.tfar[i] = 1e30f, hit.ray.mask[i] = -1, hit.ray.flags[i] = 0, hit.ray.time[i] = 0;
+                    hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID, hit.hit.primID[i] = UINT32_MAX;
+                }
+                rtcIntersect16(all, user_scene, &context, &hit);
+                uint32_t at = pixel(packet, 0);
+                memcpy(ids + at, hit.hit.primID, 32);
+                memcpy(ids + at + WIDTH, hit.hit.primID + 8, 32);
+            }
+        } else if (command != 'j') {
             context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
             for (uint32_t at = 0; at < rays; at++) {
                 const float *r = ray[at];
@@ -79,7 +174,7 @@ int main(void) {
             }
         }
         seconds = now() - start;
-        if (command == 'i') tell(ids, sizeof *ids, rays);
+        if (command == 'i' || command == 'j') tell(ids, sizeof *ids, rays);
         else tell(&seconds, sizeof seconds, 1);
     }
     return 0;

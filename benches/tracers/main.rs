@@ -158,10 +158,10 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
         "Shuffled: as many rays from what was met in any direction. Lavapipe paints the exported shader, and so does the picture.\n"
     );
     println!(
-        "| spheres | f32 | f64 | picture f32 | f64 | Embree 1 | 8 | lavapipe | Embree 8 / f32 | lavapipe / f32 | / f64 \
+        "| spheres | f32 | f64 | picture f32 | f64 | Embree 1 | 8 | user geometry 16 | lavapipe | Embree 8 / f32 | 16 / f32 | lavapipe / f32 | / f64 \
          | shuffled f32 | f64 | Embree 1 | f32 / Embree | other ids f32 | Embree |"
     );
-    println!("|{}", "---|".repeat(17));
+    println!("|{}", "---|".repeat(19));
     for &count in counts {
         let scene = spheres(count, Model::Facing);
         let [primary, shuffled] = rays(&scene);
@@ -172,9 +172,10 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
             .map(|program| [&primary, &shuffled].map(|rays| Embree::new(program, &scene, &plain(rays))));
         let mut renderer = (count <= MOST_IN_A_SHADER).then(|| renderer(&scene)).flatten();
         let times = in_turns(|| {
-            let theirs = embree.as_mut().map_or([f64::NAN; 3], |[primary, shuffled]| {
-                [primary.one_by_one(), primary.by_eights(), shuffled.one_by_one()]
-                    .map(|seconds| 1e3 * seconds)
+            let theirs = embree.as_mut().map_or([f64::NAN; 4], |[primary, shuffled]| {
+                let of_primary = [primary.one_by_one(), primary.by_eights(), primary.by_sixteens()];
+                let [one, eight, sixteen] = of_primary;
+                [one, eight, sixteen, shuffled.one_by_one()].map(|seconds| 1e3 * seconds)
             });
             let gpu = renderer.as_mut().map_or(f64::NAN, |renderer| {
                 time(|| renderer.render().expect("it compiled"))
@@ -186,10 +187,11 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
                 time(|| double.render(|| ())),
                 theirs[0],
                 theirs[1],
+                theirs[2],
                 gpu,
                 time(|| meet_all(&single, &shuffled32)),
                 time(|| meet_all(&double, &shuffled64)),
-                theirs[2],
+                theirs[3],
             ]
         });
         let [
@@ -199,6 +201,7 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
             picture64,
             one,
             eight,
+            sixteen,
             gpu,
             other32,
             other64,
@@ -207,12 +210,18 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
         let exact = double.surfaces();
         let wrong = |numbers: &[u32]| numbers.iter().zip(&exact).filter(|(a, b)| a != b).count();
         let theirs = embree.as_mut().map_or("–".to_owned(), |[primary, _]| {
-            wrong(&primary.numbers()).to_string()
+            let sixteen = wrong(&primary.numbers_by_sixteens());
+            format!("{}, user geometry {sixteen}", wrong(&primary.numbers()))
         });
-        let numbers = [f32, f64, picture32, picture64, one, eight, gpu]
+        let numbers = [f32, f64, picture32, picture64, one, eight, sixteen, gpu]
             .map(cell)
             .join(" | ");
-        let ratios = [ratio(eight, f32), ratio(gpu, f32), ratio(gpu, f64)].join(" | ");
+        let ratios = [eight, sixteen, gpu]
+            .map(|time| ratio(time, f32))
+            .into_iter()
+            .chain([ratio(gpu, f64)])
+            .collect::<Vec<_>>()
+            .join(" | ");
         let others = [cell(other32), cell(other64), cell(other)].join(" | ");
         println!(
             "| {count} | {numbers} | {ratios} | {others} | {} | {} | {theirs} |",

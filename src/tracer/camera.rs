@@ -93,7 +93,12 @@ impl<T: Real> Camera<T> {
 
     /// Creates a packet of such rays.
     pub(super) fn packet(&self, [x, y]: &[[T; PACKET_RAYS]; 2], level: Level) -> Packet<T> {
-        let mut directions = self.forward.to_array().map(|component| [component; PACKET_RAYS]);
+        let [x_forward, y_forward, z_forward] = self.forward.to_array();
+        let mut directions = [
+            [x_forward; PACKET_RAYS],
+            [y_forward; PACKET_RAYS],
+            [z_forward; PACKET_RAYS],
+        ];
         let origins = match self.projection {
             ScreenProjection::Pinhole { screen_distance } => {
                 let kernel = PinholeDirections {

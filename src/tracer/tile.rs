@@ -5,7 +5,6 @@ use smallvec::SmallVec;
 use toyproof_scene::Sampler;
 
 use crate::camera::topmost_figure;
-use crate::ray::FirstHit;
 use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream, Strata, centered};
@@ -112,12 +111,12 @@ impl<T: Real> Tracer<T> {
                 }),
             };
             let packet = self.camera.packet(&screen, self.level);
-            let found = self.nearest_spheres(&packet);
+            let found = self.nearest_of_packet(&packet);
             let mut paths: SmallVec<[PathState<T>; PACKET_RAYS]> = SmallVec::new();
             let mut slots: SmallVec<[usize; PACKET_RAYS]> = SmallVec::new();
             tile.for_each_pixel(self.film.size[0], |at, _| {
                 let figure = topmost_figure(&self.figures, [screen[0][at], screen[1][at]]);
-                let first = self.first_hit(&packet, &found, at);
+                let first = found.get(at);
                 match (figure, first.get()) {
                     (Some(figure), _) => sums[at] = sums[at] + self.figures[figure].color,
                     // The background fills much of many images and is cheap to evaluate.
@@ -145,16 +144,12 @@ impl<T: Real> Tracer<T> {
     fn pixel_centers(&self, tile: Tile) -> [[T; PACKET_RAYS]; 2] {
         const SIDES: usize = TILE_SIDE as usize;
         let half = T::from_f64(0.5);
-        let [x, y]: [[T; SIDES]; 2] = [0, 1].map(|axis| {
-            std::array::from_fn(|at| {
-                let along = tile.pixel(at * (SIDES + 1))[axis];
-                T::from_f64(f64::from(along)) + half
-            })
-        });
-        let (x, y) = (
-            x.map(|x| self.camera.screen_x(x)),
-            y.map(|y| self.camera.screen_y(y)),
-        );
+        let center = |axis: usize, at: usize| {
+            let along = tile.pixel(at * (SIDES + 1))[axis];
+            T::from_f64(f64::from(along)) + half
+        };
+        let x: [T; SIDES] = std::array::from_fn(|at| self.camera.screen_x(center(0, at)));
+        let y: [T; SIDES] = std::array::from_fn(|at| self.camera.screen_y(center(1, at)));
         [
             std::array::from_fn(|at| x[at % SIDES]),
             std::array::from_fn(|at| y[at / SIDES]),
@@ -163,18 +158,19 @@ impl<T: Real> Tracer<T> {
 
     /// Maps positions in the image to the screen.
     fn screen_positions(&self, mut position: impl FnMut(usize) -> [T; 2]) -> [[T; PACKET_RAYS]; 2] {
-        let positions: [[T; 2]; PACKET_RAYS] = std::array::from_fn(|at| self.camera.screen(position(at)));
-        [0, 1].map(|axis| positions.map(|position| position[axis]))
+        let [mut xs, mut ys] = [[T::zero(); PACKET_RAYS]; 2];
+        for (at, (x, y)) in xs.iter_mut().zip(&mut ys).enumerate() {
+            [*x, *y] = self.camera.screen(position(at));
+        }
+        [xs, ys]
     }
 
-    /// Finds the nearest sphere for each ray of a packet.
-    fn nearest_spheres(&self, packet: &Packet<T>) -> PacketHits<T> {
-        let mut found = PacketHits::none();
+    /// Finds the first hits of a packet of camera rays.
+    fn nearest_of_packet(&self, packet: &Packet<T>) -> PacketHits<T> {
         match &self.kernel {
-            Kernel::Spheres(world) => world.spheres.nearest_of_packet(packet, &mut found),
-            Kernel::Shapes(world) => world.spheres.nearest_of_packet(packet, &mut found),
+            Kernel::Spheres(world) => world.nearest_of_packet(packet),
+            Kernel::Shapes(world) => world.nearest_of_packet(packet),
         }
-        found
     }
 
     /// Returns the radiance of a ray that misses everything.
@@ -183,15 +179,6 @@ impl<T: Real> Tracer<T> {
         match &self.kernel {
             Kernel::Spheres(world) => world.background.color(direction),
             Kernel::Shapes(world) => world.background.color(direction),
-        }
-    }
-
-    /// Finds the first hit of one ray of a packet, over spheres and all other shapes.
-    #[inline]
-    fn first_hit(&self, packet: &Packet<T>, found: &PacketHits<T>, at: usize) -> FirstHit<T> {
-        match &self.kernel {
-            Kernel::Spheres(world) => world.first_hit(packet, found, at),
-            Kernel::Shapes(world) => world.first_hit(packet, found, at),
         }
     }
 
@@ -207,9 +194,9 @@ impl<T: Real> Tracer<T> {
         bands.enumerate().for_each(|(band, surfaces)| {
             for tile in self.tiles(band as u32 * TILE_SIDE) {
                 let packet = self.camera.packet(&self.pixel_centers(tile), self.level);
-                let found = self.nearest_spheres(&packet);
+                let found = self.nearest_of_packet(&packet);
                 tile.for_each_pixel(width, |at, in_band| {
-                    if let Some((_, surface)) = self.first_hit(&packet, &found, at).get() {
+                    if let Some((_, surface)) = found.get(at).get() {
                         surfaces[in_band] = surface as u32;
                     }
                 });

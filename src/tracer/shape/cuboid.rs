@@ -3,9 +3,11 @@
 use toyproof_scene as scene;
 
 use super::Primitive;
+use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
 use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
+use crate::spheres::{Packet, PacketHits};
 
 /// A box: the intersection of three slabs, each of the points p with `|p[i]| ≤ half[i]` in local coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -82,6 +84,26 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
         (t > policy.t_min(true) && t.is_finite()).then_some(t)
     }
 
+    fn update_packet(
+        &self,
+        level: Level,
+        packet: &Packet<T>,
+        found: &mut PacketHits<T>,
+        number: u32,
+    ) -> bool {
+        let cuboid = *self;
+        T::run(
+            level,
+            CuboidHits {
+                cuboid,
+                packet,
+                found,
+                number,
+            },
+        );
+        true
+    }
+
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
         let point = ray.origin + ray.direction * t;
         let local = self.localize(point);
@@ -95,5 +117,46 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
                 outward
             },
         ]
+    }
+}
+
+/// Kernel for [`Primitive::update_packet`] of a box.
+struct CuboidHits<'a, T: Real> {
+    cuboid: Cuboid<T>,
+    packet: &'a Packet<T>,
+    found: &'a mut PacketHits<T>,
+    number: u32,
+}
+
+impl<T: Real> Kernel<T> for CuboidHits<'_, T> {
+    type Output = ();
+
+    /// As [`Cuboid::interval`], with the same operations.
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let Cuboid { center, axes, half } = self.cuboid;
+        let axes = axes.map(|axis| Wide3::splat(simd, axis.to_array()));
+        let center = Wide3::splat(simd, center.to_array());
+        let half = half.map(|half| Wide::splat(simd, half));
+        let [zero, infinity] = [T::zero(), T::infinity()].map(|number| Wide::splat(simd, number));
+        let intersect = |origin, direction: Wide3<T, S>, t_min: Wide<T, S>| {
+            let relative: Wide3<T, S> = origin - center;
+            let (mut enter, mut leave) = (-infinity, infinity);
+            for (axis, half) in axes.into_iter().zip(half) {
+                let (o, d) = (axis.dot(relative), axis.dot(direction));
+                let side = (-half).select(d.less(zero), half);
+                let (near, far) = ((-side - o) / d, (side - o) / d);
+                // A line parallel to the slab is within it or misses the box.
+                let within = o.max(-o).less(half);
+                let parallel = d.equal(zero);
+                let near = (-infinity).select(within, infinity).select(parallel, near);
+                enter = enter.max(near);
+                leave = leave.min(infinity.select(parallel, far));
+            }
+            let t = enter.select(t_min.less(enter), leave);
+            t.select(enter.less(leave), infinity)
+        };
+        self.found
+            .update_packet(simd, self.packet, self.number, intersect);
     }
 }

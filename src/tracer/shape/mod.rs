@@ -14,11 +14,11 @@ use std::fmt::Debug;
 use toyproof_scene::{self as scene, Equation};
 
 use self::cuboid::Cuboid;
-use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide};
+use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide, Wide3};
 use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
-use crate::spheres::IntersectSphere;
+use crate::spheres::{IntersectSphere, Packet, PacketHits};
 
 /// A surface that rays can intersect.
 pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
@@ -30,6 +30,12 @@ pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
 
     /// Returns the point at t and the normal there.
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2];
+
+    /// Updates the hits of the rays of a packet that do not start on the surface, if there is a kernel for it;
+    /// otherwise returns false.
+    fn update_packet(&self, _: Level, _: &Packet<T>, _: &mut PacketHits<T>, _number: u32) -> bool {
+        false
+    }
 
     /// Returns the sphere if it is one.
     fn sphere(&self) -> Option<&Sphere<T>> {
@@ -82,6 +88,20 @@ impl<T: Real> Primitive<T> for Shape<T> {
             Self::Quadric(quadric) => quadric.surface(ray, t),
             Self::Plane(plane) => plane.surface(ray, t),
             Self::Box(cuboid) => cuboid.surface(ray, t),
+        }
+    }
+
+    fn update_packet(
+        &self,
+        level: Level,
+        packet: &Packet<T>,
+        found: &mut PacketHits<T>,
+        number: u32,
+    ) -> bool {
+        match self {
+            Self::Plane(plane) => plane.update_packet(level, packet, found, number),
+            Self::Box(cuboid) => cuboid.update_packet(level, packet, found, number),
+            Self::Sphere(_) | Self::Quadric(_) => false,
         }
     }
 
@@ -326,9 +346,50 @@ impl<T: Real> Primitive<T> for Plane<T> {
         None
     }
 
+    fn update_packet(
+        &self,
+        level: Level,
+        packet: &Packet<T>,
+        found: &mut PacketHits<T>,
+        number: u32,
+    ) -> bool {
+        let plane = *self;
+        T::run(
+            level,
+            PlaneHits {
+                plane,
+                packet,
+                found,
+                number,
+            },
+        );
+        true
+    }
+
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
         let point = ray.origin + ray.direction * t;
         let facing = self.normal.dot(ray.direction) < T::zero();
         [point, if facing { self.normal } else { -self.normal }]
+    }
+}
+
+/// Kernel for [`Primitive::update_packet`] of a plane.
+struct PlaneHits<'a, T: Real> {
+    plane: Plane<T>,
+    packet: &'a Packet<T>,
+    found: &'a mut PacketHits<T>,
+    number: u32,
+}
+
+impl<T: Real> Kernel<T> for PlaneHits<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let normal = Wide3::splat(simd, self.plane.normal.to_array());
+        let point = Wide3::splat(simd, self.plane.point.to_array());
+        let intersect = |origin, direction, _| normal.dot(point - origin) / normal.dot(direction);
+        self.found
+            .update_packet(simd, self.packet, self.number, intersect);
     }
 }

@@ -76,17 +76,31 @@ impl<T: Real> Packet<T> {
         }
     }
 
-    /// Returns one ray.
+    /// Returns the number of rays, a multiple of the number of lanes.
+    pub(in super::super) fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Returns one ray. In a packet with surfaces, one that starts on none has the surface [`NO_SURFACE`].
     #[inline]
     pub(in super::super) fn ray(&self, at: usize) -> Ray<T> {
-        let of = |components: &[Each<T>; 3]| T::Vec3::from_array([0, 1, 2].map(|axis| components[axis][at]));
+        let of = |[x, y, z]: &[Each<T>; 3]| T::Vec3::new(x[at], y[at], z[at]);
         Ray {
             origin: match &self.origins {
                 Origins::Shared(origin) => T::Vec3::from_array(*origin),
                 Origins::Each(origins) => of(origins),
             },
             direction: of(&self.directions),
-            from: None,
+            from: self.from.as_ref().map(|from| from[at].untag() as usize),
+        }
+    }
+
+    /// Returns the origins of one ray per lane, from index `at` on.
+    #[inline(always)]
+    fn lane_origins<S: Lanes<T>>(&self, simd: S, at: usize) -> Wide3<T, S> {
+        match &self.origins {
+            Origins::Shared(origin) => Wide3::splat(simd, *origin),
+            Origins::Each(origins) => Wide3::load(simd, origins, at),
         }
     }
 }
@@ -133,6 +147,65 @@ impl<T: Real> PacketHits<T> {
     #[inline]
     pub(in super::super) fn is_before(&self, ray: usize, limit: T) -> bool {
         self.t[ray] < limit
+    }
+
+    /// Replaces the hit of a ray if the given one is nearer; see [`FirstHit::update`].
+    pub(in super::super) fn update(&mut self, ray: usize, t: Option<T>, surface: usize) {
+        let mut first = self.get(ray);
+        first.update(t, surface);
+        if let Some((t, surface)) = first.get() {
+            (self.t[ray], self.tags[ray]) = (t, T::tag(surface as u32));
+        }
+    }
+
+    /// Replaces the hits of all rays of a packet by those of a surface where these are nearer. `intersect` maps
+    /// origins and directions to t, which is not finite if there is no hit. Rays that start on the surface are
+    /// left out.
+    #[inline(always)]
+    pub(in super::super) fn update_packet<S: Lanes<T>>(
+        &mut self,
+        simd: S,
+        packet: &Packet<T>,
+        number: u32,
+        intersect: impl Fn(Wide3<T, S>, Wide3<T, S>, Wide<T, S>) -> Wide<T, S>,
+    ) {
+        let [t_min, infinity] = [packet.t_min, T::infinity()].map(|number| Wide::splat(simd, number));
+        let mut at = 0;
+        while at < packet.count {
+            let origins = packet.lane_origins(simd, at);
+            let mut t = intersect(origins, Wide3::load(simd, &packet.directions, at), t_min);
+            if let Some(from) = &packet.from {
+                let own = Wide::load(simd, &from[at..]).equal(Wide::splat(simd, T::tag(number)));
+                t = infinity.select(own, t);
+            }
+            self.update_lanes(simd, at, t.select(t_min.less(t), infinity), number);
+            at += S::COUNT;
+        }
+    }
+
+    /// Replaces the hits of one ray per lane, from index `at` on, where the given ones are nearer; at equal t,
+    /// the smaller index wins. Returns whether any t decreased.
+    #[inline(always)]
+    fn update_lanes<S: Lanes<T>>(&mut self, simd: S, at: usize, t: Wide<T, S>, number: u32) -> bool {
+        let before = Wide::load(simd, &self.t[at..]);
+        let nearer = t.less(before);
+        let nearer_bits = simd.bits(nearer);
+        let infinity = Wide::splat(simd, T::infinity());
+        let mut ties = simd.bits(t.less_or_equal(before)) & !nearer_bits & simd.bits(t.less(infinity));
+        if nearer_bits != 0 {
+            let tags = Wide::load(simd, &self.tags[at..]);
+            t.select(nearer, before).store(&mut self.t[at..]);
+            let tag = Wide::splat(simd, T::tag(number));
+            tag.select(nearer, tags).store(&mut self.tags[at..]);
+        }
+        while ties != 0 {
+            let ray = at + ties.trailing_zeros() as usize;
+            ties &= ties - 1;
+            if number < self.tags[ray].untag() {
+                self.tags[ray] = T::tag(number);
+            }
+        }
+        nearer_bits != 0
     }
 
     /// Returns the first hit of a ray.
@@ -381,23 +454,7 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
             t = other_root(simd, along, a, unit).select(own, t);
         }
         let t = t.select(t_min.less(t), infinity);
-        let before = Wide::load(simd, &self.found.t[at..]);
-        let nearer = t.less(before);
-        let nearer_bits = simd.bits(nearer);
-        let mut ties = simd.bits(t.less_or_equal(before)) & !nearer_bits & simd.bits(t.less(infinity));
-        if nearer_bits != 0 {
-            let tags = Wide::load(simd, &self.found.tags[at..]);
-            t.select(nearer, before).store(&mut self.found.t[at..]);
-            tag.select(nearer, tags).store(&mut self.found.tags[at..]);
-        }
-        while ties != 0 {
-            let ray = at + ties.trailing_zeros() as usize;
-            ties &= ties - 1;
-            if number < self.found.tags[ray].untag() {
-                self.found.tags[ray] = T::tag(number);
-            }
-        }
-        nearer_bits != 0
+        self.found.update_lanes(simd, at, t, number)
     }
 
     /// Pushes the children that any ray may reach.

@@ -159,6 +159,14 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         ray.from.filter(|_| policy.starts_on_surface())
     }
 
+    /// Returns that surface if it is not a sphere.
+    fn own_other(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<usize> {
+        if self.others.is_empty() {
+            return None;
+        }
+        Self::own_surface(ray, policy).filter(|&own| self.shapes[own].sphere().is_none())
+    }
+
     /// Creates the query for the spheres. The ray's own surface is excluded and tested separately.
     fn query(
         ray: &Ray<T>,
@@ -199,21 +207,34 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// Finds the first hit of one ray of a packet from the spheres that the packet hit and all other shapes.
-    #[inline]
-    pub(super) fn first_hit(&self, packet: &Packet<T>, found: &PacketHits<T>, at: usize) -> FirstHit<T> {
-        let first = found.get(at);
-        if self.others.is_empty() {
-            return first;
-        }
-        self.nearest_with_others(&packet.ray(at), first)
+    /// Finds the first hits of a packet of camera rays.
+    pub(super) fn nearest_of_packet(&self, packet: &Packet<T>) -> PacketHits<T> {
+        let mut found = PacketHits::none();
+        self.spheres.nearest_of_packet(packet, &mut found);
+        self.nearest_others_of_packet(packet, &mut found, &Exact);
+        found
     }
 
-    /// Out of line, so that scenes of spheres only keep `first` in registers.
-    #[inline(never)]
-    fn nearest_with_others(&self, ray: &Ray<T>, mut first: FirstHit<T>) -> FirstHit<T> {
-        self.nearest_other(ray, &mut first, &Exact);
-        first
+    /// Updates the hits of the rays of a packet by the shapes that are not spheres, except the surface on which a
+    /// ray starts.
+    pub(super) fn nearest_others_of_packet(
+        &self,
+        packet: &Packet<T>,
+        found: &mut PacketHits<T>,
+        policy: &impl RayEpsilonPolicy<T>,
+    ) {
+        for &other in &self.others {
+            let shape = &self.shapes[other];
+            if shape.update_packet(self.level, packet, found, other as u32) {
+                continue;
+            }
+            for at in 0..packet.len() {
+                let ray = packet.ray(at);
+                if ray.from != Some(other) {
+                    found.update(at, shape.intersect(&ray, policy), other);
+                }
+            }
+        }
     }
 
     /// Computes the surface point of a first hit.

@@ -419,21 +419,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         );
         let mut found = PacketHits::none();
         self.spheres.nearest_of_packet(&packet, &mut found);
-        for (ray, &at) in indices.iter().enumerate() {
-            paths[at].first = found.get(ray);
-        }
-        if self.others.is_empty() {
-            return;
-        }
-        for &at in indices {
+        self.nearest_others_of_packet(&packet, &mut found, policy);
+        for (at_packet, &at) in indices.iter().enumerate() {
             let path = &mut paths[at];
+            path.first = found.get(at_packet);
             let ray = &path.branch.ray;
-            let own = Self::own_surface(ray, policy).filter(|&own| self.shapes[own].sphere().is_none());
-            if let Some(own) = own {
+            if let Some(own) = self.own_other(ray, policy) {
                 path.first
                     .update(self.shapes[own].intersect_own(ray, policy), own);
             }
-            self.nearest_other(ray, &mut path.first, policy);
         }
     }
 
@@ -456,9 +450,10 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let packet = Packet::partial(owned_rays, policy.t_min(true));
         let mut found = PacketHits::before(rays.iter().map(|&(_, distance)| distance));
         self.spheres.nearest_of_packet(&packet, &mut found);
+        self.nearest_others_of_packet(&packet, &mut found, policy);
         for (at, (ray, distance)) in rays.iter().enumerate() {
-            let is_hidden =
-                found.is_before(at, *distance) || self.occluded_by_other(ray, *distance, None, policy);
+            let own = || self.shapes[self.own_other(ray, policy)?].intersect_own(ray, policy);
+            let is_hidden = found.is_before(at, *distance) || own().is_some_and(|t| t < *distance);
             hidden |= u64::from(is_hidden) << at;
         }
         hidden
