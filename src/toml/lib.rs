@@ -12,6 +12,7 @@
 //! assert!(errors.to_string().starts_with("a.toml:1:10: error[E0501]: `radius` must be a number"));
 //! ```
 
+mod moment;
 mod syntax;
 mod value;
 
@@ -23,6 +24,7 @@ use toml::de::{DeTable, DeValue};
 use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
 use toyproof_image::{MAX_PIXELS, MAX_SIDE, check_size};
 
+pub use self::moment::{Moment, days_since_1970};
 pub use self::syntax::diagnostic as syntax_error;
 use self::value::describe;
 pub use self::value::{Literal, Value};
@@ -285,6 +287,11 @@ impl<'r, 't> Table<'r, 't> {
         value
     }
 
+    /// Reports that a key is missing that this table must have, with an example of its value.
+    pub fn require(&mut self, key: &'static str, example: &str) {
+        self.report_missing(key, format!("add `{key} = {example}`"));
+    }
+
     /// Reports a missing key, unless an unknown one looks like a misspelling of it.
     fn report_missing(&mut self, key: &'static str, help: String) {
         self.missing.push((key, help));
@@ -361,6 +368,32 @@ impl<'r, 't> Table<'r, 't> {
             self.report_missing(key, help);
         }
         self.choice(key, what, choices)
+    }
+
+    /// Removes and returns the entries that have not been read, of a table whose keys are names that its
+    /// author chose. Those that are not strings are reported.
+    pub fn take_strings(&mut self) -> Vec<(String, String)> {
+        let mut strings = Vec::new();
+        for (name, value) in std::mem::take(&mut self.entries) {
+            match String::read(&value) {
+                Ok(value) => strings.push((name.into_inner().into_owned(), value)),
+                Err(mismatch) => {
+                    let name = name.get_ref();
+                    let message = format!("`{name}` must be a string, found {}", mismatch.found);
+                    let help = format!("for example `{name} = \"name\"`");
+                    self.reject_form(self.reader.span(mismatch.bytes), message, &help);
+                }
+            }
+        }
+        strings
+    }
+
+    /// Whether the value of a key is a table.
+    #[must_use]
+    pub fn has_table(&self, key: &str) -> bool {
+        self.entries
+            .get(key)
+            .is_some_and(|value| value.get_ref().is_table())
     }
 
     /// Removes the entries that have not been read, because what may be there is unknown.

@@ -17,6 +17,14 @@ pub struct Mismatch {
 }
 
 impl Mismatch {
+    /// A value, and what it is instead.
+    pub(super) fn new(value: &Spanned<DeValue>, found: String) -> Self {
+        Self {
+            found,
+            ..Self::of(value)
+        }
+    }
+
     fn of(value: &Spanned<DeValue>) -> Self {
         Self {
             bytes: value.span(),
@@ -191,10 +199,7 @@ fn list<T: Value + Copy, const N: usize>(value: &Spanned<DeValue>, unit: T) -> R
         return Err(Mismatch::of(value));
     };
     if values.len() != N {
-        return Err(Mismatch {
-            found: values.len().to_string(),
-            ..Mismatch::of(value)
-        });
+        return Err(Mismatch::new(value, values.len().to_string()));
     }
     let mut all = [unit; N];
     for (into, value) in all.iter_mut().zip(values.iter()) {
