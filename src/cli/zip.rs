@@ -6,6 +6,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc};
+use toyproof_toml::days_since_1970;
 
 const LOCAL_HEADER: u32 = 0x0403_4b50;
 const CENTRAL_HEADER: u32 = 0x0201_4b50;
@@ -20,16 +21,32 @@ const MAX_COMMENT: u64 = 0xffff;
 /// The largest directory that is read: about a million files.
 const MAX_DIRECTORY: u64 = 128 << 20;
 
+/// The field of sizes and offsets above 4 GiB.
+const LARGE_FIELD: u16 = 1;
+/// The field of times in UTC, which Info-ZIP defines.
+const TIME_FIELD: u16 = 0x5455;
+
 const STORED: u16 = 0;
 const DEFLATED: u16 = 8;
 const ENCRYPTED: u16 = 1;
 const UTF8: u16 = 1 << 11;
+
+/// When a file was last changed, in seconds since 1970-01-01 00:00.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FileTime {
+    /// Of UTC.
+    Utc(i64),
+    /// Of the clock where the archive was written, to two seconds.
+    Local(i64),
+}
 
 /// A file of an archive.
 #[derive(Debug, Clone)]
 pub(super) struct Entry {
     /// The path in the archive, with `/` between components. It may be hostile.
     pub(super) name: String,
+    /// When it was last changed; none if the archive does not state it.
+    pub(super) modified: Option<FileTime>,
     flags: u16,
     method: u16,
     crc: u32,
@@ -185,7 +202,8 @@ fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
     }
     fields.bytes(4)?;
     let (flags, method) = (fields.u16()?, fields.u16()?);
-    fields.bytes(4)?;
+    let (time, date) = (fields.u16()?, fields.u16()?);
+    let mut modified = dos_time(date, time).map(FileTime::Local);
     let crc = fields.u32()?;
     let (mut compressed, mut size) = (fields.number(4)?, fields.number(4)?);
     let [name, extra, comment] = [fields.u16()?, fields.u16()?, fields.u16()?].map(usize::from);
@@ -196,24 +214,39 @@ fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
     fields.bytes(comment)?;
     while extra.0.len() >= 4 {
         let (id, length) = (extra.u16()?, extra.u16()?);
-        let mut large = Fields(extra.bytes(usize::from(length).min(extra.0.len()))?);
-        if id == 1 {
+        let mut field = Fields(extra.bytes(usize::from(length).min(extra.0.len()))?);
+        if id == LARGE_FIELD {
             for number in [&mut size, &mut compressed, &mut offset] {
                 if *number == u64::from(u32::MAX) {
-                    *number = large.number(8)?;
+                    *number = field.number(8)?;
                 }
             }
+        } else if id == TIME_FIELD && field.0.len() >= 5 && field.number(1)? & 1 == 1 {
+            modified = Some(FileTime::Utc(i64::from(field.u32()? as i32)));
         }
     }
     let name = decode_name(name, flags & UTF8 != 0);
     Ok((!name.ends_with(['/', '\\'])).then_some(Entry {
         name: name.replace('\\', "/"),
+        modified,
         flags,
         method,
         crc,
         compressed,
         offset,
     }))
+}
+
+/// The seconds since 1970 of a date and a time of DOS; none for one that does not exist, and for the first
+/// moment of the format, which programs write that state no time.
+fn dos_time(date: u16, time: u16) -> Option<i64> {
+    const NONE: [u16; 2] = [0x21, 0];
+    let part = |from: u16, at: u16, bits: u16| i64::from(from >> at & ((1 << bits) - 1));
+    let (year, month, day) = (1980 + part(date, 9, 7), part(date, 5, 4), part(date, 0, 5));
+    let (hour, minute, second) = (part(time, 11, 5), part(time, 5, 6), 2 * part(time, 0, 5));
+    let exists = (1..=12).contains(&month) && day >= 1 && hour < 24 && minute < 60 && second < 60;
+    (exists && [date, time] != NONE)
+        .then(|| 86_400 * days_since_1970(year, month, day) + 3600 * hour + 60 * minute + second)
 }
 
 /// The characters of code page 437 from 128.
@@ -344,6 +377,21 @@ mod tests {
             101,
             "more is not unpacked"
         );
+    }
+
+    #[test]
+    fn times_of_dos_are_local() {
+        // 2026-03-01 23:59:58.
+        let (date, time) = ((46 << 9) + (3 << 5) + 1, (23 << 11) + (59 << 5) + 29);
+        assert_eq!(dos_time(date, time), Some(1_772_409_598));
+        for (date, time) in [
+            (0x21, 0),
+            (0, 0),
+            ((46 << 9) + (13 << 5) + 1, 0),
+            (date, 25 << 11),
+        ] {
+            assert_eq!(dos_time(date, time), None, "{date:x} {time:x}");
+        }
     }
 
     #[test]
