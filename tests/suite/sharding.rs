@@ -66,7 +66,8 @@ fn the_merged_report_is_that_of_a_single_process() {
         .unwrap();
     }
     fs::write(folder.path().join("scene.toml"), SHADING.scene).unwrap();
-    let rest = ["--search", "1"];
+    fs::write(folder.path().join("rubric.toml"), "algorithm.points = 1").unwrap();
+    let rest = ["--search", "1", "--rubric", "rubric.toml"];
     let single = run(check_homework(folder.path()).args(rest).args(["--out", "out"]));
     let expected = (records(folder.path()), files(&folder.path().join("out")));
     assert!(expected.0.iter().any(|record| !record["fix"].is_null()));

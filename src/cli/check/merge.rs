@@ -1,9 +1,9 @@
 //! `toyproof merge`: the report of all shards of a batch.
 
 use std::collections::HashMap;
-use std::fs;
-use std::io;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::{fs, io, iter};
 
 use clap::Parser;
 use toyproof_diagnostic::{grouped, path_name, plural};
@@ -79,8 +79,7 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
         .map_err(|error| Problem::from(format!("the program's own file cannot be read: {error}")))?;
     let folders = read_folders(args, &program)?;
     let (_, first) = &folders[0];
-    let mut check = parse(&first.arguments)?;
-    check.out = Some(args.out.clone());
+    let mut check = parse(&first.arguments, &args.out)?;
     check.compare.clone_from(&args.compare);
     check.jobs = args.jobs;
     let earlier = earlier(check.compare.as_deref(), terminal).map_err(|()| None)?;
@@ -170,12 +169,19 @@ fn is_same_folder(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Parses the arguments of the command that checked the shards.
-fn parse(arguments: &[String]) -> Result<Args, Problem> {
-    let parsed = Cli::try_parse_from(std::iter::once("toyproof").chain(arguments.iter().map(String::as_str)));
-    match parsed.map(|cli| cli.command) {
+/// Parses the arguments of the command that checked the shards, with another folder for what it writes: some
+/// options require one.
+fn parse(arguments: &[String], out: &Path) -> Result<Args, Problem> {
+    const NAME: &str = "check";
+    let at = arguments.iter().position(|argument| argument == NAME);
+    let (before, after) = arguments.split_at(at.map_or(0, |at| at + 1));
+    let all = iter::once(OsString::from("toyproof"))
+        .chain(before.iter().map(OsString::from))
+        .chain(["--out".into(), out.into()])
+        .chain(after.iter().map(OsString::from));
+    match Cli::try_parse_from(all).map(|cli| cli.command) {
         Ok(Command::Check(check)) => Ok(check),
-        _ => Err(format!("the arguments in {MANIFEST_NAME} are not those of `toyproof check`").into()),
+        _ => Err(format!("the arguments in {MANIFEST_NAME} are not those of `toyproof {NAME}`").into()),
     }
 }
 
