@@ -3,9 +3,9 @@
 use toyproof_diagnostic::Severity;
 use toyproof_verify::compare::CheckSummary;
 
-use super::{Mark, Record, Repair, Rubric};
+use super::{Record, Repair, Rubrics};
 
-const COLUMNS: [&str; 24] = [
+const COLUMNS: [&str; 28] = [
     "shader",
     "scene",
     "reference",
@@ -30,16 +30,25 @@ const COLUMNS: [&str; 24] = [
     "errors",
     "warnings",
     "seconds",
+    "assignment",
+    "student",
+    "id",
+    "late_seconds",
 ];
 
 /// Formats the table; its first row names the columns. Checks that did not run are empty, and points without
 /// a rubric. `fix_line` is the line of the first edit.
 #[must_use]
-pub fn csv(records: &[Record], rubric: Option<&Rubric>) -> String {
-    let rows = records.iter().map(|record| row(record, rubric));
+pub fn csv(records: &[Record], rubrics: &Rubrics) -> String {
+    let rows = records.iter().map(|record| row(record, rubrics));
     let rows = [COLUMNS.map(str::to_owned)].into_iter().chain(rows);
-    rows.map(|row| row.map(|cell| quote(&cell)).join(",") + "\r\n")
-        .collect()
+    rows.map(|row| line(&row)).collect()
+}
+
+/// A row with its end.
+pub(super) fn line(cells: &[String]) -> String {
+    let cells: Vec<_> = cells.iter().map(|cell| quote(cell)).collect();
+    cells.join(",") + "\r\n"
 }
 
 /// Quotes a cell if needed.
@@ -51,12 +60,14 @@ fn quote(cell: &str) -> String {
     }
 }
 
-fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
-    let marks = rubric.map(|rubric| rubric.marks(record));
-    let sum = |of: fn(&Mark) -> f64| {
-        let points = marks.as_ref().map(|marks| marks.iter().map(of).sum::<f64>());
-        cell(points.map(|points| (100.0 * points).round() / 100.0))
-    };
+fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
+    let total = rubrics.total(record);
+    let submitted = record.submitted.as_ref();
+    // A submission that is late without a known time has a text here.
+    let late = record.late().map(|late| match late.seconds {
+        Some(seconds) => seconds.to_string(),
+        None => "unknown".to_owned(),
+    });
     let count = |severity| {
         let diagnostics = record.diagnostics.iter();
         diagnostics
@@ -77,8 +88,8 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
         cell(record.mistake.as_ref().map(|mistake| &mistake.id)),
         cell(record.fix.as_ref().map(|fix| fix.range.line)),
         escape_formula(&cell(record.fix.as_ref().map(Repair::summary))),
-        sum(|mark| mark.points),
-        sum(|mark| mark.of),
+        cell(total.map(|[points, _]| points)),
+        cell(total.map(|[_, of]| of)),
         cell(answers.into_iter().flatten().map(|answer| answer.pixels).next()),
         number(&record.algorithm, |answer| answer.differing),
         number(&record.algorithm, |answer| answer.ill_conditioned),
@@ -93,6 +104,10 @@ fn row(record: &Record, rubric: Option<&Rubric>) -> [String; COLUMNS.len()] {
         count(Severity::Error),
         count(Severity::Warning),
         format!("{:.3}", record.seconds.total()),
+        escape_formula(&cell(submitted.and_then(|one| one.assignment.as_ref()))),
+        escape_formula(&cell(submitted.map(|one| &one.student))),
+        escape_formula(&cell(submitted.and_then(|one| one.id.as_ref()))),
+        cell(late),
     ]
 }
 
@@ -101,7 +116,7 @@ fn cell<T: ToString>(value: Option<T>) -> String {
 }
 
 /// Prevents a spreadsheet from reading a text as a formula, by prefixing an apostrophe.
-fn escape_formula(text: &str) -> String {
+pub(super) fn escape_formula(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         format!("'{text}")
     } else {
@@ -112,6 +127,7 @@ fn escape_formula(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Rubric;
     use crate::report::record::samples::{correct, invalid};
     use crate::report::repair::samples::repaired;
 
@@ -119,23 +135,23 @@ mod tests {
     fn texts_are_quoted_and_formulas_are_escaped() {
         let mut hostile = invalid();
         hostile.shader = "=cmd|'/c calc'!A1,\"x\"\n.glsl".to_owned();
-        let table = csv(&[correct(), hostile], None);
+        let table = csv(&[correct(), hostile], &Rubrics::default());
         let mut lines = table.split("\r\n");
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), COLUMNS);
         assert_eq!(
             lines.next().unwrap(),
-            "correct,scene.toml,,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500"
+            "correct,scene.toml,,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500,,,,"
         );
         assert_eq!(
             lines.next().unwrap(),
-            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500"
+            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500,,,,"
         );
         assert_eq!(lines.collect::<Vec<_>>(), [""]);
     }
 
     #[test]
     fn a_fix_has_its_line_and_its_edits() {
-        let text = csv(&[repaired()], None);
+        let text = csv(&[repaired()], &Rubrics::default());
         assert!(
             text.contains(",wrong-operator,2,line 2: replace `b + c` with `b - c`,"),
             "{text}"
@@ -144,7 +160,7 @@ mod tests {
 
     #[test]
     fn a_rubric_adds_points() {
-        let text = csv(&[correct()], Some(&Rubric::of(1.0, 8.0, 1.0)));
+        let text = csv(&[correct()], &Some(Rubric::of(1.0, 8.0, 1.0)).into());
         assert!(text.contains(",10,10,1000,"), "{text}");
     }
 }

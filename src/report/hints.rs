@@ -45,7 +45,7 @@ mod tests {
         let rubric = Rubric::of(1.0, 8.0, 1.0);
         let records = [record];
         let mut texts = vec![
-            csv(&records, Some(&rubric)),
+            csv(&records, &Some(rubric.clone()).into()),
             junit(&records),
             sarif(&records),
             gradescope(&records, &rubric),

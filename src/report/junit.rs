@@ -31,7 +31,7 @@ fn test_case(record: &Record) -> TestCase {
             let failure = TestCaseStatus::non_success(NonSuccessKind::Failure);
             (Some(failure), kind.to_owned(), sentence)
         }
-        (status, _) => (status, record.verdict.to_string(), record.reason.clone()),
+        (status, _) => (status, record.verdict.to_string(), record.reason_and_lateness()),
     };
     let status = status.map(|mut status| {
         status

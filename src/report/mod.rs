@@ -1,6 +1,7 @@
 //! Reports of the findings, for people and for programs: one file per format, each a function of the records.
 
 mod assigned;
+mod class;
 mod csv;
 mod earlier;
 mod explanation;
@@ -14,11 +15,14 @@ mod reason;
 mod record;
 mod repair;
 mod rubric;
+mod rubrics;
 mod sarif;
+mod submitted;
 mod terminal;
 mod trace;
 
 pub use assigned::{FunctionRecord, RulesRecord, Violation};
+pub use class::ClassTable;
 pub use csv::csv;
 pub use earlier::{Change, Earlier};
 pub use explanation::{Explanation, explain, explanations};
@@ -34,7 +38,9 @@ pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
 #[cfg(feature = "lab")]
 pub(crate) use rubric::optional_points;
 pub use rubric::{Mark, Rubric, Visibility};
+pub use rubrics::Rubrics;
 pub use sarif::sarif;
+pub use submitted::{Late, Submitted};
 pub use terminal::{Detail, Layout, Tally, lines, place, summary};
 use terminal::{details, plain};
 pub use trace::{PixelTrace, TracedPixel};

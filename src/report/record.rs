@@ -11,7 +11,7 @@ use toyproof_verify::repair::SearchResult;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
-use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, Suspect};
+use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, Submitted, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -124,6 +124,9 @@ pub struct Record {
     /// The tests of functions that an assignment has.
     #[serde(default)]
     pub functions: Vec<FunctionRecord>,
+    /// Whose submission it is; null if no class is checked.
+    #[serde(default)]
+    pub submitted: Option<Submitted>,
     /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// The time of each stage.
@@ -155,6 +158,7 @@ impl Record {
             frames: None,
             rules: None,
             functions: Vec::new(),
+            submitted: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }

@@ -9,7 +9,7 @@ use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
 
 use super::frames::FrameChecks;
-use super::{Record, details, terminal};
+use super::{Late, Record, details, terminal};
 
 /// The maximum points of a check.
 const MAX_POINTS: u32 = 1_000_000;
@@ -28,6 +28,7 @@ pub struct Rubric {
     compiles: f64,
     algorithm: CheckPoints,
     precision: CheckPoints,
+    late: Option<LateDeduction>,
     /// Who sees the marks, and when.
     pub visibility: Visibility,
 }
@@ -56,12 +57,22 @@ pub enum Visibility {
     AfterPublished,
 }
 
+/// What a late submission loses.
+#[derive(Debug, Clone, Copy)]
+struct LateDeduction {
+    /// The share of the maximum points for each day, in percent; the last day may have only begun.
+    percent_per_day: f64,
+    /// The largest share, in percent.
+    max_percent: f64,
+}
+
 /// The points that a shader earned for one check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function.
+    /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function; `late`
+    /// for what a late submission loses.
     pub name: Cow<'static, str>,
-    /// The points earned, in [0, `of`], rounded to hundredths.
+    /// The points earned, in [0, `of`], rounded to hundredths; negative for `late`.
     pub points: f64,
     /// The maximum points.
     pub of: f64,
@@ -99,10 +110,12 @@ impl Rubric {
         let compiles = table.table("compiles", points);
         let algorithm = table.table("algorithm", check_points);
         let precision = table.table("precision", check_points);
+        let late = table.table("late", late_deduction);
         Self {
             compiles: compiles.unwrap_or_default(),
             algorithm: algorithm.unwrap_or_default(),
             precision: precision.unwrap_or_default(),
+            late,
             visibility: visibility.map_or_else(Visibility::default, |visibility| visibility.value),
         }
     }
@@ -124,7 +137,42 @@ impl Rubric {
         }
         let marks = [compiles(self.compiles, record), algorithm, precision];
         let marks = marks.into_iter().filter(|mark| mark.of > 0.0);
-        marks.chain(record.assigned_marks()).collect()
+        let mut marks: Vec<_> = marks.chain(record.assigned_marks()).collect();
+        let late = self.late.zip(record.late());
+        marks.extend(late.map(|(deduction, late)| deduction.mark(late, &marks)));
+        marks
+    }
+}
+
+impl LateDeduction {
+    /// The mark of a late submission, which loses at most what it earned.
+    fn mark(self, late: Late, marks: &[Mark]) -> Mark {
+        let percent = (self.percent_per_day * late.days() as f64).min(self.max_percent);
+        let sum = |of: fn(&Mark) -> f64| marks.iter().map(of).sum::<f64>();
+        let lost = (sum(|mark| mark.of) * percent).round() / 100.0;
+        Mark {
+            name: "late".into(),
+            // Without points, −0 would be shown.
+            points: 0.0 - lost.min(sum(|mark| mark.points)),
+            of: 0.0,
+            why: format!("{late}: {percent} % of all points are deducted"),
+        }
+    }
+}
+
+/// Reads what a late submission loses.
+fn late_deduction(table: &mut Table) -> LateDeduction {
+    let percent = |table: &Table, key: &str, percent: &Located<f64>| {
+        if !(0.0..=100.0).contains(&percent.value) {
+            table.reject_value(key, percent, "must be a number of percent from 0 to 100");
+        }
+        percent.value
+    };
+    let per_day = table.required::<f64>("percent_per_day");
+    let max = table.optional::<f64>("max_percent");
+    LateDeduction {
+        percent_per_day: per_day.map_or(0.0, |found| percent(table, "percent_per_day", &found)),
+        max_percent: max.map_or(100.0, |found| percent(table, "max_percent", &found)),
     }
 }
 
@@ -290,6 +338,7 @@ mod tests {
     use toyproof_diagnostic::{Diagnostic, File};
 
     use super::*;
+    use crate::report::Submitted;
     use crate::report::record::samples::{correct, invalid, question, record};
 
     /// The rubric, or its errors: `line:column code message; help: …`.
@@ -329,7 +378,7 @@ mod tests {
             (
                 "[style]\npoints = 1",
                 "1:2 E0503 unknown table [style]; \
-                 help: expected `visibility`, [compiles], [algorithm] or [precision]",
+                 help: expected `visibility`, [compiles], [algorithm], [precision] or [late]",
             ),
             (
                 "[maths]\npoints = 6",
@@ -385,6 +434,14 @@ mod tests {
                 "[algorithm]\npoints = 1\npartial_from = 90",
                 "3:16 E0504 `partial_from` must be at least 0 and less than 1, found 90; \
                  help: it is the share of matching pixels at which partial points begin, such as 0.9 for 90 %",
+            ),
+            (
+                "[late]\npercent_per_day = 200",
+                "2:19 E0504 `percent_per_day` must be a number of percent from 0 to 100, found 200",
+            ),
+            (
+                "[late]\nmax_percent = 50",
+                "1:1 E0503 missing key `percent_per_day` in [late]; help: add `percent_per_day = 1.0`",
             ),
             (
                 "",
@@ -445,6 +502,33 @@ mod tests {
             (2.0, 0.0),
             "a black image has no rounding errors"
         );
+    }
+
+    #[test]
+    fn late_submissions_lose_a_share_of_all_points_but_not_more_than_they_earned() {
+        let rubric = format!("{RUBRIC}\n[late]\npercent_per_day = 10\nmax_percent = 25");
+        let late = |record: Record, seconds| Record {
+            submitted: Some(Submitted {
+                assignment: None,
+                student: "Anna".to_owned(),
+                id: None,
+                late: Some(Late { seconds }),
+            }),
+            ..record
+        };
+        let lost = |record: &Record| match &points(&rubric, record)[..] {
+            [_, _, _] => 0.0,
+            [_, _, _, ("late", lost, of)] => lost + of,
+            marks => panic!("{marks:?}"),
+        };
+        assert_eq!(lost(&correct()), 0.0);
+        assert_eq!(lost(&late(correct(), Some(1))), -1.0);
+        assert_eq!(lost(&late(correct(), Some(86_401))), -2.0);
+        assert_eq!(lost(&late(correct(), Some(864_000))), -2.5);
+        assert_eq!(lost(&late(correct(), None)), -1.0);
+        assert_eq!(lost(&late(invalid(), Some(1))), 0.0);
+        let why = read(&rubric).unwrap().marks(&late(correct(), Some(7_500)));
+        assert_eq!(why[3].why, "late by 2 h 5 min: 10 % of all points are deducted");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use serde::Serialize;
 use toyproof_diagnostic::{self as diagnostic, Severity};
 use toyproof_verify::Verdict;
 
-use super::{Record, Repair, SourceRange, terminal};
+use super::{Late, Record, Repair, SourceRange, terminal};
 
 /// The characters that are not percent-encoded in a path: letters, digits, the other unreserved characters of
 /// RFC 3986, and `/`.
@@ -55,6 +55,7 @@ pub fn sarif(records: &[Record]) -> String {
         if let Some((_, title, help)) = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict) {
             results.push(verdict_result(record, title, help, &mut rules));
         }
+        results.extend(record.late().map(|late| late_result(record, late, &mut rules)));
         if record.verdict == Verdict::Error {
             notifications.push(Notification {
                 level: Severity::Error,
@@ -160,6 +161,25 @@ fn verdict_result(
         message: Message::new(lines.join("\n")),
         locations: [mistake_location(record)],
         fixes: repairs.filter_map(Fix::of_repair).collect(),
+    }
+}
+
+/// A late submission, also if its shader is right.
+fn late_result(record: &Record, late: Late, rules: &mut Rules) -> SarifResult {
+    const TITLE: &str = "The submission is late";
+    SarifResult {
+        rule_index: rules.index_of(
+            "late",
+            Some((
+                TITLE,
+                "It was submitted after the deadline of its assignment.".into(),
+            )),
+        ),
+        rule_id: "late".to_owned(),
+        level: Severity::Note,
+        message: Message::new(format!("the submission is {late}")),
+        locations: [Location::new(&record.shader, None)],
+        fixes: Vec::new(),
     }
 }
 

@@ -103,6 +103,10 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
         1 => "1 error".to_owned(),
         count => format!("{} errors", grouped(count as u64)),
     };
+    let reason = match record.late() {
+        None => reason,
+        Some(late) => format!("{reason}; {late}"),
+    };
     let label = record.verdict.to_string();
     let mut lines = vec![layout.row((&label, style(record.verdict)), &record.shader, &reason)];
     if layout.detail >= Detail::Normal {

@@ -11,16 +11,29 @@ use crate::batch::records;
 use crate::program::{Run, check_homework, run, toyproof};
 use crate::support::SPHERE;
 
+/// The time and the date that programs write that state none: 1980-01-01.
+const NO_TIME: [u16; 2] = [0, 0x21];
+
 /// An archive of these files, uncompressed, as the simplest programs write it.
 fn zip(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let files: Vec<_> = files
+        .iter()
+        .map(|(name, bytes)| (*name, bytes.clone(), NO_TIME))
+        .collect();
+    zip_with_times(&files)
+}
+
+/// An archive of files with their times and dates in the format of DOS.
+fn zip_with_times(files: &[(&str, Vec<u8>, [u16; 2])]) -> Vec<u8> {
     let (mut archive, mut directory) = (Vec::new(), Vec::new());
-    for (name, bytes) in files {
+    for (name, bytes, changed) in files {
         let offset = archive.len() as u32;
         let mut crc = Crc::new();
         crc.update(bytes);
         let length = (bytes.len() as u32).to_le_bytes();
-        // Version, flags, method, time and date.
-        let mut common = vec![10, 0, 0, 0, 0, 0, 0, 0, 0x21, 0];
+        // Version, flags and method.
+        let mut common = vec![10, 0, 0, 0, 0, 0];
+        common.extend(changed.map(u16::to_le_bytes).as_flattened());
         common.extend(crc.sum().to_le_bytes());
         common.extend([length, length].concat());
         common.extend((name.len() as u16).to_le_bytes());
@@ -237,7 +250,7 @@ fn canvas_names_students_in_file_names() {
     assert_eq!(missing["shader"], "hw/maimai");
     let roster: Value =
         serde_json::from_slice(&fs::read(folder.join("hw/submissions.json")).unwrap()).unwrap();
-    assert_eq!(roster["students"][1]["is_late"], true);
+    assert_eq!(roster["students"][1]["late"]["seconds"], Value::Null);
 }
 
 #[test]
@@ -306,4 +319,272 @@ fn archives_among_shaders_are_not_skipped_silently() {
     let warning =
         "warning: skipped hw/b.txt and 1 more file: not a shader\nhelp: `toyproof collect` finds shaders";
     assert!(run.code == 0 && run.stderr.contains(warning), "{}", run.stderr);
+}
+
+/// The first of March 2026 at a time of day, in the format of DOS.
+fn at(hour: u16, minute: u16) -> [u16; 2] {
+    [hour << 11 | minute << 5, 46 << 9 | 3 << 5 | 1]
+}
+
+/// A download of two assignments with a deadline at noon, and the file of the class.
+fn class(folder: &Path) {
+    let wrong = SPHERE
+        .shader
+        .replace("sphere.radius * sphere.radius", "sphere.radius");
+    let flat = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.5, 0.5, 0.5, 1.0); }\n";
+    let file = |student: &str, name: &str| format!("{student}_assignsubmission_file/{name}");
+    let files = [
+        (file("anna s_7", "sphere.glsl"), SPHERE.shader, at(11, 0)),
+        (file("anna s_7", "Flat-final.txt"), flat, at(14, 5)),
+        (file("Bo_8", "my sphere.glsl"), wrong.as_str(), at(12, 1)),
+        (file("Bo_8", "sphere-2.glsl"), SPHERE.shader, at(11, 0)),
+        (file("Bo_8", "notes.txt"), "I was ill.", at(11, 0)),
+        (file("Bo_8", "extra.glsl"), flat, at(11, 0)),
+        (file("Cy_9", "flat.glsl"), flat, NO_TIME),
+    ];
+    let files: Vec<_> = files
+        .iter()
+        .map(|(name, text, time)| (name.as_str(), text.as_bytes().to_vec(), *time))
+        .collect();
+    fs::write(folder.join("moodle.zip"), zip_with_times(&files)).unwrap();
+    for task in ["sphere", "flat"] {
+        fs::create_dir_all(folder.join("tasks").join(task)).unwrap();
+    }
+    let rubric = "compiles.points = 2\nalgorithm.points = 8\nlate.percent_per_day = 10\n";
+    let frame = "[[frame]]\nsize = [64, 36]\n";
+    let write = |name: &str, text: &str| fs::write(folder.join("tasks").join(name), text).unwrap();
+    write("sphere/scene.toml", SPHERE.scene);
+    write(
+        "sphere/assignment.toml",
+        &format!("scene = \"scene.toml\"\n{frame}"),
+    );
+    write("sphere/rubric.toml", rubric);
+    write("flat/solution.glsl", flat);
+    write(
+        "flat/assignment.toml",
+        &format!("reference = \"solution.glsl\"\n{frame}"),
+    );
+    write(
+        "class.toml",
+        "[students]\n7 = \"Anna Smith\"\n10 = \"Not There\"\n\
+         [[assignment]]\nname = \"sphere\"\nfiles = [\"*sphere*\"]\nassignment = \"sphere\"\n\
+         rubric = \"sphere/rubric.toml\"\ndeadline = 2026-03-01T12:00:00+01:00\n\
+         [[assignment]]\nname = \"flat\"\nfiles = [\"*flat*\"]\nassignment = \"flat/assignment.toml\"\n\
+         deadline = 2026-03-01T12:00:00+01:00\n",
+    );
+}
+
+const CHECK_CLASS: [&str; 11] = [
+    "check",
+    "moodle.zip",
+    "--class",
+    "tasks/class.toml",
+    "--device",
+    "cpu",
+    "--search",
+    "0",
+    "--jobs",
+    "1",
+    "--out",
+];
+
+#[test]
+fn a_class_is_checked_in_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    class(folder);
+    let check = |out: &str| toyproof(folder, &[&CHECK_CLASS[..], &[out]].concat());
+    let run = check("out");
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    for line in [
+        "warning: Bo: extra.glsl was left out: no assignment of the class has this file",
+        "Bo: skipped notes.txt: it is not a shader: it has no mainImage",
+        "warning: out/submissions/flat: 1 submission counts as on time: the download does not state when",
+        "report: out/report.html",
+    ] {
+        assert!(run.stderr.contains(line), "{line}\n{}", run.stderr);
+    }
+    let rows: Vec<_> = records(folder)
+        .iter()
+        .map(|record| {
+            let submitted = &record["submitted"];
+            let text = |value: &Value| value.as_str().unwrap_or("-").to_owned();
+            let late = submitted["late"]["seconds"].to_string();
+            let [assignment, student, id] = ["assignment", "student", "id"].map(|key| text(&submitted[key]));
+            format!("{assignment} {student} {id} {late} {}", text(&record["verdict"]))
+        })
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            "sphere Anna Smith 7 null correct",
+            "sphere Bo 8 60 wrong",
+            "sphere Bo 8 60 correct",
+            "sphere Cy 9 null missing",
+            "sphere Not There 10 null missing",
+            "flat Anna Smith 7 7500 correct",
+            "flat Bo 8 null missing",
+            "flat Cy 9 null correct",
+            "flat Not There 10 null missing",
+        ]
+    );
+    let read = |name: &str| fs::read_to_string(folder.join("out").join(name)).unwrap();
+    let table = "student,id,sphere,flat,total,sphere verdict,sphere late,flat verdict,flat late\r\n\
+                 Anna Smith,7,10,correct,10,correct,,correct,late by 2 h 5 min\r\n\
+                 Bo,8,1,missing,1,wrong,late by 1 min,missing,\r\n\
+                 Cy,9,0,correct,0,missing,,correct,\r\n\
+                 Not There,10,0,missing,0,missing,,missing,\r\n";
+    assert_eq!(read("class.csv"), table);
+    // How late a submission is, in every report.
+    assert!(read("report.csv").contains(",flat,Anna Smith,7,7500\r\n"));
+    for report in ["report.html", "junit.xml", "report.sarif"] {
+        assert!(read(report).contains("late by 2 h 5 min"), "{report}");
+    }
+    let shown = "late by 2 h 5 min\n";
+    assert!(run.stdout.contains(shown), "{}", run.stdout);
+    assert!(folder.join("out/flat/Anna-Smith/Flat-final-actual.png").is_file());
+    assert!(!folder.join("out/results.json").exists());
+
+    // Again, without what was removed from the download.
+    fs::write(
+        folder.join("moodle.zip"),
+        zip(&[("Bo_8_assignsubmission_file/sphere.glsl", SPHERE.shader.into())]),
+    )
+    .unwrap();
+    assert_eq!(check("out").code, 1);
+    let files: Vec<_> = records(folder)
+        .iter()
+        .map(|record| record["shader"].as_str().unwrap().to_owned())
+        .collect();
+    assert_eq!(files[0], "out/submissions/sphere/Anna-Smith");
+    assert_eq!(files[1], "out/submissions/sphere/Bo/sphere.glsl");
+    assert_eq!(files.len(), 6, "{files:?}");
+
+    fs::create_dir_all(folder.join("other/submissions")).unwrap();
+    fs::write(folder.join("other/submissions/mine.txt"), "mine").unwrap();
+    let refused = check("other");
+    let error = "error: other/submissions already has files that toyproof did not collect";
+    assert!(
+        refused.code == 2 && refused.stderr.contains(error),
+        "{}",
+        refused.stderr
+    );
+}
+
+/// Shards need one collection, which all of them read.
+#[test]
+fn the_shards_of_a_class_give_the_report_of_one_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    class(folder);
+    let refused = toyproof(folder, &[&CHECK_CLASS[..], &["out", "--shard", "1/2"]].concat());
+    assert!(
+        refused.code == 2
+            && refused
+                .stderr
+                .contains("error: a shard needs collected submissions, not a download\nhelp: "),
+        "{}",
+        refused.stderr
+    );
+    collect(folder, &["moodle.zip", "--class", "tasks/class.toml", "-o", "hw"]);
+    let mut arguments = CHECK_CLASS;
+    arguments[1] = "hw";
+    let one = toyproof(folder, &[&arguments[..], &["out"]].concat());
+    assert_eq!(one.code, 1, "{}", one.stderr);
+    let read = |name: &str| fs::read_to_string(folder.join("out").join(name)).unwrap();
+    let expected = (records(folder), read("class.csv"));
+    assert!(expected.0[0]["shader"] == "hw/sphere/Anna-Smith/sphere.glsl");
+    for shard in ["1/2", "2/2"] {
+        let out = format!("shards/{}", &shard[..1]);
+        let run = toyproof(folder, &[&arguments[..], &[&out, "--shard", shard]].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+    }
+    let merged = toyproof(folder, &["merge", "shards/1", "shards/2", "--out", "out"]);
+    assert_eq!(merged.code, 1, "{}", merged.stderr);
+    assert_eq!((records(folder), read("class.csv")), expected);
+}
+
+#[test]
+fn errors_of_a_class_have_their_places_and_advice() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    class(folder);
+    for (text, place, message, help) in [
+        (
+            "students = 1",
+            "1:12",
+            "`students` must be a string",
+            "for example",
+        ),
+        (
+            "[students]\n7 = 8",
+            "2:5",
+            "`7` must be a string, found 8",
+            "for example `7 = \"name\"`",
+        ),
+        (
+            "",
+            "1:1",
+            "the class has no assignment",
+            "add a table [[assignment]]",
+        ),
+        (
+            "[[assignment]]\nname = \"a\"\nfiles = [\"*\"]",
+            "1:1",
+            "missing key `assignment` in [[assignment]]",
+            "add `assignment = ",
+        ),
+        (
+            "[[assignment]]\nname = \"a\"\nfiles = []\nassignment = \"flat\"",
+            "3:9",
+            "`files` has no pattern",
+            "for example `files = ",
+        ),
+        (
+            "[[assignment]]\nname = \"a\"\nfiles = [\"*\"]\nassignment = \"none\"",
+            "4:14",
+            "there is no file \"none\"",
+            "paths are relative",
+        ),
+        (
+            "[[assignment]]\nname = \"a\"\nfiles = [\"*\"]\nassignment = \"flat\"\ndeadline = 2026-03-01",
+            "5:12",
+            "`deadline` must be a date and a time with the offset from UTC, found a date without a time",
+            "for example `deadline = 2026-03-01T23:59:00+01:00`",
+        ),
+    ] {
+        fs::write(folder.join("tasks/class.toml"), text).unwrap();
+        let run = toyproof(folder, &[&CHECK_CLASS[..], &["out"]].concat());
+        assert_eq!(run.code, 2, "{text}: {}", run.stderr);
+        let place = format!("tasks/class.toml:{place}");
+        for expected in [place.as_str(), message, help] {
+            assert!(
+                run.stderr.contains(expected),
+                "{text}: {expected}\n{}",
+                run.stderr
+            );
+        }
+        assert!(!folder.join("out").exists());
+    }
+}
+
+#[test]
+fn times_of_a_copy_are_not_those_of_submissions() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    class(folder);
+    let files = ["Anna_7", "Bo_8"].map(|student| format!("{student}_assignsubmission_file/sphere.glsl"));
+    let files: Vec<_> = files
+        .iter()
+        .map(|name| (name.as_str(), SPHERE.shader.into(), at(13, 0)))
+        .collect();
+    fs::write(folder.join("moodle.zip"), zip_with_times(&files)).unwrap();
+    let run = toyproof(folder, &[&CHECK_CLASS[..], &["out"]].concat());
+    let warning = "warning: moodle.zip: the files of all students have the same time";
+    assert!(run.stderr.contains(warning), "{}", run.stderr);
+    assert!(
+        records(folder)
+            .iter()
+            .all(|record| record["submitted"]["late"].is_null())
+    );
 }

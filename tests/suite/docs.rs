@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
+use std::time::{Duration, UNIX_EPOCH};
 use std::{env, fs};
 
 use crate::architecture::sources;
@@ -76,8 +77,43 @@ fn block(page: &str, text: &str) -> String {
         .text
 }
 
+/// A class of two assignments, as the page on submissions describes it, and what Moodle lets teachers
+/// download.
+fn class_files(folder: &Path) {
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let page = "docs/guide/submissions.md";
+    let [torus, large] = ["half", "large"].map(|name| read(&format!("torus/{name}.glsl")));
+    let [right, wrong] = ["anna", "mai"].map(|name| read(&format!("homework/{name}.glsl")));
+    let objects = "scene = \"scene.toml\"\n[[frame]]\nsize = [160, 90]\n";
+    let points = "[compiles]\npoints = 2\n[algorithm]\npoints = 8\n";
+    for (path, text) in [
+        ("class.toml", block(page, "[[assignment]]")),
+        ("late.toml", format!("{points}{}", block(page, "percent_per_day"))),
+        ("objects-task/assignment.toml", objects.to_owned()),
+        ("objects-task/scene.toml", read("glsl/04-many-objects.toml")),
+        ("moodle/Anna S_7_assignsubmission_file/torus.glsl", torus),
+        ("moodle/Anna S_7_assignsubmission_file/objects.glsl", wrong),
+        ("moodle/Bo Lee_8_assignsubmission_file/week1/a.glsl", large),
+        ("moodle/Bo Lee_8_assignsubmission_file/my-objects.glsl", right),
+        (
+            "moodle/Bo Lee_8_assignsubmission_file/notes.txt",
+            "I was ill.\n".to_owned(),
+        ),
+    ] {
+        let path = folder.join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, text).unwrap();
+        // Sunday, 2026-03-01, at noon, and Bo's last file on the Wednesday after the deadline.
+        let is_late = path.ends_with("my-objects.glsl");
+        let seconds = if is_late { 1_773_187_140 } else { 1_772_366_400 };
+        let time = UNIX_EPOCH + Duration::from_secs(seconds);
+        let file = fs::File::options().write(true).open(&path).unwrap();
+        file.set_modified(time).unwrap();
+    }
+}
+
 /// A folder with the files that the pages assume: the course, submissions of two assignments, one of which
-/// has a file, and a rubric.
+/// has a file, a rubric, and a class.
 fn assumed_files() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(toyproof(folder.path(), &["scenes", "--write", "glsl"]).code, 0);
@@ -127,6 +163,7 @@ fn assumed_files() -> tempfile::TempDir {
     fs::write(folder.path().join("rubric.toml"), rubric).unwrap();
     let scene = block("docs/guide/scenes.md", "[film]");
     fs::write(folder.path().join("example.toml"), scene).unwrap();
+    class_files(folder.path());
     let export = ["export", "example.toml", "-o", "shader.glsl"];
     assert_eq!(toyproof(folder.path(), &export).code, 0);
     folder

@@ -32,7 +32,7 @@ use crate::cli::project::Passes;
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
 use crate::cli::{Terminal, files, pool};
-use crate::report::{self, CheckedFrame, GrowthRecord, Record};
+use crate::report::{self, CheckedFrame, GrowthRecord, Record, Submitted};
 
 /// A shader to check.
 pub(super) struct Submission {
@@ -44,6 +44,10 @@ pub(super) struct Submission {
     pub(super) key: Option<String>,
     /// The size of its text in bytes, where it has a key.
     pub(super) bytes: u64,
+    /// The index of what it is checked against.
+    pub(super) task: usize,
+    /// Whose it is, of a class.
+    pub(super) submitted: Option<Submitted>,
 }
 
 impl Submission {
@@ -70,6 +74,8 @@ impl Submission {
             key,
             bytes,
             output_stem,
+            task: 0,
+            submitted: None,
             input,
         }
     }

@@ -16,29 +16,36 @@ use crate::report::{self, Record};
 /// The largest number of correct shaders for one reference whose expressions are tried.
 const MAX_SHADERS: usize = 64;
 
-/// The names of the scene or of the other reference that a shader was compared with.
-type ReferenceNames = (Option<String>, Option<String>);
+/// The task, and the names of the scene or of the other reference that a shader was compared with.
+type ReferenceNames = (usize, Option<String>, Option<String>);
 
-fn reference(record: &Record) -> ReferenceNames {
-    (record.scene.clone(), record.reference.clone())
+fn reference(submission: &Submission, record: &Record) -> ReferenceNames {
+    (submission.task, record.scene.clone(), record.reference.clone())
 }
 
 impl Batch<'_> {
     /// Searches the unrepaired shaders again, and prints the fixes below the results of all shaders. The
     /// expressions are those of the first correct shaders in the order of the batch, so that the fixes do not
     /// depend on the number of threads.
-    pub(super) fn search_again(&mut self, submissions: &[Submission], checker: &Checker, stop: &AtomicBool) {
+    pub(super) fn search_again(
+        &mut self,
+        submissions: &[Submission],
+        checkers: &[Checker],
+        stop: &AtomicBool,
+    ) {
+        let reference_of = |(index, record): &(usize, Record)| reference(&submissions[*index], record);
         let mut correct: HashMap<ReferenceNames, Vec<&Submission>> = HashMap::new();
-        for (index, record) in &self.records {
+        for reported in &self.records {
+            let (index, record) = reported;
             if record.verdict == Verdict::Correct {
-                let of_reference = correct.entry(reference(record)).or_default();
+                let of_reference = correct.entry(reference_of(reported)).or_default();
                 of_reference.push(&submissions[*index]);
             }
         }
         let places = self.records.iter().enumerate();
         let todo: Vec<usize> = places
-            .filter(|(_, (index, record))| {
-                self.unrepaired.contains(index) && correct.contains_key(&reference(record))
+            .filter(|(_, reported)| {
+                self.unrepaired.contains(&reported.0) && correct.contains_key(&reference_of(reported))
             })
             .map(|(place, _)| place)
             .collect();
@@ -47,9 +54,9 @@ impl Batch<'_> {
         }
         let mut donors: HashMap<ReferenceNames, Donors> = HashMap::new();
         for &place in &todo {
-            let reference = reference(&self.records[place].1);
+            let reference = reference_of(&self.records[place]);
             donors.entry(reference).or_insert_with_key(|reference| {
-                checker.donors(correct[reference].iter().copied().take(MAX_SHADERS))
+                checkers[reference.0].donors(correct[reference].iter().copied().take(MAX_SHADERS))
             });
         }
         let bar = self
@@ -65,7 +72,9 @@ impl Batch<'_> {
             || WorkerContext::without_gpu(threads),
             |context, place| {
                 let (index, record) = &records[place];
-                checker.search_again(context, &submissions[*index], record, &donors[&reference(record)])
+                let submission = &submissions[*index];
+                let donors = &donors[&reference(submission, record)];
+                checkers[submission.task].search_again(context, submission, record, donors)
             },
             |place, outcome| {
                 bar.inc(1);

@@ -31,7 +31,7 @@ use self::reference::References;
 pub(super) use self::reference::Scenes;
 use self::reports::{Line, Results};
 use self::shard::{Manifest, Shard};
-use super::collect::add_missing;
+use super::collect::{ClassPart, Owners, class_parts};
 use super::inputs::short_device;
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use super::names::Names;
@@ -39,7 +39,7 @@ use super::pool::{self, InOrder};
 use super::reference::ReferenceArgs;
 use super::shader::find;
 use super::{Exit, Terminal};
-use crate::report::{self, Detail, Earlier, Hints, Layout, Record, Report, Rubric};
+use crate::report::{self, Detail, Earlier, Hints, Layout, Record, Report, Rubrics};
 
 /// Check shaders against a reference, and give a verdict on each
 ///
@@ -54,11 +54,12 @@ Examples:
   toyproof check homework --reference solution.glsl --out marks
   toyproof check homework --assignment shadows/assignment.toml --out marks
   toyproof check mine.glsl --scene scene.toml --format json
+  toyproof check moodle.zip --class class.toml --out marks
 
 Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.
 With --shard: 0 if the shard is complete, else 2.")]
 pub(super) struct Args {
-    /// Shaders: files, folders, or - for standard input
+    /// Shaders: files, folders, or - for standard input; with --class, downloads
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
     #[command(flatten)]
@@ -69,6 +70,14 @@ pub(super) struct Args {
     /// frames of the assignment by that one, and --rubric replaces its points.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "reference"])]
     assignment: Option<PathBuf>,
+    /// The class (.toml): the patterns, deadlines and rubrics of several assignments, which are all checked
+    ///
+    /// The shaders are downloads of Moodle or Canvas, which are collected into the folder `submissions` of
+    /// --out, or what `toyproof collect --class` wrote. Every student has a row for each assignment, and
+    /// class.csv has the points of all.
+    #[arg(long, value_name = "FILE", requires = "out",
+          conflicts_with_all = ["scene", "reference", "assignment", "rubric"])]
+    class: Option<PathBuf>,
     /// Differences from the reference with which a shader is still correct, such as antialiasing,color-curve
     ///
     /// They are those of the section “Right, but not as asked” of the guide's page on mistakes, by their ids.
@@ -79,7 +88,7 @@ pub(super) struct Args {
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
     /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences, and
     /// NAME-fixed.png where a fix was found. For all: report.html, report.csv, verdict.json, junit.xml and
-    /// report.sarif.
+    /// report.sarif; with --class, class.csv.
     #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
@@ -262,10 +271,49 @@ fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, 
 
 /// All that one command checks.
 struct Work {
-    plan: Plan,
-    references: References,
+    /// At least one; one for each assignment of a class.
+    tasks: Vec<Task>,
+    rubrics: Rubrics,
     submissions: Vec<Submission>,
 }
+
+/// What some of the shaders are checked against.
+struct Task {
+    plan: Plan,
+    references: References,
+}
+
+/// The shaders of one assignment, and what they are checked against; without a class, all shaders.
+struct TaskInputs {
+    /// The name of the assignment in a class.
+    name: Option<String>,
+    shaders: Vec<PathBuf>,
+    assignment: Option<PathBuf>,
+    rubric: Option<PathBuf>,
+}
+
+impl TaskInputs {
+    fn of_arguments(args: &Args) -> Self {
+        Self {
+            name: None,
+            shaders: args.shaders.clone(),
+            assignment: args.assignment.clone(),
+            rubric: args.rubric.clone(),
+        }
+    }
+
+    fn of_class(part: ClassPart) -> Self {
+        Self {
+            name: Some(part.name),
+            shaders: vec![part.folder],
+            assignment: Some(part.assignment),
+            rubric: part.rubric,
+        }
+    }
+}
+
+/// The folder of `--out` with the submissions of a class that were collected from downloads.
+const SUBMISSIONS: &str = "submissions";
 
 impl Work {
     /// Reads what the arguments name. With the `build` that checks them, submissions have keys.
@@ -273,26 +321,55 @@ impl Work {
     /// # Errors
     /// Something is unusable; what is wrong with it has been printed.
     fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, ()> {
-        let mut plan = Plan::new(args, terminal)?;
-        let references = References::new(args, &mut plan, terminal)?;
+        let collected = args.out.as_ref().map(|out| out.join(SUBMISSIONS));
+        let parts = match &args.class {
+            Some(class) => {
+                let to = collected.as_deref().filter(|_| args.shard.is_none());
+                class_parts(&args.shaders, class, to, terminal)?
+                    .into_iter()
+                    .map(TaskInputs::of_class)
+                    .collect()
+            }
+            None => vec![TaskInputs::of_arguments(args)],
+        };
         let reserved: Vec<&str> = reports::REPORT_NAMES
             .into_iter()
-            .chain([reports::RESULTS_NAME, shard::MANIFEST_NAME])
+            .chain([reports::RESULTS_NAME, shard::MANIFEST_NAME, SUBMISSIONS])
             .collect();
         let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
-        let mut inputs = find(&args.shaders, terminal);
-        for folder in &args.shaders {
-            add_missing(folder, &mut inputs).map_err(|error| terminal.error(error))?;
+        let mut work = Self {
+            tasks: Vec::new(),
+            rubrics: Rubrics::default(),
+            submissions: Vec::new(),
+        };
+        for part in parts {
+            let mut plan = Plan::new(args, &part, terminal)?;
+            let references = References::new(args, &mut plan, terminal)?;
+            let mut inputs = find(&part.shaders, terminal);
+            let owners = Owners::read(&part.shaders, &mut inputs).map_err(|error| terminal.error(error))?;
+            match (&part.name, plan.rubric.take()) {
+                (None, rubric) => work.rubrics = rubric.into(),
+                (Some(name), rubric) => {
+                    rubric
+                        .into_iter()
+                        .for_each(|rubric| work.rubrics.add(name.clone(), rubric));
+                }
+            }
+            for mut input in inputs {
+                if let (Ok(input), Some(name)) = (&mut input, &part.name) {
+                    input.relative = Path::new(name).join(&input.relative);
+                }
+                let submitted = owners.of(&input).cloned();
+                let submission = Submission::new(input, args, &plan, &references, &mut names, build);
+                work.submissions.push(Submission {
+                    task: work.tasks.len(),
+                    submitted,
+                    ..submission
+                });
+            }
+            work.tasks.push(Task { plan, references });
         }
-        let submissions = inputs
-            .into_iter()
-            .map(|input| Submission::new(input, args, &plan, &references, &mut names, build))
-            .collect();
-        Ok(Self {
-            plan,
-            references,
-            submissions,
-        })
+        Ok(work)
     }
 
     /// Keeps the submissions of a shard, and describes it in its folder.
@@ -324,7 +401,7 @@ impl Work {
         let mut batch = Batch {
             args,
             terminal,
-            rubric: self.plan.rubric.take(),
+            rubrics: std::mem::take(&mut self.rubrics),
             results,
             earlier,
             order: InOrder::default(),
@@ -337,7 +414,9 @@ impl Work {
             hidden_warnings: 0,
             start: Instant::now(),
         };
-        batch.check(submissions, &Checker::new(args, &self.plan, &self.references));
+        let tasks = self.tasks.iter();
+        let checkers = tasks.map(|task| Checker::new(args, &task.plan, &task.references));
+        batch.check(submissions, &checkers.collect::<Vec<_>>());
         batch.finish(submissions)
     }
 }
@@ -360,7 +439,7 @@ fn layout(submissions: &[Submission], format: CheckFormat, terminal: &Terminal) 
 struct Batch<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
-    rubric: Option<Rubric>,
+    rubrics: Rubrics,
     results: Option<Results>,
     /// The report that is compared with.
     earlier: Option<Earlier>,
@@ -381,7 +460,7 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    fn check(&mut self, submissions: &[Submission], checker: &Checker) {
+    fn check(&mut self, submissions: &[Submission], checkers: &[Checker]) {
         let stop = self
             .terminal
             .watch_interrupts("the shaders in progress are finished first");
@@ -400,7 +479,7 @@ impl Batch<'_> {
                     bar.inc(1);
                     let mut known = Outcome::known(record);
                     known.device = device;
-                    self.take(index, known);
+                    self.take(submissions, index, known);
                 }
                 None => todo.push(index),
             }
@@ -422,13 +501,16 @@ impl Batch<'_> {
             threads,
             &stop,
             || WorkerContext::new(self.args, threads),
-            |context, index| checker.check(context, &submissions[index]),
+            |context, index| {
+                let submission = &submissions[index];
+                checkers[submission.task].check(context, submission)
+            },
             |index, outcome| {
                 tally.add(outcome.record.verdict);
                 bar.inc(1);
                 bar.set_message(self.terminal.bar_text(&tally));
                 self.keep(&submissions[index], &outcome);
-                self.take(index, outcome);
+                self.take(submissions, index, outcome);
                 if self.terminal.is_closed() {
                     // Nobody reads further results; the shaders in progress are finished.
                     stop.store(true, Ordering::Relaxed);
@@ -439,7 +521,7 @@ impl Batch<'_> {
         let is_done = self.records.len() == submissions.len();
         if stop.load(Ordering::Relaxed) && !(self.terminal.is_closed() && is_done) {
             for (index, outcome) in std::mem::take(&mut self.order).rest() {
-                self.report_outcome(index, outcome);
+                self.report_outcome(submissions, index, outcome);
             }
             let why = if self.terminal.is_closed() {
                 "standard output was closed"
@@ -458,7 +540,7 @@ impl Batch<'_> {
             self.failed = true;
         } else if self.args.search > 0.0 && self.args.shard.is_none() {
             // What repairs a shader may be in another shard; `merge` searches.
-            self.search_again(submissions, checker, &stop);
+            self.search_again(submissions, checkers, &stop);
         }
     }
 
@@ -481,14 +563,15 @@ impl Batch<'_> {
         }
     }
 
-    fn take(&mut self, index: usize, outcome: Outcome) {
+    fn take(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
         for (index, outcome) in self.order.take(index, (index, outcome)) {
-            self.report_outcome(index, outcome);
+            self.report_outcome(submissions, index, outcome);
         }
     }
 
     /// Prints the messages and the result line of a shader.
-    fn report_outcome(&mut self, index: usize, mut outcome: Outcome) {
+    fn report_outcome(&mut self, submissions: &[Submission], index: usize, mut outcome: Outcome) {
+        outcome.record.submitted.clone_from(&submissions[index].submitted);
         if outcome.record.verdict == Verdict::Wrong && outcome.record.fix.is_none() {
             self.unrepaired.insert(index);
         }
@@ -542,7 +625,7 @@ impl Batch<'_> {
         let Self {
             args,
             terminal,
-            rubric,
+            rubrics,
             records,
             device,
             results,
@@ -569,14 +652,7 @@ impl Batch<'_> {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
             let written = args.shard.is_some()
-                || reports::write(
-                    &report,
-                    &reported,
-                    rubric.as_ref(),
-                    args.students_hints(),
-                    out,
-                    terminal,
-                );
+                || reports::write(&report, &reported, &rubrics, args.students_hints(), out, terminal);
             match is_there {
                 Ok(()) if written => terminal.note(&match args.shard {
                     None => format!("report: {}", path_name(&out.join("report.html"))),

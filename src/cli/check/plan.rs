@@ -6,7 +6,7 @@ use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{Frame, FrameInputs};
 use toyproof_verify::alternative::Difference;
 
-use super::{Args, reports};
+use super::{Args, TaskInputs, reports};
 use crate::assignment::{self, Assignment, FILE_NAME};
 use crate::cli::Terminal;
 use crate::cli::files::{self, Skipped};
@@ -36,17 +36,17 @@ pub(super) struct PlannedFrame {
 }
 
 impl Plan {
-    /// Reads what the arguments name, or the assignment that they name or that lies in the folder of all
-    /// shaders.
+    /// Reads what the arguments name, or the assignment of these shaders or that lies in the folder of all of
+    /// them.
     ///
     /// # Errors
     /// It is unusable; what is wrong with it has been printed.
-    pub(super) fn new(args: &Args, terminal: &Terminal) -> Result<Self, ()> {
-        let rubric = reports::rubric(args, terminal)?;
-        let found = match &args.assignment {
+    pub(super) fn new(args: &Args, part: &TaskInputs, terminal: &Terminal) -> Result<Self, ()> {
+        let rubric = reports::rubric(part.rubric.as_deref(), terminal)?;
+        let found = match &part.assignment {
             Some(path) => Some(named(path, terminal)?),
             None if args.reference.is_given() => None,
-            None => beside(&args.shaders).map_err(|error| terminal.error(error))?,
+            None => beside(&part.shaders).map_err(|error| terminal.error(error))?,
         };
         let mut plan = Self {
             reference: args.reference.clone(),

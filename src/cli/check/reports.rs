@@ -11,19 +11,20 @@ use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::output;
 use toyproof_verify::contain::{Part, contain};
 
-use super::Args;
 use super::checker::Submission;
 use super::images::gallery;
 use crate::cli::shader::Unusable;
 use crate::cli::{Terminal, files};
-use crate::report::{Hints, Record, Report, Rubric, csv, gradescope, html, junit, sarif};
+use crate::report::{
+    ClassTable, Hints, Record, Report, Rubric, Rubrics, csv, gradescope, html, junit, sarif,
+};
 
-/// Reads the rubric that the arguments name, if any.
+/// Reads a rubric, if one is named.
 ///
 /// # Errors
 /// The rubric is unusable; its errors have been printed.
-pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>, ()> {
-    let Some(path) = &args.rubric else {
+pub(super) fn rubric(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Rubric>, ()> {
+    let Some(path) = path else {
         return Ok(None);
     };
     let mut files = Files::default();
@@ -40,9 +41,10 @@ pub(super) fn rubric(args: &Args, terminal: &Terminal) -> Result<Option<Rubric>,
 }
 
 /// The file names of the reports, in the order in which they are written: once the last exists, all do.
-pub(super) const REPORT_NAMES: [&str; 6] = [
+pub(super) const REPORT_NAMES: [&str; 7] = [
     "report.html",
     "report.csv",
+    "class.csv",
     "junit.xml",
     "report.sarif",
     "results.json",
@@ -50,12 +52,13 @@ pub(super) const REPORT_NAMES: [&str; 6] = [
 ];
 
 /// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
-/// records, in the same order. `results.json` is written only with a rubric. Students read `junit.xml` and
+/// records, in the same order. `results.json` is written only with a rubric of all shaders, and `class.csv`
+/// only for a class. Students read `junit.xml` and
 /// `results.json`, which show the `hints`.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],
-    rubric: Option<&Rubric>,
+    rubrics: &Rubrics,
     hints: Hints,
     out: &Path,
     terminal: &Terminal,
@@ -66,11 +69,18 @@ pub(super) fn write(
         record.redact(hints);
     }
     let texts: [&dyn Fn() -> Option<String>; REPORT_NAMES.len()] = [
-        &|| Some(html(report, rubric, &gallery(submissions), SystemTime::now())),
-        &|| Some(csv(records, rubric)),
+        &|| Some(html(report, rubrics, &gallery(submissions), SystemTime::now())),
+        &|| Some(csv(records, rubrics)),
+        &|| {
+            let mut table = ClassTable::default();
+            for record in records {
+                table.add(record, rubrics);
+            }
+            (!table.is_empty()).then(|| table.csv())
+        },
         &|| Some(junit(&students)),
         &|| Some(sarif(records)),
-        &|| rubric.map(|rubric| gradescope(&students, rubric)),
+        &|| Some(gradescope(&students, rubrics.of_all()?)),
         &|| Some(report.json()),
     ];
     let written = REPORT_NAMES

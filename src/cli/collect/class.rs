@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, FileId, Files};
-use toyproof_toml::{Format, Located, Table};
+use toyproof_toml::{Format, Located, Moment, Table};
 
 use super::naming::{Student, file_name};
 
@@ -18,10 +18,21 @@ static FORMAT: Format = Format {
 /// A class.
 #[derive(Debug, Default)]
 pub(super) struct Class {
-    /// The path of the list of students, if there is one.
-    pub(super) students: Option<PathBuf>,
+    pub(super) students: StudentList,
     /// The assignments whose submissions are separated; empty if there is one assignment.
     pub(super) assignments: Vec<ClassAssignment>,
+}
+
+/// Where the students of a class are listed.
+#[derive(Debug, Default)]
+pub(super) enum StudentList {
+    /// Nowhere: they are those of the download.
+    #[default]
+    None,
+    /// In a file, a line for each.
+    File(PathBuf),
+    /// In the file of the class.
+    Table(Students),
 }
 
 /// An assignment, and which files are its submissions.
@@ -33,6 +44,18 @@ pub(super) struct ClassAssignment {
     patterns: Vec<String>,
     /// The file or the folder of the assignment, if it is named.
     pub(super) assignment: Option<PathBuf>,
+    /// The rubric, if it is not that of the assignment.
+    pub(super) rubric: Option<PathBuf>,
+    pub(super) deadline: Option<Moment>,
+}
+
+/// What the class is read for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Collecting submissions.
+    Collect,
+    /// Also checking them, for which each assignment has to be named.
+    Check,
 }
 
 impl ClassAssignment {
@@ -78,36 +101,75 @@ impl Class {
     ///
     /// # Errors
     /// The first syntax error of the TOML, or all other errors.
-    pub(super) fn parse(files: &Files, file: FileId, folder: &Path) -> Result<Self, Diagnostics> {
+    pub(super) fn parse(
+        files: &Files,
+        file: FileId,
+        folder: &Path,
+        purpose: Purpose,
+    ) -> Result<Self, Diagnostics> {
         toyproof_toml::read(&FORMAT, files, file, |document| {
-            let students = path(document, "students", folder);
+            let students = students(document, folder);
             let mut assignments: Vec<ClassAssignment> = Vec::new();
             document.tables("assignment", |table| {
-                let name = table.required::<String>("name");
-                if let Some(name) = &name
-                    && name.value != file_name(&name.value)
-                {
-                    let problem = "must be the name of a folder: letters, digits, `-`, `_` and `.`";
-                    table.reject_value("name", name, problem);
-                }
-                let patterns = table.required::<Vec<String>>("files");
-                let assignment = ClassAssignment {
-                    name: name.map_or_else(String::new, |name| name.value),
-                    patterns: patterns.map_or_else(Vec::new, |patterns| patterns.value),
-                    assignment: path(table, "assignment", folder),
-                };
-                if assignments.iter().any(|other| other.name == assignment.name) && table.is_valid() {
+                let assignment = assignment(table, folder, purpose);
+                let mut names = assignments.iter().map(|other| other.name.to_lowercase());
+                if table.is_valid() && names.any(|other| other == assignment.name.to_lowercase()) {
                     let message = format!("there are two assignments `{}`", assignment.name);
                     table.reject(table.span(), message, "give one of them another name");
                 }
                 assignments.push(assignment);
             });
             document.report_unknown_keys();
+            if purpose == Purpose::Check && assignments.is_empty() && document.is_valid() {
+                let help = "add a table [[assignment]] with `name`, `files` and `assignment`";
+                document.reject(document.span(), "the class has no assignment", help);
+            }
             Self {
                 students,
                 assignments,
             }
         })
+    }
+}
+
+/// Reads where the students are listed: a file, or a table with a name for each number.
+fn students(document: &mut Table, folder: &Path) -> StudentList {
+    if document.has_table("students") {
+        let students = document.table("students", |table| Students::new(table.take_strings()));
+        return StudentList::Table(students.unwrap_or_default());
+    }
+    match path(document, "students", folder) {
+        Some(path) => StudentList::File(path),
+        None => StudentList::None,
+    }
+}
+
+fn assignment(table: &mut Table, folder: &Path, purpose: Purpose) -> ClassAssignment {
+    let name = table.required::<String>("name");
+    if let Some(name) = &name
+        && name.value != file_name(&name.value)
+    {
+        let problem = "must be the name of a folder: letters, digits, `-`, `_` and `.`";
+        table.reject_value("name", name, problem);
+    }
+    let patterns = table.required::<Vec<String>>("files");
+    if let Some(patterns) = &patterns
+        && patterns.value.is_empty()
+    {
+        let help = "for example `files = [\"*shading*\"]`; `*` stands for any characters";
+        table.reject(patterns.span, "`files` has no pattern", help);
+    }
+    if purpose == Purpose::Check && !table.has("assignment") {
+        table.require("assignment", "\"shading/assignment.toml\"");
+    }
+    ClassAssignment {
+        name: name.map_or_else(String::new, |name| name.value),
+        patterns: patterns.map_or_else(Vec::new, |patterns| patterns.value),
+        assignment: path(table, "assignment", folder),
+        rubric: path(table, "rubric", folder),
+        deadline: table
+            .optional::<Moment>("deadline")
+            .map(|deadline| deadline.value),
     }
 }
 
@@ -123,7 +185,7 @@ fn path(table: &mut Table, key: &'static str, folder: &Path) -> Option<PathBuf> 
 }
 
 /// The listed students of a class.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Students {
     listed: Vec<Student>,
     /// The places of the students in the list, by their names and numbers in lower case.
@@ -134,22 +196,30 @@ impl Students {
     /// Reads a list: a line for each student, with the name or number that the download has, and then, after
     /// a `,`, `;` or tab, the name to show.
     pub(super) fn parse(text: &str) -> Self {
-        let mut students = Self::default();
-        for line in text.lines() {
+        let lines = text.lines().map(|line| {
             let mut fields = line
                 .split([',', ';', '\t'])
-                .map(|field| field.trim().trim_matches('"').trim());
-            let Some(key) = fields.next().filter(|key| !key.is_empty()) else {
-                continue;
-            };
-            let name = fields.next().filter(|name| !name.is_empty());
+                .map(|field| field.trim().trim_matches('"').trim().to_owned());
+            let key = fields.next().unwrap_or_default();
+            (key, fields.next().unwrap_or_default())
+        });
+        Self::new(lines.filter(|(key, _)| !key.is_empty()).collect())
+    }
+
+    /// The students with these names or numbers in the download, each with the name to show, which may be
+    /// empty.
+    fn new(list: Vec<(String, String)>) -> Self {
+        let mut students = Self::default();
+        for (key, name) in list {
             let place = students.listed.len();
-            for key in std::iter::once(key).chain(name) {
-                students.places.entry(key.to_lowercase()).or_insert(place);
+            for known in [&key, &name] {
+                if !known.is_empty() {
+                    students.places.entry(known.to_lowercase()).or_insert(place);
+                }
             }
-            students.listed.push(Student {
-                name: name.unwrap_or(key).to_owned(),
-                id: name.map(|_| key.to_owned()),
+            students.listed.push(match name.as_str() {
+                "" => Student { name: key, id: None },
+                _ => Student { name, id: Some(key) },
             });
         }
         students

@@ -3,13 +3,14 @@
 use std::fs::{self, File};
 use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::Path;
+use std::time::UNIX_EPOCH;
 
 use toyproof_diagnostic::path_name;
 use walkdir::WalkDir;
 
 use super::text::{Content, content};
 use crate::cli::files::{MAX_BYTES, is_hidden};
-use crate::cli::zip::Archive;
+use crate::cli::zip::{Archive, FileTime};
 
 /// The deepest archive in archives.
 const MAX_DEPTH: usize = 4;
@@ -28,6 +29,8 @@ pub(super) struct Found {
     pub(super) path: Vec<String>,
     /// What it is, or why it cannot be read.
     pub(super) content: Result<Content, String>,
+    /// When it was last changed; of a file in an archive of the student, when that was.
+    pub(super) time: Option<FileTime>,
 }
 
 /// Whether a name is that of an archive.
@@ -46,7 +49,7 @@ pub(super) fn read(download: &Path) -> io::Result<Vec<Found>> {
         reader.folder(download)?;
     } else {
         let file = BufReader::new(File::open(download)?);
-        reader.archive(file, &[])?;
+        reader.archive(file, &[], None)?;
     }
     reader.found.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(reader.found)
@@ -72,12 +75,12 @@ impl Reader {
             if entry.file_type().is_dir() {
                 if entry.depth() > 0 && fs::read_dir(entry.path())?.next().is_none() {
                     path.push(String::new());
-                    self.add(path, Err("it is empty".to_owned()))?;
+                    self.add(path, Err("it is empty".to_owned()), None)?;
                 }
                 continue;
             }
             if entry.path_is_symlink() {
-                self.add(path, Err("it is a link".to_owned()))?;
+                self.add(path, Err("it is a link".to_owned()), None)?;
                 continue;
             }
             let limit = limit(&path);
@@ -86,13 +89,24 @@ impl Reader {
                 file.take(limit + 1).read_to_end(&mut bytes)?;
                 Ok(bytes)
             });
-            self.file(path, read)?;
+            let modified = entry
+                .metadata()
+                .ok()
+                .and_then(|metadata| metadata.modified().ok());
+            let since = modified.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+            let time = since.map(|since| FileTime::Utc(since.as_secs() as i64));
+            self.file(path, read, time)?;
         }
         Ok(())
     }
 
-    /// Reads an archive, whose files are below `parent`.
-    fn archive(&mut self, input: impl Read + Seek, parent: &[String]) -> io::Result<()> {
+    /// Reads an archive, whose files are below `parent`, and were changed at `time` if it is given.
+    fn archive(
+        &mut self,
+        input: impl Read + Seek,
+        parent: &[String],
+        time: Option<FileTime>,
+    ) -> io::Result<()> {
         let mut archive = Archive::open(input)?;
         for entry in archive.entries().to_vec() {
             let parts = entry
@@ -106,48 +120,59 @@ impl Reader {
             let is_outside = inside.iter().any(|part| part == "..");
             let path: Vec<String> = parent.iter().cloned().chain(inside).collect();
             if is_outside {
-                self.add(path, Err("its path leads out of the archive".to_owned()))?;
+                self.add(path, Err("its path leads out of the archive".to_owned()), None)?;
                 continue;
             }
             let read = archive.read(&entry, limit(&path));
-            self.file(path, read)?;
+            self.file(path, read, time.or(entry.modified))?;
         }
         Ok(())
     }
 
-    fn file(&mut self, path: Vec<String>, read: io::Result<Vec<u8>>) -> io::Result<()> {
+    fn file(
+        &mut self,
+        path: Vec<String>,
+        read: io::Result<Vec<u8>>,
+        time: Option<FileTime>,
+    ) -> io::Result<()> {
         let name = path.last().cloned().unwrap_or_default();
         let bytes = match read {
             Ok(bytes) => bytes,
-            Err(error) => return self.add(path, Err(format!("it cannot be read: {error}"))),
+            Err(error) => return self.add(path, Err(format!("it cannot be read: {error}")), time),
         };
         if !is_archive(&name) {
-            return self.add(path, Ok(content(&name, &bytes)));
+            return self.add(path, Ok(content(&name, &bytes)), time);
         }
         let depth = path.iter().filter(|part| is_archive(part)).count();
         if depth > MAX_DEPTH {
             return self.add(
                 path,
                 Err(format!("more than {MAX_DEPTH} archives are in each other")),
+                time,
             );
         }
         if bytes.len() as u64 > MAX_NESTED_BYTES {
-            return self.add(path, Err("it is larger than 64 MiB".to_owned()));
+            return self.add(path, Err("it is larger than 64 MiB".to_owned()), time);
         }
-        match self.archive(Cursor::new(bytes), &path) {
+        match self.archive(Cursor::new(bytes), &path, time) {
             // What concerns all files is not this archive's fault.
             Err(error) if error.kind() == io::ErrorKind::InvalidData => {
-                self.add(path, Err(format!("it is {error}")))
+                self.add(path, Err(format!("it is {error}")), time)
             }
             result => result,
         }
     }
 
-    fn add(&mut self, path: Vec<String>, content: Result<Content, String>) -> io::Result<()> {
+    fn add(
+        &mut self,
+        path: Vec<String>,
+        content: Result<Content, String>,
+        time: Option<FileTime>,
+    ) -> io::Result<()> {
         if let Ok(Content::Text { text, .. }) = &content {
             self.bytes += text.len();
         }
-        self.found.push(Found { path, content });
+        self.found.push(Found { path, content, time });
         if self.found.len() > MAX_FILES || self.bytes > MAX_TEXT_BYTES {
             return Err(io::Error::other(format!(
                 "it has more than {MAX_FILES} files, or more than 1 GiB of text"

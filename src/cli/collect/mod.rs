@@ -1,28 +1,26 @@
 //! `toyproof collect`: a folder for each student, from the downloads of a learning management system.
 
 mod class;
+mod collection;
 mod download;
 mod naming;
 mod roster;
 mod text;
+mod writer;
 
-use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use anstyle::{AnsiColor, Style};
-use toyproof_diagnostic::{Files, grouped, path_name, plural, printable};
+use toyproof_diagnostic::{Files, path_name, printable};
 
-use self::class::{Class, Students};
-use self::download::{Found, is_archive};
-use self::naming::{Student, Submitted, file_name, is_of_system, submitted};
-pub(super) use self::roster::add_missing;
-use self::roster::{Entry, FILE_NAME, Roster, Skipped};
-use self::text::Content;
+use self::class::{Class, Purpose};
+use self::collection::Collection;
+pub(super) use self::roster::Owners;
+use self::roster::Roster;
+use self::writer::{Listing, Writer, remove_earlier};
 use super::files;
 use super::inputs::shell_word;
 use super::shader::Unusable;
 use super::{Exit, Terminal};
-use crate::report::{Detail, Layout};
 
 /// Collect submissions from downloads into a folder for each student
 ///
@@ -44,13 +42,17 @@ pub(super) struct Args {
     /// The folder to create
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// The class (.toml): the list of its students, and the files of several assignments
+    /// The class (.toml): the list of its students, and the files and deadlines of several assignments
     #[arg(long, value_name = "FILE")]
     class: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let Ok(class) = read_class(args, terminal) else {
+    let class = match &args.class {
+        Some(path) => read_class(path, Purpose::Collect, terminal),
+        None => Ok(Class::default()),
+    };
+    let Ok(class) = class else {
         return Exit::Error;
     };
     match collect(args, &class, terminal) {
@@ -62,15 +64,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
 }
 
-fn read_class(args: &Args, terminal: &Terminal) -> Result<Class, ()> {
-    let Some(path) = &args.class else {
-        return Ok(Class::default());
-    };
+fn read_class(path: &Path, purpose: Purpose, terminal: &Terminal) -> Result<Class, ()> {
     let mut files = Files::default();
     let unusable = match files::read_text(path) {
         Ok(text) => {
             let file = files.add(text);
-            match Class::parse(&files, file, path.parent().unwrap_or(Path::new(""))) {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            match Class::parse(&files, file, folder, purpose) {
                 Ok(class) => return Ok(class),
                 Err(errors) => Unusable::Invalid(errors.into()),
             }
@@ -83,52 +83,63 @@ fn read_class(args: &Args, terminal: &Terminal) -> Result<Class, ()> {
 
 fn collect(args: &Args, class: &Class, terminal: &Terminal) -> Result<(), String> {
     download::check_empty(&args.output)?;
-    let students = match &class.students {
-        None => Students::default(),
-        Some(path) => Students::parse(files::read_text(path).map_err(|error| error.to_string())?.text()),
+    let collection = Collection::read(&args.downloads, class)?;
+    if !class.assignments.is_empty() {
+        write_class(&args.output, &collection, class, Listing::Everyone, terminal)?;
+        for assignment in &class.assignments {
+            next(
+                &args.output.join(&assignment.name),
+                assignment.assignment.as_deref(),
+                terminal,
+            );
+        }
+        return Ok(());
+    }
+    let writer = Writer {
+        folder: &args.output,
+        assignment: None,
+        listing: Listing::Everyone,
+        terminal,
     };
-    let mut submissions: BTreeMap<Student, Submission> = students
-        .all()
+    writer.write(&collection)?;
+    next(&args.output, None, terminal);
+    Ok(())
+}
+
+/// Writes a folder for each assignment of a class, and reports files that belong to none.
+fn write_class(
+    folder: &Path,
+    collection: &Collection,
+    class: &Class,
+    listing: Listing,
+    terminal: &Terminal,
+) -> Result<(), String> {
+    if class
+        .assignments
         .iter()
-        .map(|student| (student.clone(), Submission::default()))
-        .collect();
-    for download in &args.downloads {
-        let found = download::read(download).map_err(|error| format!("{}: {error}", path_name(download)))?;
-        for Found { path, content } in download::without_common_folder(found, is_of_system) {
-            let Submitted {
-                student,
-                path,
-                is_late,
-            } = submitted(&path);
-            let submission = submissions.entry(students.find(student)).or_default();
-            submission.is_late |= is_late;
-            // The folder of a student may be empty.
-            if path.iter().all(|part| !part.is_empty()) {
-                submission.files.push((path, content));
-            }
+        .any(|assignment| assignment.deadline.is_some())
+    {
+        for download in &collection.copies {
+            terminal.warn(format_args!(
+                "{}: the files of all students have the same time, which is not that of their submissions",
+                path_name(download)
+            ));
         }
     }
-    if submissions.is_empty() {
-        return Err("there is no file to collect".to_owned());
-    }
-    let mut names = Taken::default();
-    let named: Vec<(String, &Student, &Submission)> = submissions
-        .iter()
-        .map(|(student, submission)| (names.folder(student), student, submission))
-        .collect();
-    if class.assignments.is_empty() {
-        return write(&args.output, &named, |_| true, terminal).map(|()| next(&args.output, None, terminal));
-    }
     for assignment in &class.assignments {
-        let folder = args.output.join(&assignment.name);
-        write(&folder, &named, |path| assignment.has(path), terminal)?;
-        next(&folder, assignment.assignment.as_deref(), terminal);
+        let writer = Writer {
+            folder: &folder.join(&assignment.name),
+            assignment: Some(assignment),
+            listing,
+            terminal,
+        };
+        writer.write(collection)?;
     }
-    let is_of_none = |path: &str| !class.assignments.iter().any(|assignment| assignment.has(path));
-    for (folder, _, submission) in &named {
-        for (path, content) in &submission.files {
-            let path = path.join("/");
-            if matches!(content, Ok(Content::Text { .. })) && is_of_none(&path) {
+    for (folder, _, submission) in &collection.students {
+        for file in &submission.files {
+            let path = file.original_path();
+            let is_of_none = !class.assignments.iter().any(|assignment| assignment.has(&path));
+            if file.is_shader() && is_of_none {
                 terminal.warn(format_args!(
                     "{folder}: {} was left out: no assignment of the class has this file",
                     printable(&path)
@@ -139,164 +150,71 @@ fn collect(args: &Args, class: &Class, terminal: &Terminal) -> Result<(), String
     Ok(())
 }
 
-/// The files of a student, each with its path.
-#[derive(Debug, Default)]
-struct Submission {
-    files: Vec<(Vec<String>, Result<Content, String>)>,
-    is_late: bool,
+/// The submissions of an assignment of a class, as `check` reads them.
+pub(super) struct ClassPart {
+    /// The name of the assignment.
+    pub(super) name: String,
+    /// The folder with the folders of all students.
+    pub(super) folder: PathBuf,
+    /// The file or the folder of the assignment.
+    pub(super) assignment: PathBuf,
+    /// The rubric, if it is not that of the assignment.
+    pub(super) rubric: Option<PathBuf>,
 }
 
-/// Names in use, without case: some file systems store names that differ only in case in one file.
-#[derive(Debug, Default)]
-struct Taken(HashSet<String>);
-
-impl Taken {
-    /// A name that is not in use: the given one, or one with a number before the extension.
-    fn free(&mut self, name: &str) -> String {
-        let (stem, extension) = match name.rsplit_once('.') {
-            Some((stem, extension)) if !extension.contains('/') => (stem, format!(".{extension}")),
-            _ => (name, String::new()),
-        };
-        let numbered = (2_u64..).map(|number| format!("{stem}-{number}{extension}"));
-        let free = std::iter::once(name.to_owned())
-            .chain(numbered)
-            .find(|name| !self.0.contains(&name.to_lowercase()));
-        let free = free.expect("one of endlessly many names is free");
-        self.0.insert(free.to_lowercase());
-        free
-    }
-
-    /// The folder of a student: the name, with the number if another has the same name.
-    fn folder(&mut self, student: &Student) -> String {
-        let name = file_name(&student.name);
-        match &student.id {
-            Some(id) if self.0.contains(&name.to_lowercase()) => {
-                self.free(&file_name(&format!("{name}-{id}")))
-            }
-            _ => self.free(&name),
-        }
-    }
-}
-
-/// Writes the shaders of all students that belong to an assignment, and the roster, and prints a line for
-/// each student.
-fn write(
-    folder: &Path,
-    submissions: &[(String, &Student, &Submission)],
-    belongs: impl Fn(&str) -> bool,
+/// Finds the submissions of each assignment of a class: in a folder that `collect` wrote, or in downloads,
+/// from which they are collected into the folder `to`; without one, downloads are refused.
+///
+/// # Errors
+/// Something is unusable; what is wrong with it has been printed.
+pub(super) fn class_parts(
+    downloads: &[PathBuf],
+    class: &Path,
+    to: Option<&Path>,
     terminal: &Terminal,
-) -> Result<(), String> {
-    let layout = Layout::new(
-        submissions.iter().map(|(name, ..)| name.as_str()),
-        terminal.width(),
-        Detail::Normal,
-        false,
-    );
-    let mut students = Vec::new();
-    for (name, student, submission) in submissions {
-        let mut entry = Entry {
-            folder: name.clone(),
-            name: student.name.clone(),
-            id: student.id.clone(),
-            is_late: submission.is_late,
-            files: Vec::new(),
-            skipped: Vec::new(),
-        };
-        let mut notes = Vec::new();
-        let mut taken = Taken::default();
-        for (path, content) in &submission.files {
-            let original = path.join("/");
-            let mut skip = |reason: &str| {
-                let (file, reason) = (original.clone(), reason.to_owned());
-                entry.skipped.push(Skipped { file, reason });
+) -> Result<Vec<ClassPart>, ()> {
+    let class = read_class(class, Purpose::Check, terminal)?;
+    find_parts(downloads, &class, to, terminal).map_err(|error| terminal.error(error))
+}
+
+fn find_parts(
+    downloads: &[PathBuf],
+    class: &Class,
+    to: Option<&Path>,
+    terminal: &Terminal,
+) -> Result<Vec<ClassPart>, String> {
+    let collected = match downloads {
+        [folder] if is_collected(folder, class)? => folder.clone(),
+        _ => {
+            let Some(to) = to else {
+                return Err("a shard needs collected submissions, not a download\n\
+                     help: `toyproof collect DOWNLOAD --class class.toml -o homework`, and check `homework`"
+                    .to_owned());
             };
-            match content {
-                Err(reason) => skip(reason),
-                Ok(Content::Other(reason)) => skip(reason),
-                Ok(Content::Text { .. }) if !belongs(&original) => {}
-                Ok(Content::Text {
-                    text,
-                    encoding,
-                    is_renamed,
-                }) => {
-                    let file = taken.free(&output_name(path, *is_renamed));
-                    let path = folder.join(name).join(&file);
-                    if !terminal.write_output(folder, &path, text.as_bytes()) {
-                        return Err("not all submissions were written".to_owned());
-                    }
-                    notes.extend(
-                        encoding.map(|encoding| format!("{file} was saved as {encoding}, now as UTF-8")),
-                    );
-                    notes.extend(
-                        is_renamed.then(|| format!("{} is a shader, now {file}", printable(&original))),
-                    );
-                    entry.files.push(file);
-                }
-            }
+            let collection = Collection::read(downloads, class)?;
+            remove_earlier(to)?;
+            write_class(to, &collection, class, Listing::Notes, terminal)?;
+            to.to_owned()
         }
-        notes.extend(entry.skipped.iter().map(|skipped| {
-            format!(
-                "skipped {}: {}",
-                printable(&skipped.file),
-                printable(&skipped.reason)
-            )
-        }));
-        print(&entry, &notes, &layout, terminal);
-        students.push(entry);
-    }
-    let with_shader = students
-        .iter()
-        .filter(|student| !student.files.is_empty())
-        .count() as u64;
-    let roster = Roster { students };
-    let text = serde_json::to_string_pretty(&roster).map_err(|error| error.to_string())? + "\n";
-    if !terminal.write_output(folder, &folder.join(FILE_NAME), text.as_bytes()) {
-        return Err("the list of students was not written".to_owned());
-    }
-    let count = roster.students.len() as u64;
-    terminal.note(&format!(
-        "\n{}: {} {}, {} with a shader",
-        path_name(folder),
-        grouped(count),
-        plural(count, "student", "students"),
-        grouped(with_shader)
-    ));
-    Ok(())
-}
-
-/// The path of a collected file: harmless on any system, with a shader's extension in lower case.
-fn output_name(path: &[String], is_renamed: bool) -> String {
-    let (last, folders) = path.split_last().expect("a file has a name");
-    let folders = folders.iter().map(|part| match part {
-        part if is_archive(part) => file_name(&part[..part.len() - ".zip".len()]),
-        part => file_name(part),
+    };
+    let parts = class.assignments.iter().map(|assignment| ClassPart {
+        name: assignment.name.clone(),
+        folder: collected.join(&assignment.name),
+        // Without one, the class has an error.
+        assignment: assignment.assignment.clone().unwrap_or_default(),
+        rubric: assignment.rubric.clone(),
     });
-    let name = file_name(last);
-    let (stem, extension) = name.rsplit_once('.').unwrap_or((&name, ""));
-    let file = match is_renamed {
-        false => format!("{stem}.{}", extension.to_lowercase()),
-        true if stem.to_lowercase().ends_with(".glsl") => stem.to_lowercase(),
-        true if stem.is_empty() => format!("{name}.glsl"),
-        true => format!("{stem}.glsl"),
-    };
-    folders.chain([file]).collect::<Vec<_>>().join("/")
+    Ok(parts.collect())
 }
 
-fn print(entry: &Entry, notes: &[String], layout: &Layout, terminal: &Terminal) {
-    let count = entry.files.len() as u64;
-    let late = if entry.is_late { ", late" } else { "" };
-    let (label, color, sentence) = match count {
-        0 => ("missing", AnsiColor::Red, "no shader was submitted".to_owned()),
-        _ => (
-            "collected",
-            AnsiColor::Green,
-            format!("{} {}", grouped(count), plural(count, "file", "files")),
-        ),
-    };
-    let style = Style::new().fg_color(Some(color.into())).bold();
-    let mut lines = vec![layout.row((label, style), &entry.folder, &(sentence + late))];
-    lines.extend(notes.iter().map(|note| layout.below("", note)));
-    terminal.result(&lines.join("\n"));
+/// Whether a folder has the collected submissions of all assignments.
+fn is_collected(folder: &Path, class: &Class) -> Result<bool, String> {
+    for assignment in &class.assignments {
+        if Roster::read(&folder.join(&assignment.name))?.is_none() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Prints the command that checks what was collected.

@@ -8,8 +8,8 @@ pub(super) struct Submitted {
     pub(super) student: Student,
     /// Its path in the submission; empty for a folder.
     pub(super) path: Vec<String>,
-    /// Whether the system marks it as late.
-    pub(super) is_late: bool,
+    /// Whether the system marks it as late; none if the system marks nothing in names.
+    pub(super) is_late: Option<bool>,
 }
 
 /// A student, as a download names one.
@@ -51,7 +51,7 @@ fn by_place(first: &str, is_file: bool) -> Named {
             id: None,
         },
         file: is_file.then(|| first.to_owned()),
-        is_late: false,
+        is_late: None,
     }
 }
 
@@ -65,7 +65,7 @@ struct Named {
     student: Student,
     /// The name that the student gave to the file; none for a folder.
     file: Option<String>,
-    is_late: bool,
+    is_late: Option<bool>,
 }
 
 /// Moodle: `Anna Smith_1234567_assignsubmission_file_shader.glsl`, or a folder `Anna
@@ -84,7 +84,7 @@ fn moodle(name: &str) -> Option<Named> {
             id: Some(id.to_owned()),
         },
         file: (!file.is_empty()).then(|| file.to_owned()),
-        is_late: false,
+        is_late: None,
     })
 }
 
@@ -102,7 +102,7 @@ fn canvas(name: &str) -> Option<Named> {
             id: Some(id.to_owned()),
         },
         file: Some(file.to_owned()),
-        is_late: late.is_some(),
+        is_late: Some(late.is_some()),
     })
 }
 
@@ -135,7 +135,7 @@ mod tests {
             path,
             is_late,
         } = submitted(&path);
-        (student.name, student.id, path.join("/"), is_late)
+        (student.name, student.id, path.join("/"), is_late == Some(true))
     }
 
     #[test]

@@ -1,13 +1,15 @@
 //! `submissions.json`: the students whose submissions a folder has, so that `check` has a row for each.
 
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{path_name, printable};
 
 use crate::cli::files::{Input, ReadError};
+use crate::report::{Late, Submitted};
 
 /// The name of the file.
 pub(super) const FILE_NAME: &str = "submissions.json";
@@ -15,6 +17,9 @@ pub(super) const FILE_NAME: &str = "submissions.json";
 /// The students of a folder of submissions.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Roster {
+    /// The name of the assignment, if a class has several.
+    #[serde(default)]
+    pub(super) assignment: Option<String>,
     pub(super) students: Vec<Entry>,
 }
 
@@ -25,8 +30,9 @@ pub(super) struct Entry {
     pub(super) folder: String,
     pub(super) name: String,
     pub(super) id: Option<String>,
-    /// Whether a file was marked as late.
-    pub(super) is_late: bool,
+    /// How late the files are; null if they are not.
+    #[serde(default)]
+    pub(super) late: Option<Late>,
     /// The files that were collected.
     pub(super) files: Vec<String>,
     /// The files that were not.
@@ -53,48 +59,107 @@ impl Entry {
     }
 }
 
-/// Adds an error for each student of a collected folder who has no shader, in the order of the paths. Other
-/// folders have no roster.
-///
-/// # Errors
-/// The roster cannot be read.
-pub(in crate::cli) fn add_missing(
-    folder: &Path,
-    inputs: &mut Vec<Result<Input, ReadError>>,
-) -> Result<(), String> {
-    let path = folder.join(FILE_NAME);
-    let text = match fs::read(&path) {
-        Ok(text) => text,
-        Err(error)
-            if matches!(
-                error.kind(),
-                io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
-            ) =>
-        {
-            return Ok(());
-        }
-        Err(error) => return Err(format!("{}: {error}", path_name(&path))),
-    };
-    let roster: Roster =
-        serde_json::from_slice(&text).map_err(|error| format!("{}: {error}", path_name(&path)))?;
-    for student in roster.students {
-        let own = folder.join(&student.folder);
-        let is_own = |input: &Result<Input, ReadError>| match input {
-            Ok(input) => input.path().is_some_and(|path| path.starts_with(&own)),
-            Err(error) => Path::new(&error.name()).starts_with(&own),
-        };
-        if !inputs.iter().any(is_own) {
-            let is_later = |input: &Result<Input, ReadError>| match input {
-                Ok(input) => input
-                    .path()
-                    .is_some_and(|path| path.starts_with(folder) && *path > *own),
-                Err(_) => false,
-            };
-            let at = inputs.iter().position(is_later).unwrap_or(inputs.len());
-            let instead = student.instead();
-            inputs.insert(at, Err(ReadError::NotSubmitted(own, instead)));
+impl Roster {
+    /// Reads the roster of a folder; none if it has none.
+    ///
+    /// # Errors
+    /// The roster cannot be read.
+    pub(super) fn read(folder: &Path) -> Result<Option<Self>, String> {
+        let path = folder.join(FILE_NAME);
+        match fs::read(&path) {
+            Ok(text) => serde_json::from_slice(&text)
+                .map(Some)
+                .map_err(|error| format!("{}: {error}", path_name(&path))),
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+                ) =>
+            {
+                Ok(None)
+            }
+            Err(error) => Err(format!("{}: {error}", path_name(&path))),
         }
     }
-    inputs.retain(|input| !matches!(input, Err(ReadError::NoShader(empty)) if empty == folder));
-    Ok(())
+}
+
+/// Whose shaders the inputs are, by the folders of students.
+#[derive(Debug, Default)]
+pub(in crate::cli) struct Owners {
+    students: HashMap<PathBuf, Submitted>,
+}
+
+impl Owners {
+    /// Reads the rosters of folders, and adds an error for each student who has no shader, in the order of
+    /// the paths. Other folders have no roster.
+    ///
+    /// # Errors
+    /// A roster cannot be read.
+    pub(in crate::cli) fn read(
+        folders: &[PathBuf],
+        inputs: &mut Vec<Result<Input, ReadError>>,
+    ) -> Result<Self, String> {
+        let mut owners = Self::default();
+        for folder in folders {
+            let Some(roster) = Roster::read(folder)? else {
+                continue;
+            };
+            add_missing(folder, &roster, inputs);
+            let students = roster.students.into_iter().map(|student| {
+                let submitted = Submitted {
+                    assignment: roster.assignment.clone(),
+                    student: student.name,
+                    id: student.id,
+                    late: student.late,
+                };
+                (folder.join(student.folder), submitted)
+            });
+            owners.students.extend(students);
+        }
+        Ok(owners)
+    }
+
+    /// Whose an input is; none if it is nobody's.
+    pub(in crate::cli) fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
+        let path = path_of(input)?;
+        path.ancestors().find_map(|folder| self.students.get(folder))
+    }
+}
+
+fn path_of(input: &Result<Input, ReadError>) -> Option<PathBuf> {
+    match input {
+        Ok(input) => input.path().map(Path::to_owned),
+        Err(ReadError::NotSubmitted(folder, _)) => Some(folder.clone()),
+        Err(error) => Some(error.name().into()),
+    }
+}
+
+/// Adds an error for each student without a shader to the inputs of a folder, which are together and in the
+/// order of their paths.
+fn add_missing(folder: &Path, roster: &Roster, inputs: &mut Vec<Result<Input, ReadError>>) {
+    let is_of_folder =
+        |input: &Result<Input, ReadError>| path_of(input).is_some_and(|path| path.starts_with(folder));
+    let at = inputs.iter().position(is_of_folder).unwrap_or(inputs.len());
+    let count = inputs[at..]
+        .iter()
+        .take_while(|input| is_of_folder(input))
+        .count();
+    let mut own: Vec<_> = inputs.drain(at..at + count).collect();
+    own.retain(|input| !matches!(input, Err(ReadError::NoShader(empty)) if empty == folder));
+    let first_part = |input: &Result<Input, ReadError>| {
+        let path = path_of(input)?;
+        let part = path.strip_prefix(folder).ok()?.iter().next()?;
+        Some(part.to_owned())
+    };
+    let present: HashSet<_> = own.iter().filter_map(first_part).collect();
+    let absent = roster.students.iter().filter(|student| {
+        let folder: &std::ffi::OsStr = student.folder.as_ref();
+        !present.contains(folder)
+    });
+    own.extend(absent.map(|student| {
+        let own = folder.join(&student.folder);
+        Err(ReadError::NotSubmitted(own, student.instead()))
+    }));
+    own.sort_by_cached_key(path_of);
+    inputs.splice(at..at, own);
 }

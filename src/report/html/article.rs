@@ -5,12 +5,11 @@ use toyproof_diagnostic::{color_difference, grouped};
 use toyproof_verify::compare::{CheckSummary, Pixel};
 
 use super::glossary::{Glossary, term};
-use super::overview::total_points;
 use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
 use crate::report::repair::suspect_lines;
 use crate::report::terminal::CUT_SEARCH;
-use crate::report::{Mistake, Record, Repair, Rubric};
+use crate::report::{Mistake, Record, Repair, Rubrics};
 
 /// What the article of a shader shows.
 pub(super) struct Article<'a> {
@@ -18,7 +17,7 @@ pub(super) struct Article<'a> {
     /// The short name.
     pub(super) name: &'a str,
     pub(super) exhibit: &'a Exhibit,
-    pub(super) rubric: Option<&'a Rubric>,
+    pub(super) rubrics: &'a Rubrics,
     pub(super) glossary: &'a Glossary,
     pub(super) limit: SourceLimit,
 }
@@ -81,6 +80,7 @@ impl Article<'_> {
             scene,
             reference,
             seconds,
+            submitted,
             ..
         } = self.record;
         let mut facts = String::new();
@@ -92,13 +92,20 @@ impl Article<'_> {
                 let _ = write!(facts, "<span>{kind}: {}</span>", Text(name));
             }
         }
+        if let Some(submitted) = submitted {
+            let _ = write!(facts, "<span>Student: {}</span>", Text(&submitted.student));
+            if let Some(assignment) = &submitted.assignment {
+                let _ = write!(facts, "<span>Assignment: {}</span>", Text(assignment));
+            }
+            if let Some(late) = submitted.late {
+                let _ = write!(facts, "<span>Submitted {late}</span>");
+            }
+        }
         let seconds = seconds.total();
         if seconds > 0.0 {
             let _ = write!(facts, "<span>Time: {seconds:.2} s</span>");
         }
-        if let Some(rubric) = self.rubric {
-            facts += &points(rubric, self.record);
-        }
+        facts += &points(self.rubrics, self.record);
         if facts.is_empty() {
             return facts;
         }
@@ -239,12 +246,18 @@ fn command(command: &str) -> String {
 }
 
 /// The points, in total and of each check.
-fn points(rubric: &Rubric, record: &Record) -> String {
+fn points(rubrics: &Rubrics, record: &Record) -> String {
+    let (Some(rubric), Some([points, of])) = (rubrics.of(record), rubrics.total(record)) else {
+        return String::new();
+    };
     let marks = rubric.marks(record).into_iter();
     let marks: Vec<_> = marks
-        .map(|mark| format!("{} {} of {}", mark.name, mark.points, mark.of))
+        .map(|mark| match mark.of {
+            // What is deducted has no maximum.
+            0.0 => format!("{} {}", mark.name, mark.points),
+            of => format!("{} {} of {of}", mark.name, mark.points),
+        })
         .collect();
-    let [points, of] = total_points(rubric, record);
     format!("<span>Points: {points} of {of} ({})</span>", marks.join(", "))
 }
 
@@ -344,7 +357,7 @@ mod tests {
             record,
             name: &record.shader,
             exhibit: &Exhibit::default(),
-            rubric: None,
+            rubrics: &Rubrics::default(),
             glossary: &Glossary::of(std::slice::from_ref(record)),
             limit: SourceLimit::of([]),
         };
@@ -395,7 +408,7 @@ mod tests {
                 record,
                 name: &record.shader,
                 exhibit: &exhibit,
-                rubric: None,
+                rubrics: &Rubrics::default(),
                 glossary: &Glossary::of(std::slice::from_ref(record)),
                 limit: SourceLimit::of([SOURCE]),
             };

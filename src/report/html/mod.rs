@@ -25,7 +25,7 @@ pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
 use self::glossary::Glossary;
 use self::names::Names;
 use self::source::SourceLimit;
-use super::{Record, Report, Rubric};
+use super::{Record, Report, Rubrics};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -36,7 +36,7 @@ const VIEWER: &str = include_str!("viewer.html");
 
 /// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
 #[must_use]
-pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery, date: SystemTime) -> String {
+pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> String {
     let records = report.shaders();
     let names = Names::of(records);
     let glossary = Glossary::of(records);
@@ -52,7 +52,7 @@ pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery, date: S
                 record,
                 name: names.short(record),
                 exhibit,
-                rubric,
+                rubrics,
                 glossary: &glossary,
                 limit,
             };
@@ -89,7 +89,7 @@ pub fn html(report: &Report, rubric: Option<&Rubric>, gallery: &Gallery, date: S
         policy = policy(),
         facts = facts(report, &names, date),
         subsampling_note = subsampling_note(gallery.step()),
-        overview = overview::overview(records, &names, gallery, rubric),
+        overview = overview::overview(records, &names, gallery, rubrics),
         glossary = glossary.html(),
         images = images(gallery),
     )
@@ -251,7 +251,7 @@ mod tests {
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
         let report = Report::new(Some("<device>".to_owned()), records);
-        html(&report, None, gallery, UNIX_EPOCH)
+        html(&report, &Rubrics::default(), gallery, UNIX_EPOCH)
     }
 
     #[test]
@@ -334,7 +334,7 @@ mod tests {
         }
         let report = Report::new(None, records);
         let time = UNIX_EPOCH + std::time::Duration::from_secs(951_827_640);
-        let page = html(&report, None, &Gallery::new(1), time);
+        let page = html(&report, &Rubrics::default(), &Gallery::new(1), time);
         assert!(page.contains("<h1>toyproof check: hw&lt;3</h1>"));
         assert!(page.contains("Folder: class/hw&lt;3<"));
         assert!(page.contains("<time datetime=\"2000-02-29T12:34Z\">2000-02-29 12:34 UTC</time>"));

@@ -6,21 +6,17 @@ use toyproof_verify::compare::CheckSummary;
 
 use super::names::Names;
 use super::{Exhibit, Gallery, Text, sentence};
-use crate::report::{Record, Rubric};
+use crate::report::{Record, Rubrics};
 
-pub(super) fn overview(
-    records: &[Record],
-    names: &Names,
-    gallery: &Gallery,
-    rubric: Option<&Rubric>,
-) -> String {
-    let points = match rubric {
-        Some(_) => "<th scope=\"col\" rowspan=\"2\" class=\"number\" data-sort>Points</th>",
-        None => "",
+pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rubrics: &Rubrics) -> String {
+    let points = if rubrics.is_empty() {
+        ""
+    } else {
+        "<th scope=\"col\" rowspan=\"2\" class=\"number\" data-sort>Points</th>"
     };
     let rows = records.iter().zip(gallery.exhibits()).enumerate();
     let rows: String = rows
-        .map(|(index, (record, exhibit))| row(index, record, names.short(record), exhibit, rubric))
+        .map(|(index, (record, exhibit))| row(index, record, names.short(record), exhibit, rubrics))
         .collect();
     let checks = [
         ("t-algorithm", "Algorithm"),
@@ -93,11 +89,12 @@ pub(super) fn badge(verdict: Verdict) -> String {
 }
 
 /// Formats a row. Cells that are not sorted by their text have a number in `data-by`.
-fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Option<&Rubric>) -> String {
-    let points = rubric.map(|rubric| {
-        let [points, of] = total_points(rubric, record);
-        format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>")
-    });
+fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubrics: &Rubrics) -> String {
+    let points = match rubrics.total(record) {
+        Some([points, of]) => format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>"),
+        None if rubrics.is_empty() => String::new(),
+        None => "<td class=\"number none\" data-by=\"-1\"></td>".to_owned(),
+    };
     let verdict = record.verdict;
     let image = match exhibit.actual {
         Some(image) => format!(" data-image=\"{image}\""),
@@ -105,13 +102,14 @@ fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubric: Opt
     };
     format!(
         "<tr data-verdict=\"{verdict}\"><td class=\"thumbnail\"{image}></td>\
-         <th scope=\"row\"><a href=\"#s{index}\" title=\"{}\">{}</a></th><td data-by=\"{}\">{}</td>{}\
+         <th scope=\"row\"><a href=\"#s{index}\" title=\"{}\">{}</a>{}</th><td data-by=\"{}\">{}</td>{}\
          <td class=\"why\">{}</td>{}{}{}</tr>\n",
         Text(&record.shader),
         breakable(name),
+        student(record),
         verdict as u8,
         badge(verdict),
-        points.unwrap_or_default(),
+        points,
         why(record),
         pixels_off(record.algorithm.as_ref()),
         pixels_off(record.precision.as_ref()),
@@ -137,7 +135,7 @@ fn why(record: &Record) -> String {
     let error = errors.next().filter(|_| errors.next().is_some());
     let more = mistake.or(error.map(|error| error.message.clone()));
     let more = more.map(|more| format!("<br><span class=\"more\">{}</span>", sentence(&more)));
-    sentence(&record.reason) + &more.unwrap_or_default()
+    sentence(&record.reason_and_lateness()) + &more.unwrap_or_default()
 }
 
 /// Escapes a name, which may be broken after the parts of its path rather than within them.
@@ -148,14 +146,20 @@ fn breakable(name: &str) -> String {
         .replace('_', "_<wbr>")
 }
 
-/// The points that a shader earned, and the maximum.
-pub(super) fn total_points(rubric: &Rubric, record: &Record) -> [f64; 2] {
-    let marks = rubric.marks(record);
-    let rounded = |points: f64| (100.0 * points).round() / 100.0;
-    [
-        rounded(marks.iter().map(|mark| mark.points).sum()),
-        rounded(marks.iter().map(|mark| mark.of).sum()),
-    ]
+/// Whose submission a shader is, below its name.
+fn student(record: &Record) -> String {
+    let Some(submitted) = &record.submitted else {
+        return String::new();
+    };
+    let assignment = submitted
+        .assignment
+        .iter()
+        .map(|name| format!(", {}", Text(name)));
+    format!(
+        "<br><span class=\"more\">{}{}</span>",
+        Text(&submitted.student),
+        assignment.collect::<String>()
+    )
 }
 
 /// Formats the number of pixels of a check that differ.

@@ -6,7 +6,7 @@ use std::{env, fs};
 
 use serde_json::{Value, json};
 use toyproof::image::{self, Image, quantize};
-use toyproof::report::{Exhibit, Gallery, Record, Report, html};
+use toyproof::report::{Exhibit, Gallery, Record, Report, Rubrics, html};
 use toyproof::verify::Verdict;
 
 use crate::program::toyproof;
@@ -570,7 +570,12 @@ fn the_image_after_the_fix_is_beside_the_others() {
         fix: Some(serde_json::from_value(fix).unwrap()),
         ..Record::new("hw/eve.glsl".to_owned())
     };
-    let text = html(&Report::new(None, vec![record]), None, &gallery, UNIX_EPOCH);
+    let text = html(
+        &Report::new(None, vec![record]),
+        &Rubrics::default(),
+        &gallery,
+        UNIX_EPOCH,
+    );
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("out/report.html");
     fs::create_dir(file.parent().unwrap()).unwrap();
@@ -747,7 +752,12 @@ fn a_page_of_500_shaders_shows_one_at_a_time() {
         }
     });
     let records = records.collect();
-    let text = html(&Report::new(None, records), None, &gallery, UNIX_EPOCH);
+    let text = html(
+        &Report::new(None, records),
+        &Rubrics::default(),
+        &gallery,
+        UNIX_EPOCH,
+    );
     assert!((16_000_000..20_000_000).contains(&text.len()), "{}", text.len());
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("out/report.html");

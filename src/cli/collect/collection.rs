@@ -1,0 +1,220 @@
+//! The submissions of all students in downloads, and how late they are.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use toyproof_diagnostic::path_name;
+use toyproof_toml::Moment;
+
+use super::class::{Class, ClassAssignment, StudentList, Students};
+use super::download::{self, Found};
+use super::naming::{Student, Submitted, file_name, is_of_system, submitted};
+use super::text::Content;
+use crate::cli::files;
+use crate::cli::zip::FileTime;
+use crate::report::Late;
+
+/// Times of files that are this close, in seconds, are those of one copy.
+const COPY_SECONDS: i64 = 60;
+
+/// A file of a student.
+#[derive(Debug)]
+pub(super) struct Handed {
+    pub(super) path: Vec<String>,
+    pub(super) content: Result<Content, String>,
+    time: Option<FileTime>,
+    /// Whether the system marks it as late; none if the system marks nothing in names.
+    is_late: Option<bool>,
+}
+
+impl Handed {
+    pub(super) fn original_path(&self) -> String {
+        self.path.join("/")
+    }
+
+    pub(super) fn is_shader(&self) -> bool {
+        matches!(self.content, Ok(Content::Text { .. }))
+    }
+}
+
+/// The submission of a student.
+#[derive(Debug, Default)]
+pub(super) struct Submission {
+    pub(super) files: Vec<Handed>,
+}
+
+/// How late something was submitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Lateness {
+    OnTime,
+    Late(Late),
+    /// The download does not state it.
+    Unknown,
+}
+
+impl Submission {
+    /// How late the shaders of an assignment are; of all assignments without one.
+    pub(super) fn lateness(&self, assignment: Option<&ClassAssignment>) -> Lateness {
+        let belongs = |file: &&Handed| {
+            let path = file.original_path();
+            file.is_shader() && assignment.is_none_or(|assignment| assignment.has(&path))
+        };
+        let files: Vec<_> = self.files.iter().filter(belongs).collect();
+        if files.iter().any(|file| file.is_late == Some(true)) {
+            return Lateness::Late(Late { seconds: None });
+        }
+        let deadline = assignment.and_then(|assignment| assignment.deadline);
+        let Some(deadline) = deadline else {
+            return Lateness::OnTime;
+        };
+        // Canvas marks what is late, and gives all files the time of the download.
+        let unmarked = files.iter().filter(|file| file.is_late.is_none());
+        let delays: Vec<_> = unmarked
+            .map(|file| file.time.map(|time| utc(time, deadline) - deadline.seconds))
+            .collect();
+        match delays.iter().flatten().max() {
+            Some(&delay @ 1..) => Lateness::Late(Late {
+                seconds: Some(delay.unsigned_abs()),
+            }),
+            _ if delays.contains(&None) => Lateness::Unknown,
+            _ => Lateness::OnTime,
+        }
+    }
+}
+
+/// A time in UTC. One without an offset is that of a clock at the place of the deadline.
+fn utc(time: FileTime, deadline: Moment) -> i64 {
+    match time {
+        FileTime::Utc(seconds) => seconds,
+        FileTime::Local(seconds) => seconds - deadline.offset,
+    }
+}
+
+/// The submissions of all students, each with the name of its folder.
+#[derive(Debug)]
+pub(super) struct Collection {
+    pub(super) students: Vec<(String, Student, Submission)>,
+    /// The downloads whose times are not those of submissions.
+    pub(super) copies: Vec<PathBuf>,
+}
+
+impl Collection {
+    /// Reads downloads, and the list of students if the class has one in a file.
+    ///
+    /// # Errors
+    /// Something cannot be read, or there is nothing.
+    pub(super) fn read(downloads: &[PathBuf], class: &Class) -> Result<Self, String> {
+        let students = match &class.students {
+            StudentList::None => Students::default(),
+            StudentList::Table(students) => students.clone(),
+            StudentList::File(path) => {
+                let text = files::read_text(path).map_err(|error| error.to_string())?;
+                Students::parse(text.text())
+            }
+        };
+        let mut submissions: BTreeMap<Student, Submission> = students
+            .all()
+            .iter()
+            .map(|student| (student.clone(), Submission::default()))
+            .collect();
+        let mut copies = Vec::new();
+        for download in downloads {
+            if add(download, &students, &mut submissions)? {
+                copies.push(download.clone());
+            }
+        }
+        if submissions.is_empty() {
+            return Err("there is no file to collect".to_owned());
+        }
+        let mut names = Taken::default();
+        let named = submissions.into_iter().map(|(student, submission)| {
+            let folder = names.folder(&student);
+            (folder, student, submission)
+        });
+        Ok(Self {
+            students: named.collect(),
+            copies,
+        })
+    }
+}
+
+/// Adds the files of a download; returns whether their times are those of a copy.
+fn add(
+    download: &Path,
+    students: &Students,
+    submissions: &mut BTreeMap<Student, Submission>,
+) -> Result<bool, String> {
+    let found = download::read(download).map_err(|error| format!("{}: {error}", path_name(download)))?;
+    let mut handed = Vec::new();
+    for Found { path, content, time } in download::without_common_folder(found, is_of_system) {
+        let Submitted {
+            student,
+            path,
+            is_late,
+        } = submitted(&path);
+        let file = Handed {
+            path,
+            content,
+            time,
+            is_late,
+        };
+        handed.push((students.find(student), file));
+    }
+    let is_copy = is_copy(&handed);
+    for (student, mut file) in handed {
+        let submission = submissions.entry(student).or_default();
+        file.time = file.time.filter(|_| !is_copy);
+        // The folder of a student may be empty.
+        if file.path.iter().all(|part| !part.is_empty()) {
+            submission.files.push(file);
+        }
+    }
+    Ok(is_copy)
+}
+
+/// Whether the files of several students have about the same time.
+fn is_copy(handed: &[(Student, Handed)]) -> bool {
+    let timed = handed
+        .iter()
+        .filter_map(|(student, file)| Some((student, file.time?)));
+    let (mut students, mut times) = (HashSet::new(), Vec::new());
+    for (student, time) in timed {
+        students.insert(student);
+        let (FileTime::Utc(seconds) | FileTime::Local(seconds)) = time;
+        times.push(seconds);
+    }
+    let range = times.iter().max().zip(times.iter().min());
+    students.len() > 1 && range.is_some_and(|(last, first)| last - first <= COPY_SECONDS)
+}
+
+/// Names in use, without case: some file systems store names that differ only in case in one file.
+#[derive(Debug, Default)]
+pub(super) struct Taken(HashSet<String>);
+
+impl Taken {
+    /// A name that is not in use: the given one, or one with a number before the extension.
+    pub(super) fn free(&mut self, name: &str) -> String {
+        let (stem, extension) = match name.rsplit_once('.') {
+            Some((stem, extension)) if !extension.contains('/') => (stem, format!(".{extension}")),
+            _ => (name, String::new()),
+        };
+        let numbered = (2_u64..).map(|number| format!("{stem}-{number}{extension}"));
+        let free = std::iter::once(name.to_owned())
+            .chain(numbered)
+            .find(|name| !self.0.contains(&name.to_lowercase()));
+        let free = free.expect("one of endlessly many names is free");
+        self.0.insert(free.to_lowercase());
+        free
+    }
+
+    /// The folder of a student: the name, with the number if another has the same name.
+    fn folder(&mut self, student: &Student) -> String {
+        let name = file_name(&student.name);
+        match &student.id {
+            Some(id) if self.0.contains(&name.to_lowercase()) => {
+                self.free(&file_name(&format!("{name}-{id}")))
+            }
+            _ => self.free(&name),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! `class.csv`: a row per student and a column per assignment, for spreadsheets and learning management
+//! systems (RFC 4180).
+
+use std::collections::BTreeMap;
+
+use super::csv::{escape_formula, line};
+use super::{Record, Rubrics, Submitted};
+
+/// What a student has in one assignment.
+#[derive(Debug, Clone)]
+struct Cell {
+    /// The points; none without a rubric.
+    points: Option<f64>,
+    verdict: toyproof_verify::Verdict,
+    late: String,
+}
+
+/// The table of a class, which grows with the students and not with what is known of their shaders.
+#[derive(Debug, Default)]
+pub struct ClassTable {
+    /// The assignments, in the order in which they appeared.
+    assignments: Vec<String>,
+    /// The cells of the students, by name and number, and then by the place of the assignment.
+    students: BTreeMap<(String, Option<String>), BTreeMap<usize, Cell>>,
+}
+
+impl ClassTable {
+    /// Adds a shader, if it is a submission of an assignment. Of several shaders of a student, the one with
+    /// the fewest points counts, and else the one with the worst verdict.
+    pub fn add(&mut self, record: &Record, rubrics: &Rubrics) {
+        let Some(Submitted {
+            assignment: Some(assignment),
+            student,
+            id,
+            late,
+        }) = &record.submitted
+        else {
+            return;
+        };
+        let known = self.assignments.iter().position(|name| name == assignment);
+        let place = known.unwrap_or_else(|| {
+            self.assignments.push(assignment.clone());
+            self.assignments.len() - 1
+        });
+        let cell = Cell {
+            points: rubrics.total(record).map(|[points, _]| points),
+            verdict: record.verdict,
+            late: late.map(|late| late.to_string()).unwrap_or_default(),
+        };
+        let cells = self.students.entry((student.clone(), id.clone())).or_default();
+        let other = cells.get(&place);
+        let counts = other.is_none_or(|other| match cell.points.partial_cmp(&other.points) {
+            Some(std::cmp::Ordering::Equal) | None => cell.verdict < other.verdict,
+            Some(order) => order.is_lt(),
+        });
+        if counts {
+            cells.insert(place, cell);
+        }
+    }
+
+    /// Whether it has no student.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.students.is_empty()
+    }
+
+    /// Formats the table; its first row names the columns. An assignment without a rubric has the verdict
+    /// instead of points.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut columns = vec!["student".to_owned(), "id".to_owned()];
+        columns.extend(self.assignments.iter().cloned());
+        columns.push("total".to_owned());
+        for assignment in &self.assignments {
+            columns.extend(["verdict", "late"].map(|what| format!("{assignment} {what}")));
+        }
+        let mut text = line(&columns);
+        for ((name, id), cells) in &self.students {
+            let mut row = vec![
+                escape_formula(name),
+                escape_formula(id.as_deref().unwrap_or_default()),
+            ];
+            let cells: Vec<_> = (0..self.assignments.len())
+                .map(|place| cells.get(&place))
+                .collect();
+            row.extend(cells.iter().map(|cell| match cell {
+                None => String::new(),
+                Some(Cell { points, verdict, .. }) => match points {
+                    Some(points) => points.to_string(),
+                    None => verdict.to_string(),
+                },
+            }));
+            let points: Vec<f64> = cells.iter().flatten().filter_map(|cell| cell.points).collect();
+            row.push(match &points[..] {
+                [] => String::new(),
+                points => ((100.0 * points.iter().sum::<f64>()).round() / 100.0).to_string(),
+            });
+            for cell in cells {
+                let verdict = cell.map(|cell| cell.verdict.to_string());
+                row.push(verdict.unwrap_or_default());
+                row.push(cell.map(|cell| cell.late.clone()).unwrap_or_default());
+            }
+            text += &line(&row);
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_verify::Verdict;
+
+    use super::*;
+    use crate::report::record::samples::{correct, invalid, record};
+    use crate::report::{Late, Rubric};
+
+    fn submitted(record: Record, assignment: &str, student: &str, late: Option<u64>) -> Record {
+        Record {
+            submitted: Some(Submitted {
+                assignment: Some(assignment.to_owned()),
+                student: student.to_owned(),
+                id: Some("7".to_owned()),
+                late: late.map(|seconds| Late {
+                    seconds: Some(seconds),
+                }),
+            }),
+            ..record
+        }
+    }
+
+    #[test]
+    fn each_student_has_a_row_and_each_assignment_a_column() {
+        let mut rubrics = Rubrics::default();
+        rubrics.add("one".to_owned(), Rubric::of(2.0, 6.0, 2.0));
+        let mut table = ClassTable::default();
+        for record in [
+            submitted(correct(), "one", "=Anna", Some(60)),
+            submitted(correct(), "one", "Bo", None),
+            submitted(invalid(), "one", "Bo", None),
+            submitted(correct(), "two, three", "Bo", None),
+            submitted(record(Verdict::Wrong), "two, three", "Bo", None),
+            correct(),
+        ] {
+            table.add(&record, &rubrics);
+        }
+        assert_eq!(
+            table.csv(),
+            "student,id,one,\"two, three\",total,one verdict,one late,\"two, three verdict\",\"two, three late\"\r\n\
+             '=Anna,7,10,,10,correct,late by 1 min,,\r\n\
+             Bo,7,0,wrong,0,invalid,,wrong,\r\n"
+        );
+    }
+}
