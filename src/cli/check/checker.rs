@@ -1,18 +1,13 @@
 //! Checks one shader, from its text to its record and its images.
 
-use std::io;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::SystemTime;
 
 use rayon::ThreadPool;
-use sha2::{Digest, Sha256};
-use toyproof_diagnostic::{self as diagnostic, Deadline, Diagnostic, Files, Severity, path_name};
+use toyproof_diagnostic::{Deadline, Files, Severity};
 use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
-use toyproof_image as image;
-use toyproof_image::{FRAME_RATE, Frame, FrameInputs, output};
+use toyproof_image::{FRAME_RATE, Frame};
 use toyproof_scene::Scene;
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
@@ -20,119 +15,19 @@ use toyproof_verify::repair::{Donors, SearchOptions};
 use toyproof_verify::{Case, Failure, Findings, FromStart, Verdict, verify};
 
 use super::Args;
-use super::images::{FIXED, IMAGES, ImageKind};
+use super::images::{FIXED, IMAGES, keep};
+use super::outcome::{Message, Outcome};
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
+use super::submission::Submission;
 use crate::assignment::Subject;
-use crate::cli::files::{Input, ReadError};
 use crate::cli::inputs::{frame_flags, shell_word};
-use crate::cli::names::{Names, with_suffix};
 use crate::cli::passes::{self, BoundFrame, Renderers};
+use crate::cli::pool;
 use crate::cli::project::Passes;
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
-use crate::cli::{Terminal, files, pool};
-use crate::report::{self, CheckedFrame, GrowthRecord, Record, Submitted};
-
-/// A shader to check.
-pub(super) struct Submission {
-    pub(super) input: Result<Input, ReadError>,
-    pub(super) name: String,
-    /// The path of its images without their suffixes; none without `--out`.
-    pub(super) output_stem: Option<PathBuf>,
-    /// A hash of everything that its record depends on; none if its files cannot be read, or without `--out`.
-    pub(super) key: Option<String>,
-    /// The size of its text in bytes, where it has a key.
-    pub(super) bytes: u64,
-    /// The index of what it is checked against.
-    pub(super) task: usize,
-    /// Whose it is, of a class.
-    pub(super) submitted: Option<Submitted>,
-}
-
-impl Submission {
-    /// With the `build` that checks it, the submission has a key.
-    pub(super) fn new(
-        input: Result<Input, ReadError>,
-        args: &Args,
-        plan: &Plan,
-        references: &References,
-        names: &mut Names,
-        build: Option<&str>,
-    ) -> Self {
-        let found = input.as_ref().ok();
-        let identity = found
-            .zip(build)
-            .and_then(|(found, build)| identity(found, args, plan, references, build));
-        let (key, bytes) = identity.map_or((None, 0), |(key, bytes)| (Some(key), bytes));
-        let output_stem = match (&args.out, found) {
-            (Some(out), Some(found)) => Some(out.join(names.assign(found))),
-            _ => None,
-        };
-        Self {
-            name: found.map_or_else(String::new, Input::name),
-            key,
-            bytes,
-            output_stem,
-            task: 0,
-            submitted: None,
-            input,
-        }
-    }
-}
-
-/// Identifies this build of the program on this machine: the size of its file, in bytes, and the time of its
-/// last change.
-pub(super) fn build() -> Option<String> {
-    let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
-    let identity: (u64, SystemTime) = (file.len(), file.modified().ok()?);
-    Some(format!("{identity:?}"))
-}
-
-/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the
-/// assignment, the flags, and the contents of the files that they name. Also returns the size of the shader
-/// in bytes.
-fn identity(
-    found: &Input,
-    args: &Args,
-    plan: &Plan,
-    references: &References,
-    build: &str,
-) -> Option<(String, u64)> {
-    let mut hash = Sha256::new();
-    let mut bytes = 0;
-    let mut add = |part: &[u8]| {
-        hash.update((part.len() as u64).to_le_bytes());
-        hash.update(part);
-    };
-    let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
-    let settings = (
-        &inputs,
-        &args.language,
-        &args.driver,
-        args.search,
-        &plan.permitted,
-    );
-    add(build.as_bytes());
-    let named = (&plan.reference.scene, &plan.reference.reference);
-    add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
-    let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
-    add(assignment.unwrap_or_default());
-    for file in files::read(found).ok()?.files() {
-        add(file.name().as_bytes());
-        add(file.text().as_bytes());
-        bytes += file.text().len() as u64;
-    }
-    if let Some(content) = references.content(found) {
-        add(&content.ok()?);
-    }
-    for path in inputs.into_iter().flat_map(FrameInputs::files) {
-        add(&std::fs::read(path).ok()?);
-    }
-    let hash: [u8; 32] = hash.finalize().into();
-    let half = hash.first_chunk().copied().map(u128::from_be_bytes);
-    half.map(|half| (format!("{half:032x}"), bytes))
-}
+use crate::report::{self, CheckedFrame, GrowthRecord, Record};
 
 /// The worker process and the thread pool that a thread owns.
 pub(super) struct WorkerContext {
@@ -162,99 +57,6 @@ impl WorkerContext {
 /// Creates a worker; the arguments have been validated before.
 fn new_worker(args: &Args) -> Option<Worker> {
     args.driver.worker().ok().flatten()
-}
-
-/// A message that waits for its shader's turn.
-pub(super) enum Message {
-    Diagnostics(Vec<Diagnostic>, Files),
-    Warning(String),
-    Error(String),
-    Detail(String),
-}
-
-impl Message {
-    pub(super) fn print(&self, terminal: &Terminal) {
-        match self {
-            Self::Diagnostics(diagnostics, files) => terminal.diagnostics(diagnostics, files),
-            Self::Warning(message) => terminal.warn(message),
-            Self::Error(message) => terminal.error(message),
-            Self::Detail(message) => terminal.detail(message),
-        }
-    }
-}
-
-/// The result of checking a shader: its record, and the messages to print.
-pub(super) struct Outcome {
-    pub(super) record: Record,
-    pub(super) messages: Vec<Message>,
-    pub(super) device: Option<String>,
-    /// Whether something failed that the verdict does not show.
-    pub(super) failed: bool,
-    /// Whether the driver, which names no line, exceeded the time limit.
-    is_late_on_gpu: bool,
-}
-
-impl Outcome {
-    /// A record without messages, such as one of an earlier run.
-    pub(super) fn known(record: Record) -> Self {
-        Self {
-            record,
-            messages: Vec::new(),
-            device: None,
-            failed: false,
-            is_late_on_gpu: false,
-        }
-    }
-
-    fn set_findings(&mut self, findings: &Findings, files: &Files) {
-        self.record.set_findings(findings, files);
-        if let Some(gpu_run) = &findings.gpu_run {
-            self.messages.push(Message::Detail(format!(
-                "{}: translated in {:.4} s, compiled in {:.3} s, rendered in {:.3} s on {}",
-                self.record.shader,
-                gpu_run.translate.as_secs_f64(),
-                gpu_run.compile.as_secs_f64(),
-                gpu_run.draw.as_secs_f64(),
-                gpu_run.device
-            )));
-            self.device = Some(gpu_run.device.clone());
-        }
-    }
-
-    fn set_failure(&mut self, failure: Failure, files: &Files) {
-        self.report(failure.diagnostics(), files);
-        if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
-            self.record.help = Some("toyproof doctor".to_owned());
-        }
-        self.is_late_on_gpu = match &failure {
-            Failure::LoopTruncated(_) => true,
-            Failure::Gpu(failure) => failure.is_timeout(),
-            _ => false,
-        };
-        self.record.set_failure(failure, files);
-    }
-
-    fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
-        let json = diagnostics.iter().map(|one| diagnostic::json(one, files));
-        self.record.diagnostics.extend(json);
-        // What is the same in several frames is printed once.
-        let is_new = |diagnostic: &Diagnostic| {
-            !self.messages.iter().any(|message| match message {
-                Message::Diagnostics(known, _) => known.contains(diagnostic),
-                _ => false,
-            })
-        };
-        let diagnostics: Vec<_> = diagnostics.into_iter().filter(is_new).collect();
-        if !diagnostics.is_empty() {
-            self.messages
-                .push(Message::Diagnostics(diagnostics, files.clone()));
-        }
-    }
-
-    fn fail(&mut self, message: String) {
-        self.messages.push(Message::Error(message));
-        self.failed = true;
-    }
 }
 
 /// Checks shaders, on any thread.
@@ -671,25 +473,5 @@ fn image(shader: &Shader) -> Result<&Checked, Failure> {
             Err(Failure::Unreadable(error.reason.clone()))
         }
         (Err(Unusable::Invalid(diagnostics)), _) => Err(Failure::Invalid(diagnostics.clone())),
-    }
-}
-
-/// Writes images of these kinds, and removes stale ones of an earlier run.
-fn keep(out: &Path, stem: &Path, kinds: &[ImageKind], findings: Option<&Findings>, outcome: &mut Outcome) {
-    for kind in kinds {
-        let path = with_suffix(stem, kind.suffix);
-        let encoded = contain(Part::Image, || {
-            let shown = findings.and_then(kind.make)?;
-            Some(image::encode_shown(&shown, &path))
-        });
-        let kept = match encoded {
-            Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),
-            Ok(None) => output::remove_inside(out, &path),
-            Ok(Some(Err(error))) => Err(io::Error::other(error)),
-            Err(panic) => Err(io::Error::other(format!("{}: {panic}", path_name(&path)))),
-        };
-        if let Err(error) = kept {
-            outcome.fail(format!("cannot write {error}"));
-        }
     }
 }

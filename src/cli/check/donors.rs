@@ -8,8 +8,11 @@ use toyproof_diagnostic::{grouped, plural};
 use toyproof_verify::Verdict;
 use toyproof_verify::repair::Donors;
 
-use super::checker::{Checker, Outcome, Submission, WorkerContext};
-use super::{Batch, CheckFormat};
+use super::args::CheckFormat;
+use super::batch::Batch;
+use super::checker::{Checker, WorkerContext};
+use super::outcome::Outcome;
+use super::submission::Submission;
 use crate::cli::pool;
 use crate::report::{self, Record};
 

@@ -2,13 +2,17 @@
 
 use std::borrow::Cow;
 use std::fs;
+use std::io;
 use std::path::Path;
 
-use toyproof_image::{self as image, ImageError, Rgb8Image};
+use toyproof_diagnostic::path_name;
+use toyproof_image::{self as image, ImageError, Rgb8Image, output};
 use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
+use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::{CheckResult, Findings};
 
-use super::checker::Submission;
+use super::outcome::Outcome;
+use super::submission::Submission;
 use crate::cli::files;
 use crate::cli::names::with_suffix;
 use crate::report::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
@@ -74,6 +78,32 @@ fn difference<'a>(findings: &Findings, marks: &[DiffLevel], legend: Legend) -> C
         marks,
         legend,
     ))
+}
+
+/// Writes images of these kinds, and removes stale ones of an earlier run.
+pub(super) fn keep(
+    out: &Path,
+    stem: &Path,
+    kinds: &[ImageKind],
+    findings: Option<&Findings>,
+    outcome: &mut Outcome,
+) {
+    for kind in kinds {
+        let path = with_suffix(stem, kind.suffix);
+        let encoded = contain(Part::Image, || {
+            let shown = findings.and_then(kind.make)?;
+            Some(image::encode_shown(&shown, &path))
+        });
+        let kept = match encoded {
+            Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),
+            Ok(None) => output::remove_inside(out, &path),
+            Ok(Some(Err(error))) => Err(io::Error::other(error)),
+            Err(panic) => Err(io::Error::other(format!("{}: {panic}", path_name(&path)))),
+        };
+        if let Err(error) = kept {
+            outcome.fail(format!("cannot write {error}"));
+        }
+    }
 }
 
 // What the report page shows of each shader: its text, and the images that were written.

@@ -9,11 +9,12 @@ use clap::Parser;
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::output;
 
-use super::checker::Submission;
 use super::images::IMAGES;
 use super::reports::{self, Line, Results};
 use super::shard::{self, MANIFEST_NAME, Manifest, Shard};
-use super::{Args, Work, earlier};
+use super::submission::Submission;
+use super::work::Work;
+use super::{Args, earlier};
 use crate::cli::inputs::shell_word;
 use crate::cli::names::with_suffix;
 use crate::cli::{Cli, Command, Exit, Terminal};

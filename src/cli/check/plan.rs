@@ -6,7 +6,8 @@ use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{Frame, FrameInputs};
 use toyproof_verify::alternative::Difference;
 
-use super::{Args, TaskInputs, reports};
+use super::work::TaskInputs;
+use super::{Args, reports};
 use crate::assignment::{self, Assignment, FILE_NAME};
 use crate::cli::Terminal;
 use crate::cli::files::{self, Skipped};

@@ -11,8 +11,8 @@ use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::output;
 use toyproof_verify::contain::{Part, contain};
 
-use super::checker::Submission;
 use super::images::gallery;
+use super::submission::Submission;
 use crate::cli::shader::Unusable;
 use crate::cli::{Terminal, files};
 use crate::report::{
@@ -53,8 +53,7 @@ pub(super) const REPORT_NAMES: [&str; 7] = [
 
 /// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
 /// records, in the same order. `results.json` is written only with a rubric of all shaders, and `class.csv`
-/// only for a class. Students read `junit.xml` and
-/// `results.json`, which show the `hints`.
+/// only for a class. Students read `junit.xml` and `results.json`, which show the `hints`.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],

@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use toyproof_diagnostic::path_name;
 use toyproof_image::output;
 
-use super::checker::Submission;
+use super::submission::Submission;
 
 /// The name of the file in a shard's folder that describes the shard.
 pub(super) const MANIFEST_NAME: &str = "shard.json";

@@ -1,0 +1,366 @@
+//! A run over all shaders of one command: their results are reported in order, while the next are checked.
+
+use std::collections::HashSet;
+use std::num::NonZero;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use toyproof_diagnostic::{Severity, grouped, path_name, plural};
+use toyproof_verify::Verdict;
+use toyproof_verify::contain::{Part, contain};
+
+use super::Args;
+use super::args::CheckFormat;
+use super::checker::{Checker, WorkerContext};
+use super::outcome::{Message, Outcome};
+use super::reports::{self, Line, Results};
+use super::submission::Submission;
+use crate::cli::inputs::short_device;
+use crate::cli::pool::{self, InOrder};
+use crate::cli::{Exit, Terminal};
+use crate::report::{self, Detail, Earlier, Layout, Record, Report, Rubrics};
+
+/// The largest number of shaders whose errors and warnings are shown with their source lines.
+const MAX_WITH_SOURCE: usize = 3;
+
+/// The layout of the lines of all shaders.
+fn layout(submissions: &[Submission], format: CheckFormat, terminal: &Terminal) -> Layout {
+    let detail = match (terminal.is_quiet(), terminal.is_verbose()) {
+        (true, _) => Detail::Short,
+        (_, true) => Detail::Full,
+        _ => Detail::Normal,
+    };
+    let names = submissions.iter().map(|submission| submission.name.as_str());
+    let lists_diagnostics = submissions.len() > MAX_WITH_SOURCE;
+    // Each line of the short form is one diagnostic.
+    let width = terminal.width().filter(|_| format == CheckFormat::Human);
+    Layout::new(names, width, detail, lists_diagnostics)
+}
+
+/// A run over all shaders of one command.
+pub(super) struct Batch<'a> {
+    pub(super) args: &'a Args,
+    pub(super) terminal: &'a Terminal,
+    rubrics: Rubrics,
+    results: Option<Results>,
+    /// The report that is compared with.
+    earlier: Option<Earlier>,
+    order: InOrder<(usize, Outcome)>,
+    /// The reported records, in order, each with the index of its submission.
+    pub(super) records: Vec<(usize, Record)>,
+    device: Option<String>,
+    /// Whether something failed that no verdict shows.
+    pub(super) failed: bool,
+    pub(super) layout: Layout,
+    /// The submissions that are wrong, and that no edit repairs.
+    pub(super) unrepaired: HashSet<usize>,
+    /// Whether errors and warnings are shown with their source lines.
+    has_sources: bool,
+    /// The number of warnings that were not shown.
+    hidden_warnings: u64,
+    start: Instant,
+}
+
+impl<'a> Batch<'a> {
+    pub(super) fn new(
+        args: &'a Args,
+        rubrics: Rubrics,
+        results: Option<Results>,
+        earlier: Option<Earlier>,
+        submissions: &[Submission],
+        terminal: &'a Terminal,
+    ) -> Self {
+        Self {
+            args,
+            terminal,
+            rubrics,
+            results,
+            earlier,
+            order: InOrder::default(),
+            records: Vec::new(),
+            device: None,
+            failed: false,
+            layout: layout(submissions, args.format, terminal),
+            unrepaired: HashSet::new(),
+            has_sources: submissions.len() <= MAX_WITH_SOURCE,
+            hidden_warnings: 0,
+            start: Instant::now(),
+        }
+    }
+
+    /// Checks the submissions, and prints the result of each.
+    pub(super) fn check(&mut self, submissions: &[Submission], checkers: &[Checker]) {
+        let stop = self
+            .terminal
+            .watch_interrupts("the shaders in progress are finished first");
+        let bar = match submissions {
+            [one] => self.terminal.spinner(&one.name),
+            several => self.terminal.bar(several.len() as u64, "shaders"),
+        };
+        let mut tally = report::Tally::default();
+        let mut todo = Vec::new();
+        for (index, submission) in submissions.iter().enumerate() {
+            let key = submission.key.as_deref();
+            let known = key.and_then(|key| self.results.as_ref()?.known(key));
+            match known {
+                Some(Line { record, device, .. }) => {
+                    tally.add(record.verdict);
+                    bar.inc(1);
+                    let mut known = Outcome::known(record);
+                    known.device = device;
+                    self.take(submissions, index, known);
+                }
+                None => todo.push(index),
+            }
+        }
+        self.results.as_mut().map(Results::forget);
+        let reused = submissions.len() - todo.len();
+        if self.args.resume && reused > 0 {
+            let of = submissions.len();
+            self.terminal.note(&format!(
+                "{} of {} {} reused from an earlier run",
+                grouped(reused as u64),
+                grouped(of as u64),
+                plural(of as u64, "result is", "results are")
+            ));
+        }
+        let threads = self.threads(todo.len());
+        pool::for_each(
+            &todo,
+            threads,
+            &stop,
+            || WorkerContext::new(self.args, threads),
+            |context, index| {
+                let submission = &submissions[index];
+                checkers[submission.task].check(context, submission)
+            },
+            |index, outcome| {
+                tally.add(outcome.record.verdict);
+                bar.inc(1);
+                bar.set_message(self.terminal.bar_text(&tally));
+                self.keep(&submissions[index], &outcome);
+                self.take(submissions, index, outcome);
+                if self.terminal.is_closed() {
+                    // Nobody reads further results; the shaders in progress are finished.
+                    stop.store(true, Ordering::Relaxed);
+                }
+            },
+        );
+        bar.finish_and_clear();
+        let is_done = self.records.len() == submissions.len();
+        if stop.load(Ordering::Relaxed) && !(self.terminal.is_closed() && is_done) {
+            for (index, outcome) in std::mem::take(&mut self.order).rest() {
+                self.report_outcome(submissions, index, outcome);
+            }
+            let why = if self.terminal.is_closed() {
+                "standard output was closed"
+            } else {
+                "interrupted"
+            };
+            self.terminal.error(format_args!(
+                "{why} after {} of {} shaders",
+                grouped(self.records.len() as u64),
+                grouped(submissions.len() as u64)
+            ));
+            if self.args.out.is_some() {
+                self.terminal
+                    .help("run the same command with --resume to check the others");
+            }
+            self.failed = true;
+        } else if self.args.search > 0.0 && self.args.shard.is_none() {
+            // What repairs a shader may be in another shard; `merge` searches.
+            self.search_again(submissions, checkers, &stop);
+        }
+    }
+
+    /// The number of threads for that number of shaders.
+    pub(super) fn threads(&self, shaders: usize) -> usize {
+        let threads = match self.args.jobs {
+            Some(jobs) => usize::from(jobs),
+            None => std::thread::available_parallelism().map_or(1, NonZero::get),
+        };
+        threads.clamp(1, shaders.max(1))
+    }
+
+    /// Appends a record to `results.jsonl`.
+    fn keep(&mut self, submission: &Submission, outcome: &Outcome) {
+        if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
+            && let Err(error) = results.add(key, &outcome.record, outcome.device.as_deref())
+        {
+            self.terminal.error(format_args!("cannot write {error}"));
+            self.failed = true;
+        }
+    }
+
+    fn take(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
+        for (index, outcome) in self.order.take(index, (index, outcome)) {
+            self.report_outcome(submissions, index, outcome);
+        }
+    }
+
+    /// Prints the messages and the result line of a shader.
+    fn report_outcome(&mut self, submissions: &[Submission], index: usize, mut outcome: Outcome) {
+        outcome.record.submitted.clone_from(&submissions[index].submitted);
+        if outcome.record.verdict == Verdict::Wrong && outcome.record.fix.is_none() {
+            self.unrepaired.insert(index);
+        }
+        outcome.record.redact(self.args.teachers_hints());
+        for message in &outcome.messages {
+            self.print(message, outcome.record.verdict);
+        }
+        match self.args.format {
+            CheckFormat::Human => {
+                match contain(Part::Summary, || report::lines(&outcome.record, &self.layout)) {
+                    Ok(lines) => self.terminal.result(&lines),
+                    Err(panic) => {
+                        let Record { shader, verdict, .. } = &outcome.record;
+                        self.terminal.result(&format!("{verdict:<12} {shader}"));
+                        self.terminal.error(format_args!("{shader}: {panic}"));
+                        self.failed = true;
+                    }
+                }
+            }
+            CheckFormat::Short => {
+                for diagnostic in &outcome.record.diagnostics {
+                    self.terminal.result(&diagnostic.to_string());
+                }
+            }
+            CheckFormat::Json => {}
+        }
+        self.failed |= outcome.failed;
+        self.device = outcome.device.or(self.device.take());
+        self.records.push((index, outcome.record));
+    }
+
+    /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are
+    /// listed below their shader, and warnings are counted.
+    fn print(&mut self, message: &Message, verdict: Verdict) {
+        match message {
+            Message::Diagnostics(diagnostics, _)
+                if !self.terminal.is_verbose() && (!self.has_sources || self.terminal.is_quiet()) =>
+            {
+                let warnings = diagnostics.iter().filter(|one| one.severity == Severity::Warning);
+                // Those of other shaders are listed.
+                if verdict.is_good() || self.terminal.is_quiet() {
+                    self.hidden_warnings += warnings.count() as u64;
+                }
+            }
+            Message::Diagnostics(..) if self.args.format == CheckFormat::Short => {}
+            message => message.print(self.terminal),
+        }
+    }
+
+    /// Prints the summary, and writes the reports.
+    pub(super) fn finish(self, submissions: &[Submission]) -> Exit {
+        let Self {
+            args,
+            terminal,
+            rubrics,
+            records,
+            device,
+            results,
+            earlier,
+            mut failed,
+            hidden_warnings,
+            start,
+            ..
+        } = self;
+        let (reported, records): (Vec<_>, Vec<_>) = records
+            .into_iter()
+            .map(|(index, record)| (&submissions[index], record))
+            .unzip();
+        let report = Report::new(device, records);
+        match args.format {
+            CheckFormat::Human => print_summary(&report, hidden_warnings, start.elapsed(), terminal),
+            CheckFormat::Short => {}
+            CheckFormat::Json => failed |= !terminal.bytes(report.json().as_bytes()),
+        }
+        if let Some(earlier) = earlier {
+            print_changes(&earlier, &report, args.format, terminal);
+        }
+        if let Some(out) = &args.out {
+            // Before the reports are written, which would create the folder again.
+            let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
+            let written = args.shard.is_some()
+                || reports::write(&report, &reported, &rubrics, args.students_hints(), out, terminal);
+            match is_there {
+                Ok(()) if written => terminal.note(&match args.shard {
+                    None => format!("report: {}", path_name(&out.join("report.html"))),
+                    Some(shard) => format!("shard {shard}: {}", path_name(out)),
+                }),
+                Ok(()) => failed = true,
+                Err(error) => {
+                    terminal.error(format_args!(
+                        "results were removed while they were written: {error}; run the command again"
+                    ));
+                    failed = true;
+                }
+            }
+        }
+        if args.shard.is_some() {
+            return if failed { Exit::Error } else { Exit::Success };
+        }
+        let verdicts = || report.shaders().iter().map(|record| record.verdict);
+        if failed || verdicts().any(|verdict| verdict == Verdict::Error) {
+            Exit::Error
+        } else if report.shaders().iter().all(Record::is_passed) {
+            Exit::Success
+        } else {
+            Exit::ShaderFault
+        }
+    }
+}
+
+/// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
+fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
+    let records = report.shaders();
+    let device = report
+        .device()
+        .map(|device| format!(", {}", short_device(device)));
+    if records.len() > 1 {
+        terminal.note(&format!(
+            "\n{} ({:.1} s{})",
+            report::summary(records),
+            elapsed.as_secs_f64(),
+            device.unwrap_or_default()
+        ));
+    }
+    if hidden_warnings > 0 {
+        terminal.note(&format!(
+            "{} {}; -v shows them",
+            grouped(hidden_warnings),
+            plural(hidden_warnings, "warning", "warnings")
+        ));
+    }
+    let without = records
+        .iter()
+        .filter(|record| record.verdict == Verdict::Ok)
+        .count() as u64;
+    // Of a single shader, its reason says so.
+    if without > 0 && records.len() > 1 {
+        terminal.warn(format_args!(
+            "nothing was compared for {} {}: no reference was given",
+            grouped(without),
+            plural(without, "shader", "shaders")
+        ));
+        terminal.help("name a scene with --scene or a shader or image with --reference, or put NAME.toml beside NAME.glsl");
+    }
+}
+
+/// Prints the verdicts that differ from those of an earlier report.
+fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, terminal: &Terminal) {
+    let changes = earlier.changes(report);
+    if format == CheckFormat::Human {
+        terminal.note("");
+        for change in &changes {
+            terminal.result(&change.to_string());
+        }
+    }
+    let count = changes.len() as u64;
+    terminal.note(&format!(
+        "{} {} from {}",
+        grouped(count),
+        plural(count, "verdict differs", "verdicts differ"),
+        earlier.name()
+    ));
+}

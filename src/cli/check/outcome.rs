@@ -1,0 +1,100 @@
+//! The result of checking a shader: its record, and the messages that wait for its turn.
+
+use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files};
+use toyproof_verify::{Failure, Findings};
+
+use crate::cli::Terminal;
+use crate::report::Record;
+
+/// A message that waits for its shader's turn.
+pub(super) enum Message {
+    Diagnostics(Vec<Diagnostic>, Files),
+    Warning(String),
+    Error(String),
+    Detail(String),
+}
+
+impl Message {
+    pub(super) fn print(&self, terminal: &Terminal) {
+        match self {
+            Self::Diagnostics(diagnostics, files) => terminal.diagnostics(diagnostics, files),
+            Self::Warning(message) => terminal.warn(message),
+            Self::Error(message) => terminal.error(message),
+            Self::Detail(message) => terminal.detail(message),
+        }
+    }
+}
+
+/// The result of checking a shader: its record, and the messages to print.
+pub(super) struct Outcome {
+    pub(super) record: Record,
+    pub(super) messages: Vec<Message>,
+    pub(super) device: Option<String>,
+    /// Whether something failed that the verdict does not show.
+    pub(super) failed: bool,
+    /// Whether the driver, which names no line, exceeded the time limit.
+    pub(super) is_late_on_gpu: bool,
+}
+
+impl Outcome {
+    /// A record without messages, such as one of an earlier run.
+    pub(super) fn known(record: Record) -> Self {
+        Self {
+            record,
+            messages: Vec::new(),
+            device: None,
+            failed: false,
+            is_late_on_gpu: false,
+        }
+    }
+
+    pub(super) fn set_findings(&mut self, findings: &Findings, files: &Files) {
+        self.record.set_findings(findings, files);
+        if let Some(gpu_run) = &findings.gpu_run {
+            self.messages.push(Message::Detail(format!(
+                "{}: translated in {:.4} s, compiled in {:.3} s, rendered in {:.3} s on {}",
+                self.record.shader,
+                gpu_run.translate.as_secs_f64(),
+                gpu_run.compile.as_secs_f64(),
+                gpu_run.draw.as_secs_f64(),
+                gpu_run.device
+            )));
+            self.device = Some(gpu_run.device.clone());
+        }
+    }
+
+    pub(super) fn set_failure(&mut self, failure: Failure, files: &Files) {
+        self.report(failure.diagnostics(), files);
+        if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
+            self.record.help = Some("toyproof doctor".to_owned());
+        }
+        self.is_late_on_gpu = match &failure {
+            Failure::LoopTruncated(_) => true,
+            Failure::Gpu(failure) => failure.is_timeout(),
+            _ => false,
+        };
+        self.record.set_failure(failure, files);
+    }
+
+    pub(super) fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
+        let json = diagnostics.iter().map(|one| diagnostic::json(one, files));
+        self.record.diagnostics.extend(json);
+        // What is the same in several frames is printed once.
+        let is_new = |diagnostic: &Diagnostic| {
+            !self.messages.iter().any(|message| match message {
+                Message::Diagnostics(known, _) => known.contains(diagnostic),
+                _ => false,
+            })
+        };
+        let diagnostics: Vec<_> = diagnostics.into_iter().filter(is_new).collect();
+        if !diagnostics.is_empty() {
+            self.messages
+                .push(Message::Diagnostics(diagnostics, files.clone()));
+        }
+    }
+
+    pub(super) fn fail(&mut self, message: String) {
+        self.messages.push(Message::Error(message));
+        self.failed = true;
+    }
+}

@@ -1,0 +1,114 @@
+//! A shader to check, and the hash of everything that its record depends on.
+
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use sha2::{Digest, Sha256};
+use toyproof_image::FrameInputs;
+
+use super::Args;
+use super::plan::Plan;
+use super::reference::References;
+use crate::cli::files::{self, Input, ReadError};
+use crate::cli::names::Names;
+use crate::report::Submitted;
+
+/// A shader to check.
+pub(super) struct Submission {
+    pub(super) input: Result<Input, ReadError>,
+    pub(super) name: String,
+    /// The path of its images without their suffixes; none without `--out`.
+    pub(super) output_stem: Option<PathBuf>,
+    /// A hash of everything that its record depends on; none if its files cannot be read, or without `--out`.
+    pub(super) key: Option<String>,
+    /// The size of its text in bytes, where it has a key.
+    pub(super) bytes: u64,
+    /// The index of what it is checked against.
+    pub(super) task: usize,
+    /// Whose it is, of a class.
+    pub(super) submitted: Option<Submitted>,
+}
+
+impl Submission {
+    /// With the `build` that checks it, the submission has a key.
+    pub(super) fn new(
+        input: Result<Input, ReadError>,
+        args: &Args,
+        plan: &Plan,
+        references: &References,
+        names: &mut Names,
+        build: Option<&str>,
+    ) -> Self {
+        let found = input.as_ref().ok();
+        let identity = found
+            .zip(build)
+            .and_then(|(found, build)| identity(found, args, plan, references, build));
+        let (key, bytes) = identity.map_or((None, 0), |(key, bytes)| (Some(key), bytes));
+        let output_stem = match (&args.out, found) {
+            (Some(out), Some(found)) => Some(out.join(names.assign(found))),
+            _ => None,
+        };
+        Self {
+            name: found.map_or_else(String::new, Input::name),
+            key,
+            bytes,
+            output_stem,
+            task: 0,
+            submitted: None,
+            input,
+        }
+    }
+}
+
+/// Identifies this build of the program on this machine: the size of its file, in bytes, and the time of its
+/// last change.
+pub(super) fn build() -> Option<String> {
+    let file = std::env::current_exe().and_then(std::fs::metadata).ok()?;
+    let identity: (u64, SystemTime) = (file.len(), file.modified().ok()?);
+    Some(format!("{identity:?}"))
+}
+
+/// Hashes everything that a record depends on: the build of toyproof, the shader, its reference, the
+/// assignment, the flags, and the contents of the files that they name. Also returns the size of the shader
+/// in bytes.
+fn identity(
+    found: &Input,
+    args: &Args,
+    plan: &Plan,
+    references: &References,
+    build: &str,
+) -> Option<(String, u64)> {
+    let mut hash = Sha256::new();
+    let mut bytes = 0;
+    let mut add = |part: &[u8]| {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part);
+    };
+    let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
+    let settings = (
+        &inputs,
+        &args.language,
+        &args.driver,
+        args.search,
+        &plan.permitted,
+    );
+    add(build.as_bytes());
+    let named = (&plan.reference.scene, &plan.reference.reference);
+    add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
+    let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
+    add(assignment.unwrap_or_default());
+    for file in files::read(found).ok()?.files() {
+        add(file.name().as_bytes());
+        add(file.text().as_bytes());
+        bytes += file.text().len() as u64;
+    }
+    if let Some(content) = references.content(found) {
+        add(&content.ok()?);
+    }
+    for path in inputs.into_iter().flat_map(FrameInputs::files) {
+        add(&std::fs::read(path).ok()?);
+    }
+    let hash: [u8; 32] = hash.finalize().into();
+    let half = hash.first_chunk().copied().map(u128::from_be_bytes);
+    half.map(|half| (format!("{half:032x}"), bytes))
+}

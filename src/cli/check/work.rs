@@ -1,0 +1,160 @@
+//! All that one command checks: the submissions, and what each is checked against.
+
+use std::path::{Path, PathBuf};
+
+use super::Args;
+use super::batch::Batch;
+use super::checker::Checker;
+use super::images::IMAGES;
+use super::plan::Plan;
+use super::reference::References;
+use super::reports::{self, Results};
+use super::shard::{self, Manifest, Shard};
+use super::submission::Submission;
+use crate::cli::collect::{ClassPart, Owners, class_parts};
+use crate::cli::names::Names;
+use crate::cli::shader::find;
+use crate::cli::{Exit, Terminal};
+use crate::report::{Earlier, Rubrics};
+
+/// All that one command checks.
+pub(super) struct Work {
+    /// At least one; one for each assignment of a class.
+    tasks: Vec<Task>,
+    rubrics: Rubrics,
+    pub(super) submissions: Vec<Submission>,
+}
+
+/// What some of the shaders are checked against.
+struct Task {
+    plan: Plan,
+    references: References,
+}
+
+/// The shaders of one assignment, and what they are checked against; without a class, all shaders.
+pub(super) struct TaskInputs {
+    /// The name of the assignment in a class.
+    name: Option<String>,
+    pub(super) shaders: Vec<PathBuf>,
+    pub(super) assignment: Option<PathBuf>,
+    pub(super) rubric: Option<PathBuf>,
+}
+
+impl TaskInputs {
+    fn of_arguments(args: &Args) -> Self {
+        Self {
+            name: None,
+            shaders: args.shaders.clone(),
+            assignment: args.assignment.clone(),
+            rubric: args.rubric.clone(),
+        }
+    }
+
+    fn of_class(part: ClassPart) -> Self {
+        Self {
+            name: Some(part.name),
+            shaders: vec![part.folder],
+            assignment: Some(part.assignment),
+            rubric: part.rubric,
+        }
+    }
+}
+
+/// The folder of `--out` with the submissions of a class that were collected from downloads.
+const SUBMISSIONS: &str = "submissions";
+
+impl Work {
+    /// Reads what the arguments name. With the `build` that checks them, submissions have keys.
+    ///
+    /// # Errors
+    /// Something is unusable; what is wrong with it has been printed.
+    pub(super) fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, ()> {
+        let collected = args.out.as_ref().map(|out| out.join(SUBMISSIONS));
+        let parts = match &args.class {
+            Some(class) => {
+                let to = collected.as_deref().filter(|_| args.shard.is_none());
+                class_parts(&args.shaders, class, to, terminal)?
+                    .into_iter()
+                    .map(TaskInputs::of_class)
+                    .collect()
+            }
+            None => vec![TaskInputs::of_arguments(args)],
+        };
+        let reserved: Vec<&str> = reports::REPORT_NAMES
+            .into_iter()
+            .chain([reports::RESULTS_NAME, shard::MANIFEST_NAME, SUBMISSIONS])
+            .collect();
+        let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
+        let mut work = Self {
+            tasks: Vec::new(),
+            rubrics: Rubrics::default(),
+            submissions: Vec::new(),
+        };
+        for part in parts {
+            let mut plan = Plan::new(args, &part, terminal)?;
+            let references = References::new(args, &mut plan, terminal)?;
+            let mut inputs = find(&part.shaders, terminal);
+            let owners = Owners::read(&part.shaders, &mut inputs).map_err(|error| terminal.error(error))?;
+            match (&part.name, plan.rubric.take()) {
+                (None, rubric) => work.rubrics = rubric.into(),
+                (Some(name), Some(rubric)) => work.rubrics.add(name.clone(), rubric),
+                (Some(_), None) => {}
+            }
+            for mut input in inputs {
+                if let (Ok(input), Some(name)) = (&mut input, &part.name) {
+                    input.relative = Path::new(name).join(&input.relative);
+                }
+                let submitted = owners.of(&input).cloned();
+                let submission = Submission::new(input, args, &plan, &references, &mut names, build);
+                work.submissions.push(Submission {
+                    task: work.tasks.len(),
+                    submitted,
+                    ..submission
+                });
+            }
+            work.tasks.push(Task { plan, references });
+        }
+        Ok(work)
+    }
+
+    /// Keeps the submissions of a shard, and describes it in its folder.
+    pub(super) fn select(
+        &mut self,
+        args: &Args,
+        shard: Shard,
+        program: String,
+        out: &Path,
+    ) -> Result<(), String> {
+        if args.shaders.iter().any(|shader| shader == Path::new("-")) {
+            return Err(
+                "--shard cannot be used with standard input, which only one shard could read".to_owned(),
+            );
+        }
+        let manifest = Manifest {
+            program,
+            inputs: shard::inputs(&self.submissions),
+            shard,
+            arguments: shard::arguments()?,
+        };
+        let mut numbers = shard::assign(&self.submissions, shard.of).into_iter();
+        self.submissions.retain(|_| numbers.next() == Some(shard.number));
+        manifest.write(out).map_err(|error| error.to_string())
+    }
+
+    /// Checks all submissions, and writes the reports.
+    pub(super) fn check(
+        mut self,
+        args: &Args,
+        results: Option<Results>,
+        earlier: Option<Earlier>,
+        terminal: &Terminal,
+    ) -> Exit {
+        let submissions = &self.submissions;
+        let rubrics = std::mem::take(&mut self.rubrics);
+        let mut batch = Batch::new(args, rubrics, results, earlier, submissions, terminal);
+        let tasks = self.tasks.iter();
+        let checkers = tasks.map(|task| Checker::new(args, &task.plan, &task.references));
+        batch.check(submissions, &checkers.collect::<Vec<_>>());
+        batch.finish(submissions)
+    }
+}
