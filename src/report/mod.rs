@@ -30,7 +30,10 @@ pub use frames::{CheckedFrame, FrameRecord};
 pub use gradescope::gradescope;
 pub use growth::{CauseName, GrowthFrame, GrowthRecord};
 pub use hints::Hints;
-pub use html::{Exhibit, Gallery, MAX_IMAGE_BYTES, html, subsample};
+pub use html::{
+    Exhibit, Gallery, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, html,
+    html_index, part_name, subsample,
+};
 pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{Alternative, Mistake, Position, Record, Report, SCHEMA, Seconds};

@@ -108,11 +108,15 @@ pub(super) fn keep(
 
 // What the report page shows of each shader: its text, and the images that were written.
 
-/// Builds the gallery of all shaders, subsampling the images until it fits [`MAX_IMAGE_BYTES`].
+/// Builds the gallery of the shaders of a page, subsampling the images until it fits [`MAX_IMAGE_BYTES`].
 pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
     let mut step = 1;
     loop {
-        let gallery = subsampled_gallery(submissions, step);
+        let mut gallery = Gallery::new(step);
+        for submission in submissions {
+            let exhibit = exhibit(submission, step, &mut gallery);
+            gallery.add_exhibit(exhibit);
+        }
         if gallery.bytes() <= MAX_IMAGE_BYTES {
             return gallery;
         }
@@ -122,17 +126,17 @@ pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
     }
 }
 
-fn subsampled_gallery(submissions: &[&Submission], step: u32) -> Gallery {
-    let mut gallery = Gallery::new(step);
+/// The gallery of a page without images.
+pub(super) fn gallery_of_sources(submissions: &[&Submission]) -> Gallery {
+    let mut gallery = Gallery::new(1);
     for submission in submissions {
-        let exhibit = exhibit(submission, step, &mut gallery);
-        gallery.add_exhibit(exhibit);
+        gallery.add_exhibit(exhibit_of_source(submission));
     }
     gallery
 }
 
 /// Unreadable files are not shown: the record holds the reason.
-fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
+fn exhibit_of_source(submission: &Submission) -> Exhibit {
     let mut exhibit = Exhibit::default();
     if let Ok(found) = &submission.input
         && let Ok(texts) = files::read(found)
@@ -140,6 +144,11 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     {
         exhibit.source = Some(file.text().to_owned());
     }
+    exhibit
+}
+
+fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
+    let mut exhibit = exhibit_of_source(submission);
     let Some(stem) = &submission.output_stem else {
         return exhibit;
     };

@@ -11,12 +11,13 @@ use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::output;
 use toyproof_verify::contain::{Part, contain};
 
-use super::images::gallery;
+use super::images::{gallery, gallery_of_sources};
 use super::submission::Submission;
 use crate::cli::shader::Unusable;
 use crate::cli::{Terminal, files};
 use crate::report::{
-    ClassTable, Hints, Record, Report, Rubric, Rubrics, csv, gradescope, html, junit, sarif,
+    ClassTable, Hints, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, Record, Report, Rubric,
+    Rubrics, csv, gradescope, html, html_index, junit, part_name, sarif,
 };
 
 /// Reads a rubric, if one is named.
@@ -67,8 +68,15 @@ pub(super) fn write(
     for record in &mut students {
         record.redact(hints);
     }
+    let date = SystemTime::now();
+    let parts_written = write_parts(report, submissions, rubrics, date, out, terminal);
     let texts: [&dyn Fn() -> Option<String>; REPORT_NAMES.len()] = [
-        &|| Some(html(report, rubrics, &gallery(submissions), SystemTime::now())),
+        &|| {
+            Some(match records.len() {
+                0..=MAX_PAGE_SHADERS => html(report, rubrics, &gallery(submissions), date),
+                _ => html_index(report, rubrics, date),
+            })
+        },
         &|| Some(csv(records, rubrics)),
         &|| {
             let mut table = ClassTable::default();
@@ -94,7 +102,47 @@ pub(super) fn write(
             }
         });
     // No short circuit: every report is written.
-    written.fold(true, |all, one| all & one)
+    written.fold(parts_written, |all, one| all & one)
+}
+
+/// Writes the pages of the parts of a large report, and removes those of an earlier, larger one; returns false
+/// on failure.
+fn write_parts(
+    report: &Report,
+    submissions: &[&Submission],
+    rubrics: &Rubrics,
+    date: SystemTime,
+    out: &Path,
+    terminal: &Terminal,
+) -> bool {
+    let path = |number: usize| out.join(PARTS).join(part_name(number));
+    let gallery = if submissions.len() > MAX_SHADERS_WITH_IMAGES {
+        gallery_of_sources
+    } else {
+        gallery
+    };
+    let mut last = 0;
+    for part in PagePart::all(report) {
+        last = part.number();
+        let page = contain(Part::Report, || {
+            part.html(rubrics, &gallery(&submissions[part.places()]), date)
+        });
+        match page {
+            Ok(page) if terminal.write_output(out, &path(last), page.as_bytes()) => {}
+            Ok(_) => return false,
+            Err(panic) => {
+                terminal.error(format_args!("cannot write {}: {panic}", path_name(&path(last))));
+                return false;
+            }
+        }
+    }
+    for stale in (last + 1..).map(path).take_while(|path| path.exists()) {
+        if let Err(error) = output::remove_inside(out, &stale) {
+            terminal.error(format_args!("cannot remove {error}"));
+            return false;
+        }
+    }
+    true
 }
 
 // `results.jsonl`: holds the record of each shader as soon as it is complete, so that an interrupted run can

@@ -1,10 +1,12 @@
 //! `report.html`: one self-contained page. A table of all shaders, which needs no script; for each shader its
 //! verdict, its images, one inspected pixel, its checks, and its source with the messages; and a glossary.
 //! Nothing is fetched: the page's content security policy forbids that, and any script but the page's own.
+//! A large report has such a page for each part, and a table of all shaders that leads to them.
 
 mod article;
 mod gallery;
 mod glossary;
+mod index;
 mod markdown;
 mod names;
 mod overview;
@@ -23,6 +25,7 @@ use toyproof_verify::compare::{IN_BITS, Legend, SEEN_BY_EYE};
 use self::article::Article;
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
 use self::glossary::Glossary;
+pub use self::index::{MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, html_index, part_name};
 use self::names::Names;
 use self::source::SourceLimit;
 use super::{Record, Report, Rubrics};
@@ -37,48 +40,68 @@ const VIEWER: &str = include_str!("viewer.html");
 /// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
 #[must_use]
 pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> String {
-    let records = report.shaders();
-    let names = Names::of(records);
-    let glossary = Glossary::of(records);
-    let sources = gallery
-        .exhibits()
-        .iter()
-        .filter_map(|exhibit| exhibit.source.as_deref());
-    let limit = SourceLimit::of(sources);
-    let articles = records.iter().zip(gallery.exhibits()).enumerate();
-    let articles: String = articles
-        .map(|(index, (record, exhibit))| {
-            let article = Article {
-                record,
-                name: names.short(record),
-                exhibit,
-                rubrics,
-                glossary: &glossary,
-                limit,
-            };
-            article.html(index)
-        })
-        .collect();
-    let heading = heading(&names, records);
-    format!(
-        r##"<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<title>{heading}</title>
-<style>{STYLE}</style>
-<script>{HEAD_SCRIPT}</script>
-</head>
-<body>
+    let page = Page {
+        report,
+        records: report.shaders(),
+        names: &Names::of(report.shaders()),
+        rubrics,
+        gallery,
+        date,
+    };
+    page.html("")
+}
+
+/// A page with the articles of shaders.
+struct Page<'a> {
+    report: &'a Report,
+    /// The shaders of this page.
+    records: &'a [Record],
+    names: &'a Names<'a>,
+    rubrics: &'a Rubrics,
+    gallery: &'a Gallery,
+    date: SystemTime,
+}
+
+impl Page<'_> {
+    /// Formats the page, with links to other pages.
+    fn html(&self, links: &str) -> String {
+        let Self {
+            report,
+            records,
+            names,
+            rubrics,
+            gallery,
+            date,
+        } = *self;
+        let glossary = Glossary::of(records);
+        let sources = gallery
+            .exhibits()
+            .iter()
+            .filter_map(|exhibit| exhibit.source.as_deref());
+        let limit = SourceLimit::of(sources);
+        let articles = records.iter().zip(gallery.exhibits()).enumerate();
+        let articles: String = articles
+            .map(|(index, (record, exhibit))| {
+                let article = Article {
+                    record,
+                    name: names.short(record),
+                    exhibit,
+                    rubrics,
+                    glossary: &glossary,
+                    limit,
+                };
+                article.html(index)
+            })
+            .collect();
+        let heading = heading(names, records);
+        format!(
+            r##"{head}<body>
 <a class="skip" href="#main">Skip to the content</a>
 <header class="page">
 <h1>{heading}</h1>
 {facts}{subsampling_note}<div class="tools"></div>
 </header>
-<main id="main" tabindex="-1">
+{links}<main id="main" tabindex="-1">
 {overview}<div id="articles">
 {articles}</div>
 </main>
@@ -86,12 +109,32 @@ pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemT
 </body>
 </html>
 "##,
-        policy = policy(),
-        facts = facts(report, &names, date),
-        subsampling_note = subsampling_note(gallery.step()),
-        overview = overview::overview(records, &names, gallery, rubrics),
-        glossary = glossary.html(),
-        images = images(gallery),
+            head = head(&heading, SCRIPT),
+            facts = facts(report, records, names, date),
+            subsampling_note = subsampling_note(gallery.step()),
+            overview = overview::overview(records, names, gallery, rubrics),
+            glossary = glossary.html(),
+            images = images(gallery),
+        )
+    }
+}
+
+/// The start of a page, up to its body, which ends with a script.
+fn head(title: &str, script: &str) -> String {
+    format!(
+        r#"<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{title}</title>
+<style>{STYLE}</style>
+<script>{HEAD_SCRIPT}</script>
+</head>
+"#,
+        policy = policy(script),
     )
 }
 
@@ -111,8 +154,8 @@ fn shaders(records: &[Record]) -> String {
 }
 
 /// The facts about the run below the title.
-fn facts(report: &Report, names: &Names, date: SystemTime) -> String {
-    let mut facts = format!("<span class=\"whole\">{}</span>", shaders(report.shaders()));
+fn facts(report: &Report, records: &[Record], names: &Names, date: SystemTime) -> String {
+    let mut facts = format!("<span class=\"whole\">{}</span>", shaders(records));
     if !names.folder().is_empty() {
         let _ = write!(
             facts,
@@ -149,13 +192,13 @@ fn utc(date: SystemTime) -> [String; 2] {
 }
 
 /// The content security policy: only the page's own style and scripts, and images embedded in the page.
-fn policy() -> String {
+fn policy(script: &str) -> String {
     let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));
     format!(
         "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src {}; script-src {} {}",
         hash(STYLE),
         hash(HEAD_SCRIPT),
-        hash(SCRIPT)
+        hash(script)
     )
 }
 

@@ -32,14 +32,7 @@ pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rub
         .concat();
     format!(
         r#"<section id="overview" aria-label="All shaders">
-{notice}<form id="filter" role="search" aria-label="Filter the shaders" hidden>
-<label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
-<fieldset>
-<legend>Show verdicts</legend>
-{chips}</fieldset>
-<p id="shown" role="status"></p>
-</form>
-<table id="shaders">
+{notice}{form}<table id="shaders">
 <caption>Shaders</caption>
 <thead>
 <tr><td rowspan="2" class="thumbnail"></td><th scope="col" rowspan="2" data-sort>Shader</th><th scope="col" rowspan="2" data-sort>Verdict</th>{points}<th scope="col" rowspan="2" class="why" data-sort>Reason</th><th scope="colgroup" colspan="3" class="group wide" data-term="t-pixels-off">Pixels off</th></tr>
@@ -50,13 +43,28 @@ pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rub
 </table>
 </section>
 "#,
-        chips = chips(records),
+        form = form(records),
         notice = notice(records),
     )
 }
 
+/// The form that filters the rows, which only a script shows.
+pub(super) fn form(records: &[Record]) -> String {
+    format!(
+        r#"<form id="filter" role="search" aria-label="Filter the shaders" hidden>
+<label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
+<fieldset>
+<legend>Show verdicts</legend>
+{chips}</fieldset>
+<p id="shown" role="status"></p>
+</form>
+"#,
+        chips = chips(records)
+    )
+}
+
 /// A notice of shaders that were compared with nothing.
-fn notice(records: &[Record]) -> String {
+pub(super) fn notice(records: &[Record]) -> String {
     let without = records.iter().filter(|record| record.verdict == Verdict::Ok);
     match without.count() as u64 {
         0 => String::new(),
@@ -147,19 +155,16 @@ fn breakable(name: &str) -> String {
 }
 
 /// Whose submission a shader is, below its name.
-fn student(record: &Record) -> String {
-    let Some(submitted) = &record.submitted else {
-        return String::new();
-    };
-    let assignment = submitted
-        .assignment
-        .iter()
-        .map(|name| format!(", {}", Text(name)));
-    format!(
-        "<br><span class=\"more\">{}{}</span>",
-        Text(&submitted.student),
-        assignment.collect::<String>()
-    )
+pub(super) fn student(record: &Record) -> String {
+    let student = owner(record).map(|owner| format!("<br><span class=\"more\">{}</span>", Text(owner)));
+    student.unwrap_or_default()
+}
+
+/// Whose submission a shader is, and of which assignment.
+pub(super) fn owner(record: &Record) -> Option<String> {
+    let submitted = record.submitted.as_ref()?;
+    let assignment = submitted.assignment.iter().map(|name| format!(", {name}"));
+    Some(submitted.student.clone() + &assignment.collect::<String>())
 }
 
 /// Formats the number of pixels of a check that differ.

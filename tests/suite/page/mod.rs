@@ -1,5 +1,7 @@
 //! `report.html` in a real browser. `TOYPROOF_SCREENSHOTS` names a folder for screenshots.
 
+mod large;
+
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 use std::{env, fs};
