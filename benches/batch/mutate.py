@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes mutations of exercises, each beside the scene of its exercise: `mutate.py COUNT COURSE FOLDER`.
+"""Writes mutations of exercises, each beside the scene of its exercise: `mutate.py COUNT COURSE FOLDER EXERCISE…`.
 
-COURSE is what `toyproof scenes --write COURSE` wrote. A mutation changes one number by a factor, or one `+` into `-`, or appends a comment, which
+COURSE is what `toyproof scenes --write COURSE` wrote. A mutation changes one number by a factor, or one `+` into `-`; half of them append a comment, which
 changes nothing. The same arguments always write the same files.
 """
 
@@ -11,13 +11,12 @@ import re
 import shutil
 import sys
 
-EXERCISES = ["02-sphere", "03-shading", "04-many-objects", "06-reflections"]
 NUMBER = re.compile(r"(?<![\w.])\d+\.\d*(?![\w.])")
 SUM = re.compile(r" \+ ")
 
 
 def mutation(text, dice):
-    kind = dice.choice(["number", "number", "sum", "comment"])
+    kind = dice.choice(["number", "number", "sum", "comment", "comment", "comment"])
     start = text.index("{")
     places = [*{"number": NUMBER, "sum": SUM}.get(kind, NUMBER).finditer(text, start)]
     if kind == "comment" or not places:
@@ -28,11 +27,11 @@ def mutation(text, dice):
 
 
 def main():
-    count, course, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    count, course, folder, exercises = int(sys.argv[1]), pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:]
     dice = random.Random(1)
-    texts = {name: (course / f"{name}.glsl").read_text() for name in EXERCISES}
+    texts = {name: (course / f"{name}.glsl").read_text() for name in exercises}
     for number in range(count):
-        exercise = dice.choice(EXERCISES)
+        exercise = dice.choice(exercises)
         own = folder / f"{number // 100:03}"
         own.mkdir(parents=True, exist_ok=True)
         (own / f"{number:05}-{exercise}.glsl").write_text(mutation(texts[exercise], dice))

@@ -7,13 +7,14 @@ use std::fmt;
 use serde::Deserialize;
 use toyproof_verify::Verdict;
 
-use super::Report;
+use super::{Report, Seconds};
 
-/// The verdicts of an earlier report.
+/// The verdicts of an earlier report, and how long its shaders took.
 #[derive(Debug, Clone)]
 pub struct Earlier {
     name: String,
     verdicts: BTreeMap<String, Verdict>,
+    seconds: BTreeMap<String, f64>,
 }
 
 /// A shader whose verdict differs between two reports; none where a report does not have the shader.
@@ -48,12 +49,14 @@ impl Earlier {
         }
         #[derive(Deserialize)]
         struct Shaders {
-            shaders: Vec<Shader>,
+            shaders: Vec<Entry>,
         }
         #[derive(Deserialize)]
-        struct Shader {
+        struct Entry {
             shader: String,
             verdict: Verdict,
+            #[serde(default)]
+            seconds: Seconds,
         }
         let error = |error: serde_json::Error| format!("it is not a verdict.json: {error}");
         let Version { version } = serde_json::from_str(text).map_err(error)?;
@@ -64,11 +67,20 @@ impl Earlier {
             ));
         }
         let Shaders { shaders } = serde_json::from_str(text).map_err(error)?;
-        let verdicts = shaders.into_iter().map(|one| (one.shader, one.verdict));
+        let seconds = shaders
+            .iter()
+            .filter_map(|one| Some((one.shader.clone(), one.seconds.all?)));
         Ok(Self {
             name,
-            verdicts: verdicts.collect(),
+            seconds: seconds.collect(),
+            verdicts: shaders.into_iter().map(|one| (one.shader, one.verdict)).collect(),
         })
+    }
+
+    /// How long a shader took; none if the report does not state it.
+    #[must_use]
+    pub fn seconds(&self, shader: &str) -> Option<f64> {
+        self.seconds.get(shader).copied()
     }
 
     /// The name of the report.
@@ -128,6 +140,24 @@ mod tests {
                 "wrong        → correct      a",
                 "invalid      → –            gone"
             ]
+        );
+    }
+
+    #[test]
+    fn the_time_of_a_shader_is_that_of_all_its_stages() {
+        let record = |name: &str, all| Record {
+            seconds: Seconds {
+                eval: Some(1.0),
+                all,
+                ..Seconds::default()
+            },
+            ..Record::new(name.to_owned())
+        };
+        let report = Report::new(None, vec![record("a", Some(3.5)), record("b", None)]);
+        let earlier = Earlier::parse(String::new(), &report.json()).unwrap();
+        assert_eq!(
+            ["a", "b", "c"].map(|name| earlier.seconds(name)),
+            [Some(3.5), None, None]
         );
     }
 

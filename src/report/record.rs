@@ -333,6 +333,9 @@ pub struct Seconds {
     pub eval: Option<f64>,
     /// The reference: tracing a scene, or evaluating a shader.
     pub trace: Option<f64>,
+    /// All that was done for the shader, also the search for mistakes and fixes and its images; null if it
+    /// cannot be read, or nothing is written.
+    pub all: Option<f64>,
 }
 
 impl Seconds {
@@ -352,6 +355,7 @@ impl AddAssign for Seconds {
         self.gpu = sum(self.gpu, other.gpu);
         self.eval = sum(self.eval, other.eval);
         self.trace = sum(self.trace, other.trace);
+        self.all = sum(self.all, other.all);
     }
 }
 

@@ -223,11 +223,52 @@ fn changed_verdicts_are_listed() {
         same.stderr
     );
     let other = output(check_homework(folder).args(["--compare", "scene.toml"]));
-    let error = "error: scene.toml cannot be compared with: it is not a verdict.json";
+    let error = "error: scene.toml is not an earlier report: it is not a verdict.json";
     assert!(
         other.code == 2 && other.stderr.starts_with(error),
         "{}",
         other.stderr
+    );
+}
+
+/// A shader that took as long as all others is alone in its shard, and `merge` distributes as the shards did.
+#[test]
+fn shards_are_balanced_by_measured_times() {
+    let folder = homework(6);
+    let folder = folder.path();
+    let single = run(check_homework(folder).args(["--out", "out"]));
+    assert_eq!(single.code, 1, "{}", single.stderr);
+    let mut report: Value =
+        serde_json::from_slice(&fs::read(folder.join("out/verdict.json")).unwrap()).unwrap();
+    let shaders = report["shaders"].as_array_mut().unwrap();
+    let others = shaders.len() - 1;
+    for (index, shader) in shaders.iter_mut().enumerate() {
+        let seconds = &mut shader["seconds"]["all"];
+        assert!(seconds.as_f64() > Some(0.0), "{seconds}");
+        *seconds = if index == 4 { others as f64 } else { 1.0 }.into();
+    }
+    fs::create_dir(folder.join("old")).unwrap();
+    let write = |report: &Value| fs::write(folder.join("old/verdict.json"), report.to_string()).unwrap();
+    write(&report);
+    let count = |shard: &str| {
+        check_shard(folder, shard, &["--costs", "old"]);
+        let path = format!("shards/{}/results.jsonl", shard.replace('/', "-of-"));
+        fs::read_to_string(folder.join(path)).unwrap().lines().count()
+    };
+    let mut counts = ["1/2", "2/2"].map(count);
+    counts.sort_unstable();
+    assert_eq!(counts, [1, others]);
+    let all = ["shards/1-of-2", "shards/2-of-2"];
+    assert_eq!(merge(folder, &all).code, 1);
+    assert_eq!(records(folder).len(), others + 1);
+
+    report["shaders"][0]["seconds"]["all"] = 2.0.into();
+    write(&report);
+    let changed = merge(folder, &all);
+    assert!(
+        changed.code == 2 && changed.stderr.contains("changed after the shards were checked"),
+        "{}",
+        changed.stderr
     );
 }
 

@@ -1,10 +1,27 @@
-//! The time that Chromium takes to open a report.
+//! The time that Chromium takes to open a report, and large reports for that.
 
 use std::fs;
 use std::path::Path;
+use std::time::SystemTime;
 
-use serde_json::json;
+use serde_json::{Value, json};
+use toyproof::report::{Record, Report, Rubrics, html_index};
 use toyproof_testkit::devtools::Page;
+
+/// Writes the table of a report with `count` shaders: those of a report, repeated under other names.
+pub(super) fn write_large_table(report: &Path, count: usize, page: &Path) {
+    let text = fs::read_to_string(report).expect("the report exists");
+    let report: Value = serde_json::from_str(&text).expect("it is a verdict.json");
+    let records: Vec<Record> = serde_json::from_value(report["shaders"].clone()).expect("it has records");
+    let records = records.iter().cycle().take(count).enumerate();
+    let records = records.map(|(index, record)| Record {
+        shader: format!("{index}/{}", record.shader),
+        ..record.clone()
+    });
+    let report = Report::new(None, records.collect());
+    let table = html_index(&report, &Rubrics::default(), SystemTime::now());
+    fs::write(page, table).expect("the folder is writable");
+}
 
 /// Reads the browser's own clock.
 const CLOCK: &str = "(async () => { \

@@ -75,6 +75,11 @@ pub(in crate::cli) struct Args {
     /// --resume, a part that was interrupted continues.
     #[arg(long, value_name = "K/N", requires = "out", help_heading = "Reports")]
     pub(super) shard: Option<Shard>,
+    /// Balance the parts by the times of an earlier report: a folder that --out wrote, or its verdict.json
+    ///
+    /// All parts need the same report. A shader that it does not have counts as the mean of the others.
+    #[arg(long, value_name = "OLD", requires = "shard", help_heading = "Reports")]
+    pub(super) costs: Option<PathBuf>,
     /// List the verdicts that differ from an earlier report: a folder that --out wrote, or its verdict.json
     #[arg(long, value_name = "OLD", conflicts_with = "shard", help_heading = "Reports")]
     pub(super) compare: Option<PathBuf>,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::{Deadline, Files, Severity};
@@ -86,13 +87,20 @@ impl<'a> Checker<'a> {
     /// Checks a shader and writes its images. A panic costs only this shader's verdict, which is then
     /// `error`.
     pub(super) fn check(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
-        contain(Part::Shader, || self.check_shader(context, submission)).unwrap_or_else(|panic| {
+        let start = Instant::now();
+        let checked = contain(Part::Shader, || self.check_shader(context, submission));
+        let mut outcome = checked.unwrap_or_else(|panic| {
             // The worker was interrupted in an unknown state.
             context.worker = context.worker.take().and_then(|_| new_worker(self.args));
             let mut record = Record::new(submission.name.clone());
             record.set_failure(panic.into(), &Files::default());
             Outcome::known(record)
-        })
+        });
+        // What cannot be read is not kept for `merge`, which reads it again; its report does not change.
+        if submission.key.is_some() {
+            outcome.record.seconds.all = Some(start.elapsed().as_secs_f64());
+        }
+        outcome
     }
 
     fn check_shader(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {

@@ -170,18 +170,19 @@ fn is_same_folder(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Parses the arguments of the command that checked the shards, with another folder for what it writes: some
-/// options require one.
+/// Parses the arguments of the command that checked the shards as those of a check of all shaders, which writes
+/// into another folder.
 fn parse(arguments: &[String], out: &Path) -> Result<Args, Problem> {
     const NAME: &str = "check";
     let at = arguments.iter().position(|argument| argument == NAME);
     let (before, after) = arguments.split_at(at.map_or(0, |at| at + 1));
     let all = iter::once(OsString::from("toyproof"))
         .chain(before.iter().map(OsString::from))
-        .chain(["--out".into(), out.into()])
+        // Other options require these two.
+        .chain(["--shard".into(), "1/1".into(), "--out".into(), out.into()])
         .chain(after.iter().map(OsString::from));
     match Cli::try_parse_from(all).map(|cli| cli.command) {
-        Ok(Command::Check(check)) => Ok(check),
+        Ok(Command::Check(check)) => Ok(Args { shard: None, ..check }),
         _ => Err(format!("the arguments in {MANIFEST_NAME} are not those of `toyproof {NAME}`").into()),
     }
 }

@@ -79,7 +79,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     work.check(args, results, earlier, terminal)
 }
 
-/// Reads the report that `--compare` names, if any.
+/// Reads an earlier report that `--compare` or `--costs` names, if any.
 ///
 /// # Errors
 /// It is unusable; what is wrong with it has been printed.
@@ -97,5 +97,5 @@ fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, 
     let earlier = text.and_then(|text| Earlier::parse(name.clone(), &text));
     earlier
         .map(Some)
-        .map_err(|error| terminal.error(format_args!("{name} cannot be compared with: {error}")))
+        .map_err(|error| terminal.error(format_args!("{name} is not an earlier report: {error}")))
 }

@@ -27,6 +27,9 @@ const SLACK: f64 = 0.05;
 /// What every shader costs beside its length, in bytes of shader: rendering and comparing it.
 const BASE_COST: u64 = 4096;
 
+/// What every shader costs beside its measured time, in microseconds: reading and reporting it.
+const BASE_MICROSECONDS: u64 = 1000;
+
 /// A part of a batch: number `number` of `of`, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Shard {
@@ -60,9 +63,18 @@ impl FromStr for Shard {
 
 /// Assigns each submission to one of `shards` shards; returns the number of each shard, from 1.
 pub(super) fn assign(submissions: &[Submission], shards: u32) -> Vec<u32> {
+    let known: Vec<f64> = submissions
+        .iter()
+        .filter_map(|submission| submission.seconds)
+        .collect();
+    let mean = known.iter().sum::<f64>() / known.len() as f64;
     let items = submissions.iter().map(|submission| Item {
         hash: hash(submission.key.as_deref().unwrap_or(&submission.name)),
-        cost: BASE_COST + submission.bytes,
+        cost: if known.is_empty() {
+            BASE_COST + submission.bytes
+        } else {
+            BASE_MICROSECONDS + (1e6 * submission.seconds.unwrap_or(mean)) as u64
+        },
     });
     distribute(&items.collect::<Vec<_>>(), shards)
 }
@@ -125,12 +137,16 @@ pub(super) fn program() -> io::Result<String> {
     Ok(format!("{:x}", hash.finalize()))
 }
 
-/// Identifies the shaders of a batch, their references and the flags, by their keys.
+/// Identifies the shaders of a batch, their references and the flags, by their keys, and the times by which
+/// they are distributed.
 pub(super) fn inputs(submissions: &[Submission]) -> String {
     let mut hash = Sha256::new();
     for submission in submissions {
         hash.update(submission.key.as_deref().unwrap_or_default());
         hash.update(&submission.name);
+        if let Some(seconds) = submission.seconds {
+            hash.update(seconds.to_le_bytes());
+        }
         hash.update(b"\n");
     }
     format!("{:x}", hash.finalize())

@@ -23,6 +23,8 @@ pub(super) struct Submission {
     pub(super) key: Option<String>,
     /// The size of its text in bytes, where it has a key.
     pub(super) bytes: u64,
+    /// How long an earlier check of it took, if one is named that states it.
+    pub(super) seconds: Option<f64>,
     /// The index of what it is checked against.
     pub(super) task: usize,
     /// Whose it is, of a class.
@@ -52,6 +54,7 @@ impl Submission {
             name: found.map_or_else(String::new, Input::name),
             key,
             bytes,
+            seconds: None,
             output_stem,
             task: 0,
             submitted: None,

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::Args;
 use super::batch::Batch;
 use super::checker::Checker;
 use super::images::IMAGES;
@@ -11,6 +10,7 @@ use super::reference::References;
 use super::reports::{self, Results};
 use super::shard::{self, Manifest, Shard};
 use super::submission::Submission;
+use super::{Args, earlier};
 use crate::cli::collect::{ClassPart, Owners, class_parts};
 use crate::cli::names::Names;
 use crate::cli::shader::find;
@@ -69,6 +69,7 @@ impl Work {
     /// # Errors
     /// Something is unusable; what is wrong with it has been printed.
     pub(super) fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, ()> {
+        let costs = earlier(args.costs.as_deref(), terminal)?;
         let collected = args.out.as_ref().map(|out| out.join(SUBMISSIONS));
         let parts = match &args.class {
             Some(class) => {
@@ -109,6 +110,7 @@ impl Work {
                 work.submissions.push(Submission {
                     task: work.tasks.len(),
                     submitted,
+                    seconds: costs.as_ref().and_then(|costs| costs.seconds(&submission.name)),
                     ..submission
                 });
             }

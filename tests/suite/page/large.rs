@@ -116,7 +116,7 @@ fn a_large_table_is_sorted_filtered_and_turned_and_leads_to_the_shaders() {
     page.value(&press_link("Previous"));
     page.until("document.querySelector('nav span')?.textContent === '501–1,000'");
     page.value(&press_link("All 1,203 shaders"));
-    page.until("document.body.className === 'index'");
+    page.until("document.body?.className === 'index'");
 }
 
 fn press_link(text: &str) -> String {
