@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Write as _};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -99,9 +99,14 @@ impl Terminal {
 
     /// Writes bytes to standard output; returns whether that succeeded.
     pub(super) fn bytes(&self, bytes: &[u8]) -> bool {
+        self.stream(|stdout| stdout.write_all(bytes))
+    }
+
+    /// Writes what a function writes to standard output; returns whether that succeeded.
+    pub(super) fn stream(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> bool {
         let written = self.bars.suspend(|| {
-            let mut stdout = io::stdout().lock();
-            stdout.write_all(bytes).and_then(|()| stdout.flush())
+            let mut stdout = BufWriter::new(io::stdout().lock());
+            write(&mut stdout).and_then(|()| stdout.flush())
         });
         self.check_write(written)
     }

@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
@@ -26,7 +26,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
             .and_then(|mut stream| stream.write_all(bytes))
             .map_err(|error| with_path(path, &error));
     }
-    replace(&followed, bytes).map_err(|error| with_path(path, &error))
+    replace(&followed, |file| file.write_all(bytes)).map_err(|error| with_path(path, &error))
 }
 
 /// Writes a file into an output folder with untrusted content: a symbolic link at the file's path is
@@ -37,8 +37,21 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// The system's error, prefixed with the path, or that a folder between `folder` and the file is a symbolic
 /// link.
 pub fn write_inside(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    stream_inside(folder, path, |file| file.write_all(bytes))
+}
+
+/// Writes a file into an output folder as [`write_inside`] does, with the bytes that a function writes, so that
+/// a large file is never in memory as a whole. If the function fails, the file is not replaced.
+///
+/// # Errors
+/// As for [`write_inside`], and those of the function.
+pub fn stream_inside(
+    folder: &Path,
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     check_no_symlink_between(folder, path)
-        .and_then(|()| replace(path, bytes))
+        .and_then(|()| replace(path, write))
         .map_err(|error| with_path(path, &error))
 }
 
@@ -76,7 +89,7 @@ fn with_path(path: &Path, error: &io::Error) -> io::Error {
 }
 
 /// Writes a file at a path atomically, replacing an existing one.
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
@@ -91,7 +104,10 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    let mut buffered = BufWriter::new(&mut file);
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
     file.persist(path).map_err(|error| error.error)?;
     Ok(())
 }
@@ -128,6 +144,21 @@ mod tests {
         write(&path, b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_function_that_fails_replaces_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write(&path, b"old").unwrap();
+        let fails = |file: &mut dyn Write| {
+            file.write_all(&vec![b'x'; 100_000])?;
+            Err(io::Error::other("no"))
+        };
+        let error = stream_inside(folder.path(), &path, fails).unwrap_err();
+        assert!(error.to_string().ends_with("a.txt: no"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[cfg(unix)]

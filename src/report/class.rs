@@ -2,9 +2,10 @@
 //! systems (RFC 4180).
 
 use std::collections::BTreeMap;
+use std::io;
 
 use super::csv::{escape_formula, line};
-use super::{Record, Rubrics, Submitted};
+use super::{Record, Records, Rubrics, Submitted};
 
 /// What a student has in one assignment.
 #[derive(Debug, Clone)]
@@ -25,9 +26,21 @@ pub struct ClassTable {
 }
 
 impl ClassTable {
+    /// Creates the table of all submissions of assignments.
+    ///
+    /// # Errors
+    /// The system's error: a record cannot be read.
+    pub fn of(records: &Records, rubrics: &Rubrics) -> io::Result<Self> {
+        let mut table = Self::default();
+        for record in records.iter() {
+            table.add(&*record?, rubrics);
+        }
+        Ok(table)
+    }
+
     /// Adds a shader, if it is a submission of an assignment. Of several shaders of a student, the one with
     /// the fewest points counts, and else the one with the worst verdict.
-    pub fn add(&mut self, record: &Record, rubrics: &Rubrics) {
+    fn add(&mut self, record: &Record, rubrics: &Rubrics) {
         let Some(Submitted {
             assignment: Some(assignment),
             student,
@@ -132,19 +145,16 @@ mod tests {
     fn each_student_has_a_row_and_each_assignment_a_column() {
         let mut rubrics = Rubrics::default();
         rubrics.add("one".to_owned(), Rubric::of(2.0, 6.0, 2.0));
-        let mut table = ClassTable::default();
-        for record in [
+        let records = vec![
             submitted(correct(), "one", "=Anna", Some(60)),
             submitted(correct(), "one", "Bo", None),
             submitted(invalid(), "one", "Bo", None),
             submitted(correct(), "two, three", "Bo", None),
             submitted(record(Verdict::Wrong), "two, three", "Bo", None),
             correct(),
-        ] {
-            table.add(&record, &rubrics);
-        }
+        ];
         assert_eq!(
-            table.csv(),
+            ClassTable::of(&records.into(), &rubrics).unwrap().csv(),
             "student,id,one,\"two, three\",total,one verdict,one late,\"two, three verdict\",\"two, three late\"\r\n\
              '=Anna,7,10,,10,correct,late by 1 min,,\r\n\
              Bo,7,0,wrong,0,invalid,,wrong,\r\n"

@@ -1,9 +1,11 @@
 //! `report.csv`: a row per shader, for spreadsheets (RFC 4180).
 
+use std::io::{self, Write};
+
 use toyproof_diagnostic::Severity;
 use toyproof_verify::compare::CheckSummary;
 
-use super::{Record, Repair, Rubrics};
+use super::{Record, Records, Repair, Rubrics};
 
 const COLUMNS: [&str; 28] = [
     "shader",
@@ -36,13 +38,17 @@ const COLUMNS: [&str; 28] = [
     "late_seconds",
 ];
 
-/// Formats the table; its first row names the columns. Checks that did not run are empty, and points without
+/// Writes the table; its first row names the columns. Checks that did not run are empty, and points without
 /// a rubric. `fix_line` is the line of the first edit.
-#[must_use]
-pub fn csv(records: &[Record], rubrics: &Rubrics) -> String {
-    let rows = records.iter().map(|record| row(record, rubrics));
-    let rows = [COLUMNS.map(str::to_owned)].into_iter().chain(rows);
-    rows.map(|row| line(&row)).collect()
+///
+/// # Errors
+/// The system's error: a record cannot be read, or the table cannot be written.
+pub fn csv(records: &Records, rubrics: &Rubrics, out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(line(&COLUMNS.map(str::to_owned)).as_bytes())?;
+    for record in records.iter() {
+        out.write_all(line(&row(&*record?, rubrics)).as_bytes())?;
+    }
+    Ok(())
 }
 
 /// A row with its end.
@@ -127,15 +133,19 @@ pub(super) fn escape_formula(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Rubric;
     use crate::report::record::samples::{correct, invalid};
     use crate::report::repair::samples::repaired;
+    use crate::report::{Rubric, written};
+
+    fn table(records: Vec<Record>, rubrics: &Rubrics) -> String {
+        written(|out| csv(&records.into(), rubrics, out))
+    }
 
     #[test]
     fn texts_are_quoted_and_formulas_are_escaped() {
         let mut hostile = invalid();
         hostile.shader = "=cmd|'/c calc'!A1,\"x\"\n.glsl".to_owned();
-        let table = csv(&[correct(), hostile], &Rubrics::default());
+        let table = table(vec![correct(), hostile], &Rubrics::default());
         let mut lines = table.split("\r\n");
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), COLUMNS);
         assert_eq!(
@@ -151,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_fix_has_its_line_and_its_edits() {
-        let text = csv(&[repaired()], &Rubrics::default());
+        let text = table(vec![repaired()], &Rubrics::default());
         assert!(
             text.contains(",wrong-operator,2,line 2: replace `b + c` with `b - c`,"),
             "{text}"
@@ -160,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_rubric_adds_points() {
-        let text = csv(&[correct()], &Some(Rubric::of(1.0, 8.0, 1.0)).into());
+        let text = table(vec![correct()], &Some(Rubric::of(1.0, 8.0, 1.0)).into());
         assert!(text.contains(",10,10,1000,"), "{text}");
     }
 }

@@ -2,7 +2,7 @@
 //! new version of the program.
 
 use std::collections::BTreeMap;
-use std::fmt;
+use std::{fmt, io};
 
 use serde::Deserialize;
 use toyproof_verify::Verdict;
@@ -91,48 +91,58 @@ impl Earlier {
 
     /// The shaders whose verdicts differ in a later report: in its order, and then those that it does not
     /// have.
-    #[must_use]
-    pub fn changes(&self, later: &Report) -> Vec<Change> {
+    ///
+    /// # Errors
+    /// The system's error: a record of the later report cannot be read.
+    pub fn changes(&self, later: &Report) -> io::Result<Vec<Change>> {
         let mut gone = self.verdicts.clone();
-        let changed = later.shaders().iter().filter_map(|record| {
+        let mut changes = Vec::new();
+        for record in later.shaders().iter() {
+            let record = record?;
             gone.remove(&record.shader);
             let before = self.verdicts.get(&record.shader).copied();
-            (before != Some(record.verdict)).then(|| Change {
-                shader: record.shader.clone(),
-                before,
-                after: Some(record.verdict),
-            })
-        });
-        let mut changes: Vec<_> = changed.collect();
+            if before != Some(record.verdict) {
+                changes.push(Change {
+                    shader: record.shader.clone(),
+                    before,
+                    after: Some(record.verdict),
+                });
+            }
+        }
         changes.extend(gone.into_iter().map(|(shader, verdict)| Change {
             shader,
             before: Some(verdict),
             after: None,
         }));
-        changes
+        Ok(changes)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Record;
+    use crate::report::{Record, Records, written};
 
     fn report(shaders: &[(&str, Verdict)]) -> Report {
         let record = |&(name, verdict): &(&str, Verdict)| Record {
             verdict,
             ..Record::new(name.to_owned())
         };
-        Report::new(None, shaders.iter().map(record).collect())
+        Report::new(None, shaders.iter().map(record).collect::<Records>())
     }
 
     #[test]
     fn changed_new_and_missing_shaders_are_listed() {
         use Verdict::{Correct, Invalid, Wrong};
         let before = report(&[("a", Wrong), ("b", Correct), ("gone", Invalid)]);
-        let before = Earlier::parse("old".to_owned(), &before.json()).unwrap();
+        let before = Earlier::parse("old".to_owned(), &written(|out| before.json(out))).unwrap();
         let after = report(&[("new", Wrong), ("b", Correct), ("a", Correct)]);
-        let shown: Vec<_> = before.changes(&after).iter().map(Change::to_string).collect();
+        let shown: Vec<_> = before
+            .changes(&after)
+            .unwrap()
+            .iter()
+            .map(Change::to_string)
+            .collect();
         assert_eq!(
             shown,
             [
@@ -154,7 +164,7 @@ mod tests {
             ..Record::new(name.to_owned())
         };
         let report = Report::new(None, vec![record("a", Some(3.5)), record("b", None)]);
-        let earlier = Earlier::parse(String::new(), &report.json()).unwrap();
+        let earlier = Earlier::parse(String::new(), &written(|out| report.json(out))).unwrap();
         assert_eq!(
             ["a", "b", "c"].map(|name| earlier.seconds(name)),
             [Some(3.5), None, None]

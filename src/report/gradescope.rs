@@ -1,16 +1,23 @@
 //! `results.json`: marks in the format of Gradescope's autograder.
 //!
-//! Students see the `output`s; names are the rubric's own keys. All texts are sent as plain text, so that
-//! nothing in a shader is read as HTML.
+//! Students see the `output`s; names are the rubric's own keys. The texts of tests are plain text. With images,
+//! the output of the submission is HTML, in which all texts are escaped.
 
-use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::{self, Write};
 
-use super::{Record, Rubric, plain, summary};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::ser::{Error, SerializeSeq};
+use serde::{Serialize, Serializer};
+
+use super::html::Text;
+use super::{Hints, Mark, Record, Records, Rubric, plain};
 use crate::report::rubric::Visibility;
 
 /// The output format: <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>
 #[derive(Serialize)]
-struct Results {
+struct Results<'a> {
     output: String,
     output_format: Format,
     visibility: Visibility,
@@ -20,7 +27,7 @@ struct Results {
     /// Replaces the sum of the tests' scores.
     #[serde(skip_serializing_if = "Option::is_none")]
     score: Option<f64>,
-    tests: Vec<Test>,
+    tests: Tests<'a>,
 }
 
 #[derive(Serialize)]
@@ -38,6 +45,7 @@ struct Test {
 #[serde(rename_all = "lowercase")]
 enum Format {
     Text,
+    Html,
 }
 
 #[derive(Serialize)]
@@ -47,16 +55,134 @@ enum Status {
     Failed,
 }
 
-/// Formats the file: a test per mark of the rubric; for several shaders, each name starts with the shader's,
-/// and the one with the fewest points gives the score.
-#[must_use]
-pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
-    let tests = records.iter().flat_map(|record| {
-        let marks = rubric.marks(record).into_iter();
-        marks.map(move |mark| Test {
-            name: match records {
-                [_] => mark.name.into_owned(),
-                _ => format!("{}: {}", record.shader, mark.name),
+/// The images that students see beside their marks.
+#[derive(Debug, Default)]
+pub struct Thumbnails(Vec<ShaderThumbnails>);
+
+/// The images of a shader.
+#[derive(Debug, Default)]
+struct ShaderThumbnails {
+    shader: String,
+    /// Each with its caption, as a PNG.
+    images: Vec<(&'static str, Vec<u8>)>,
+}
+
+impl Thumbnails {
+    /// Adds the images of the next shader, each with its caption, as PNGs.
+    pub fn add(&mut self, shader: String, images: Vec<(&'static str, Vec<u8>)>) {
+        self.0.push(ShaderThumbnails { shader, images });
+    }
+
+    /// The size of all PNGs in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let images = self.0.iter().flat_map(|shader| &shader.images);
+        images.map(|(_, png)| png.len()).sum()
+    }
+
+    /// Formats the images as HTML that needs neither a style sheet nor a script.
+    fn html(&self) -> String {
+        let mut html = String::new();
+        for ShaderThumbnails { shader, images } in self.0.iter().filter(|shader| !shader.images.is_empty()) {
+            if self.0.len() > 1 {
+                let _ = write!(html, "<h4>{}</h4>", Text(shader));
+            }
+            for (caption, png) in images {
+                let data = STANDARD.encode(png);
+                let _ = write!(
+                    html,
+                    "<figure style=\"display: inline-block; margin: 0 1em 1em 0\">\
+                     <img alt=\"{caption}\" src=\"data:image/png;base64,{data}\">\
+                     <figcaption>{caption}</figcaption></figure>"
+                );
+            }
+        }
+        html
+    }
+}
+
+/// Writes the file, with what the hints show: a test per mark of the rubric. For several shaders, each name
+/// starts with the shader's, and the one with the fewest points gives the score.
+///
+/// # Errors
+/// The system's error: a record cannot be read, or the file cannot be written.
+pub fn gradescope(
+    records: &Records,
+    rubric: &Rubric,
+    hints: Hints,
+    thumbnails: &Thumbnails,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let mut seconds = 0.0;
+    let mut score: Option<f64> = None;
+    for record in records.iter() {
+        let record = record?;
+        seconds += record.seconds.total();
+        let points = rubric.marks(&record).iter().map(|mark| mark.points).sum();
+        score = Some(score.map_or(points, |score| score.min(points)));
+    }
+    let text = match records.len() {
+        1 => {
+            let record = records.get(0)?;
+            format!("{}: {}", record.verdict, record.reason)
+        }
+        _ => format!(
+            "{}\nSeveral shaders were submitted; the one with the fewest points counts.",
+            plain(&records.tally().summary())
+        ),
+    };
+    let images = thumbnails.html();
+    let (output, output_format) = if images.is_empty() {
+        (text, Format::Text)
+    } else {
+        let text = Text(text).to_string().replace('\n', "<br>");
+        (format!("<p>{text}</p>{images}"), Format::Html)
+    };
+    let results = Results {
+        output,
+        output_format,
+        visibility: rubric.visibility,
+        stdout_visibility: Visibility::Hidden,
+        execution_time: seconds.ceil() as u64,
+        score: score.filter(|_| records.len() > 1),
+        tests: Tests {
+            records,
+            rubric,
+            hints,
+        },
+    };
+    serde_json::to_writer_pretty(&mut *out, &results)?;
+    out.write_all(b"\n")
+}
+
+/// The tests of all records, which are read and written one at a time.
+struct Tests<'a> {
+    records: &'a Records,
+    rubric: &'a Rubric,
+    hints: Hints,
+}
+
+impl Serialize for Tests<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut sequence = serializer.serialize_seq(None)?;
+        for record in self.records.redacted(self.hints) {
+            let record = record.map_err(S::Error::custom)?;
+            for mark in self.rubric.marks(&record) {
+                let prefix = (self.records.len() > 1).then_some(&record);
+                sequence.serialize_element(&Test::of(mark, prefix))?;
+            }
+        }
+        sequence.end()
+    }
+}
+
+impl Test {
+    /// The test of a mark, named after its shader if there are several.
+    fn of(mark: Mark, shader: Option<&Record>) -> Self {
+        Self {
+            name: match shader {
+                Some(record) => format!("{}: {}", record.shader, mark.name),
+                None => mark.name.into_owned(),
             },
             name_format: Format::Text,
             score: mark.points,
@@ -68,36 +194,8 @@ pub fn gradescope(records: &[Record], rubric: &Rubric) -> String {
             },
             output: mark.why,
             output_format: Format::Text,
-        })
-    });
-    let results = Results {
-        output: match records {
-            [one] => format!("{}: {}", one.verdict, one.reason),
-            several => format!(
-                "{}\nSeveral shaders were submitted; the one with the fewest points counts.",
-                plain(&summary(several))
-            ),
-        },
-        output_format: Format::Text,
-        visibility: rubric.visibility,
-        stdout_visibility: Visibility::Hidden,
-        execution_time: records
-            .iter()
-            .map(|record| record.seconds.total())
-            .sum::<f64>()
-            .ceil() as u64,
-        score: lowest_score(records, rubric),
-        tests: tests.collect(),
-    };
-    // Strings and finite numbers always serialize.
-    serde_json::to_string_pretty(&results).unwrap_or_default() + "\n"
-}
-
-/// The fewest points of several shaders; none for one.
-fn lowest_score(records: &[Record], rubric: &Rubric) -> Option<f64> {
-    let points = |record: &Record| rubric.marks(record).iter().map(|mark| mark.points).sum();
-    let scores = records.iter().map(points).filter(|_| records.len() > 1);
-    scores.reduce(f64::min)
+        }
+    }
 }
 
 #[cfg(test)]
@@ -106,6 +204,7 @@ mod tests {
 
     use super::*;
     use crate::report::record::samples::{correct, every_verdict, invalid};
+    use crate::report::written;
 
     /// The documented schema, without additional properties.
     fn schema() -> Value {
@@ -147,14 +246,20 @@ mod tests {
         })
     }
 
-    fn read(records: &[Record]) -> Value {
-        serde_json::from_str(&gradescope(records, &Rubric::of(2.0, 6.0, 2.0))).unwrap()
+    fn read(records: Vec<Record>) -> Value {
+        with_images(records, &Thumbnails::default())
+    }
+
+    fn with_images(records: Vec<Record>, images: &Thumbnails) -> Value {
+        let (records, rubric) = (records.into(), Rubric::of(2.0, 6.0, 2.0));
+        let text = written(|out| gradescope(&records, &rubric, Hints::Fix, images, out));
+        serde_json::from_str(&text).unwrap()
     }
 
     #[test]
     fn the_file_follows_the_documented_schema() {
         let validator = jsonschema::validator_for(&schema()).unwrap();
-        let mut json = read(&every_verdict());
+        let mut json = read(every_verdict());
         let errors: Vec<_> = validator
             .iter_errors(&json)
             .map(|error| error.to_string())
@@ -167,7 +272,7 @@ mod tests {
 
     #[test]
     fn a_submission_gets_its_points_and_reasons() {
-        let json = read(&[correct()]);
+        let json = read(vec![correct()]);
         let test = &json["tests"][1];
         assert_eq!(
             (&test["name"], &test["score"], &test["max_score"], &test["status"]),
@@ -177,14 +282,39 @@ mod tests {
             (&json["execution_time"], &json["score"]),
             (&json!(2), &Value::Null)
         );
-        assert_eq!(read(&[correct(), invalid()])["score"], 0.0);
+        assert_eq!(read(vec![correct(), invalid()])["score"], 0.0);
         let mut hostile = invalid();
         hostile.diagnostics[0].message = "<script>".to_owned();
-        let json = read(&[hostile]);
+        let json = read(vec![hostile]);
         let test = &json["tests"][0];
         assert_eq!((&test["score"], &test["status"]), (&json!(0.0), &json!("failed")));
         assert_eq!(test["output_format"], "text");
         let output = test["output"].as_str().unwrap();
         assert!(output.contains("a.glsl:2:3: error[E0301]: <script>"), "{output}");
+    }
+
+    #[test]
+    fn images_are_shown_in_html_whose_texts_are_escaped() {
+        let validator = jsonschema::validator_for(&schema()).unwrap();
+        let mut images = Thumbnails::default();
+        images.add("a<b>.glsl".to_owned(), vec![("your image", b"png".to_vec())]);
+        let mut record = correct();
+        record.reason = "<script>".to_owned();
+        let json = with_images(vec![record], &images);
+        assert!(validator.is_valid(&json));
+        assert_eq!(json["output_format"], "html");
+        let output = json["output"].as_str().unwrap();
+        assert!(
+            output.starts_with("<p>correct: &lt;script&gt;</p><figure"),
+            "{output}"
+        );
+        assert!(output.contains("src=\"data:image/png;base64,cG5n\""), "{output}");
+        assert_eq!(images.bytes(), 3);
+
+        images.add("b.glsl".to_owned(), Vec::new());
+        let json = with_images(vec![correct(), correct()], &images);
+        let output = json["output"].as_str().unwrap();
+        assert!(output.contains("<h4>a&lt;b&gt;.glsl</h4>") && !output.contains("b.glsl</h4><h4>"));
+        assert!(output.contains("<br>Several shaders"), "{output}");
     }
 }

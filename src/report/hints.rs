@@ -37,21 +37,21 @@ impl Record {
 mod tests {
     use super::*;
     use crate::report::repair::samples::{repaired, suspected};
-    use crate::report::{Report, Rubric, csv, gradescope, junit, sarif};
+    use crate::report::{Report, Rubric, Thumbnails, csv, gradescope, junit, sarif, written};
 
     /// Every text format of a record with these hints.
     fn formats(mut record: Record, hints: Hints) -> Vec<String> {
         record.redact(hints);
         let rubric = Rubric::of(1.0, 8.0, 1.0);
-        let records = [record];
-        let mut texts = vec![
-            csv(&records, &Some(rubric.clone()).into()),
-            junit(&records),
-            sarif(&records),
-            gradescope(&records, &rubric),
-        ];
-        texts.push(Report::new(None, records.into()).json());
-        texts
+        let report = Report::new(None, vec![record]);
+        let records = report.shaders();
+        vec![
+            written(|out| csv(records, &Some(rubric.clone()).into(), out)),
+            written(|out| junit(records, hints, out)),
+            written(|out| sarif(records, out)),
+            written(|out| gradescope(records, &rubric, hints, &Thumbnails::default(), out)),
+            written(|out| report.json(out)),
+        ]
     }
 
     #[test]

@@ -1,75 +1,156 @@
 //! `junit.xml`: a test case per shader, for continuous integration.
 
-use std::time::Duration;
+use std::io::{self, Write};
 
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite, XmlString};
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, BytesText, Event};
 use toyproof_verify::Verdict;
 
-use super::{Record, details};
+use super::{Hints, Record, Records, details};
 
-/// Formats the file. A fault of the shader, or a violated requirement of an assignment, is a failure; what
-/// prevented its verdict is an error; an inconclusive verdict is skipped. Characters that XML 1.0 forbids are
-/// removed.
-#[must_use]
-pub fn junit(records: &[Record]) -> String {
-    let time = records.iter().map(time).sum();
-    let mut suite = TestSuite::new("toyproof check");
-    suite.set_time(time).add_test_cases(records.iter().map(test_case));
-    let mut report = Report::new("toyproof");
-    report.set_time(time).add_test_suite(suite);
-    // Writing to memory does not fail.
-    let xml = report.to_string().unwrap_or_default();
-    // `junit-10.xsd` has no such attribute of `testsuites`, the first element; Jenkins refuses it.
-    xml.replacen(&format!(" skipped=\"{}\"", report.skipped), "", 1)
+/// Writes the file, with what the hints show. A fault of the shader, or a violated requirement of an assignment, is
+/// a failure; what prevented its verdict is an error; an inconclusive verdict is skipped. Characters that XML
+/// 1.0 forbids are removed.
+///
+/// # Errors
+/// The system's error: a record cannot be read, or the file cannot be written.
+pub fn junit(records: &Records, hints: Hints, out: &mut dyn Write) -> io::Result<()> {
+    // The totals precede the test cases.
+    let mut totals = Totals::default();
+    for record in records.iter() {
+        totals.add(&*record?);
+    }
+    let Totals {
+        failures,
+        errors,
+        skipped,
+        seconds,
+    } = totals;
+    let [tests, failures, errors, skipped] =
+        [records.len() as u64, failures, errors, skipped].map(|count| count.to_string());
+    let time = format!("{seconds:.3}");
+    let counts = [
+        ("tests", tests.as_str()),
+        ("failures", &failures),
+        ("errors", &errors),
+        ("time", &time),
+    ];
+    let mut writer = Writer::new_with_indent(out, b' ', 4);
+    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    // `junit-10.xsd` has no attribute `skipped` of the first element; Jenkins refuses it.
+    let suites = writer
+        .create_element("testsuites")
+        .with_attribute(("name", "toyproof"));
+    suites.with_attributes(counts).write_inner_content(|writer| {
+        let suite = writer
+            .create_element("testsuite")
+            .with_attribute(("name", "toyproof check"));
+        let suite = suite
+            .with_attributes(counts)
+            .with_attribute(("skipped", skipped.as_str()));
+        suite.write_inner_content(|writer| {
+            for record in records.redacted(hints) {
+                write_test_case(&record?, writer)?;
+            }
+            Ok(())
+        })?;
+        Ok(())
+    })?;
+    writer.into_inner().write_all(b"\n")
 }
 
-fn test_case(record: &Record) -> TestCase {
+/// The numbers of test cases of each kind, and the time of all in seconds.
+#[derive(Debug, Default)]
+struct Totals {
+    failures: u64,
+    errors: u64,
+    skipped: u64,
+    seconds: f64,
+}
+
+impl Totals {
+    fn add(&mut self, record: &Record) {
+        self.seconds += record.seconds.total();
+        match Status::of(record) {
+            Status::Passed => {}
+            Status::Failure => self.failures += 1,
+            Status::Error => self.errors += 1,
+            Status::Skipped => self.skipped += 1,
+        }
+    }
+}
+
+/// The status of a test case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Status {
+    Passed,
+    Failure,
+    Error,
+    Skipped,
+}
+
+impl Status {
+    fn of(record: &Record) -> Self {
+        match Self::of_verdict(record.verdict) {
+            Self::Passed if !record.faults().is_empty() => Self::Failure,
+            status => status,
+        }
+    }
+
+    /// The status of a verdict. Where nothing was compared, the test was skipped.
+    fn of_verdict(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Correct => Self::Passed,
+            Verdict::Missing | Verdict::Invalid | Verdict::Wrong | Verdict::Unstable => Self::Failure,
+            Verdict::Timeout | Verdict::Error => Self::Error,
+            Verdict::Chaotic | Verdict::Inconclusive | Verdict::Ok => Self::Skipped,
+        }
+    }
+}
+
+fn write_test_case(record: &Record, writer: &mut Writer<impl Write>) -> io::Result<()> {
     let details = xml_text(&details(record));
-    let fault = record.faults().into_iter().next();
-    let (status, kind, message) = match (status(record.verdict), fault) {
-        (None, Some((kind, sentence))) => {
-            let failure = TestCaseStatus::non_success(NonSuccessKind::Failure);
-            (Some(failure), kind.to_owned(), sentence)
-        }
-        (status, _) => (status, record.verdict.to_string(), record.reason_and_lateness()),
-    };
-    let status = status.map(|mut status| {
-        status
-            .set_type(kind)
-            .set_message(xml_text(&message))
-            .set_description(details.as_str());
-        status
-    });
-    let passed = status.is_none();
     let name = xml_text(&record.shader);
-    let mut case = TestCase::new(name, status.unwrap_or_else(TestCaseStatus::success));
-    case.set_classname(xml_text(record.compared_with().unwrap_or("no reference")))
-        .set_time(time(record));
-    if passed {
-        case.set_system_out(details);
-    }
-    case
+    let class = xml_text(record.compared_with().unwrap_or("no reference"));
+    let time = format!("{:.3}", record.seconds.total());
+    let case = writer.create_element("testcase").with_attributes([
+        ("name", name.as_str()),
+        ("classname", &class),
+        ("time", &time),
+    ]);
+    case.write_inner_content(|writer| {
+        let element = match Status::of(record) {
+            Status::Passed => "system-out",
+            Status::Failure => "failure",
+            Status::Error => "error",
+            Status::Skipped => "skipped",
+        };
+        let element = writer.create_element(element);
+        let (kind, message) = match (
+            Status::of_verdict(record.verdict),
+            record.faults().into_iter().next(),
+        ) {
+            (Status::Passed, Some((kind, sentence))) => (kind.to_owned(), sentence),
+            _ => (record.verdict.to_string(), record.reason_and_lateness()),
+        };
+        let message = xml_text(&message);
+        let element = match Status::of(record) {
+            Status::Passed => element,
+            _ => element.with_attributes([("message", message.as_str()), ("type", &kind)]),
+        };
+        element.write_text_content(BytesText::new(&details))?;
+        Ok(())
+    })?;
+    Ok(())
 }
 
-/// The status of a verdict; none if the shader passes. Where nothing was compared, the test was skipped.
-fn status(verdict: Verdict) -> Option<TestCaseStatus> {
-    match verdict {
-        Verdict::Correct => None,
-        Verdict::Missing | Verdict::Invalid | Verdict::Wrong | Verdict::Unstable => {
-            Some(TestCaseStatus::non_success(NonSuccessKind::Failure))
-        }
-        Verdict::Timeout | Verdict::Error => Some(TestCaseStatus::non_success(NonSuccessKind::Error)),
-        Verdict::Chaotic | Verdict::Inconclusive | Verdict::Ok => Some(TestCaseStatus::skipped()),
-    }
-}
-
-/// Removes the noncharacters that XML 1.0 forbids; `XmlString` removes control characters.
-fn xml_text(text: &str) -> XmlString {
-    XmlString::new(text.replace(['\u{fffe}', '\u{ffff}'], ""))
-}
-
-fn time(record: &Record) -> Duration {
-    Duration::try_from_secs_f64(record.seconds.total()).unwrap_or_default()
+/// Removes ANSI escape sequences, and the characters that XML 1.0 forbids.
+fn xml_text(text: &str) -> String {
+    let mut text = strip_ansi_escapes::strip_str(text);
+    text.retain(|character| {
+        matches!(character, '\t' | '\n' | '\r' | ' '..) && !matches!(character, '\u{fffe}' | '\u{ffff}')
+    });
+    text
 }
 
 #[cfg(test)]
@@ -80,6 +161,11 @@ mod tests {
 
     use super::*;
     use crate::report::record::samples::{correct, every_verdict, invalid};
+    use crate::report::written;
+
+    fn xml(records: Vec<Record>) -> String {
+        written(|out| junit(&records.into(), Hints::Fix, out))
+    }
 
     /// The attributes and the children that each element may have in the schema that Jenkins publishes
     /// (`junit-10.xsd`). Attributes with `!` are required.
@@ -127,7 +213,7 @@ mod tests {
 
     #[test]
     fn verdicts_map_to_junit_elements() {
-        let text = junit(&every_verdict());
+        let text = xml(every_verdict());
         let document = Document::parse(&text).unwrap();
         follows(document.root_element());
         let told: Vec<_> = document
@@ -174,7 +260,7 @@ mod tests {
         let mut hostile = invalid();
         hostile.shader = "\"/><script>\u{0}\u{1b}[31m\u{ffff}&]]>.glsl".to_owned();
         hostile.reason = "<failure>".to_owned();
-        let text = junit(&[correct(), hostile]);
+        let text = xml(vec![correct(), hostile]);
         let document = Document::parse(&text).unwrap();
         follows(document.root_element());
         let cases = document

@@ -13,6 +13,7 @@ mod html;
 mod junit;
 mod reason;
 mod record;
+mod records;
 mod repair;
 mod rubric;
 mod rubrics;
@@ -27,23 +28,32 @@ pub use csv::csv;
 pub use earlier::{Change, Earlier};
 pub use explanation::{Explanation, explain, explanations};
 pub use frames::{CheckedFrame, FrameRecord};
-pub use gradescope::gradescope;
+pub use gradescope::{Thumbnails, gradescope};
 pub use growth::{CauseName, GrowthFrame, GrowthRecord};
 pub use hints::Hints;
 pub use html::{
-    Exhibit, Gallery, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, html,
-    html_index, part_name, subsample,
+    Exhibit, Gallery, LargeReport, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS,
+    PagePart, html, part_name, subsample,
 };
 pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{Alternative, Mistake, Position, Record, Report, SCHEMA, Seconds};
+pub use records::Records;
 pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
 #[cfg(feature = "lab")]
 pub(crate) use rubric::optional_points;
-pub use rubric::{Mark, Rubric, Visibility};
+pub use rubric::{Mark, Rubric, StudentImages, Visibility};
 pub use rubrics::Rubrics;
 pub use sarif::sarif;
 pub use submitted::{Late, Submitted};
-pub use terminal::{Detail, Layout, Tally, lines, place, summary};
+pub use terminal::{Detail, Layout, Tally, lines, place};
 use terminal::{details, plain};
 pub use trace::{PixelTrace, TracedPixel};
+
+/// The text that a report writes, in tests.
+#[cfg(test)]
+fn written(write: impl FnOnce(&mut dyn std::io::Write) -> std::io::Result<()>) -> String {
+    let mut bytes = Vec::new();
+    write(&mut bytes).unwrap();
+    String::from_utf8(bytes).unwrap()
+}

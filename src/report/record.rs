@@ -1,8 +1,10 @@
 //! The report for programs: `verdict.json`, and `--format json` on standard output.
 
+use std::io::{self, Write};
 use std::ops::AddAssign;
 
-use serde::{Deserialize, Serialize};
+use serde::ser::{Error, SerializeSeq};
+use serde::{Deserialize, Serialize, Serializer};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
 use toyproof_verify::compare::{CheckSummary, Comparison};
@@ -11,7 +13,7 @@ use toyproof_verify::repair::SearchResult;
 use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
-use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, Submitted, Suspect};
+use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRecord, Submitted, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -23,7 +25,17 @@ pub struct Report {
     tool: String,
     /// The adapter and its driver; null if nothing ran on any.
     device: Option<String>,
-    shaders: Vec<Record>,
+    #[serde(serialize_with = "serialize")]
+    shaders: Records,
+}
+
+/// Serializes the records as a sequence, one at a time.
+fn serialize<S: Serializer>(records: &Records, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut sequence = serializer.serialize_seq(Some(records.len()))?;
+    for record in records.iter() {
+        sequence.serialize_element(&*record.map_err(S::Error::custom)?)?;
+    }
+    sequence.end()
 }
 
 impl Report {
@@ -32,12 +44,12 @@ impl Report {
 
     /// Creates a report of these shaders, in this order.
     #[must_use]
-    pub fn new(device: Option<String>, shaders: Vec<Record>) -> Self {
+    pub fn new(device: Option<String>, shaders: impl Into<Records>) -> Self {
         Self {
             version: Self::VERSION,
             tool: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
             device,
-            shaders,
+            shaders: shaders.into(),
         }
     }
 
@@ -54,15 +66,17 @@ impl Report {
 
     /// The shaders' records.
     #[must_use]
-    pub fn shaders(&self) -> &[Record] {
+    pub fn shaders(&self) -> &Records {
         &self.shaders
     }
 
-    /// The report as the text of `verdict.json`.
-    #[must_use]
-    pub fn json(&self) -> String {
-        // Strings, numbers and options always serialize; serde_json writes infinite floats as null.
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    /// Writes the report as `verdict.json`. Floats that are not finite are null.
+    ///
+    /// # Errors
+    /// The system's error: a record cannot be read, or the report cannot be written.
+    pub fn json(&self, out: &mut dyn Write) -> io::Result<()> {
+        serde_json::to_writer_pretty(&mut *out, self)?;
+        out.write_all(b"\n")
     }
 }
 
@@ -467,7 +481,7 @@ mod tests {
     use crate::report::frames::samples::in_frames;
     use crate::report::record::samples::{every_verdict, record};
     use crate::report::repair::samples::{repaired, suspected};
-    use crate::report::{Hints, growth, repair};
+    use crate::report::{Hints, growth, repair, written};
 
     #[test]
     fn reports_follow_the_schema_and_broken_ones_do_not() {
@@ -495,7 +509,7 @@ mod tests {
             ..record(Verdict::Chaotic)
         });
         let report = Report::new(Some("x".to_owned()), records);
-        let mut json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
+        let mut json: serde_json::Value = serde_json::from_str(&written(|out| report.json(out))).unwrap();
         assert!(
             validator.is_valid(&json),
             "{:?}",

@@ -31,6 +31,8 @@ pub struct Rubric {
     late: Option<LateDeduction>,
     /// Who sees the marks, and when.
     pub visibility: Visibility,
+    /// The images that students see beside their marks.
+    pub images: StudentImages,
 }
 
 /// The points of one check.
@@ -55,6 +57,18 @@ pub enum Visibility {
     AfterDueDate,
     /// Students, once marks are published.
     AfterPublished,
+}
+
+/// The images that students see beside their marks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum StudentImages {
+    /// Their own, the reference, and the difference.
+    #[default]
+    All,
+    /// Their own.
+    Rendered,
+    /// None.
+    None,
 }
 
 /// What a late submission loses.
@@ -87,6 +101,12 @@ const VISIBILITIES: [(&str, Visibility); 4] = [
     ("after_published", Visibility::AfterPublished),
 ];
 
+const STUDENT_IMAGES: [(&str, StudentImages); 3] = [
+    ("all", StudentImages::All),
+    ("rendered", StudentImages::Rendered),
+    ("none", StudentImages::None),
+];
+
 impl Rubric {
     /// Parses a rubric.
     ///
@@ -107,6 +127,7 @@ impl Rubric {
     /// Reads a rubric that is a table of a file.
     pub(crate) fn read(table: &mut Table) -> Self {
         let visibility = table.choice("visibility", "visibility", &VISIBILITIES);
+        let images = table.choice("images", "choice of images", &STUDENT_IMAGES);
         let compiles = table.table("compiles", points);
         let algorithm = table.table("algorithm", check_points);
         let precision = table.table("precision", check_points);
@@ -117,6 +138,7 @@ impl Rubric {
             precision: precision.unwrap_or_default(),
             late,
             visibility: visibility.map_or_else(Visibility::default, |visibility| visibility.value),
+            images: images.map_or_else(StudentImages::default, |images| images.value),
         }
     }
 
@@ -378,7 +400,7 @@ mod tests {
             (
                 "[style]\npoints = 1",
                 "1:2 E0503 unknown table [style]; \
-                 help: expected `visibility`, [compiles], [algorithm], [precision] or [late]",
+                 help: expected `visibility`, `images`, [compiles], [algorithm], [precision] or [late]",
             ),
             (
                 "[maths]\npoints = 6",

@@ -1,15 +1,18 @@
 //! `report.sarif`: the diagnostics, for editors and code hosts (SARIF 2.1.0).
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 use std::iter;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
-use serde::Serialize;
+use serde::ser::{Error, SerializeSeq};
+use serde::{Serialize, Serializer};
 use toyproof_diagnostic::{self as diagnostic, Severity};
 use toyproof_verify::Verdict;
 
-use super::{Late, Record, Repair, SourceRange, terminal};
+use super::{Late, Record, Records, Repair, SourceRange, terminal};
 
 /// The characters that are not percent-encoded in a path: letters, digits, the other unreserved characters of
 /// RFC 3986, and `/`.
@@ -41,50 +44,86 @@ const VERDICTS: [(Verdict, &str, &str); 3] = [
     ),
 ];
 
-/// Formats the file: a result per diagnostic, and one per verdict of `VERDICTS`. What prevented a verdict is
+/// Writes the file: a result per diagnostic, and one per verdict of `VERDICTS`. What prevented a verdict is
 /// a notification.
-#[must_use]
-pub fn sarif(records: &[Record]) -> String {
-    let mut rules = Rules::default();
-    let mut results = Vec::new();
-    let mut notifications = Vec::new();
-    for record in records {
-        for message in &record.diagnostics {
-            results.push(diagnostic_result(record, message, &mut rules));
-        }
-        if let Some((_, title, help)) = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict) {
-            results.push(verdict_result(record, title, help, &mut rules));
-        }
-        results.extend(record.late().map(|late| late_result(record, late, &mut rules)));
-        if record.verdict == Verdict::Error {
-            notifications.push(Notification {
-                level: Severity::Error,
-                message: Message::new(record.reason.clone()),
-                locations: [Location::new(&record.shader, None)],
-            });
-        }
-    }
+///
+/// # Errors
+/// The system's error: a record cannot be read, or the file cannot be written.
+pub fn sarif(records: &Records, out: &mut dyn Write) -> io::Result<()> {
+    let rules = RefCell::default();
     let log = Log {
         schema: "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json",
         version: "2.1.0",
         runs: [Run {
+            column_kind: "unicodeCodePoints",
+            results: Results {
+                records,
+                rules: &rules,
+            },
+            invocations: [Invocation {
+                execution_successful: records.tally().count(Verdict::Error) == 0,
+                tool_execution_notifications: Notifications { records },
+            }],
             tool: Tool {
                 driver: Driver {
                     name: "toyproof",
                     version: env!("CARGO_PKG_VERSION"),
-                    rules: rules.rules,
+                    rules: &rules,
                 },
             },
-            invocations: [Invocation {
-                execution_successful: notifications.is_empty(),
-                tool_execution_notifications: notifications,
-            }],
-            column_kind: "unicodeCodePoints",
-            results,
         }],
     };
-    // Strings and numbers always serialize.
-    serde_json::to_string_pretty(&log).unwrap_or_default() + "\n"
+    serde_json::to_writer_pretty(&mut *out, &log)?;
+    out.write_all(b"\n")
+}
+
+/// The results of all records, which are read and written one at a time.
+struct Results<'a> {
+    records: &'a Records,
+    /// The rules of the results that were written.
+    rules: &'a RefCell<Rules>,
+}
+
+impl Serialize for Results<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut sequence = serializer.serialize_seq(None)?;
+        for record in self.records.iter() {
+            let record = &*record.map_err(S::Error::custom)?;
+            let rules = &mut *self.rules.borrow_mut();
+            for message in &record.diagnostics {
+                sequence.serialize_element(&diagnostic_result(record, message, rules))?;
+            }
+            if let Some((_, title, help)) = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict) {
+                sequence.serialize_element(&verdict_result(record, title, help, rules))?;
+            }
+            if let Some(late) = record.late() {
+                sequence.serialize_element(&late_result(record, late, rules))?;
+            }
+        }
+        sequence.end()
+    }
+}
+
+/// What prevented the verdicts of records.
+struct Notifications<'a> {
+    records: &'a Records,
+}
+
+impl Serialize for Notifications<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut sequence = serializer.serialize_seq(None)?;
+        for (index, verdict) in self.records.verdicts().enumerate() {
+            if verdict == Verdict::Error {
+                let record = self.records.get(index).map_err(S::Error::custom)?;
+                sequence.serialize_element(&Notification {
+                    level: Severity::Error,
+                    message: Message::new(record.reason.clone()),
+                    locations: [Location::new(&record.shader, None)],
+                })?;
+            }
+        }
+        sequence.end()
+    }
 }
 
 /// The rules that results refer to, without duplicates.
@@ -195,32 +234,38 @@ fn mistake_location(record: &Record) -> Location {
 // The objects of the SARIF 2.1.0 schema, with the properties that are used here.
 
 #[derive(Serialize)]
-struct Log {
+struct Log<'a> {
     #[serde(rename = "$schema")]
     schema: &'static str,
     version: &'static str,
-    runs: [Run; 1],
+    runs: [Run<'a>; 1],
 }
 
+/// The results come before the rules, which are known once all results are written.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Run {
-    tool: Tool,
-    invocations: [Invocation; 1],
+struct Run<'a> {
     column_kind: &'static str,
-    results: Vec<SarifResult>,
+    results: Results<'a>,
+    invocations: [Invocation<'a>; 1],
+    tool: Tool<'a>,
 }
 
 #[derive(Serialize)]
-struct Tool {
-    driver: Driver,
+struct Tool<'a> {
+    driver: Driver<'a>,
 }
 
 #[derive(Serialize)]
-struct Driver {
+struct Driver<'a> {
     name: &'static str,
     version: &'static str,
-    rules: Vec<Rule>,
+    #[serde(serialize_with = "serialize_rules")]
+    rules: &'a RefCell<Rules>,
+}
+
+fn serialize_rules<S: Serializer>(rules: &RefCell<Rules>, serializer: S) -> Result<S::Ok, S::Error> {
+    rules.borrow().rules.serialize(serializer)
 }
 
 #[derive(Serialize)]
@@ -241,9 +286,9 @@ struct Help {
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Invocation {
+struct Invocation<'a> {
     execution_successful: bool,
-    tool_execution_notifications: Vec<Notification>,
+    tool_execution_notifications: Notifications<'a>,
 }
 
 #[derive(Serialize)]
@@ -423,6 +468,11 @@ mod tests {
     use super::*;
     use crate::report::record::samples::{every_verdict, invalid};
     use crate::report::repair::samples::{repaired, suspected};
+    use crate::report::written;
+
+    fn file(records: Vec<Record>) -> String {
+        written(|out| sarif(&records.into(), out))
+    }
 
     /// The part of the SARIF 2.1.0 schema that is used here, without additional properties.
     fn schema() -> Value {
@@ -533,7 +583,7 @@ mod tests {
         // One of its patterns has an extra bracket, which not every regex engine accepts.
         let text = std::fs::read_to_string(path).unwrap().replace("{2}]?$", "{2}$");
         let schema = serde_json::from_str(&text).unwrap();
-        let json = serde_json::from_str(&sarif(&every_verdict())).unwrap();
+        let json = serde_json::from_str(&file(every_verdict())).unwrap();
         let validator = jsonschema::validator_for(&schema).unwrap();
         let errors: Vec<_> = validator
             .iter_errors(&json)
@@ -550,7 +600,7 @@ mod tests {
         hostile.diagnostics[0].file = Some("/hw/a b.glsl".to_owned());
         let mut records = every_verdict();
         records.push(hostile);
-        let text = sarif(&records);
+        let text = file(records.clone());
         let mut json: Value = serde_json::from_str(&text).unwrap();
         let validator = jsonschema::validator_for(&schema()).unwrap();
         let errors: Vec<_> = validator
@@ -587,7 +637,7 @@ mod tests {
 
     #[test]
     fn a_wrong_shader_is_located_at_its_fix_or_its_first_suspect() {
-        let json: Value = serde_json::from_str(&sarif(&[repaired(), suspected()])).unwrap();
+        let json: Value = serde_json::from_str(&file(vec![repaired(), suspected()])).unwrap();
         let validator = jsonschema::validator_for(&schema()).unwrap();
         assert!(validator.is_valid(&json), "{json}");
         let results = &json["runs"][0]["results"];

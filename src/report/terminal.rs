@@ -374,39 +374,53 @@ pub(super) fn plain(text: &str) -> String {
 #[derive(Debug, Clone, Default)]
 pub struct Tally(BTreeMap<Reverse<Verdict>, u64>);
 
-impl Tally {
-    /// Counts the verdicts of these records.
-    #[must_use]
-    pub fn of(records: &[Record]) -> Self {
+impl FromIterator<Verdict> for Tally {
+    fn from_iter<T: IntoIterator<Item = Verdict>>(verdicts: T) -> Self {
         let mut tally = Self::default();
-        for record in records {
-            tally.add(record.verdict);
+        for verdict in verdicts {
+            tally.add(verdict);
         }
         tally
     }
+}
 
+impl Tally {
     /// Counts one more shader.
     pub fn add(&mut self, verdict: Verdict) {
         *self.0.entry(Reverse(verdict)).or_default() += 1;
+    }
+
+    /// The verdicts that occur, the best first, each with the number of its shaders.
+    pub fn counts(&self) -> impl Iterator<Item = (Verdict, u64)> + '_ {
+        self.0.iter().map(|(Reverse(verdict), count)| (*verdict, *count))
+    }
+
+    /// The number of shaders with a verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> u64 {
+        self.0.get(&Reverse(verdict)).copied().unwrap_or_default()
+    }
+
+    /// Formats the number of all shaders and of those of each verdict.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let count = self.0.values().sum();
+        format!(
+            "{} {}: {self}",
+            grouped(count),
+            plural(count, "shader", "shaders")
+        )
     }
 }
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counts = self.0.iter().map(|(Reverse(verdict), count)| {
-            let style = style(*verdict);
-            format!("{} {style}{verdict}{style:#}", grouped(*count))
+        let counts = self.counts().map(|(verdict, count)| {
+            let style = style(verdict);
+            format!("{} {style}{verdict}{style:#}", grouped(count))
         });
         f.write_str(&counts.collect::<Vec<_>>().join(", "))
     }
-}
-
-/// Formats the number of shaders and their tally.
-#[must_use]
-pub fn summary(records: &[Record]) -> String {
-    let count = records.len() as u64;
-    let noun = plural(count, "shader", "shaders");
-    format!("{} {noun}: {}", grouped(count), Tally::of(records))
 }
 
 /// The color of a verdict; none where nothing was compared.

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use flate2::read::DeflateDecoder;
@@ -48,44 +48,60 @@ fn unpack(archive: &[u8], folder: &Path) {
     assert!(rest.starts_with(b"PK\x01\x02"));
 }
 
+/// An unpacked autograder that runs this program.
 #[cfg(unix)]
-#[test]
-fn submissions_get_marks() {
-    let folder = assignment();
-    let folder = folder.path();
-    let packed = toyproof(
-        folder,
-        &[
+struct Autograder {
+    /// What is `/autograder` on Gradescope's machines.
+    root: PathBuf,
+    /// Its script, with that folder.
+    script: String,
+}
+
+#[cfg(unix)]
+impl Autograder {
+    /// Packs the assignment in a folder, and unpacks the archive there.
+    fn new(folder: &Path) -> Self {
+        let arguments = [
             "gradescope",
             "task",
             "--program",
             "program",
             "-o",
             "autograder.zip",
-        ],
-    );
-    assert_eq!(packed.code, 0, "{}", packed.stderr);
-    let root = folder.join("autograder");
-    unpack(
-        &fs::read(folder.join("autograder.zip")).unwrap(),
-        &root.join("source"),
-    );
-    fs::remove_file(root.join("source/toyproof")).unwrap();
-    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), root.join("source/toyproof")).unwrap();
-    let script = fs::read_to_string(root.join("source/run_autograder")).unwrap();
-    let script = script.replace("/autograder", root.to_str().unwrap());
-    let grade = |files: &[(&str, &str)]| -> Value {
-        let _ = fs::remove_dir_all(root.join("submission"));
-        fs::create_dir(root.join("submission")).unwrap();
+        ];
+        let packed = toyproof(folder, &arguments);
+        assert_eq!(packed.code, 0, "{}", packed.stderr);
+        let root = folder.join("autograder");
+        let archive = fs::read(folder.join("autograder.zip")).unwrap();
+        unpack(&archive, &root.join("source"));
+        fs::remove_file(root.join("source/toyproof")).unwrap();
+        std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_toyproof"), root.join("source/toyproof")).unwrap();
+        let script = fs::read_to_string(root.join("source/run_autograder")).unwrap();
+        let script = script.replace("/autograder", root.to_str().unwrap());
+        Self { root, script }
+    }
+
+    /// Grades the files of a submission; returns what `results.json` has.
+    fn grade(&self, files: &[(&str, &str)]) -> Value {
+        let _ = fs::remove_dir_all(self.root.join("submission"));
+        fs::create_dir(self.root.join("submission")).unwrap();
         for (name, bytes) in files {
-            let path = root.join("submission").join(name);
+            let path = self.root.join("submission").join(name);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, bytes).unwrap();
         }
-        let status = Command::new("sh").args(["-c", &script]).status().unwrap();
+        let status = Command::new("sh").args(["-c", &self.script]).status().unwrap();
         assert!(status.success());
-        serde_json::from_str(&fs::read_to_string(root.join("results/results.json")).unwrap()).unwrap()
-    };
+        let results = fs::read_to_string(self.root.join("results/results.json")).unwrap();
+        serde_json::from_str(&results).unwrap()
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn submissions_get_marks() {
+    let folder = assignment();
+    let autograder = Autograder::new(folder.path());
     let right = SPHERE.shader;
     let wrong = right.replace("sphere.radius * sphere.radius", "sphere.radius");
     let invalid = right.replace("float disc", "flaot disc");
@@ -128,7 +144,7 @@ fn submissions_get_marks() {
             "wrong: ",
         ),
     ] {
-        let marks = grade(files);
+        let marks = autograder.grade(files);
         let scores = marks["tests"]
             .as_array()
             .unwrap()
@@ -136,13 +152,23 @@ fn submissions_get_marks() {
             .map(|test| test["score"].as_f64().unwrap());
         let sum = marks["score"].as_f64().unwrap_or(scores.sum());
         assert!((sum - points).abs() < 1e-9, "{points}: {marks:#}");
+        let shown = marks["output"].as_str().unwrap();
+        let images = shown.matches("<img alt=").count();
         assert!(
-            marks["output"].as_str().unwrap().starts_with(output),
+            shown.trim_start_matches("<p>").starts_with(output),
             "{output}: {marks:#}"
         );
+        // What was rendered is shown beside the reference and the difference.
+        let expected = match output.split_once(": ").map_or("", |(verdict, _)| verdict) {
+            "correct" | "wrong" => 3,
+            "2 shaders" => 6,
+            _ => 0,
+        };
+        assert_eq!(images, expected, "{output}: {marks:#}");
+        assert_eq!(marks["output_format"], if images > 0 { "html" } else { "text" });
     }
-    fs::remove_file(root.join("source/toyproof")).unwrap();
-    let failed = grade(&[("mine.glsl", right)]);
+    fs::remove_file(autograder.root.join("source/toyproof")).unwrap();
+    let failed = autograder.grade(&[("mine.glsl", right)]);
     assert!(
         failed["output"]
             .as_str()
@@ -150,6 +176,21 @@ fn submissions_get_marks() {
             .starts_with("The autograder failed"),
         "{failed}"
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn the_rubric_sets_which_images_students_see() {
+    let folder = assignment();
+    let autograder = Autograder::new(folder.path());
+    for (choice, images) in [("all", 3), ("rendered", 1), ("none", 0)] {
+        let rubric = format!("[rubric]\nimages = \"{choice}\"\n[rubric.compiles]");
+        let text = ASSIGNMENT.replace("[rubric.compiles]", &rubric);
+        fs::write(autograder.root.join("source/assignment/assignment.toml"), text).unwrap();
+        let marks = autograder.grade(&[("mine.glsl", SPHERE.shader)]);
+        let shown = marks["output"].as_str().unwrap();
+        assert_eq!(shown.matches("<img alt=").count(), images, "{marks:#}");
+    }
 }
 
 #[test]

@@ -41,6 +41,7 @@ mod glslang;
 mod growth;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod large_batch;
 mod limits;
 mod literals;
 mod lookups;

@@ -1,11 +1,12 @@
 //! The time that Chromium takes to open a report, and large reports for that.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::SystemTime;
 
 use serde_json::{Value, json};
-use toyproof::report::{Record, Report, Rubrics, html_index};
+use toyproof::report::{LargeReport, Record, Records, Report, Rubrics};
 use toyproof_testkit::devtools::Page;
 
 /// Writes the table of a report with `count` shaders: those of a report, repeated under other names.
@@ -18,9 +19,12 @@ pub(super) fn write_large_table(report: &Path, count: usize, page: &Path) {
         shader: format!("{index}/{}", record.shader),
         ..record.clone()
     });
-    let report = Report::new(None, records.collect());
-    let table = html_index(&report, &Rubrics::default(), SystemTime::now());
-    fs::write(page, table).expect("the folder is writable");
+    let report = Report::new(None, records.collect::<Records>());
+    let mut file = File::create(page)
+        .map(BufWriter::new)
+        .expect("the folder is writable");
+    let written = LargeReport::new(&report).index(&Rubrics::default(), SystemTime::now(), &mut file);
+    written.and_then(|()| file.flush()).expect("the disk has space");
 }
 
 /// Reads the browser's own clock.

@@ -1,6 +1,7 @@
 //! A run over all shaders of one command: their results are reported in order, while the next are checked.
 
 use std::collections::HashSet;
+use std::io;
 use std::num::NonZero;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -13,12 +14,13 @@ use super::Args;
 use super::args::CheckFormat;
 use super::checker::{Checker, WorkerContext};
 use super::outcome::{Message, Outcome};
-use super::reports::{self, Line, Results};
+use super::reports;
+use super::results::{Line, Results};
 use super::submission::Submission;
 use crate::cli::inputs::short_device;
 use crate::cli::pool::{self, InOrder};
 use crate::cli::{Exit, Terminal};
-use crate::report::{self, Detail, Earlier, Layout, Record, Report, Rubrics};
+use crate::report::{self, Detail, Earlier, Layout, Record, Records, Report, Rubrics};
 
 /// The largest number of shaders whose errors and warnings are shown with their source lines.
 const MAX_WITH_SOURCE: usize = 3;
@@ -37,6 +39,13 @@ fn layout(submissions: &[Submission], format: CheckFormat, terminal: &Terminal) 
     Layout::new(names, width, detail, lists_diagnostics)
 }
 
+/// A result that waits for its turn.
+enum Waiting {
+    Checked(Box<Outcome>),
+    /// The result of an earlier run, which is read when it is its turn.
+    Known,
+}
+
 /// A run over all shaders of one command.
 pub(super) struct Batch<'a> {
     pub(super) args: &'a Args,
@@ -45,9 +54,11 @@ pub(super) struct Batch<'a> {
     results: Option<Results>,
     /// The report that is compared with.
     earlier: Option<Earlier>,
-    order: InOrder<(usize, Outcome)>,
-    /// The reported records, in order, each with the index of its submission.
-    pub(super) records: Vec<(usize, Record)>,
+    order: InOrder<(usize, Waiting)>,
+    /// The reported records, in order.
+    pub(super) records: Records,
+    /// The index of each one's submission.
+    pub(super) reported: Vec<usize>,
     device: Option<String>,
     /// Whether something failed that no verdict shows.
     pub(super) failed: bool,
@@ -77,7 +88,8 @@ impl<'a> Batch<'a> {
             results,
             earlier,
             order: InOrder::default(),
-            records: Vec::new(),
+            records: args.out.clone().map_or_else(Records::default, Records::stored_in),
+            reported: Vec::new(),
             device: None,
             failed: false,
             layout: layout(submissions, args.format, terminal),
@@ -101,19 +113,14 @@ impl<'a> Batch<'a> {
         let mut todo = Vec::new();
         for (index, submission) in submissions.iter().enumerate() {
             let key = submission.key.as_deref();
-            let known = key.and_then(|key| self.results.as_ref()?.known(key));
-            match known {
-                Some(Line { record, device, .. }) => {
-                    tally.add(record.verdict);
-                    bar.inc(1);
-                    let mut known = Outcome::known(record);
-                    known.device = device;
-                    self.take(submissions, index, known);
-                }
-                None => todo.push(index),
+            let results = self.results.as_ref().zip(key);
+            if results.is_some_and(|(results, key)| results.is_known(key)) {
+                bar.inc(1);
+                self.take(submissions, index, Waiting::Known);
+            } else {
+                todo.push(index);
             }
         }
-        self.results.as_mut().map(Results::forget);
         let reused = submissions.len() - todo.len();
         if self.args.resume && reused > 0 {
             let of = submissions.len();
@@ -139,7 +146,7 @@ impl<'a> Batch<'a> {
                 bar.inc(1);
                 bar.set_message(self.terminal.bar_text(&tally));
                 self.keep(&submissions[index], &outcome);
-                self.take(submissions, index, outcome);
+                self.take(submissions, index, Waiting::Checked(Box::new(outcome)));
                 if self.terminal.is_closed() {
                     // Nobody reads further results; the shaders in progress are finished.
                     stop.store(true, Ordering::Relaxed);
@@ -149,8 +156,8 @@ impl<'a> Batch<'a> {
         bar.finish_and_clear();
         let is_done = self.records.len() == submissions.len();
         if stop.load(Ordering::Relaxed) && !(self.terminal.is_closed() && is_done) {
-            for (index, outcome) in std::mem::take(&mut self.order).rest() {
-                self.report_outcome(submissions, index, outcome);
+            for (index, waiting) in std::mem::take(&mut self.order).rest() {
+                self.report(submissions, index, waiting);
             }
             let why = if self.terminal.is_closed() {
                 "standard output was closed"
@@ -192,10 +199,37 @@ impl<'a> Batch<'a> {
         }
     }
 
-    fn take(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
-        for (index, outcome) in self.order.take(index, (index, outcome)) {
-            self.report_outcome(submissions, index, outcome);
+    fn take(&mut self, submissions: &[Submission], index: usize, waiting: Waiting) {
+        for (index, waiting) in self.order.take(index, (index, waiting)) {
+            self.report(submissions, index, waiting);
         }
+    }
+
+    /// Reports a shader whose turn it is.
+    fn report(&mut self, submissions: &[Submission], index: usize, waiting: Waiting) {
+        let outcome = match waiting {
+            Waiting::Checked(outcome) => *outcome,
+            Waiting::Known => match self.known(&submissions[index]) {
+                Ok(outcome) => outcome,
+                Err(error) => {
+                    self.terminal
+                        .error(format_args!("cannot read {error}; run the command again"));
+                    self.failed = true;
+                    return;
+                }
+            },
+        };
+        self.report_outcome(submissions, index, outcome);
+    }
+
+    /// Reads the result of an earlier run.
+    fn known(&mut self, submission: &Submission) -> io::Result<Outcome> {
+        let results = self.results.as_mut().zip(submission.key.as_deref());
+        let (results, key) = results.ok_or(io::ErrorKind::NotFound)?;
+        let Line { record, device, .. } = results.known(key)?;
+        let mut known = Outcome::known(record);
+        known.device = device;
+        Ok(known)
     }
 
     /// Prints the messages and the result line of a shader.
@@ -229,7 +263,8 @@ impl<'a> Batch<'a> {
         }
         self.failed |= outcome.failed;
         self.device = outcome.device.or(self.device.take());
-        self.records.push((index, outcome.record));
+        self.records.push(outcome.record);
+        self.reported.push(index);
     }
 
     /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are
@@ -257,6 +292,7 @@ impl<'a> Batch<'a> {
             terminal,
             rubrics,
             records,
+            reported,
             device,
             results,
             earlier,
@@ -265,18 +301,15 @@ impl<'a> Batch<'a> {
             start,
             ..
         } = self;
-        let (reported, records): (Vec<_>, Vec<_>) = records
-            .into_iter()
-            .map(|(index, record)| (&submissions[index], record))
-            .unzip();
+        let reported: Vec<_> = reported.into_iter().map(|index| &submissions[index]).collect();
         let report = Report::new(device, records);
         match args.format {
             CheckFormat::Human => print_summary(&report, hidden_warnings, start.elapsed(), terminal),
             CheckFormat::Short => {}
-            CheckFormat::Json => failed |= !terminal.bytes(report.json().as_bytes()),
+            CheckFormat::Json => failed |= !terminal.stream(|stdout| report.json(stdout)),
         }
         if let Some(earlier) = earlier {
-            print_changes(&earlier, &report, args.format, terminal);
+            failed |= !print_changes(&earlier, &report, args.format, terminal);
         }
         if let Some(out) = &args.out {
             // Before the reports are written, which would create the folder again.
@@ -300,10 +333,9 @@ impl<'a> Batch<'a> {
         if args.shard.is_some() {
             return if failed { Exit::Error } else { Exit::Success };
         }
-        let verdicts = || report.shaders().iter().map(|record| record.verdict);
-        if failed || verdicts().any(|verdict| verdict == Verdict::Error) {
+        if failed || report.shaders().tally().count(Verdict::Error) > 0 {
             Exit::Error
-        } else if report.shaders().iter().all(Record::is_passed) {
+        } else if report.shaders().are_passed() {
             Exit::Success
         } else {
             Exit::ShaderFault
@@ -314,13 +346,14 @@ impl<'a> Batch<'a> {
 /// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
 fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
     let records = report.shaders();
+    let tally = records.tally();
     let device = report
         .device()
         .map(|device| format!(", {}", short_device(device)));
     if records.len() > 1 {
         terminal.note(&format!(
             "\n{} ({:.1} s{})",
-            report::summary(records),
+            tally.summary(),
             elapsed.as_secs_f64(),
             device.unwrap_or_default()
         ));
@@ -332,10 +365,7 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
             plural(hidden_warnings, "warning", "warnings")
         ));
     }
-    let without = records
-        .iter()
-        .filter(|record| record.verdict == Verdict::Ok)
-        .count() as u64;
+    let without = tally.count(Verdict::Ok);
     // Of a single shader, its reason says so.
     if without > 0 && records.len() > 1 {
         terminal.warn(format_args!(
@@ -347,9 +377,15 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
     }
 }
 
-/// Prints the verdicts that differ from those of an earlier report.
-fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, terminal: &Terminal) {
-    let changes = earlier.changes(report);
+/// Prints the verdicts that differ from those of an earlier report; returns false if a record cannot be read.
+fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, terminal: &Terminal) -> bool {
+    let changes = match earlier.changes(report) {
+        Ok(changes) => changes,
+        Err(error) => {
+            terminal.error(error);
+            return false;
+        }
+    };
     if format == CheckFormat::Human {
         terminal.note("");
         for change in &changes {
@@ -363,4 +399,5 @@ fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, termin
         plural(count, "verdict differs", "verdicts differ"),
         earlier.name()
     ));
+    true
 }

@@ -2,6 +2,7 @@
 //! expression of a correct shader repairs it.
 
 use std::collections::HashMap;
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use toyproof_diagnostic::{grouped, plural};
@@ -36,57 +37,86 @@ impl Batch<'_> {
         checkers: &[Checker],
         stop: &AtomicBool,
     ) {
-        let reference_of = |(index, record): &(usize, Record)| reference(&submissions[*index], record);
-        let mut correct: HashMap<ReferenceNames, Vec<&Submission>> = HashMap::new();
-        for reported in &self.records {
-            let (index, record) = reported;
-            if record.verdict == Verdict::Correct {
-                let of_reference = correct.entry(reference_of(reported)).or_default();
-                of_reference.push(&submissions[*index]);
-            }
-        }
-        let places = self.records.iter().enumerate();
-        let todo: Vec<usize> = places
-            .filter(|(_, reported)| {
-                self.unrepaired.contains(&reported.0) && correct.contains_key(&reference_of(reported))
-            })
-            .map(|(place, _)| place)
-            .collect();
-        if todo.is_empty() || stop.load(Ordering::Relaxed) {
+        if self.unrepaired.is_empty() {
             return;
         }
-        let mut donors: HashMap<ReferenceNames, Donors> = HashMap::new();
-        for &place in &todo {
-            let reference = reference_of(&self.records[place]);
-            donors.entry(reference).or_insert_with_key(|reference| {
-                checkers[reference.0].donors(correct[reference].iter().copied().take(MAX_SHADERS))
-            });
+        let (todo, donors) = match self.donors(submissions, checkers) {
+            Ok(found) => found,
+            Err(error) => {
+                self.terminal.error(error);
+                self.failed = true;
+                return;
+            }
+        };
+        if todo.is_empty() || stop.load(Ordering::Relaxed) {
+            return;
         }
         let bar = self
             .terminal
             .bar(todo.len() as u64, "wrong shaders searched again");
         let mut found: Vec<(usize, Outcome)> = Vec::new();
         let threads = self.threads(todo.len());
-        let records = &self.records;
+        let (records, reported) = (&self.records, &self.reported);
+        let mut failure = None;
         pool::for_each(
             &todo,
             threads,
             stop,
             || WorkerContext::without_gpu(threads),
             |context, place| {
-                let (index, record) = &records[place];
-                let submission = &submissions[*index];
-                let donors = &donors[&reference(submission, record)];
-                checkers[submission.task].search_again(context, submission, record, donors)
+                let record = records.get(place)?;
+                let submission = &submissions[reported[place]];
+                let donors = &donors[&reference(submission, &record)];
+                Ok(checkers[submission.task].search_again(context, submission, &record, donors))
             },
-            |place, outcome| {
+            |place, outcome: io::Result<_>| {
                 bar.inc(1);
-                found.extend(outcome.map(|outcome| (place, outcome)));
+                match outcome {
+                    Ok(outcome) => found.extend(outcome.map(|outcome| (place, outcome))),
+                    Err(error) => failure = Some(error),
+                }
             },
         );
         bar.finish_and_clear();
+        if let Some(error) = failure {
+            self.terminal.error(error);
+            self.failed = true;
+        }
         found.sort_by_key(|&(place, _)| place);
         self.take_fixes(found);
+    }
+
+    /// Finds the places of the records to search again, and the expressions to search with.
+    fn donors(
+        &self,
+        submissions: &[Submission],
+        checkers: &[Checker],
+    ) -> io::Result<(Vec<usize>, HashMap<ReferenceNames, Donors>)> {
+        let mut correct: HashMap<ReferenceNames, Vec<&Submission>> = HashMap::new();
+        let mut wrong = Vec::new();
+        for (place, (verdict, &index)) in self.records.verdicts().zip(&self.reported).enumerate() {
+            let is_donor = verdict == Verdict::Correct;
+            if is_donor || self.unrepaired.contains(&index) {
+                let submission = &submissions[index];
+                let reference = reference(submission, &*self.records.get(place)?);
+                if !is_donor {
+                    wrong.push((place, reference));
+                } else if let donors = correct.entry(reference).or_default()
+                    && donors.len() < MAX_SHADERS
+                {
+                    donors.push(submission);
+                }
+            }
+        }
+        wrong.retain(|(_, reference)| correct.contains_key(reference));
+        let mut donors = HashMap::new();
+        for (_, reference) in &wrong {
+            if !donors.contains_key(reference) {
+                let of_reference = checkers[reference.0].donors(correct[reference].iter().copied());
+                donors.insert(reference.clone(), of_reference);
+            }
+        }
+        Ok((wrong.into_iter().map(|(place, _)| place).collect(), donors))
     }
 
     /// Prints records with fixes, and puts each in the place of the record without.
@@ -110,7 +140,7 @@ impl Batch<'_> {
                     .result(&report::lines(&outcome.record, &self.layout));
             }
             self.failed |= outcome.failed;
-            self.records[place].1 = outcome.record;
+            self.records.replace(place, outcome.record);
         }
     }
 }

@@ -15,7 +15,7 @@ use super::outcome::Outcome;
 use super::submission::Submission;
 use crate::cli::files;
 use crate::cli::names::with_suffix;
-use crate::report::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
+use crate::report::{Exhibit, Gallery, MAX_IMAGE_BYTES, Rubric, StudentImages, Thumbnails, subsample};
 
 /// A kind of image, which a shader may lack.
 pub(super) struct ImageKind {
@@ -175,4 +175,47 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
 
 fn subsampled_png(path: &Path, step: u32, size: [u32; 2]) -> Result<Vec<u8>, ImageError> {
     image::encode_shown(&subsample(step, &image::read_shown(path)?, size), path)
+}
+
+// What students see beside their marks.
+
+/// The largest number of shaders whose images are shown: those of one student, not of a class.
+const MAX_SHADERS_OF_STUDENT: usize = 4;
+
+/// The largest width that is shown, in pixels: three images stand side by side.
+const MAX_THUMBNAIL_WIDTH: u32 = 320;
+
+/// The largest size of all PNGs, in bytes, which base64 enlarges by a third. The format states no limit; a page
+/// of this size opens at once.
+const MAX_THUMBNAIL_BYTES: usize = 400_000;
+
+/// The images of a student's shaders, subsampled until they fit.
+pub(super) fn thumbnails(submissions: &[&Submission], rubric: &Rubric) -> Thumbnails {
+    let captions: &[&str] = match rubric.images {
+        StudentImages::All => &["your image", "the reference", "the difference"],
+        StudentImages::Rendered => &["your image"],
+        StudentImages::None => &[],
+    };
+    if submissions.len() > MAX_SHADERS_OF_STUDENT {
+        return Thumbnails::default();
+    }
+    let mut width = MAX_THUMBNAIL_WIDTH;
+    loop {
+        let mut thumbnails = Thumbnails::default();
+        for submission in submissions {
+            let images = IMAGES.iter().zip(captions);
+            let images = images.filter_map(|(kind, &caption)| {
+                let path = with_suffix(submission.output_stem.as_ref()?, kind.suffix);
+                let image = image::read_shown(&path).ok()?;
+                let step = image.size()[0].div_ceil(width);
+                let png = subsampled_png(&path, step, image.size()).ok()?;
+                Some((caption, png))
+            });
+            thumbnails.add(submission.name.clone(), images.collect());
+        }
+        if thumbnails.bytes() <= MAX_THUMBNAIL_BYTES || width == 1 {
+            return thumbnails;
+        }
+        width /= 2;
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::ffi::OsString;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::{fs, io, iter};
 
@@ -10,7 +11,7 @@ use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::output;
 
 use super::images::IMAGES;
-use super::reports::{self, Line, Results};
+use super::results::{self, RESULTS_NAME, Results, Span};
 use super::shard::{self, MANIFEST_NAME, Manifest, Shard};
 use super::submission::Submission;
 use super::work::Work;
@@ -94,14 +95,14 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
     }
     let shards = first.shard.of;
     let numbers = shard::assign(&work.submissions, shards);
-    let mut results = read_results(&folders).map_err(|error| Problem::from(error.to_string()))?;
-    let found: Vec<Option<(&Path, Line)>> = work
+    let mut results = find_results(&folders).map_err(|error| Problem::from(error.to_string()))?;
+    let found: Vec<Option<Found>> = work
         .submissions
         .iter()
         .zip(&numbers)
-        .map(|(submission, &number)| results.get(&(number, submission.key.clone()?)).cloned())
+        .map(|(submission, &number)| results.remove(&(number, submission.key.clone()?)))
         .collect();
-    results.clear();
+    drop(results);
     check_complete(&folders, &work.submissions, &numbers, &found)?;
     for (submission, found) in work.submissions.iter().zip(&found) {
         if let Some((folder, _)) = found {
@@ -109,8 +110,7 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
                 .map_err(|error| Problem::from(format!("cannot write {error}")))?;
         }
     }
-    let lines = found.into_iter().flatten().map(|(_, line)| line);
-    let results = Results::merged(&args.out, lines.collect())
+    let results = Results::merged(&args.out, lines(&work.submissions, &found))
         .map_err(|error| Problem::from(format!("cannot write {error}")))?;
     terminal.note(&format!(
         "{} {} merged",
@@ -187,28 +187,40 @@ fn parse(arguments: &[String], out: &Path) -> Result<Args, Problem> {
     }
 }
 
-/// The results of shaders, by the numbers of their shards and their keys, each with its folder.
-type ShardResults<'a> = HashMap<(u32, String), (&'a Path, Line)>;
+/// A result: the folder of its shard, and its place in the shard's results.
+type Found<'a> = (&'a Path, Span);
 
-/// Reads the results in all folders. Of several results of one shader, which differ in their times, one is
-/// taken that does not depend on the order of the folders.
-fn read_results(folders: &[(PathBuf, Manifest)]) -> io::Result<ShardResults<'_>> {
+/// Finds the results in all folders, by the numbers of their shards and their keys. Of several results of one
+/// shader, which differ in their times, one is taken that does not depend on the order of the folders.
+fn find_results(folders: &[(PathBuf, Manifest)]) -> io::Result<HashMap<(u32, String), Found<'_>>> {
     let mut folders: Vec<_> = folders.iter().collect();
     folders.sort_by(|(a, _), (b, _)| a.cmp(b));
     let mut results = HashMap::new();
     for (folder, manifest) in folders {
-        let path = folder.join(reports::RESULTS_NAME);
-        let bytes = match fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-            Err(error) => return Err(io::Error::other(format!("{}: {error}", path_name(&path)))),
-        };
-        for line in reports::lines(&bytes).filter_map(|(_, line)| line) {
-            let key = (manifest.shard.number, line.key.clone());
-            results.entry(key).or_insert((folder.as_path(), line));
-        }
+        results::for_each_line(&folder.join(RESULTS_NAME), |span, _, line| {
+            if let Some(line) = line {
+                let key = (manifest.shard.number, line.key);
+                results.entry(key).or_insert((folder.as_path(), span));
+            }
+            Ok(())
+        })?;
     }
     Ok(results)
+}
+
+/// Reads the lines of the results, each with its key.
+fn lines<'a>(
+    submissions: &'a [Submission],
+    found: &'a [Option<Found<'a>>],
+) -> impl Iterator<Item = io::Result<(Vec<u8>, String)>> + 'a {
+    submissions.iter().zip(found).filter_map(|(submission, found)| {
+        let ((folder, span), key) = found.zip(submission.key.clone())?;
+        let path = folder.join(RESULTS_NAME);
+        let line = File::open(&path).and_then(|mut file| results::read_span(&mut file, span));
+        let line =
+            line.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path_name(&path))));
+        Some(line.map(|line| (line, key)))
+    })
 }
 
 /// Checks that there is a result of every shader that can be read; otherwise lists the shards that lack some.
@@ -216,7 +228,7 @@ fn check_complete(
     folders: &[(PathBuf, Manifest)],
     submissions: &[Submission],
     numbers: &[u32],
-    found: &[Option<(&Path, Line)>],
+    found: &[Option<Found>],
 ) -> Result<(), Problem> {
     let (_, first) = &folders[0];
     let mut lacking = Vec::new();

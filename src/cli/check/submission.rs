@@ -32,6 +32,12 @@ pub(super) struct Submission {
 }
 
 impl Submission {
+    /// Whether it belongs to an assignment of a class.
+    pub(super) fn is_assigned(&self) -> bool {
+        let assignment = self.submitted.as_ref().map(|one| &one.assignment);
+        assignment.is_some_and(Option::is_some)
+    }
+
     /// With the `build` that checks it, the submission has a key.
     pub(super) fn new(
         input: Result<Input, ReadError>,

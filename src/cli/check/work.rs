@@ -7,7 +7,8 @@ use super::checker::Checker;
 use super::images::IMAGES;
 use super::plan::Plan;
 use super::reference::References;
-use super::reports::{self, Results};
+use super::reports::REPORT_NAMES;
+use super::results::{RESULTS_NAME, Results};
 use super::shard::{self, Manifest, Shard};
 use super::submission::Submission;
 use super::{Args, earlier};
@@ -81,9 +82,9 @@ impl Work {
             }
             None => vec![TaskInputs::of_arguments(args)],
         };
-        let reserved: Vec<&str> = reports::REPORT_NAMES
+        let reserved: Vec<&str> = REPORT_NAMES
             .into_iter()
-            .chain([reports::RESULTS_NAME, shard::MANIFEST_NAME, SUBMISSIONS])
+            .chain([RESULTS_NAME, shard::MANIFEST_NAME, SUBMISSIONS])
             .collect();
         let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
         let mut work = Self {

@@ -2,6 +2,7 @@
 //! time, and a page with the shaders themselves for each part.
 
 use std::collections::BTreeMap;
+use std::io::{self, Write};
 use std::ops::Range;
 use std::time::SystemTime;
 
@@ -11,7 +12,7 @@ use toyproof_verify::compare::CheckSummary;
 
 use super::names::Names;
 use super::{Gallery, Page, Text, facts, head, heading, overview};
-use crate::report::{Record, Report, Rubrics};
+use crate::report::{Record, Report, Rubrics, Tally};
 
 const SCRIPT: &str = include_str!("index.js");
 
@@ -31,20 +32,41 @@ const VISIBLE_ROWS: usize = 100;
 /// The number of rows in one element of the page: browsers parse large elements at once.
 const ROWS_OF_ELEMENT: usize = 1000;
 
+/// A report that has a table of all shaders, and a page for each part.
+#[derive(Debug)]
+pub struct LargeReport<'a> {
+    report: &'a Report,
+    names: Names<'a>,
+}
+
+impl<'a> LargeReport<'a> {
+    /// The pages of a report, which has more than [`MAX_PAGE_SHADERS`] shaders.
+    #[must_use]
+    pub fn new(report: &'a Report) -> Self {
+        let names = Names::new(report.shaders().folder());
+        Self { report, names }
+    }
+
+    /// The parts, in order.
+    pub fn parts(&self) -> impl Iterator<Item = PagePart<'_>> {
+        (1..=self.count()).map(|number| PagePart { whole: self, number })
+    }
+
+    /// The number of parts.
+    fn count(&self) -> usize {
+        self.report.shaders().len().div_ceil(MAX_PAGE_SHADERS)
+    }
+}
+
 /// A part of a large report, which has a page of its own.
 #[derive(Debug, Clone, Copy)]
 pub struct PagePart<'a> {
-    report: &'a Report,
+    whole: &'a LargeReport<'a>,
     /// From 1.
     number: usize,
 }
 
-impl<'a> PagePart<'a> {
-    /// The parts of a report; none if it fits one page.
-    pub fn all(report: &'a Report) -> impl Iterator<Item = Self> {
-        (1..=count(report)).map(move |number| Self { report, number })
-    }
-
+impl PagePart<'_> {
     /// Its number, from 1.
     #[must_use]
     pub fn number(&self) -> usize {
@@ -55,43 +77,37 @@ impl<'a> PagePart<'a> {
     #[must_use]
     pub fn places(&self) -> Range<usize> {
         let start = MAX_PAGE_SHADERS * (self.number - 1);
-        start..self.report.shaders().len().min(start + MAX_PAGE_SHADERS)
+        start..self.whole.report.shaders().len().min(start + MAX_PAGE_SHADERS)
     }
 
     /// Formats the page. The gallery has one exhibit for each of its shaders.
-    #[must_use]
-    pub fn html(&self, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> String {
-        let all = self.report.shaders();
+    ///
+    /// # Errors
+    /// The system's error: a record cannot be read.
+    pub fn html(&self, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> io::Result<String> {
+        let LargeReport { report, names } = self.whole;
         let page = Page {
-            report: self.report,
-            records: &all[self.places()],
-            names: &Names::of(all),
+            report,
+            records: &super::records(report, self.places())?,
+            names,
             rubrics,
             gallery,
             date,
         };
         let neighbor = |number: usize, label: &str| match number {
-            1.. if number <= count(self.report) => {
+            1.. if number <= self.whole.count() => {
                 format!("<a href=\"{}\">{label}</a>\n", part_name(number))
             }
             _ => String::new(),
         };
         let links = format!(
             "<nav aria-label=\"Pages\">\n<a href=\"../report.html\">All {} shaders</a>\n{}<span>{}</span>\n{}</nav>\n",
-            grouped(all.len() as u64),
+            grouped(report.shaders().len() as u64),
             neighbor(self.number - 1, "Previous"),
             numbers(&self.places()),
             neighbor(self.number + 1, "Next"),
         );
-        page.html(&links)
-    }
-}
-
-/// The number of parts of a report; 0 if it fits one page.
-fn count(report: &Report) -> usize {
-    match report.shaders().len() {
-        0..=MAX_PAGE_SHADERS => 0,
-        shaders => shaders.div_ceil(MAX_PAGE_SHADERS),
+        Ok(page.html(&links))
     }
 }
 
@@ -107,34 +123,35 @@ fn numbers(places: &Range<usize>) -> String {
     format!("{first}–{last}")
 }
 
-/// Formats the table of all shaders of a large report.
-#[must_use]
-pub fn html_index(report: &Report, rubrics: &Rubrics, date: SystemTime) -> String {
-    let records = report.shaders();
-    let names = Names::of(records);
-    let heading = heading(&names, records);
-    let points = if rubrics.is_empty() {
-        ""
-    } else {
-        "<th scope=\"col\" class=\"number\" data-sort=\"2\">Points</th>"
-    };
-    let images = if records.len() > MAX_SHADERS_WITH_IMAGES {
-        " The pages of so many shaders have no images, which are files beside this page."
-    } else {
-        ""
-    };
-    let first = records.iter().enumerate().take(VISIBLE_ROWS);
-    let first: Vec<_> = first
-        .map(|(index, record)| row(index, record, &names, rubrics))
-        .collect();
-    let parts: Vec<_> = PagePart::all(report)
-        .map(|part| {
-            let address = format!("{PARTS}/{}", part_name(part.number));
-            format!("<a href=\"{address}\">{}</a>\n", numbers(&part.places()))
-        })
-        .collect();
-    format!(
-        r##"{head}<body class="index">
+impl LargeReport<'_> {
+    /// Writes the table of all shaders.
+    ///
+    /// # Errors
+    /// The system's error: a record cannot be read, or the table cannot be written.
+    pub fn index(&self, rubrics: &Rubrics, date: SystemTime, out: &mut dyn Write) -> io::Result<()> {
+        let Self { report, names } = self;
+        let records = report.shaders();
+        let heading = heading(names, records.len(), None);
+        let tally = records.tally();
+        let points = if rubrics.is_empty() {
+            ""
+        } else {
+            "<th scope=\"col\" class=\"number\" data-sort=\"2\">Points</th>"
+        };
+        let images = if records.len() > MAX_SHADERS_WITH_IMAGES {
+            " The pages of so many shaders have no images, which are files beside this page."
+        } else {
+            ""
+        };
+        let checks = ["Algorithm", "Precision", "Toolchain"].iter().zip(4..);
+        let checks: Vec<_> = checks
+            .map(|(name, column)| {
+                format!("<th scope=\"col\" class=\"number wide\" data-sort=\"{column}\">{name}</th>")
+            })
+            .collect();
+        write!(
+            out,
+            r##"{head}<body class="index">
 <a class="skip" href="#main">Skip to the content</a>
 <header class="page">
 <h1>{heading}</h1>
@@ -148,58 +165,58 @@ pub fn html_index(report: &Report, rubrics: &Rubrics, date: SystemTime) -> Strin
 <tr><th scope="col" data-sort="0">Shader</th><th scope="col" data-sort="1">Verdict</th>{points}<th scope="col" class="why" data-sort="3">Reason</th>{checks}</tr>
 </thead>
 <tbody>
-{first}</tbody>
-</table>
-</section>
-<nav aria-label="Pages">
-{parts}</nav>
-</main>
-{data}<script>{SCRIPT}</script>
-</body>
-</html>
 "##,
-        head = head(&heading, SCRIPT),
-        facts = facts(report, records, &names, date),
-        notice = overview::notice(records),
-        form = overview::form(records),
-        checks = ["Algorithm", "Precision", "Toolchain"]
-            .iter()
-            .zip(4..)
-            .map(|(name, column)| format!(
-                "<th scope=\"col\" class=\"number wide\" data-sort=\"{column}\">{name}</th>"
-            ))
-            .collect::<Vec<_>>()
-            .concat(),
-        first = first.concat(),
-        parts = parts.concat(),
-        data = data(records, &names, rubrics),
-    )
-}
+            head = head(&heading, SCRIPT),
+            facts = facts(report, records.len(), names, date),
+            notice = overview::notice(&tally),
+            form = overview::form(&tally),
+            checks = checks.concat(),
+        )?;
+        for (index, record) in records.range(0..VISIBLE_ROWS.min(records.len())).enumerate() {
+            out.write_all(row(index, &*record?, names, rubrics).as_bytes())?;
+        }
+        out.write_all(b"</tbody>\n</table>\n</section>\n<nav aria-label=\"Pages\">\n")?;
+        for part in self.parts() {
+            let address = format!("{PARTS}/{}", part_name(part.number));
+            writeln!(out, "<a href=\"{address}\">{}</a>", numbers(&part.places()))?;
+        }
+        out.write_all(b"</nav>\n</main>\n")?;
+        self.data(rubrics, &tally, out)?;
+        writeln!(out, "<script>{SCRIPT}</script>\n</body>\n</html>")
+    }
 
-/// The rows and the settings, as data for the script.
-fn data(records: &[Record], names: &Names, rubrics: &Rubrics) -> String {
-    let verdicts: BTreeMap<u8, String> = records
-        .iter()
-        .map(|record| (record.verdict as u8, record.verdict.to_string()))
-        .collect();
-    let settings = json!({
-        "visible": VISIBLE_ROWS,
-        "page": MAX_PAGE_SHADERS,
-        "parts": PARTS,
-        "verdicts": verdicts,
-        "hasPoints": !rubrics.is_empty(),
-    });
-    let elements = records.chunks(ROWS_OF_ELEMENT).map(|records| {
-        let rows: Vec<_> = records
-            .iter()
-            .map(|record| values(record, names, rubrics).to_string())
+    /// Writes the rows and the settings, as data for the script.
+    fn data(&self, rubrics: &Rubrics, tally: &Tally, out: &mut dyn Write) -> io::Result<()> {
+        let records = self.report.shaders();
+        for start in (0..records.len()).step_by(ROWS_OF_ELEMENT) {
+            let end = records.len().min(start + ROWS_OF_ELEMENT);
+            let rows: Vec<_> = records
+                .range(start..end)
+                .map(|record| Ok(values(&*record?, &self.names, rubrics).to_string()))
+                .collect::<io::Result<_>>()?;
+            // No text may end the element.
+            let rows = rows.join(",\n").replace('<', "\\u003c");
+            writeln!(
+                out,
+                "<script class=\"rows\" type=\"application/json\">[{rows}]</script>"
+            )?;
+        }
+        let verdicts: BTreeMap<u8, String> = tally
+            .counts()
+            .map(|(verdict, _)| (verdict as u8, verdict.to_string()))
             .collect();
-        // No text may end the element.
-        let rows = rows.join(",\n").replace('<', "\\u003c");
-        format!("<script class=\"rows\" type=\"application/json\">[{rows}]</script>\n")
-    });
-    let elements: Vec<_> = elements.collect();
-    elements.concat() + &format!("<script id=\"settings\" type=\"application/json\">{settings}</script>\n")
+        let settings = json!({
+            "visible": VISIBLE_ROWS,
+            "page": MAX_PAGE_SHADERS,
+            "parts": PARTS,
+            "verdicts": verdicts,
+            "hasPoints": !rubrics.is_empty(),
+        });
+        writeln!(
+            out,
+            "<script id=\"settings\" type=\"application/json\">{settings}</script>"
+        )
+    }
 }
 
 /// The page of a shader, by its place in the report.
@@ -260,7 +277,7 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::report::Exhibit;
+    use crate::report::{Exhibit, Records, written};
 
     fn report(count: usize) -> Report {
         let record = |index: usize| Record {
@@ -268,14 +285,14 @@ mod tests {
             reason: "</script><b> `a`".to_owned(),
             ..Record::new(format!("hw/{index}<i>.glsl"))
         };
-        Report::new(None, (0..count).map(record).collect())
+        Report::new(None, (0..count).map(record).collect::<Records>())
     }
 
     #[test]
-    fn a_report_that_fits_one_page_has_no_parts() {
-        assert_eq!(PagePart::all(&report(MAX_PAGE_SHADERS)).count(), 0);
+    fn each_part_has_at_most_the_shaders_of_a_page() {
         let large = report(MAX_PAGE_SHADERS + 1);
-        let places: Vec<_> = PagePart::all(&large).map(|part| part.places()).collect();
+        let large = LargeReport::new(&large);
+        let places: Vec<_> = large.parts().map(|part| part.places()).collect();
         assert_eq!(
             places,
             [0..MAX_PAGE_SHADERS, MAX_PAGE_SHADERS..MAX_PAGE_SHADERS + 1]
@@ -285,12 +302,13 @@ mod tests {
     #[test]
     fn each_shader_is_an_article_of_its_part() {
         let report = report(MAX_PAGE_SHADERS + 2);
-        let parts: Vec<_> = PagePart::all(&report).collect();
+        let large = LargeReport::new(&report);
+        let parts: Vec<_> = large.parts().collect();
         let mut gallery = Gallery::new(1);
         for _ in parts[1].places() {
             gallery.add_exhibit(Exhibit::default());
         }
-        let page = parts[1].html(&Rubrics::default(), &gallery, UNIX_EPOCH);
+        let page = parts[1].html(&Rubrics::default(), &gallery, UNIX_EPOCH).unwrap();
         assert!(page.contains("<article id=\"s1\" aria-labelledby=\"h1\" data-name=\"501&lt;i&gt;.glsl\">"));
         assert!(
             page.contains("<a href=\"../report.html\">All 502 shaders</a>\n<a href=\"0001.html\">Previous")
@@ -302,7 +320,8 @@ mod tests {
     #[test]
     fn no_text_becomes_markup_and_every_shader_has_a_row() {
         let report = report(2 * ROWS_OF_ELEMENT + 1);
-        let page = html_index(&report, &Rubrics::default(), UNIX_EPOCH);
+        let large = LargeReport::new(&report);
+        let page = written(|out| large.index(&Rubrics::default(), UNIX_EPOCH, out));
         assert_eq!(
             page.matches("</script>").count(),
             3 + 3,

@@ -12,7 +12,10 @@ mod names;
 mod overview;
 mod source;
 
+use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter, Write};
+use std::io;
+use std::ops::Range;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use base64::Engine;
@@ -25,8 +28,9 @@ use toyproof_verify::compare::{IN_BITS, Legend, SEEN_BY_EYE};
 use self::article::Article;
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
 use self::glossary::Glossary;
-pub use self::index::{MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, html_index, part_name};
+pub use self::index::{LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, part_name};
 use self::names::Names;
+pub(super) use self::names::common_folder;
 use self::source::SourceLimit;
 use super::{Record, Report, Rubrics};
 
@@ -38,17 +42,25 @@ const HEAD_SCRIPT: &str = "document.documentElement.classList.add('script')";
 const VIEWER: &str = include_str!("viewer.html");
 
 /// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
-#[must_use]
-pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> String {
+///
+/// # Errors
+/// The system's error: a record cannot be read.
+pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> io::Result<String> {
     let page = Page {
         report,
-        records: report.shaders(),
-        names: &Names::of(report.shaders()),
+        records: &records(report, 0..report.shaders().len())?,
+        names: &Names::new(report.shaders().folder()),
         rubrics,
         gallery,
         date,
     };
-    page.html("")
+    Ok(page.html(""))
+}
+
+/// Reads the records of a page.
+fn records(report: &Report, places: Range<usize>) -> io::Result<Vec<Record>> {
+    let records = report.shaders().range(places);
+    records.map(|record| record.map(Cow::into_owned)).collect()
 }
 
 /// A page with the articles of shaders.
@@ -93,7 +105,7 @@ impl Page<'_> {
                 article.html(index)
             })
             .collect();
-        let heading = heading(names, records);
+        let heading = heading(names, records.len(), records.first());
         format!(
             r##"{head}<body>
 <a class="skip" href="#main">Skip to the content</a>
@@ -110,7 +122,7 @@ impl Page<'_> {
 </html>
 "##,
             head = head(&heading, SCRIPT),
-            facts = facts(report, records, names, date),
+            facts = facts(report, records.len(), names, date),
             subsampling_note = subsampling_note(gallery.step()),
             overview = overview::overview(records, names, gallery, rubrics),
             glossary = glossary.html(),
@@ -139,23 +151,23 @@ fn head(title: &str, script: &str) -> String {
 }
 
 /// The title of the page: the folder, else the only shader, else the number of shaders.
-fn heading(names: &Names, records: &[Record]) -> String {
-    let subject = match (names.folder_name(), records) {
-        (_, [only]) => names.short(only).to_owned(),
-        ("", _) => shaders(records),
-        (folder, _) => folder.to_owned(),
+fn heading(names: &Names, count: usize, first: Option<&Record>) -> String {
+    let subject = match (names.folder_name(), count, first) {
+        (_, 1, Some(only)) => names.short(only).to_owned(),
+        ("", ..) => shaders(count),
+        (folder, ..) => folder.to_owned(),
     };
     format!("toyproof check: {}", Text(subject))
 }
 
-fn shaders(records: &[Record]) -> String {
-    let count = records.len() as u64;
+fn shaders(count: usize) -> String {
+    let count = count as u64;
     format!("{} {}", grouped(count), plural(count, "shader", "shaders"))
 }
 
 /// The facts about the run below the title.
-fn facts(report: &Report, records: &[Record], names: &Names, date: SystemTime) -> String {
-    let mut facts = format!("<span class=\"whole\">{}</span>", shaders(records));
+fn facts(report: &Report, count: usize, names: &Names, date: SystemTime) -> String {
+    let mut facts = format!("<span class=\"whole\">{}</span>", shaders(count));
     if !names.folder().is_empty() {
         let _ = write!(
             facts,
@@ -294,7 +306,7 @@ mod tests {
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
         let report = Report::new(Some("<device>".to_owned()), records);
-        html(&report, &Rubrics::default(), gallery, UNIX_EPOCH)
+        html(&report, &Rubrics::default(), gallery, UNIX_EPOCH).unwrap()
     }
 
     #[test]
@@ -377,7 +389,7 @@ mod tests {
         }
         let report = Report::new(None, records);
         let time = UNIX_EPOCH + std::time::Duration::from_secs(951_827_640);
-        let page = html(&report, &Rubrics::default(), &Gallery::new(1), time);
+        let page = html(&report, &Rubrics::default(), &Gallery::new(1), time).unwrap();
         assert!(page.contains("<h1>toyproof check: hw&lt;3</h1>"));
         assert!(page.contains("Folder: class/hw&lt;3<"));
         assert!(page.contains("<time datetime=\"2000-02-29T12:34Z\">2000-02-29 12:34 UTC</time>"));

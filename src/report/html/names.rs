@@ -5,21 +5,15 @@ use std::path::is_separator;
 use crate::report::Record;
 
 /// The folder that all shaders are in.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Names<'a> {
     /// With its final separator; empty if there is none.
     prefix: &'a str,
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn of(records: &'a [Record]) -> Self {
-        let mut names = records.iter().map(|record| record.shader.as_str());
-        let first = names.next().unwrap_or_default();
-        let prefix = names.fold(parent(first), |mut prefix, name| {
-            while !name.starts_with(prefix) {
-                prefix = parent(prefix.trim_end_matches(is_separator));
-            }
-            prefix
-        });
+    /// The names in a folder, whose path ends with a separator unless it is empty.
+    pub(super) fn new(prefix: &'a str) -> Self {
         Self { prefix }
     }
 
@@ -46,11 +40,22 @@ fn parent(path: &str) -> &str {
     &path[..end]
 }
 
+/// The folder that is common to a folder and a path, each with its final separator; `None` is the folder of no
+/// path.
+pub(in crate::report) fn common_folder(folder: Option<&str>, path: &str) -> String {
+    let mut common = folder.unwrap_or_else(|| parent(path));
+    while !path.starts_with(common) {
+        common = parent(common.trim_end_matches(is_separator));
+    }
+    common.to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Records;
 
-    fn records(names: &[&str]) -> Vec<Record> {
+    fn records(names: &[&str]) -> Records {
         names.iter().map(|&name| Record::new(name.to_owned())).collect()
     }
 
@@ -71,13 +76,17 @@ mod tests {
             (&[""], "", "", ""),
         ] {
             let records = records(names);
-            let found = Names::of(&records);
+            let found = Names::new(records.folder());
             assert_eq!(
-                (found.folder(), found.folder_name(), found.short(&records[0])),
+                (
+                    found.folder(),
+                    found.folder_name(),
+                    found.short(&records.get(0).unwrap())
+                ),
                 (folder, name, short),
                 "{names:?}"
             );
         }
-        assert_eq!(Names::of(&[]).folder(), "");
+        assert_eq!(Names::new(Records::default().folder()).folder(), "");
     }
 }

@@ -6,7 +6,7 @@ use toyproof_verify::compare::CheckSummary;
 
 use super::names::Names;
 use super::{Exhibit, Gallery, Text, sentence};
-use crate::report::{Record, Rubrics};
+use crate::report::{Record, Rubrics, Tally};
 
 pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rubrics: &Rubrics) -> String {
     let points = if rubrics.is_empty() {
@@ -14,6 +14,7 @@ pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rub
     } else {
         "<th scope=\"col\" rowspan=\"2\" class=\"number\" data-sort>Points</th>"
     };
+    let tally: Tally = records.iter().map(|record| record.verdict).collect();
     let rows = records.iter().zip(gallery.exhibits()).enumerate();
     let rows: String = rows
         .map(|(index, (record, exhibit))| row(index, record, names.short(record), exhibit, rubrics))
@@ -43,13 +44,13 @@ pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rub
 </table>
 </section>
 "#,
-        form = form(records),
-        notice = notice(records),
+        form = form(&tally),
+        notice = notice(&tally),
     )
 }
 
 /// The form that filters the rows, which only a script shows.
-pub(super) fn form(records: &[Record]) -> String {
+pub(super) fn form(tally: &Tally) -> String {
     format!(
         r#"<form id="filter" role="search" aria-label="Filter the shaders" hidden>
 <label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
@@ -59,14 +60,13 @@ pub(super) fn form(records: &[Record]) -> String {
 <p id="shown" role="status"></p>
 </form>
 "#,
-        chips = chips(records)
+        chips = chips(tally)
     )
 }
 
 /// A notice of shaders that were compared with nothing.
-pub(super) fn notice(records: &[Record]) -> String {
-    let without = records.iter().filter(|record| record.verdict == Verdict::Ok);
-    match without.count() as u64 {
+pub(super) fn notice(tally: &Tally) -> String {
+    match tally.count(Verdict::Ok) {
         0 => String::new(),
         count => format!(
             "<p class=\"notice\">Nothing was compared for {} {}: no reference was given.</p>\n",
@@ -77,16 +77,13 @@ pub(super) fn notice(records: &[Record]) -> String {
 }
 
 /// The number of shaders of each verdict, the best first, as check boxes that show or hide them.
-fn chips(records: &[Record]) -> String {
-    let mut verdicts: Vec<_> = records.iter().map(|record| record.verdict).collect();
-    verdicts.sort_unstable_by(|a, b| b.cmp(a));
-    let chips = verdicts.chunk_by(|a, b| a == b).map(|equal| {
-        let verdict = equal[0];
+fn chips(tally: &Tally) -> String {
+    let chips = tally.counts().map(|(verdict, count)| {
         format!(
             "<label class=\"chip\" data-term=\"t-{verdict}\"><input type=\"checkbox\" name=\"verdict\" value=\"{verdict}\" checked> \
              {badge} <span class=\"count\">{count}</span></label>\n",
             badge = badge(verdict),
-            count = grouped(equal.len() as u64)
+            count = grouped(count)
         )
     });
     chips.collect()

@@ -1,12 +1,12 @@
 //! The pages of a large report: a table of all shaders, and a page for each part.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 use serde_json::json;
 use toyproof::report::{
-    Exhibit, Gallery, MAX_PAGE_SHADERS, PARTS, PagePart, Record, Report, Rubrics, html_index, part_name,
+    Exhibit, Gallery, LargeReport, MAX_PAGE_SHADERS, PARTS, Record, Records, Report, Rubrics, part_name,
 };
 use toyproof::verify::Verdict;
 
@@ -38,21 +38,19 @@ fn write(folder: &Path) {
             })
         }
     };
-    let report = Report::new(None, (0..SHADERS).map(record).collect());
+    let report = Report::new(None, (0..SHADERS).map(record).collect::<Records>());
+    let large = LargeReport::new(&report);
     let rubrics = Rubrics::default();
     fs::create_dir_all(folder.join(PARTS)).unwrap();
-    fs::write(
-        folder.join("report.html"),
-        html_index(&report, &rubrics, UNIX_EPOCH),
-    )
-    .unwrap();
-    for part in PagePart::all(&report) {
+    let mut index = File::create(folder.join("report.html")).unwrap();
+    large.index(&rubrics, UNIX_EPOCH, &mut index).unwrap();
+    for part in large.parts() {
         let mut gallery = Gallery::new(1);
         for _ in part.places() {
             gallery.add_exhibit(Exhibit::default());
         }
         let path = folder.join(PARTS).join(part_name(part.number()));
-        fs::write(path, part.html(&rubrics, &gallery, UNIX_EPOCH)).unwrap();
+        fs::write(path, part.html(&rubrics, &gallery, UNIX_EPOCH).unwrap()).unwrap();
     }
 }
 
