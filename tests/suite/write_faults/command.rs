@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, UNIX_EPOCH};
 
 use regex::bytes::Regex;
 use serde_json::json;
@@ -95,7 +96,7 @@ pub(super) const COMMANDS: &[Tested] = &[
                 "render",
                 "right.toml",
                 "-o",
-                "out",
+                "out/r.png",
                 "--frames",
                 "0..3",
                 "--size",
@@ -151,10 +152,17 @@ pub(super) const COMMANDS: &[Tested] = &[
         ..tested("collect", &["collect", "downloads", "-o", "out"])
     },
     Tested {
-        stride: None,
+        setup: &[&["new", "assignment", "assignment", "--from", "right.toml"]],
         ..tested(
             "gradescope",
-            &["gradescope", "--scene", "right.toml", "-o", "out/g.zip"],
+            &[
+                "gradescope",
+                "assignment",
+                "--program",
+                "machine",
+                "-o",
+                "out/g.zip",
+            ],
         )
     },
     Tested {
@@ -199,6 +207,7 @@ fn write_inputs(folder: &Path) {
     ];
     let project = json!({"ver": "0.1", "info": {"name": "Test"}, "renderpass": passes});
     write("project.json", &project.to_string());
+    fs::copy("/bin/true", folder.join("machine")).unwrap();
     for (shader, image) in [("right.glsl", "a.png"), ("wrong.glsl", "b.png")] {
         let run = ["run", shader, "-o", image, "--size", "16x9", "--device", "cpu"];
         assert_eq!(toyproof(folder, &run).code, 0);
@@ -319,6 +328,7 @@ impl<'a> Case<'a> {
     }
 }
 
+/// Copies a folder. All files have the same time, which archives hold.
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap() {
@@ -327,7 +337,10 @@ fn copy(from: &Path, to: &Path) {
         if entry.file_type().unwrap().is_dir() {
             copy(&entry.path(), &target);
         } else {
-            fs::copy(entry.path(), target).unwrap();
+            fs::copy(entry.path(), &target).unwrap();
+            let file = fs::File::options().write(true).open(target).unwrap();
+            file.set_modified(UNIX_EPOCH + Duration::from_secs(1 << 30))
+                .unwrap();
         }
     }
 }

@@ -5,7 +5,7 @@ use toyproof::glsl::tree::{
 };
 
 use super::real::Real;
-use super::value::{Component, Value, zero};
+use super::value::{Value, zero};
 use super::{Result, Run, Stop};
 
 /// How control leaves a statement.
@@ -176,16 +176,5 @@ impl<N: Real> Run<'_, N> {
             }
         }
         Ok(Flow::Next)
-    }
-}
-
-impl<N: Real> Component<N> {
-    /// Whether the component is `true`, `1` or another value than zero.
-    pub(super) fn is_not_zero(self) -> bool {
-        match self {
-            Self::Bool(value) => value,
-            Self::Int(_) | Self::Uint(_) => self.bits() != 0,
-            Self::Float(value) => value != N::from_f64(0.0),
-        }
     }
 }

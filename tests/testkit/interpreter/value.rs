@@ -68,6 +68,15 @@ impl<N: Real> Component<N> {
         }
     }
 
+    /// Whether it is another value than zero or `false`.
+    pub(super) fn is_not_zero(self) -> bool {
+        match self {
+            Self::Bool(value) => value,
+            Self::Int(_) | Self::Uint(_) => self.bits() != 0,
+            Self::Float(value) => value != N::from_f64(0.0),
+        }
+    }
+
     /// Whether it is equal to another of the same type, as `==` compares them.
     pub(super) fn equals(self, other: Self) -> bool {
         match (self, other) {

@@ -13,6 +13,9 @@ use crate::interpreter::{Comparison, POLICIES, Tally};
 /// The most steps of the interpreter for a pixel.
 const MAX_STEPS: u64 = 200_000;
 
+/// Width and height of the image, all of whose pixels are compared.
+const SIZE: [u32; 2] = [4, 4];
+
 /// The program that these bytes decide: the first what it may contain.
 #[must_use]
 pub fn program(bytes: &[u8]) -> String {
@@ -44,12 +47,13 @@ pub fn judge(bytes: &[u8], allowed: Duration) -> (String, Tally) {
     let checked = within(allowed, || check(&files, file, &Options::default()));
     let checked = checked.unwrap_or_else(|errors| panic!("{errors}\n{text}"));
     let frame = Frame {
-        size: [8, 8],
+        size: SIZE,
         time: 2.5,
         frame: 7,
         ..Frame::default()
     };
-    let pixels: Vec<[u32; 2]> = (0..64).map(|at| [at % 8, at / 8]).collect();
+    let [width, height] = SIZE;
+    let pixels: Vec<[u32; 2]> = (0..width * height).map(|at| [at % width, at / width]).collect();
     let comparison = Comparison {
         checked: &checked,
         frame: &frame,
