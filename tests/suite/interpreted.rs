@@ -129,7 +129,8 @@ fn lookups_and_derivatives_are_interpreted_to_the_bit() {
                 ..Frame::default()
             };
             frame.channels[0] = Some(texture);
-            let pixels: Vec<_> = (0..180).map(|at| [at % 18, at / 18]).collect();
+            // Each derivative runs the quad again.
+            let pixels = [[0, 0], [17, 9], [8, 5], [9, 4]];
             let tally = compare(&checked, &frame, &pixels);
             all.add(tally.unwrap_or_else(|error| panic!("{filter:?} {wrap:?}: {error}")));
         }
