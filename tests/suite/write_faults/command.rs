@@ -358,8 +358,14 @@ fn read(folder: &Path) -> Files {
             if entry.file_type().unwrap().is_dir() {
                 collect(&entry.path(), &format!("{name}/"), files);
             } else {
-                let content = fs::read(entry.path()).unwrap();
-                files.insert(name.clone(), normalized(&name, content));
+                let mut content = normalized(&name, fs::read(entry.path()).unwrap());
+                if name.ends_with(".jsonl") {
+                    // A run that resumes appends what was missing.
+                    let mut lines: Vec<_> = content.split_inclusive(|&byte| byte == b'\n').collect();
+                    lines.sort_unstable();
+                    content = lines.concat();
+                }
+                files.insert(name, content);
             }
         }
     }
