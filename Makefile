@@ -37,11 +37,14 @@ accuracy:
 	cargo build --release
 	sh docs/evidence/accuracy/regenerate.sh ./target/release/toyproof
 
-# Runs until it finds something or is stopped; needs a nightly compiler and cargo-fuzz. No sanitizer: the code is safe Rust.
+# Runs a fuzz target until it finds something or is stopped: front_end, tokens, programs, scenes, images, records or
+# projects. Needs a nightly compiler and cargo-fuzz. No sanitizer: the code is safe Rust. The time limit is one of a
+# hang; the targets themselves limit the processor time of an input.
+TARGET ?= front_end
 fuzz:
-	mkdir -p fuzz/corpus/front_end
-	cargo +nightly fuzz run -s none front_end fuzz/corpus/front_end fuzz/seeds fuzz/regressions glsl -- \
-		-dict=fuzz/glsl.dict -max_len=4096 -timeout=60
+	mkdir -p fuzz/corpus/$(TARGET)
+	cargo +nightly fuzz run -s none $(TARGET) fuzz/corpus/$(TARGET) $(wildcard fuzz/seeds/$(TARGET) fuzz/regressions/$(TARGET)) glsl -- \
+		$(addprefix -dict=,$(wildcard fuzz/dictionaries/$(TARGET).dict)) -max_len=4096 -timeout=600 -rss_limit_mb=3000
 
 # Tests Windows under wine and aarch64 under qemu; type-checks for macOS and WebAssembly.
 platforms:

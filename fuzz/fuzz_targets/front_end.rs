@@ -2,10 +2,10 @@
 
 #![no_main]
 
-mod common;
+mod texts;
 
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(init: common::spare_naga(), |text: &str| {
-    common::run(text);
+fuzz_target!(init: texts::spare_naga(), |text: &str| {
+    texts::run(text);
 });

@@ -2,7 +2,7 @@
 
 #![no_main]
 
-mod common;
+mod texts;
 
 use libfuzzer_sys::fuzz_target;
 
@@ -31,7 +31,7 @@ const WORDS: &[&str] = &[
 
 const OPEN: &str = "void mainImage(out vec4 o, in vec2 p) {";
 
-fuzz_target!(init: common::spare_naga(), |bytes: &[u8]| {
+fuzz_target!(init: texts::spare_naga(), |bytes: &[u8]| {
     let mut text = String::new();
     // Before the first 255 the tokens stand between functions, after it in the body.
     for (index, part) in bytes.splitn(2, |&byte| byte == u8::MAX).enumerate() {
@@ -47,5 +47,5 @@ fuzz_target!(init: common::spare_naga(), |bytes: &[u8]| {
         text.insert_str(0, OPEN);
     }
     text.push('}');
-    common::run(&text);
+    texts::run(&text);
 });

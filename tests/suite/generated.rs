@@ -21,16 +21,16 @@ use toyproof::gpu::{DrawOutput, Failure, Worker};
 use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower, lower_strict};
 
-use crate::generate::Effects;
+use crate::glslang;
 use crate::requirements::{require_program, require_worker};
+use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
-use crate::{generate, glslang};
 
 /// Generates programs from at most `longest` decisions.
 fn programs(effects: Effects, longest: usize) -> impl Strategy<Value = String> {
     (8..longest)
         .prop_flat_map(|length| vec(any::<u8>(), length / 2..=length))
-        .prop_map(move |bytes| generate::program(&bytes, effects))
+        .prop_map(move |bytes| generate::program(&bytes, effects, Arithmetic::Exact))
 }
 
 fn frame() -> Frame {

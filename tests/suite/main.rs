@@ -35,12 +35,12 @@ mod fair_verdicts;
 mod fairness;
 mod fault_names;
 mod fuzzed;
-mod generate;
 mod generated;
 mod glslang;
 mod growth;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod interpreted;
 mod large_batch;
 mod limits;
 mod literals;
@@ -72,5 +72,7 @@ mod trade;
 mod ui;
 mod unstable;
 mod wording;
+#[cfg(target_os = "linux")]
+mod write_faults;
 
 use toyproof_testkit as support;

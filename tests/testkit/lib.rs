@@ -1,5 +1,6 @@
-//! What the test suite and `cargo xtask` share: edited exercises of the course, checked as by `toyproof
-//! check`, but through the library.
+//! What the test suite, `cargo xtask` and the fuzz targets share: edited exercises of the course, checked as by
+//! `toyproof check`, but through the library; the judges of fuzzed inputs; and an interpreter of shaders, the
+//! evaluator's oracle.
 
 #![expect(
     clippy::must_use_candidate,
@@ -15,6 +16,9 @@
 pub mod devtools;
 pub mod exercises;
 pub mod faults;
+pub mod generate;
+pub mod interpreter;
+pub mod judge;
 pub mod rewrites;
 pub mod wait;
 

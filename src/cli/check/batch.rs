@@ -189,9 +189,10 @@ impl<'a> Batch<'a> {
         threads.clamp(1, shaders.max(1))
     }
 
-    /// Appends a record to `results.jsonl`.
+    /// Appends a record to `results.jsonl`, unless `--resume` has to check its shader again.
     fn keep(&mut self, submission: &Submission, outcome: &Outcome) {
         if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
+            && !outcome.lacks_image
             && let Err(error) = results.add(key, &outcome.record, outcome.device.as_deref())
         {
             self.terminal.error(format_args!("cannot write {error}"));

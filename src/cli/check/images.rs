@@ -94,6 +94,7 @@ pub(super) fn keep(
             let shown = findings.and_then(kind.make)?;
             Some(image::encode_shown(&shown, &path))
         });
+        let is_made = encoded.is_ok();
         let kept = match encoded {
             Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),
             Ok(None) => output::remove_inside(out, &path),
@@ -102,6 +103,7 @@ pub(super) fn keep(
         };
         if let Err(error) = kept {
             outcome.fail(format!("cannot write {error}"));
+            outcome.lacks_image |= is_made;
         }
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct Outcome {
     pub(super) device: Option<String>,
     /// Whether something failed that the verdict does not show.
     pub(super) failed: bool,
+    /// Whether an image could not be written, so that `--resume` has to check the shader again.
+    pub(super) lacks_image: bool,
     /// Whether the driver, which names no line, exceeded the time limit.
     pub(super) is_late_on_gpu: bool,
 }
@@ -44,6 +46,7 @@ impl Outcome {
             messages: Vec::new(),
             device: None,
             failed: false,
+            lacks_image: false,
             is_late_on_gpu: false,
         }
     }

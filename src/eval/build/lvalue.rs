@@ -61,7 +61,8 @@ impl Builder<'_> {
             }
             _ if matches!(ty, Type::Sampler(_)) => Location::Channel(None),
             VariableKind::Uniform | VariableKind::Varying => Location::Values(self.uniform(variable)),
-            // A built-in output such as `gl_FragDepth`, or an erroneous declaration.
+            VariableKind::BuiltIn(BuiltInVariable::PointCoord) => Location::Values(self.zeros(ty)),
+            // An erroneous declaration.
             _ => {
                 let zeros = self.zeros(ty);
                 match self.allocate_type(ty) {

@@ -14,7 +14,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Overdue};
-use toyproof_glsl::tree::{ExprId, FunctionId, Item, Place, Tree, Type, VariableId, VariableKind};
+use toyproof_glsl::tree::{
+    BuiltInVariable, ExprId, FunctionId, Item, Place, Tree, Type, Variable, VariableId, VariableKind,
+};
 use toyproof_glsl::{Checked, Sampling, Stage};
 
 use self::instrument::{WrittenFlags, out_arguments};
@@ -291,6 +293,10 @@ impl Builder<'_> {
     /// Declares the global variables, in order.
     fn globals(&mut self) -> Result<()> {
         let tree = self.tree;
+        // `gl_FragDepth` starts as zero here, not where the code that uses it first happens to be.
+        for (variable, _) in tree.variables.iter().filter(|(_, variable)| is_depth(variable)) {
+            self.declare(variable)?;
+        }
         for item in &tree.items {
             let Item::Variable(variable) = *item else {
                 continue;
@@ -451,4 +457,8 @@ impl Builder<'_> {
     fn at(&self, expr: ExprId) -> Place {
         self.tree[expr].at
     }
+}
+
+fn is_depth(variable: &Variable) -> bool {
+    variable.kind == VariableKind::BuiltIn(BuiltInVariable::FragDepth)
 }

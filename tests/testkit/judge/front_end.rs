@@ -1,24 +1,21 @@
 //! One text through the whole front end, as `toyproof` takes it: preprocess, parse, check, lower, print; then
 //! naga's gate.
-//!
-//! Shared by the fuzz targets and by the test that reads `regressions`.
 
-use std::panic::resume_unwind;
-use std::thread::{self, ScopedJoinHandle};
 use std::time::Duration;
 
-use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
 use toyproof::glsl::{Options, check};
 use toyproof::translate::naga_ir::ValidModule;
 use toyproof::translate::{Lowered, lower};
 
+use super::{on_a_thread, within};
+
 /// The name of the thread on which naga runs: its panics are not ours.
-pub(crate) const NAGA: &str = "naga";
+pub const NAGA: &str = "naga";
 
 /// What came of a text.
 #[derive(Debug)]
-pub(crate) enum Outcome {
+pub enum Outcome {
     /// It breaks a rule of the language.
     Refused,
     /// naga takes what we made of it.
@@ -27,8 +24,6 @@ pub(crate) enum Outcome {
     Naga(String),
 }
 
-/// The stack of a thread of Rust's own.
-const STACK: usize = 2 << 20;
 /// As the worker gives it.
 const NAGA_STACK: usize = 256 << 20;
 
@@ -36,7 +31,7 @@ const NAGA_STACK: usize = 256 << 20;
 ///
 /// # Panics
 /// If the front end does, takes more than `allowed` of a processor, or needs more than a small stack.
-pub(crate) fn judge(text: &str, allowed: Duration) -> Outcome {
+pub fn judge(text: &str, allowed: Duration) -> Outcome {
     let judged = judge_as(text, false, allowed);
     match judged {
         Outcome::Refused => judge_as(text, true, allowed),
@@ -49,19 +44,7 @@ fn judge_as(text: &str, lenient: bool, allowed: Duration) -> Outcome {
         lenient,
         ..Options::default()
     };
-    let (lowered, took) = on_a_thread("front end", STACK, || {
-        let start = clock_gettime(ClockId::ThreadCPUTime);
-        let lowered = lowered(text, &options);
-        let took = clock_gettime(ClockId::ThreadCPUTime) - start;
-        (lowered, Duration::try_from(took).unwrap_or_default())
-    })
-    .unwrap_or_else(|payload| resume_unwind(payload));
-    assert!(
-        took <= allowed,
-        "{took:?} for {} bytes, more than {allowed:?}",
-        text.len()
-    );
-    let Some(lowered) = lowered else {
+    let Some(lowered) = within(allowed, || lowered(text, &options)) else {
         return Outcome::Refused;
     };
     match on_a_thread(NAGA, NAGA_STACK, || ValidModule::parse(&lowered).map(drop)) {
@@ -79,14 +62,4 @@ fn lowered(text: &str, options: &Options) -> Option<Lowered> {
     let mut files = Files::default();
     let file = files.add(File::new("input", text));
     Some(lower(&check(&files, file, options).ok()?))
-}
-
-fn on_a_thread<T: Send>(name: &str, stack: usize, work: impl FnOnce() -> T + Send) -> thread::Result<T> {
-    thread::scope(|scope| {
-        let builder = thread::Builder::new().name(name.to_owned()).stack_size(stack);
-        builder
-            .spawn_scoped(scope, work)
-            .map(ScopedJoinHandle::join)
-            .expect("a thread can be had")
-    })
 }

@@ -34,7 +34,7 @@ impl Generator<'_> {
     }
 
     /// Two operands, one of which has the type, in either order.
-    fn operands(&mut self, ty: Type) -> (Expr, Expr) {
+    pub(super) fn operands(&mut self, ty: Type) -> (Expr, Expr) {
         if self.choices.chance(40) {
             let left = self.beside(ty);
             return (left, self.expr(ty));
@@ -69,6 +69,7 @@ impl Generator<'_> {
         let mut operand = self.expr(source);
         let mut range = Range::new(1.0, 0);
         match (from, scalar) {
+            _ if self.is_wild() => {}
             // Exact in a float, and in the range of variables.
             (Scalar::Int | Scalar::Uint, Scalar::Float) => {
                 let mask = if from == Scalar::Uint { "63u" } else { "63" };
@@ -96,6 +97,9 @@ impl Generator<'_> {
     }
 
     fn float(&mut self, base: Base) -> Expr {
+        if self.is_wild() && self.choices.chance(100) {
+            return self.inexact(base);
+        }
         let ty = Type::of(base);
         let binary = |op, left: &Expr, right: &Expr| {
             Expr::binary(left, op, right, Level::Sum, left.range.sum(right.range))
@@ -200,7 +204,14 @@ impl Generator<'_> {
     fn integer(&mut self, ty: Type) -> Expr {
         let unsigned = ty.base.scalar() == Some(Scalar::Uint);
         let number = |value: u32| format!("{value}{}", if unsigned { "u" } else { "" });
+        let is_wild = self.is_wild() && self.choices.chance(60);
+        if is_wild && ty == UINT && self.choices.chance(40) {
+            return self.packed();
+        }
         let mask = |operand: &Expr, bits: u32| {
+            if is_wild {
+                return operand.clone();
+            }
             Expr::plain(
                 format!("{} & {}", operand.at(Level::And), number(bits)),
                 Level::And,
@@ -231,28 +242,18 @@ impl Generator<'_> {
                 let (left, right) = self.operands_first(ty);
                 let divisor = mask(&right, 7);
                 let one = Expr::primary(number(1), Range::VARIABLE);
-                let divisor = join(&divisor, "+", &one, Level::Sum);
+                let divisor = if is_wild {
+                    divisor
+                } else {
+                    join(&divisor, "+", &one, Level::Sum)
+                };
                 if self.choices.chance(128) {
                     join(&mask(&left, 0xffff), "%", &divisor, Level::Product)
                 } else {
                     join(&left, "/", &divisor, Level::Product)
                 }
             }
-            7 => {
-                // The shift amount is signed or unsigned, and a vector or a scalar.
-                let left = self.expr(ty);
-                let kind = self.choices.pick(&[Scalar::Int, Scalar::Uint]);
-                let size = if self.choices.chance(100) {
-                    1
-                } else {
-                    ty.base.size()
-                };
-                let amount = self.expr(Type::of(Base::sized(kind, size)));
-                let bits = if kind == Scalar::Uint { "31u" } else { "31" };
-                let amount = Expr::plain(format!("{} & {bits}", amount.at(Level::And)), Level::And);
-                let op = self.choices.pick(&["<<", ">>"]);
-                join(&left, op, &amount, Level::Shift)
-            }
+            7 => self.shift(ty, is_wild),
             8 => {
                 let op = self.choices.pick(&["-", "~", "+"]);
                 Expr::unary(op, &self.expr(ty))
@@ -277,7 +278,7 @@ impl Generator<'_> {
                 let (left, right) = (self.expr(INT), self.expr(INT));
                 Expr::expanded("MAD", &[left, right], Range::VARIABLE)
             }
-            15 if self.mode != Mode::Constant => {
+            15 if self.mode != Mode::Constant && !self.is_wild() => {
                 let operand = self.storable(Type::of(Base::sized(Scalar::Float, ty.base.size())));
                 // The sign of a zero may differ.
                 let operand = Expr::plain(format!("{} + 0.5", operand.at(Level::Sum)), Level::Sum);
@@ -301,6 +302,26 @@ impl Generator<'_> {
                 )
             }
         }
+    }
+
+    /// A shift, whose amount is signed or unsigned, and a vector or a scalar.
+    fn shift(&mut self, ty: Type, is_wild: bool) -> Expr {
+        let left = self.expr(ty);
+        let kind = self.choices.pick(&[Scalar::Int, Scalar::Uint]);
+        let size = if self.choices.chance(100) {
+            1
+        } else {
+            ty.base.size()
+        };
+        let amount = self.expr(Type::of(Base::sized(kind, size)));
+        let bits = if kind == Scalar::Uint { "31u" } else { "31" };
+        let amount = if is_wild {
+            amount
+        } else {
+            Expr::plain(format!("{} & {bits}", amount.at(Level::And)), Level::And)
+        };
+        let op = self.choices.pick(&["<<", ">>"]);
+        Expr::binary(&left, op, &amount, Level::Shift, Range::VARIABLE)
     }
 
     /// Two operands, the left of which has the type.
@@ -422,6 +443,10 @@ impl Generator<'_> {
                 let operand = self.expr(other);
                 let range = operand.range.or(Range::new(1.0, 0));
                 Expr::call(&name, &[operand], range)
+            }
+            0 if self.is_wild() && columns == rows && self.mode != Mode::Constant => {
+                let operand = self.expr(ty);
+                Expr::call("inverse", &[operand], Range::VARIABLE)
             }
             8 => {
                 let diagonal = self.expr(FLOAT);

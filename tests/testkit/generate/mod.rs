@@ -1,5 +1,6 @@
-//! Generates valid programs from bytes: every type and statement of the language, without undefined behavior
-//! and with exact arithmetic, so that all implementations must render the same image to the bit.
+//! Generates valid programs from bytes: every type and statement of the language. By default without undefined behavior
+//! and with exact arithmetic, so that all implementations must render the same image to the bit; [`Arithmetic::Any`] is
+//! for implementations of the same rounding.
 //!
 //! Operands with side effects are evaluated from left to right; a compound assignment reads its target after
 //! its right side, but evaluates the target's indices before it; a function's `inout` arguments are copied in
@@ -11,6 +12,7 @@ mod choices;
 mod digest;
 mod expr;
 mod expression;
+mod inexact;
 mod place;
 mod statement;
 mod types;
@@ -57,11 +59,20 @@ struct Function {
 
 /// Where operands with side effects may occur.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Effects {
+pub enum Effects {
     /// Wherever the specification defines the order: not next to an `out` argument.
     Ordered,
     /// Anywhere; and several `out` arguments may be parts of one variable.
     Anywhere,
+}
+
+/// The operations that occur.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// Those whose results are exact and defined.
+    Exact,
+    /// All: rounded and undefined ones, and functions whose last bits are implementation-defined.
+    Any,
 }
 
 /// The kind of expression that is allowed.
@@ -94,6 +105,7 @@ struct Generator<'a> {
     helpers: Vec<String>,
     mode: Mode,
     effects: Effects,
+    arithmetic: Arithmetic,
     /// Whether places must be the same each time they are evaluated.
     steady: bool,
     depth: usize,
@@ -110,7 +122,8 @@ struct Generator<'a> {
 
 /// Generates the program from bytes: an eighth of them decides the globals, three eighths the functions, the
 /// rest `mainImage`.
-pub(crate) fn program(bytes: &[u8], effects: Effects) -> String {
+#[must_use]
+pub fn program(bytes: &[u8], effects: Effects, arithmetic: Arithmetic) -> String {
     let (globals, rest) = bytes.split_at(bytes.len() / 8);
     let (functions, main) = rest.split_at(bytes.len() * 3 / 8);
     let mut generator = Generator {
@@ -123,6 +136,7 @@ pub(crate) fn program(bytes: &[u8], effects: Effects) -> String {
         helpers: Vec::new(),
         mode: Mode::Any,
         effects,
+        arithmetic,
         steady: false,
         depth: 0,
         operands: 0,
@@ -243,7 +257,11 @@ impl<'a> Generator<'a> {
     fn name(&mut self) -> String {
         const NAMES: [&str; 10] = ["a", "b", "c", "d", "e", "sin", "p", "x", "iDate", "over"];
         let scope = self.scopes.last().map_or(&[][..], Vec::as_slice);
-        let first = NAMES[self.choices.below(NAMES.len())];
+        let first = match NAMES[self.choices.below(NAMES.len())] {
+            // Programs with any arithmetic call it.
+            "sin" if self.is_wild() => "sine",
+            first => first,
+        };
         let mut name = first.to_owned();
         let mut number = 0;
         while scope.iter().any(|variable| variable.name == name) {
@@ -263,6 +281,11 @@ impl<'a> Generator<'a> {
 
     fn declare(&mut self, variable: Variable) {
         self.scopes.last_mut().expect("a scope is open").push(variable);
+    }
+
+    /// Whether undefined, rounded and implementation-defined operations occur.
+    fn is_wild(&self) -> bool {
+        self.arithmetic == Arithmetic::Any
     }
 
     fn within<T>(&mut self, mode: Mode, work: impl FnOnce(&mut Self) -> T) -> T {

@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use super::expr::{Expr, Level, Range};
 use super::types::{Base, Scalar, Type};
-use super::{Generator, Mode, dimension};
+use super::{Arithmetic, Generator, Mode, dimension};
 
 impl Generator<'_> {
     /// Reduces the floats of an expression to the range of variables.
     pub(super) fn tamed(&mut self, ty: Type, value: Expr) -> Expr {
         const WILD: Range = Range::new(f64::INFINITY, i32::MAX);
-        if !ty.is_float() || value.range.fits(Range::VARIABLE) {
+        if self.is_wild() || !ty.is_float() || value.range.fits(Range::VARIABLE) {
             return value;
         }
         if self.mode == Mode::Constant {
@@ -58,9 +58,9 @@ impl Generator<'_> {
                     .collect()
             }
             (None, Base::Vector(scalar, size)) => (0..size)
-                .map(|component| number(scalar, &format!("x[{component}]")))
+                .map(|component| number(scalar, &format!("x[{component}]"), self.arithmetic))
                 .collect(),
-            (None, Base::Scalar(scalar)) => vec![number(scalar, "x")],
+            (None, Base::Scalar(scalar)) => vec![number(scalar, "x", self.arithmetic)],
         };
         let mut steps = String::new();
         for part in parts {
@@ -80,9 +80,12 @@ impl Generator<'_> {
     }
 }
 
-/// Converts a scalar in the range of variables to `uint`.
-fn number(scalar: Scalar, value: &str) -> String {
+/// Converts a scalar to `uint`: the bits of a float, unless it is NaN, or a multiple of 1/16 in the range of variables.
+fn number(scalar: Scalar, value: &str, arithmetic: Arithmetic) -> String {
     match scalar {
+        Scalar::Float if arithmetic == Arithmetic::Any => {
+            format!("(isnan({value}) ? 1u : floatBitsToUint({value}))")
+        }
         Scalar::Float => format!("uint(int({value} * 16.0))"),
         _ => format!("uint({value})"),
     }

@@ -7,10 +7,7 @@ use std::sync::{LazyLock, Mutex};
 use std::time::Duration;
 use std::{env, fs, thread};
 
-#[path = "../judge.rs"]
-mod judge;
-
-use judge::{NAGA, Outcome};
+use toyproof_testkit::judge::front_end::{self, NAGA, Outcome};
 
 /// Lets naga panic; in the worker it may. To be called once libFuzzer's own hook, which aborts, is in place.
 pub(crate) fn spare_naga() {
@@ -32,7 +29,7 @@ fn allowance(text: &str) -> Duration {
 /// Judges a text; the first of each kind that naga refuses or panics on is kept in the folder that `NAGA_FINDINGS` names.
 pub(crate) fn run(text: &str) {
     static TOLD: LazyLock<Mutex<HashSet<String>>> = LazyLock::new(Mutex::default);
-    let Outcome::Naga(words) = judge::judge(text, allowance(text)) else {
+    let Outcome::Naga(words) = front_end::judge(text, allowance(text)) else {
         return;
     };
     // Names and numbers apart, the same words tell of the same thing.

@@ -126,6 +126,10 @@ impl Generator<'_> {
             return self.choices.below(usize::from(length)).to_string();
         }
         let index = self.expr(INT);
+        if self.is_wild() && self.choices.chance(60) {
+            // A constant index must be in bounds; `iFrame` is 7.
+            return format!("{} - 7 + iFrame", index.at(Level::Sum));
+        }
         let masked = |mask: &str| format!("{} & {mask}", index.at(Level::And));
         match length {
             1 => masked("0"),

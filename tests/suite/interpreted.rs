@@ -1,0 +1,167 @@
+//! The evaluator against a plain interpreter of the tree, bit by bit: in f32 and f64, with each treatment of undefined
+//! operations.
+//!
+//! `TOYPROOF_PROGRAMS` sets the number of random programs (200), `TOYPROOF_SEED` their seed (0).
+
+use std::fs;
+
+use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::{self, Checked, Filter, Options, Sampling, Stage, Wrap};
+use toyproof::image::{Frame, Image, Texture, pcg};
+
+use crate::support::interpreter::{Comparison, POLICIES, Tally};
+use crate::support::judge::programs;
+use crate::support::setting;
+use crate::support::wait::HANG_GUARD;
+
+const MAX_STEPS: u64 = 2_000_000;
+
+fn checked(name: &str, text: &str) -> Checked {
+    let mut files = Files::default();
+    let file = files.add(File::new(name, text));
+    glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn compare(checked: &Checked, frame: &Frame, pixels: &[[u32; 2]]) -> Result<Tally, String> {
+    let mut tally = Tally::default();
+    for policy in POLICIES {
+        let comparison = Comparison {
+            checked,
+            frame,
+            policy,
+            pixels,
+            max_steps: MAX_STEPS,
+        };
+        tally.add(comparison.run()?);
+    }
+    Ok(tally)
+}
+
+#[test]
+fn the_course_is_interpreted_to_the_bit() {
+    let frame = Frame {
+        size: [64, 36],
+        time: 1.25,
+        frame: 75,
+        ..Frame::default()
+    };
+    let pixels = [[0, 0], [63, 35], [31, 18], [20, 14], [44, 9]];
+    let mut tally = Tally::default();
+    for entry in fs::read_dir("glsl").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "glsl") {
+            let text = fs::read_to_string(&path).unwrap();
+            let compared = compare(&checked(&path.display().to_string(), &text), &frame, &pixels);
+            tally.add(compared.unwrap_or_else(|error| panic!("{}: {error}", path.display())));
+        }
+    }
+    eprintln!("the course: {tally}");
+    assert!(tally.skipped.is_empty(), "{tally}");
+}
+
+#[test]
+fn random_programs_are_interpreted_to_the_bit() {
+    let count: u32 = setting("TOYPROOF_PROGRAMS", 200);
+    let seed: u32 = setting("TOYPROOF_SEED", 0);
+    let mut tally = Tally::default();
+    let mut state = pcg(seed);
+    let mut random = || {
+        state = pcg(state);
+        state
+    };
+    for _ in 0..count {
+        let length = 8 + random() as usize % 900;
+        let bytes: Vec<u8> = (0..length).map(|_| (random() >> 13) as u8).collect();
+        tally.add(programs::judge(&bytes, HANG_GUARD).1);
+    }
+    eprintln!("{count} programs: {tally}");
+    // Sixteen pixels of each in two number types; few programs take derivatives where not all pixels do.
+    assert!(tally.compared > 31 * u64::from(count), "{tally}");
+}
+
+/// Every kind of lookup, and derivatives, in uniform control flow.
+const LOOKUPS: &str = "
+    vec2 at = p / iResolution.yx * 2.0 - 0.6;
+    c = texture(iChannel0, at) + texture(iChannel0, at, 0.75) + texture(iChannel0, at * 9.0, -1.25);
+    c += textureOffset(iChannel0, at, ivec2(-8, 7)) * 0.5 + textureOffset(iChannel0, at, ivec2(3, -1), 1.5);
+    c += textureLod(iChannel0, at, p.x * 0.2) - textureLodOffset(iChannel0, at, 1.0, ivec2(1, 2));
+    c += textureGrad(iChannel0, at, vec2(0.3, 0.1), vec2(0.0, p.y * 0.1));
+    c += textureGradOffset(iChannel0, at, at * 0.1, vec2(0.0), ivec2(-2, 0));
+    c += textureProj(iChannel0, vec3(at, 0.7)) + textureProj(iChannel0, vec4(at, 3.0, 1.3));
+    c += textureProjLod(iChannel0, vec3(at, 1.7), 0.5) + texture(iChannel1, at);
+    c += texelFetch(iChannel0, ivec2(p) - 4, int(p.x) / 4 - 1) + texelFetch(iChannel1, ivec2(p), 0);
+    c += texelFetchOffset(iChannel0, ivec2(p) - 4, 1, ivec2(3, -2));
+    c.xy += vec2(textureSize(iChannel0, MIPMAPS * (2 - int(p.x) / 8))) + iChannelResolution[0].xy + fwidth(c.zw);
+    c.z += dFdx(c.y * p.y) + dFdy(dFdx(p.x * p.x * p.y));
+    for (int i = 0; i < 3; i++) { c.w += fwidth(p.x * float(i) * c.w); }
+    c += texture(iChannel0, p / (p.x - 2.5));
+";
+
+#[test]
+fn lookups_and_derivatives_are_interpreted_to_the_bit() {
+    let value = |at: u32| 3.0 * (pcg(at) as f32 / u32::MAX as f32) - 1.0;
+    let mut all = Tally::default();
+    for filter in [Filter::Nearest, Filter::Linear, Filter::Mipmap] {
+        for (wrap, [width, height]) in [
+            (Wrap::Clamp, [5, 3]),
+            (Wrap::Repeat, [8, 4]),
+            (Wrap::Repeat, [1, 7]),
+        ] {
+            let pixels =
+                (0..width * height).map(|at| [0, 1, 2, 3].map(|component| value(4 * at + component)));
+            let mut texture = Texture::from(Image::new(width, height, pixels.collect()));
+            if filter == Filter::Mipmap {
+                texture = texture.with_mipmaps();
+            }
+            let options = Options {
+                stage: Stage::Buffer,
+                sampling: [Sampling { filter, wrap }; 4],
+                ..Options::default()
+            };
+            let mipmaps = i32::from(filter == Filter::Mipmap);
+            let text =
+                format!("#define MIPMAPS {mipmaps}\nvoid mainImage(out vec4 c, in vec2 p) {{ {LOOKUPS} }}");
+            let mut files = Files::default();
+            let file = files.add(File::new("lookups", text));
+            let checked = glsl::check(&files, file, &options).unwrap_or_else(|errors| panic!("{errors}"));
+            let mut frame = Frame {
+                size: [18, 10],
+                ..Frame::default()
+            };
+            frame.channels[0] = Some(texture);
+            // Each derivative runs the quad again.
+            let pixels = [[0, 0], [17, 9], [8, 5], [9, 4]];
+            let tally = compare(&checked, &frame, &pixels);
+            all.add(tally.unwrap_or_else(|error| panic!("{filter:?} {wrap:?}: {error}")));
+        }
+    }
+    eprintln!("lookups: {all}");
+    assert!(all.skipped.is_empty(), "{all}");
+}
+
+/// Statements, effects and variables that random programs do not have.
+const PROGRAMS: [&str; 7] = [
+    // The depth is zero once, not where it is mentioned.
+    "for (int i = 0; i < 3; i++) { c.x += gl_FragDepth; gl_FragDepth += 1.0; }",
+    "if (p.x > 3.0) { gl_FragDepth = 3.0; } c.y = gl_FragDepth; if (p.y > 2.0) c.x = gl_PointCoord.x; c.z = gl_PointCoord.y;",
+    "if (p.x > 3.0 && p.y < 2.0) discard; c.x = gl_FrontFacing ? 0.5 : 0.25; c.w = float(gl_MaxDrawBuffers);",
+    "switch (int(p.x)) { case 0: float x = 2.0; c.x = x; case 1: x += 1.0; c.y = x; break; default: c.z = x; case 3: c.w = 1.0; }",
+    "int i = 0; do { if (i == 2) continue; c.x += float(i); } while (i++ < int(p.x)); while (bool go = c.y < p.y) { c.y += float(go); }",
+    "float whole; c.x = modf(-p.x * 1.7, whole); c.y = whole; vec2 w; c.zw = modf(p / 3.0, w); c.xy += w;",
+    "int k = int(p.x) - 3; int a[3]; a[0] = 1; a[1] = 2; a[2] = 3; c = vec4(a[k], 7 / k, -7 % k, 1 << (k * 20)); c.x += pow(p.x - 2.5, 0.5);",
+];
+
+#[test]
+fn rare_statements_are_interpreted_to_the_bit() {
+    let frame = Frame {
+        size: [8, 6],
+        ..Frame::default()
+    };
+    let pixels: Vec<_> = (0..48).map(|at| [at % 8, at / 8]).collect();
+    for body in PROGRAMS {
+        let text = format!("void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0.0); {body} }}");
+        let tally = compare(&checked("program", &text), &frame, &pixels);
+        let tally = tally.unwrap_or_else(|error| panic!("{body}: {error}"));
+        assert!(tally.skipped.is_empty(), "{body}: {tally}");
+    }
+}
