@@ -9,7 +9,7 @@
 use toyproof_image::pcg;
 use toyproof_scene::{Sampler, unit};
 
-use crate::lanes::{Kernel, Lanes, Level, Vectorized};
+use crate::lanes::{Kernel, Lanes, Level, MAX_LANES, Vectorized, Wide, lanes_of};
 use crate::real::Real;
 use crate::spheres::PACKET_RAYS;
 
@@ -39,6 +39,8 @@ pub(super) enum SampleStream {
         index: u32,
         dimension: u32,
         seed: u32,
+        /// The numbers of the current four dimensions, which are computed together.
+        numbers: [f32; 4],
     },
 }
 
@@ -80,6 +82,7 @@ impl SampleStream {
                 index,
                 dimension: 0,
                 seed: seed(),
+                numbers: [0.0; 4],
             },
         }
     }
@@ -107,13 +110,18 @@ impl SampleStream {
                 index,
                 dimension,
                 seed,
+                numbers,
             } => {
                 if *dimension == SOBOL_DIMENSIONS {
                     *dimension = 0;
                     *seed = pcg(*seed);
                 }
+                let (set, at) = (*dimension / 4, *dimension as usize % 4);
+                if at == 0 {
+                    *numbers = sobol_burley::sample_4d(*index, set, *seed);
+                }
                 *dimension += 1;
-                f64::from(sobol_burley::sample(*index, *dimension - 1, *seed))
+                f64::from(numbers[at])
             }
         })
     }
@@ -138,6 +146,30 @@ impl SampleStream {
             _ => pair,
         }
     }
+}
+
+/// Returns the next number of each lane in `active`.
+#[inline(always)]
+pub(super) fn next_numbers<T: Real>(streams: &mut [SampleStream], active: u32) -> [T; MAX_LANES] {
+    let mut numbers = [T::zero(); MAX_LANES];
+    for lane in lanes_of(active) {
+        numbers[lane] = streams[lane].next_1d();
+    }
+    numbers
+}
+
+/// Returns the next point in the unit disk of each lane in `active`; see [`SampleStream::next_disk`].
+#[inline(always)]
+pub(super) fn next_disks<T: Real, S: Lanes<T>>(
+    simd: S,
+    streams: &mut [SampleStream],
+    active: u32,
+) -> [Wide<T, S>; 2] {
+    let [mut squares, mut turns] = [[T::zero(); MAX_LANES]; 2];
+    for lane in lanes_of(active) {
+        [squares[lane], turns[lane]] = streams[lane].next_disk();
+    }
+    [squares, turns].map(|numbers| Wide::load(simd, &numbers))
 }
 
 /// Maps the unit square to the unit disk, concentric squares to concentric circles: P. Shirley and K. Chiu,
@@ -439,6 +471,19 @@ mod tests {
             // The variance of the product is 1/144.
             let correlation = sum / f64::from(COUNT) * 12.0;
             assert!(correlation.abs() < 0.4, "{sampler:?}: {correlation}");
+        }
+    }
+
+    #[test]
+    fn sobol_numbers_are_those_of_their_dimensions() {
+        let mut stream = stream(Sampler::Sobol, 5);
+        let mut seed = seed([7, 11], 0);
+        for dimension in (0..SOBOL_DIMENSIONS).chain(0..9) {
+            let expected = f64::from(sobol_burley::sample(5, dimension, seed));
+            assert_eq!(stream.next_1d::<f64>(), expected, "{dimension}");
+            if dimension == SOBOL_DIMENSIONS - 1 {
+                seed = pcg(seed);
+            }
         }
     }
 

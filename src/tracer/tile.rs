@@ -1,16 +1,14 @@
 //! Rendering in tiles of 8×8 pixels, whose camera rays form one packet.
 
 use rayon::prelude::*;
-use smallvec::SmallVec;
 use toyproof_scene::Sampler;
 
 use crate::camera::topmost_figure;
-use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream, Strata, centered};
 use crate::spheres::{NO_SURFACE, PACKET_RAYS, Packet, PacketHits};
 use crate::transfer::tone_map_all;
-use crate::world::PathState;
+use crate::world::{Samples, each_slice};
 use crate::{Kernel, Tracer};
 
 /// Side of a tile in pixels.
@@ -60,11 +58,11 @@ impl<T: Real> Tracer<T> {
         let count = T::from_f64(f64::from(self.film.samples));
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, self.film.sampler, 0);
-            let means: [[T; 3]; PACKET_RAYS] = sums.map(|sum| (sum / count).to_array());
-            let mut components: [T; 3 * PACKET_RAYS] = std::array::from_fn(|at| means[at / 3][at % 3]);
+            let mut components: [T; 3 * PACKET_RAYS] =
+                std::array::from_fn(|at| sums[at / PACKET_RAYS][at % PACKET_RAYS] / count);
             tone_map_all(&self.film, self.level, &mut components);
             tile.for_each_pixel(self.film.size[0], |at, in_band| {
-                let [r, g, b] = [0, 1, 2].map(|axis| components[3 * at + axis].to_f64() as f32);
+                let [r, g, b] = [0, 1, 2].map(|axis| components[axis * PACKET_RAYS + at].to_f64() as f32);
                 pixels[in_band] = [r, g, b, 1.0];
             });
         }
@@ -78,14 +76,16 @@ impl<T: Real> Tracer<T> {
         let mut means = vec![T::Vec3::ZERO; (TILE_SIDE.min(height - bottom) * width) as usize];
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, sampler, set);
-            tile.for_each_pixel(width, |at, in_band| means[in_band] = sums[at] / count);
+            tile.for_each_pixel(width, |at, in_band| {
+                means[in_band] = T::Vec3::from_array([0, 1, 2].map(|axis| sums[axis][at])) / count;
+            });
         }
         means
     }
 
     /// Sums the radiance of one set of samples for each pixel of a tile.
-    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [T::Vec3; PACKET_RAYS] {
-        let mut sums = [T::Vec3::ZERO; PACKET_RAYS];
+    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [[T; PACKET_RAYS]; 3] {
+        let mut sums = [[T::zero(); PACKET_RAYS]; 3];
         let count = self.film.samples;
         for index in 0..count {
             let mut stream = [const { SampleStream::Center }; PACKET_RAYS];
@@ -112,28 +112,30 @@ impl<T: Real> Tracer<T> {
             };
             let packet = self.camera.packet(&screen, self.level);
             let found = self.nearest_of_packet(&packet);
-            let mut paths: SmallVec<[PathState<T>; PACKET_RAYS]> = SmallVec::new();
-            let mut slots: SmallVec<[usize; PACKET_RAYS]> = SmallVec::new();
+            let mut active = 0;
             tile.for_each_pixel(self.film.size[0], |at, _| {
-                let figure = topmost_figure(&self.figures, [screen[0][at], screen[1][at]]);
-                let first = found.get(at);
-                match (figure, first.get()) {
-                    (Some(figure), _) => sums[at] = sums[at] + self.figures[figure].color,
-                    // The background fills much of many images and is cheap to evaluate.
-                    (None, None) => sums[at] = sums[at] + self.background(packet.ray(at).direction),
-                    (None, Some(_)) => {
-                        let stream = std::mem::replace(&mut stream[at], SampleStream::Center);
-                        paths.push(PathState::new(packet.ray(at), first, stream));
-                        slots.push(at);
+                match topmost_figure(&self.figures, [screen[0][at], screen[1][at]]) {
+                    Some(figure) => {
+                        for (sum, more) in sums.iter_mut().zip(self.figures[figure].color.to_array()) {
+                            sum[at] = sum[at] + more;
+                        }
                     }
+                    None => active |= 1 << at,
                 }
             });
+            let origins = packet.all_origins();
+            let samples = Samples {
+                origins: each_slice(&origins),
+                directions: each_slice(&packet.directions),
+                t: found.t(),
+                surfaces: found.surfaces(),
+                active,
+                streams: &mut stream,
+                sums: sums.each_mut().map(|sum| &mut sum[..]),
+            };
             match &self.kernel {
-                Kernel::Spheres(world) => world.trace(&mut paths, &Exact),
-                Kernel::Shapes(world) => world.trace(&mut paths, &Exact),
-            }
-            for (path, at) in paths.iter().zip(slots) {
-                sums[at] = sums[at] + path.sum;
+                Kernel::Spheres(world) => world.trace(samples),
+                Kernel::Shapes(world) => world.trace(samples),
             }
         }
         sums
@@ -170,15 +172,6 @@ impl<T: Real> Tracer<T> {
         match &self.kernel {
             Kernel::Spheres(world) => world.nearest_of_packet(packet),
             Kernel::Shapes(world) => world.nearest_of_packet(packet),
-        }
-    }
-
-    /// Returns the radiance of a ray that misses everything.
-    #[inline]
-    fn background(&self, direction: T::Vec3) -> T::Vec3 {
-        match &self.kernel {
-            Kernel::Spheres(world) => world.background.color(direction),
-            Kernel::Shapes(world) => world.background.color(direction),
         }
     }
 
