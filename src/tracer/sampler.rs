@@ -225,6 +225,11 @@ impl Grid {
         }
     }
 
+    #[inline(always)]
+    fn with_index(self, index: u32) -> Self {
+        Self { index, ..self }
+    }
+
     /// Returns the jittered point in a cell.
     #[inline(always)]
     fn pair(self, cell: u32, seed: u32) -> [f64; 2] {
@@ -278,24 +283,30 @@ impl Strata {
         permute(self.grid.index, self.grid.count, self.seed)
     }
 
-    /// Returns the streams of one sample in each of several pixels, after their first pair, and those pairs.
+    /// Returns the streams of samples of several pixels, by their indices and pixels, after their first pair, and those pairs.
     pub(super) fn first_pairs(
         level: Level,
-        [index, count, set]: [u32; 3],
+        [count, set]: [u32; 2],
+        indices: &[u32; PACKET_RAYS],
         pixels: &[[u32; PACKET_RAYS]; 2],
     ) -> ([Self; PACKET_RAYS], [[f64; PACKET_RAYS]; 2]) {
-        let grid = Grid::new(index, count);
+        let grid = Grid::new(0, count);
         let mut pairs = [[0.0; PACKET_RAYS]; 2];
         let seeds = f64::run(
             level,
             FirstPairs {
                 grid,
                 set,
+                indices,
                 pixels,
                 pairs: &mut pairs,
             },
         );
-        (seeds.map(|seed| Self { grid, seed }), pairs)
+        let strata = |at: usize| Self {
+            grid: grid.with_index(indices[at]),
+            seed: seeds[at],
+        };
+        (std::array::from_fn(strata), pairs)
     }
 }
 
@@ -303,6 +314,7 @@ impl Strata {
 struct FirstPairs<'a> {
     grid: Grid,
     set: u32,
+    indices: &'a [u32; PACKET_RAYS],
     pixels: &'a [[u32; PACKET_RAYS]; 2],
     pairs: &'a mut [[f64; PACKET_RAYS]; 2],
 }
@@ -314,13 +326,17 @@ impl Kernel<f64> for FirstPairs<'_> {
     #[inline(always)]
     fn run<S: Lanes<f64>>(self, _: S) -> [u32; PACKET_RAYS] {
         let Self {
-            grid, set, pixels, ..
+            grid,
+            set,
+            indices,
+            pixels,
+            ..
         } = self;
         let (mut seeds, mut cells) = ([0; PACKET_RAYS], [0; PACKET_RAYS]);
         let scramble = Scramble::new(grid.count);
         for at in 0..PACKET_RAYS {
             seeds[at] = pcg(seed([pixels[0][at], pixels[1][at]], set));
-            cells[at] = scramble.apply(grid.index, seeds[at]);
+            cells[at] = scramble.apply(indices[at], seeds[at]);
         }
         while cells.iter().fold(0, |most, &cell| most.max(cell)) >= grid.count {
             for at in 0..PACKET_RAYS {
@@ -329,7 +345,7 @@ impl Kernel<f64> for FirstPairs<'_> {
             }
         }
         for at in 0..PACKET_RAYS {
-            [self.pairs[0][at], self.pairs[1][at]] = grid.pair(cells[at], seeds[at]);
+            [self.pairs[0][at], self.pairs[1][at]] = grid.with_index(indices[at]).pair(cells[at], seeds[at]);
         }
         seeds
     }
@@ -519,14 +535,15 @@ mod tests {
             .into_iter()
             .flat_map(|count| Level::all().map(move |level| (count, level)))
         {
-            for index in [0, count / 2, count - 1] {
-                let (mut strata, pairs) = Strata::first_pairs(level, [index, count, 3], &pixels);
+            for first in [0, count / 2, count - 1] {
+                let indices = std::array::from_fn(|at| (first + at as u32 % 3) % count);
+                let (mut strata, pairs) = Strata::first_pairs(level, [count, 3], &indices, &pixels);
                 for at in 0..PACKET_RAYS {
-                    let mut single = Strata::new(index, count, seed([pixels[0][at], pixels[1][at]], 3));
+                    let mut single = Strata::new(indices[at], count, seed([pixels[0][at], pixels[1][at]], 3));
                     assert_eq!(
                         [pairs[0][at], pairs[1][at]],
                         single.next_2d(),
-                        "{count} {index} {level:?}"
+                        "{count} {first} {level:?}"
                     );
                     assert_eq!(strata[at].next_1d(), single.next_1d(), "the next number");
                 }

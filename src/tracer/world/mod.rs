@@ -147,7 +147,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let [origins, directions] =
             [ray.origin, ray.direction].map(|vector| vector.to_array().map(|component| [component]));
         let [t, surface] = first.tagged().map(|number| [number]);
-        let mut sums = [[T::zero()]; 3];
+        let mut radiance = [[T::zero()]; 3];
         let samples = Samples {
             origins: each_slice(&origins),
             directions: each_slice(&directions),
@@ -155,18 +155,18 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             surfaces: &surface,
             active: 1,
             streams: std::slice::from_mut(&mut stream),
-            sums: sums.each_mut().map(|sum| &mut sum[..]),
+            radiance: radiance.each_mut().map(|component| &mut component[..]),
         };
         T::run_scalar(Trace {
             world: self,
             samples,
             policy,
         });
-        let [[r], [g], [b]] = sums;
+        let [[r], [g], [b]] = radiance;
         T::Vec3::new(r, g, b)
     }
 
-    /// Adds the radiance along many camera rays to their sums.
+    /// Computes the radiance along many camera rays.
     pub(super) fn trace(&self, samples: Samples<'_, T>) {
         T::run(
             self.level,
@@ -285,8 +285,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     }
 }
 
-/// Samples whose camera rays have been traced, and the sums to which their radiance is added. The number of
-/// samples is a multiple of the number of lanes.
+/// Samples whose camera rays have been traced, and their radiance. The number of samples is a multiple of the
+/// number of lanes.
 pub(super) struct Samples<'a, T: Real> {
     pub(super) origins: [&'a [T]; 3],
     pub(super) directions: [&'a [T]; 3],
@@ -298,8 +298,8 @@ pub(super) struct Samples<'a, T: Real> {
     pub(super) active: u64,
     /// The random numbers of each sample.
     pub(super) streams: &'a mut [SampleStream],
-    /// A sum for each sample, by component.
-    pub(super) sums: [&'a mut [T]; 3],
+    /// Receives the components of the radiance of each active sample.
+    pub(super) radiance: [&'a mut [T]; 3],
 }
 
 /// Returns the arrays as slices.
@@ -324,7 +324,7 @@ impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T
             samples,
             policy,
         } = self;
-        let mut sums = samples.sums;
+        let mut radiance = samples.radiance;
         let mut at = 0;
         while at < samples.t.len() {
             let active = (samples.active >> at) as u32 & (u32::MAX >> (32 - S::COUNT));
@@ -339,14 +339,14 @@ impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T
                     surface: Wide::load(simd, &samples.surfaces[at..]),
                 };
                 let streams = &mut samples.streams[at..];
-                let radiance = match world.integrator {
+                let Wide3(r, g, b) = match world.integrator {
                     Integrator::Whitted => world.whitted(simd, rays, hits, streams, active, policy),
                     Integrator::Path => world.path(simd, rays, hits, streams, active, policy),
                 };
                 let mask = simd.mask(active);
-                for (sum, more) in sums.iter_mut().zip([radiance.0, radiance.1, radiance.2]) {
-                    let before = Wide::load(simd, &sum[at..]);
-                    (before + more).select(mask, before).store(&mut sum[at..]);
+                for (all, new) in radiance.iter_mut().zip([r, g, b]) {
+                    let before = Wide::load(simd, &all[at..]);
+                    new.select(mask, before).store(&mut all[at..]);
                 }
             }
             at += S::COUNT;
