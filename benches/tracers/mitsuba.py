@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """toyproof's tracer and Mitsuba 3 (llvm_ad_rgb) in turns, one thread each, in processor time.
 
-    apt-get install libllvm19; python3 -m venv venv; venv/bin/pip install mitsuba==3.9.1
+    apt-get install libllvm19; python3 -m venv venv; venv/bin/pip install mitsuba==3.9.1 numpy
     DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1 venv/bin/python benches/tracers/mitsuba.py TOYPROOF [ROUNDS]
 
 LLVM 15 and 16 abort on an instruction that Dr.Jit emits. Three comparisons, medians of ROUNDS (5) at 640x360, 16 samples:

@@ -217,9 +217,9 @@ impl<T: Real> Tracer<T> {
     fn screen_positions(&self, mut position: impl FnMut(usize) -> [T; 2]) -> [[T; PACKET_RAYS]; 2] {
         let [mut xs, mut ys] = [[T::zero(); PACKET_RAYS]; 2];
         for (at, (x, y)) in xs.iter_mut().zip(&mut ys).enumerate() {
-            [*x, *y] = self.camera.screen(position(at));
+            [*x, *y] = position(at);
         }
-        [xs, ys]
+        self.camera.screen_positions(self.level, &[xs, ys])
     }
 
     /// Finds the first hits of a packet of camera rays.
