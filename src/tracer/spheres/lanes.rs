@@ -187,22 +187,27 @@ impl<'a, T: Real, S: Lanes<T>> LaneQuery<'a, T, S> {
         let [zero, infinity] = [T::zero(), T::infinity()].map(|number| Wide::splat(simd, number));
         let tag = Wide::splat(simd, T::tag(block.numbers[slot]));
         let own = self.rays.from.equal(tag);
-        // It may be negative for a ray tangent to its own surface.
-        let disc = zero.select(own, disc);
         let may_hit = zero.less_or_equal(disc);
-        if simd.bits(may_hit) & self.active == 0 {
+        let from_here = simd.bits(own) & self.active;
+        let from_elsewhere = simd.bits(may_hit) & self.active & !from_here;
+        if from_here | from_elsewhere == 0 {
             return None;
         }
         let unit = Wide::splat(simd, block.inverse_unit[slot].recip());
-        let roots = Roots {
-            along,
-            disc,
-            a: self.a,
-            c: f.dot(f) - radius2,
-            unit,
-        };
-        let t = roots.beyond(simd, self.t_min).select(may_hit, infinity);
-        let t = other_root(simd, along, self.a, unit).select(own, t);
+        let mut t = infinity;
+        if from_elsewhere != 0 {
+            let roots = Roots {
+                along,
+                disc,
+                a: self.a,
+                c: f.dot(f) - radius2,
+                unit,
+            };
+            t = roots.beyond(simd, self.t_min).select(may_hit, infinity);
+        }
+        if from_here != 0 {
+            t = other_root(simd, along, self.a, unit).select(own, t);
+        }
         Some(t.select(self.t_min.less(t), infinity))
     }
 }

@@ -12,6 +12,7 @@ mod whitted;
 
 use toyproof_scene::{Integrator, Object, Requirements, Scene, Shape};
 
+use self::whitted::Deferred;
 use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
 use crate::light::{Background, Light};
 use crate::material::{Material, Model};
@@ -325,6 +326,7 @@ impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T
             policy,
         } = self;
         let mut radiance = samples.radiance;
+        let mut deferred = Deferred::none();
         let mut at = 0;
         while at < samples.t.len() {
             let active = (samples.active >> at) as u32 & (u32::MAX >> (32 - S::COUNT));
@@ -340,7 +342,10 @@ impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T
                 };
                 let streams = &mut samples.streams[at..];
                 let Wide3(r, g, b) = match world.integrator {
-                    Integrator::Whitted => world.whitted(simd, rays, hits, streams, active, policy),
+                    Integrator::Whitted => {
+                        let state = (streams, &mut deferred);
+                        world.whitted(simd, rays, hits, state, active, policy)
+                    }
                     Integrator::Path => world.path(simd, rays, hits, streams, active, policy),
                 };
                 let mask = simd.mask(active);

@@ -35,12 +35,16 @@ impl<T: Real, S: Lanes<T>> Branches<T, S> {
 
 /// The refracted rays that are traced later. Those of a sample form a stack with at most one ray for each number
 /// of segments: a ray that splits comes back to its refracted part when all longer ones are done.
-struct Deferred<T, S: Lanes<T>> {
+pub(super) struct Deferred<T, S: Lanes<T>> {
     /// By the number of segments of the ray that was split, with the lanes that have one.
     levels: Vec<(Branches<T, S>, u32)>,
 }
 
 impl<T: Real, S: Lanes<T>> Deferred<T, S> {
+    pub(super) fn none() -> Self {
+        Self { levels: Vec::new() }
+    }
+
     /// Defers the rays in `lanes`, parts of rays with that many segments.
     #[inline(always)]
     fn push(&mut self, simd: S, branches: &Branches<T, S>, segments: Wide<T, S>, lanes: u32) {
@@ -80,14 +84,15 @@ impl<T: Real, S: Lanes<T>> Deferred<T, S> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// Returns the radiance along camera rays with the given first hits, in the `active` lanes.
+    /// Returns the radiance along camera rays with the given first hits, in the `active` lanes. No ray is
+    /// deferred before and after.
     #[inline(always)]
     pub(super) fn whitted<S: Lanes<T>>(
         &self,
         simd: S,
         rays: LaneRays<T, S>,
         mut hits: LaneHits<T, S>,
-        streams: &mut [SampleStream],
+        (streams, deferred): (&mut [SampleStream], &mut Deferred<T, S>),
         mut active: u32,
         policy: &impl RayEpsilonPolicy<T>,
     ) -> Wide3<T, S> {
@@ -99,7 +104,6 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             throughput: Wide3::splat(simd, [T::one(); 3]),
             segments: one,
         };
-        let mut deferred = Deferred { levels: Vec::new() };
         let mut sum = black;
         loop {
             let Branches {
