@@ -4,7 +4,8 @@
  * Standard input, binary, in the machine's byte order: the numbers of spheres and rays (two uint32), the spheres (x, y, z,
  * radius), the rays (origin, direction, nearest t), all float32. Then commands, a byte each:
  *   1  meet all rays one by one      8  eight at a time       i  the number of each ray's sphere
- *   u  user geometry: sixteen at a time, 8 by 2 pixels of an image that is WIDTH pixels wide     j  as i, of the last command
+ *   u  user geometry: sixteen at a time, 8 by 2 pixels of an image of WIDTH by rays / WIDTH pixels, whose camera rays are
+ *      computed here: from the origin to x in -1 to 1, y in proportion, at z = -2            j  as i, of the last command
  * Standard output: the seconds of processor time that building took, then for each command the seconds (float64), or for i
  * uint32s, UINT32_MAX for none. */
 #include <embree3/rtcore.h>
@@ -82,6 +83,16 @@ static uint32_t pixel(uint32_t packet, int i) {
     return (2 * row + i / 8) * WIDTH + 8 * column + i % 8;
 }
 
+/* The unit directions through the centers of a packet's pixels, of which `first` is the lowest left. */
+static inline void camera_rays(struct RTCRayHit16 *to, uint32_t first, uint32_t height) {
+    float left = (float)(first % WIDTH) + 0.5f, bottom = (float)(first / WIDTH) + 0.5f, aspect = (float)WIDTH / (float)height;
+    for (int i = 0; i < PACKET; i++) {
+        float x = (left + (float)(i % 8)) / WIDTH * 2 - 1, y = ((bottom + (float)(i / 8)) / (float)height * 2 - 1) / aspect;
+        float length = sqrtf(x * x + y * y + 4);
+        to->ray.dir_x[i] = x / length, to->ray.dir_y[i] = y / length, to->ray.dir_z[i] = -2 / length;
+    }
+}
+
 int main(void) {
 #ifdef __SSE__
     _mm_setcsr(_mm_getcsr() | 0x8040); /* Embree's manual: denormals are zero. */
@@ -100,10 +111,6 @@ int main(void) {
     sphere = (float(*)[4])points;
     take(ray, sizeof *ray, rays);
     uint32_t packets = rays / PACKET;
-    float(*packed)[7][PACKET] = aligned_alloc(64, (packets + 1) * sizeof *packed);
-    for (uint32_t packet = 0; packet < packets; packet++)
-        for (int i = 0; i < PACKET; i++)
-            for (int part = 0; part < 7; part++) packed[packet][part][i] = ray[pixel(packet, i) % rays][part];
     double start = now();
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
@@ -146,15 +153,10 @@ int main(void) {
             context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
             for (uint32_t packet = 0; packet < packets; packet++) {
                 struct RTCRayHit16 hit;
-                memcpy(hit.ray.org_x, packed[packet][0], sizeof hit.ray.org_x);
-                memcpy(hit.ray.org_y, packed[packet][1], sizeof hit.ray.org_y);
-                memcpy(hit.ray.org_z, packed[packet][2], sizeof hit.ray.org_z);
-                memcpy(hit.ray.dir_x, packed[packet][3], sizeof hit.ray.dir_x);
-                memcpy(hit.ray.dir_y, packed[packet][4], sizeof hit.ray.dir_y);
-                memcpy(hit.ray.dir_z, packed[packet][5], sizeof hit.ray.dir_z);
-                memcpy(hit.ray.tnear, packed[packet][6], sizeof hit.ray.tnear);
+                camera_rays(&hit, pixel(packet, 0), rays / WIDTH);
                 for (int i = 0; i < PACKET; i++) {
                     hit.ray.tfar[i] = 1e30f, hit.ray.mask[i] = -1, hit.ray.flags[i] = 0, hit.ray.time[i] = 0;
+                    hit.ray.org_x[i] = hit.ray.org_y[i] = hit.ray.org_z[i] = hit.ray.tnear[i] = 0;
                     hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID, hit.hit.primID[i] = UINT32_MAX;
                 }
                 rtcIntersect16(all, user_scene, &context, &hit);

@@ -23,7 +23,8 @@ pub(crate) struct Embree {
 pub(crate) fn compile(to: &Path) -> Result<(), String> {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/tracers/embree.c");
     let output = Command::new("cc")
-        .args(["-O3", "-march=native", source, "-o"])
+        .args(["-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math"])
+        .args([source, "-o"])
         .arg(to)
         .args(["-lembree3", "-lm"])
         .output()

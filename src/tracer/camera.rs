@@ -66,6 +66,22 @@ impl<T: Real> Camera<T> {
         (fy / self.height * T::from_f64(2.0) - T::one()) / (self.width / self.height)
     }
 
+    /// Maps many fragment coordinates like [`Camera::screen`].
+    pub(super) fn screen_positions(
+        &self,
+        level: Level,
+        fragments: &[[T; PACKET_RAYS]; 2],
+    ) -> [[T; PACKET_RAYS]; 2] {
+        let mut screen = [[T::zero(); PACKET_RAYS]; 2];
+        let kernel = ScreenPositions {
+            fragments,
+            size: [self.width, self.height],
+            screen: &mut screen,
+        };
+        T::run(level, kernel);
+        screen
+    }
+
     /// Creates the ray through a point of the screen.
     pub(super) fn ray(&self, [x, y]: [T; 2]) -> Ray<T> {
         let (origin, direction) = match self.projection {
@@ -129,6 +145,34 @@ impl<T: Real> Camera<T> {
         match self.axes {
             None => self.eye + T::Vec3::new(x, y, T::zero()),
             Some([right, up, _]) => self.eye + (right * x + up * y),
+        }
+    }
+}
+
+/// Kernel for [`Camera::screen_positions`].
+struct ScreenPositions<'a, T> {
+    fragments: &'a [[T; PACKET_RAYS]; 2],
+    size: [T; 2],
+    screen: &'a mut [[T; PACKET_RAYS]; 2],
+}
+
+impl<T: Real> Kernel<T> for ScreenPositions<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let [width, height, aspect, one, two] = [
+            self.size[0],
+            self.size[1],
+            self.size[0] / self.size[1],
+            T::one(),
+            T::from_f64(2.0),
+        ]
+        .map(|number| Wide::splat(simd, number));
+        for at in (0..PACKET_RAYS).step_by(S::COUNT) {
+            let [x, y] = [0, 1].map(|axis| Wide::load(simd, &self.fragments[axis][at..]));
+            (x / width * two - one).store(&mut self.screen[0][at..]);
+            ((y / height * two - one) / aspect).store(&mut self.screen[1][at..]);
         }
     }
 }

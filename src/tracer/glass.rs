@@ -7,8 +7,8 @@
 
 use toyproof_scene::Fresnel;
 
-use crate::lanes::{Columns, Kernel, Lanes, MAX_LANES, Wide};
-use crate::real::{Real, Vector};
+use crate::lanes::{Lanes, Wide, Wide3};
+use crate::real::Real;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Glass<T> {
@@ -17,111 +17,72 @@ pub(super) struct Glass<T> {
     pub(super) fresnel: Fresnel,
 }
 
-/// Rays that hit glass surfaces; the first `count` entries are valid.
-#[derive(Debug)]
-pub(super) struct GlassRays<T> {
-    pub(super) count: usize,
-    directions: Columns<T>,
-    /// Outward normals.
-    normals: Columns<T>,
+impl<T> Glass<T> {
+    /// Returns whether reflectances are Schlick's approximation.
+    pub(super) fn is_schlick(&self) -> bool {
+        self.fresnel == Fresnel::Schlick
+    }
+}
+
+/// Rays that hit glass surfaces, one per lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GlassHits<T, S: Lanes<T>> {
+    pub(super) direction: Wide3<T, S>,
+    /// Outward normal.
+    pub(super) normal: Wide3<T, S>,
     /// Direction · normal.
-    facing: Each<T>,
-    ior: Each<T>,
-    /// 1 for Schlick's approximation, 0 for Fresnel's equations.
-    is_schlick: Each<T>,
+    pub(super) facing: Wide<T, S>,
+    pub(super) ior: Wide<T, S>,
+    /// Lanes with Schlick's approximation; the others have Fresnel's equations.
+    pub(super) schlick: u32,
 }
 
-type Each<T> = [T; MAX_LANES];
-
-/// Reflectances and refracted directions of [`GlassRays`].
-#[derive(Debug)]
-pub(super) struct Refraction<T> {
+/// Reflectances and refracted directions of [`GlassHits`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Refraction<T, S: Lanes<T>> {
     /// Fraction of the light that is reflected.
-    pub(super) reflectances: Each<T>,
-    /// The refracted directions.
-    refracted: Columns<T>,
-    /// Bit i is set if ray i is totally reflected.
-    total_reflections: u32,
+    pub(super) reflectance: Wide<T, S>,
+    /// The refracted direction, which is meaningless in lanes of total reflection.
+    pub(super) refracted: Wide3<T, S>,
+    /// Lanes of total reflection.
+    pub(super) total: u32,
 }
 
-impl<T: Real> GlassRays<T> {
-    pub(super) fn none() -> Self {
-        Self {
-            count: 0,
-            directions: Columns::splat([T::zero(); 3]),
-            normals: Columns::splat([T::zero(); 3]),
-            facing: [T::zero(); MAX_LANES],
-            ior: [T::one(); MAX_LANES],
-            is_schlick: [T::zero(); MAX_LANES],
-        }
-    }
-
-    /// Appends a ray. There is room for [`MAX_LANES`].
-    pub(super) fn push(&mut self, glass: &Glass<T>, direction: T::Vec3, normal: T::Vec3, facing: T) {
-        let at = self.count;
-        self.directions.set(at, direction.to_array());
-        self.normals.set(at, normal.to_array());
-        self.facing[at] = facing;
-        self.ior[at] = glass.ior;
-        if glass.fresnel == Fresnel::Schlick {
-            self.is_schlick[at] = T::one();
-        }
-        self.count += 1;
-    }
-}
-
-impl<T: Real> Refraction<T> {
-    /// Returns the refracted direction of a ray, or `None` if it is totally reflected.
-    pub(super) fn refracted(&self, at: usize) -> Option<T::Vec3> {
-        (self.total_reflections >> at & 1 == 0).then(|| T::Vec3::from_array(self.refracted.get(at)))
-    }
-}
-
-impl<T: Real> Kernel<T> for &GlassRays<T> {
-    type Output = Refraction<T>;
-
+impl<T: Real, S: Lanes<T>> GlassHits<T, S> {
     /// Evaluates Snell's law and the reflectances.
     #[inline(always)]
-    fn run<S: Lanes<T>>(self, simd: S) -> Refraction<T> {
+    pub(super) fn refract(self, simd: S) -> Refraction<T, S> {
         let [zero, half, one] = [0.0, 0.5, 1.0].map(|number| Wide::splat(simd, T::from_f64(number)));
-        let mut refraction = Refraction {
-            reflectances: [T::zero(); MAX_LANES],
-            refracted: Columns::splat([T::zero(); 3]),
-            total_reflections: 0,
-        };
-        let mut at = 0;
-        while at < self.count {
-            let (direction, outward) = (self.directions.load(simd, at), self.normals.load(simd, at));
-            let (facing, ior) = (
-                Wide::load(simd, &self.facing[at..]),
-                Wide::load(simd, &self.ior[at..]),
-            );
-            // Relative to the side of the ray: its index over that of the other side, and the normal toward
-            // it.
-            let entering = facing.less(zero);
-            let eta = (one / ior).select(entering, ior);
-            let normal = outward.select(entering, -outward);
-            let cosine = (-facing).select(entering, facing);
-            let sin2_refracted = eta * eta * (one - cosine * cosine);
-            let total = one.less_or_equal(sin2_refracted);
-            let cos_refracted = (one - sin2_refracted).sqrt();
-            let perpendicular = (eta * cosine - cos_refracted) / (eta * cosine + cos_refracted);
-            let parallel = (cosine - eta * cos_refracted) / (cosine + eta * cos_refracted);
-            let fresnel = half * (perpendicular * perpendicular + parallel * parallel);
+        let Self {
+            direction,
+            normal,
+            facing,
+            ior,
+            schlick,
+        } = self;
+        // Relative to the side of the ray: its index over that of the other side, and the normal toward it.
+        let entering = facing.less(zero);
+        let eta = (one / ior).select(entering, ior);
+        let normal = normal.select(entering, -normal);
+        let cosine = (-facing).select(entering, facing);
+        let sin2_refracted = eta * eta * (one - cosine * cosine);
+        let total = one.less_or_equal(sin2_refracted);
+        let cos_refracted = (one - sin2_refracted).sqrt();
+        let perpendicular = (eta * cosine - cos_refracted) / (eta * cosine + cos_refracted);
+        let parallel = (cosine - eta * cos_refracted) / (cosine + eta * cos_refracted);
+        let mut reflectance = half * (perpendicular * perpendicular + parallel * parallel);
+        if schlick != 0 {
             let normal_amplitude = (one - ior) / (one + ior);
             let f0 = normal_amplitude * normal_amplitude;
             let m = one - cosine.select(eta.less(one), cos_refracted);
-            let schlick = f0 + (one - f0) * (m * m * m * m * m);
-            let is_schlick = zero.less(Wide::load(simd, &self.is_schlick[at..]));
-            let reflectance = schlick.select(is_schlick, fresnel);
-            one.select(total, reflectance)
-                .store(&mut refraction.reflectances[at..]);
-            let refracted = direction * eta + normal * (eta * cosine - cos_refracted);
-            refraction.refracted.store(refracted, at);
-            refraction.total_reflections |= simd.bits(total) << at;
-            at += S::COUNT;
+            let approximation = f0 + (one - f0) * (m * m * m * m * m);
+            reflectance = approximation.select(simd.mask(schlick), reflectance);
         }
-        refraction
+        Refraction {
+            reflectance: one.select(total, reflectance),
+            refracted: direction * eta + normal * (eta * cosine - cos_refracted),
+            total: simd.bits(total),
+        }
     }
 }
 
@@ -130,7 +91,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::lanes::{Level, Vectorized};
+    use crate::lanes::{Columns, Kernel, Level, Vectorized};
 
     /// Result for one ray that hits the plane y = 0.
     struct Single {
@@ -138,23 +99,43 @@ mod tests {
         refracted: Option<DVec3>,
     }
 
+    /// One ray, in all lanes.
+    struct OneRay {
+        glass: Glass<f64>,
+        direction: DVec3,
+    }
+
+    impl Kernel<f64> for OneRay {
+        type Output = Single;
+
+        #[inline(always)]
+        fn run<S: Lanes<f64>>(self, simd: S) -> Single {
+            let hits = GlassHits {
+                direction: Wide3::splat(simd, self.direction.to_array()),
+                normal: Wide3::splat(simd, [0.0, 1.0, 0.0]),
+                facing: Wide::splat(simd, self.direction.y),
+                ior: Wide::splat(simd, self.glass.ior),
+                schlick: if self.glass.is_schlick() { u32::MAX } else { 0 },
+            };
+            let refraction = hits.refract(simd);
+            Single {
+                reflectance: refraction.reflectance.to_array()[0],
+                refracted: (refraction.total & 1 == 0)
+                    .then(|| DVec3::from_array(Columns::from(refraction.refracted).get(0))),
+            }
+        }
+    }
+
     fn refract(ior: f64, fresnel: Fresnel, direction: DVec3) -> Single {
-        let mut glass_rays = GlassRays::none();
-        glass_rays.push(&Glass { ior, fresnel }, direction, DVec3::Y, direction.y);
-        let [first, others @ ..] = &Level::all()
-            .map(|level| f64::run(level, &glass_rays))
-            .collect::<Vec<_>>()[..]
-        else {
-            unreachable!("every processor has one lane");
-        };
-        for other in others {
-            assert_eq!(other.reflectances[0].to_bits(), first.reflectances[0].to_bits());
-            assert_eq!(other.refracted(0), first.refracted(0));
+        let glass = Glass { ior, fresnel };
+        let all = Level::all().map(|level| f64::run(level, OneRay { glass, direction }));
+        let mut all = all.collect::<Vec<_>>();
+        let first = all.remove(0);
+        for other in all {
+            assert_eq!(other.reflectance.to_bits(), first.reflectance.to_bits());
+            assert_eq!(other.refracted, first.refracted);
         }
-        Single {
-            reflectance: first.reflectances[0],
-            refracted: first.refracted(0),
-        }
+        first
     }
 
     fn down(angle: f64) -> DVec3 {

@@ -1,12 +1,17 @@
 //! Materials: surface colors and bidirectional reflectance distribution functions (BRDFs).
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use toyproof_scene::{self as scene, Disney};
 
 use crate::glass::Glass;
+use crate::lanes::{Columns, Lanes, Wide, Wide3, lanes_of};
 use crate::pattern::Pattern;
-use crate::ray::{spherical_direction, tangent_basis};
 use crate::real::{Real, Vector};
 
 #[derive(Debug)]
@@ -53,6 +58,11 @@ impl<T: Real> Material<T> {
         }
     }
 
+    /// Returns the color if it is the same everywhere.
+    pub(super) fn uniform_color(&self) -> Option<T::Vec3> {
+        self.pattern.is_none().then_some(self.color)
+    }
+
     /// Returns the color at a point of the surface, which is given with the normal there, and computed only if
     /// the color depends on it.
     pub(super) fn color(&self, at: impl FnOnce() -> [T::Vec3; 2]) -> T::Vec3 {
@@ -74,66 +84,108 @@ pub(super) enum Brdf<T> {
     Disney(Disney),
 }
 
-/// The shading frame at a surface point; both directions have unit length.
+/// The shading frames at surface points, one per lane; both directions have unit length.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame<T: Real> {
-    pub(super) normal: T::Vec3,
+pub(super) struct Frame<T, S: Lanes<T>> {
+    pub(super) normal: Wide3<T, S>,
     /// Direction toward the origin of the ray.
-    pub(super) view: T::Vec3,
+    pub(super) view: Wide3<T, S>,
 }
 
-impl<T: Real> Frame<T> {
-    fn reflected(&self) -> T::Vec3 {
-        let two = T::one() + T::one();
+impl<T: Real, S: Lanes<T>> Frame<T, S> {
+    #[inline(always)]
+    fn reflected(&self, simd: S) -> Wide3<T, S> {
+        let two = Wide::splat(simd, T::one() + T::one());
         self.normal * (two * self.normal.dot(self.view)) - self.view
     }
+}
 
-    /// Returns the tangents along the parallels and along the meridians about the y axis.
-    fn tangents(&self) -> [T::Vec3; 2] {
-        let [x, _, z] = self.normal.to_array();
-        if x == T::zero() && z == T::zero() {
-            return tangent_basis::<T>(self.normal);
-        }
-        let along = T::Vec3::new(z, T::zero(), -x).normalize();
-        [along, self.normal.cross(along)]
-    }
+/// Returns the tangents along the parallels and along the meridians about the y axis.
+fn tangents<T: Real>(normal: T::Vec3) -> [T::Vec3; 2] {
+    let [x, _, z] = normal.to_array();
+    let along = if x == T::zero() && z == T::zero() {
+        T::Vec3::from_f64([1.0, 0.0, 0.0]).cross(normal)
+    } else {
+        T::Vec3::new(z, T::zero(), -x)
+    };
+    let along = along.normalize();
+    [along, normal.cross(along)]
+}
+
+/// A BRDF for light from one direction per lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scattering<T, S: Lanes<T>> {
+    /// The value of the BRDF.
+    pub(super) value: Wide3<T, S>,
+    /// The probability density of [`Brdf::sample`] in solid angle.
+    pub(super) density: Wide<T, S>,
 }
 
 impl<T: Real> Brdf<T> {
-    /// Evaluates the BRDF for light from direction `light`, where N·L > 0.
-    pub(super) fn value(&self, color: T::Vec3, frame: &Frame<T>, light: T::Vec3) -> T::Vec3 {
-        match self {
-            Self::Lambert => color,
-            Self::Diffuse => color * T::from_f64(FRAC_1_PI),
-            Self::Glossy { exponent } => {
-                let two = T::one() + T::one();
-                let lobe = frame.reflected().dot(light).max(T::zero()).power(*exponent);
-                color * ((*exponent + two) / T::from_f64(TAU) * lobe)
-            }
-            Self::Disney(parameters) => disney(parameters, color, frame, light),
+    /// Evaluates the BRDF and the density of its samples for light from the directions `light`, where N·L > 0, in
+    /// the lanes in `active`.
+    #[inline(always)]
+    pub(super) fn scattering<S: Lanes<T>>(
+        &self,
+        simd: S,
+        color: Wide3<T, S>,
+        frame: &Frame<T, S>,
+        light: Wide3<T, S>,
+        active: u32,
+    ) -> Scattering<T, S> {
+        let [tau, reciprocal_pi] = [TAU, FRAC_1_PI].map(|number| Wide::splat(simd, T::from_f64(number)));
+        if let Self::Glossy { exponent } = self {
+            let [two, one] = [T::one() + T::one(), T::one()].map(|number| Wide::splat(simd, number));
+            let cosine = frame.reflected(simd).dot(light).positive();
+            let lobe = cosine.map(active, |cosine| cosine.power(*exponent));
+            let exponent = Wide::splat(simd, *exponent);
+            return Scattering {
+                value: color * ((exponent + two) / tau * lobe),
+                density: (exponent + one) / tau * lobe,
+            };
+        }
+        Scattering {
+            value: match self {
+                Self::Disney(parameters) => {
+                    let [normals, views, lights, colors] =
+                        [frame.normal, frame.view, light, color].map(Columns::from);
+                    let mut values = Columns::splat([T::zero(); 3]);
+                    for lane in lanes_of(active) {
+                        let [normal, view, light, color] = [&normals, &views, &lights, &colors]
+                            .map(|vectors| T::Vec3::from_array(vectors.get(lane)));
+                        values.set(
+                            lane,
+                            disney::<T>(parameters, color, [normal, view], light).to_array(),
+                        );
+                    }
+                    values.load(simd, 0)
+                }
+                Self::Diffuse => color * reciprocal_pi,
+                Self::Lambert | Self::Glossy { .. } => color,
+            },
+            density: frame.normal.dot(light).positive() * reciprocal_pi,
         }
     }
 
-    /// Samples a direction: proportional to the cosine to the normal, or to the lobe of a glossy BRDF.
-    pub(super) fn sample(&self, frame: &Frame<T>, [u, v]: [T; 2]) -> T::Vec3 {
+    /// Samples an angle from the axis of the lobe: proportional to the cosine to the normal, or to the lobe of a
+    /// glossy BRDF. Returns that axis, and the cosine and the sine of the angle.
+    #[inline(always)]
+    pub(super) fn sample<S: Lanes<T>>(
+        &self,
+        simd: S,
+        frame: &Frame<T, S>,
+        u: Wide<T, S>,
+        active: u32,
+    ) -> (Wide3<T, S>, [Wide<T, S>; 2]) {
+        let one = Wide::splat(simd, T::one());
         match self {
             Self::Glossy { exponent } => {
-                let cosine = (T::one() - u).power((*exponent + T::one()).recip());
-                let sine = (T::one() - cosine * cosine).max(T::zero()).sqrt();
-                spherical_direction::<T>(frame.reflected(), cosine, sine, v)
+                let root = (*exponent + T::one()).recip();
+                let cosine = (one - u).map(active, |power| power.power(root));
+                let sine = (one - cosine * cosine).positive().sqrt();
+                (frame.reflected(simd), [cosine, sine])
             }
-            _ => spherical_direction::<T>(frame.normal, (T::one() - u).sqrt(), u.sqrt(), v),
-        }
-    }
-
-    /// Returns the probability density of [`Brdf::sample`] in solid angle.
-    pub(super) fn density(&self, frame: &Frame<T>, light: T::Vec3) -> T {
-        match self {
-            Self::Glossy { exponent } => {
-                let lobe = frame.reflected().dot(light).max(T::zero()).power(*exponent);
-                (*exponent + T::one()) / T::from_f64(TAU) * lobe
-            }
-            _ => frame.normal.dot(light).max(T::zero()) * T::from_f64(FRAC_1_PI),
+            _ => (frame.normal, [(one - u).sqrt(), u.sqrt()]),
         }
     }
 }
@@ -183,8 +235,7 @@ fn smith<T: Real>(cosine: T, alpha: T) -> T {
 }
 
 /// Evaluates the BRDF where N·L > 0; it is black where N·V ≤ 0.
-fn disney<T: Real>(disney: &Disney, color: T::Vec3, frame: &Frame<T>, light: T::Vec3) -> T::Vec3 {
-    let Frame { normal, view } = *frame;
+fn disney<T: Real>(disney: &Disney, color: T::Vec3, [normal, view]: [T::Vec3; 2], light: T::Vec3) -> T::Vec3 {
     let (n_l, n_v) = (normal.dot(light), normal.dot(view));
     if n_l <= T::zero() || n_v <= T::zero() {
         return T::Vec3::ZERO;
@@ -221,7 +272,7 @@ fn disney<T: Real>(disney: &Disney, color: T::Vec3, frame: &Frame<T>, light: T::
     let aspect = (1.0 - 0.9 * disney.anisotropic).sqrt();
     let spread = square(disney.roughness);
     let alpha = [spread / aspect, spread * aspect].map(|alpha| number::<T>(alpha.max(0.001)));
-    let along = frame.tangents().map(|tangent| tangent.dot(half));
+    let along = tangents::<T>(normal).map(|tangent| tangent.dot(half));
     let d = trowbridge_reitz(n_h, along, alpha);
     let alpha_g = number::<T>(square(0.5 + 0.5 * disney.roughness));
     let g = smith(n_l, alpha_g) * smith(n_v, alpha_g);
@@ -242,18 +293,63 @@ fn disney<T: Real>(disney: &Disney, color: T::Vec3, frame: &Frame<T>, light: T::
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use pulp::Scalar;
     use toyproof_image::pcg;
     use toyproof_scene::unit;
 
     use super::*;
+    use crate::ray::spherical_direction;
 
     fn random_numbers(count: u32) -> impl Iterator<Item = [f64; 4]> {
         (0..count).map(|i| [0, 1, 2, 3].map(|j| unit(pcg(4 * i + j))))
     }
 
+    fn splat(vector: DVec3) -> Wide3<f64, Scalar> {
+        Wide3::splat(Scalar, vector.to_array())
+    }
+
+    fn single(vector: Wide3<f64, Scalar>) -> DVec3 {
+        DVec3::from_array(Columns::from(vector).get(0))
+    }
+
+    fn spherical(axis: DVec3, cosine_sine_turn: [f64; 3]) -> DVec3 {
+        let simd = Scalar;
+        let numbers = cosine_sine_turn.map(|number| Wide::splat(simd, number));
+        single(spherical_direction(simd, splat(axis), numbers, 1))
+    }
+
+    /// The value of a BRDF and the density of its samples, for a frame of a normal and a view.
+    fn scattering(brdf: &Brdf<f64>, color: DVec3, [normal, view]: [DVec3; 2], light: DVec3) -> (DVec3, f64) {
+        let frame = Frame {
+            normal: splat(normal),
+            view: splat(view),
+        };
+        let scattering = brdf.scattering(Scalar, splat(color), &frame, splat(light), 1);
+        (single(scattering.value), scattering.density.to_array()[0])
+    }
+
+    fn value(brdf: &Brdf<f64>, color: DVec3, frame: [DVec3; 2], light: DVec3) -> DVec3 {
+        scattering(brdf, color, frame, light).0
+    }
+
+    fn sample(brdf: &Brdf<f64>, [normal, view]: [DVec3; 2], [u, v]: [f64; 2]) -> DVec3 {
+        let simd = Scalar;
+        let frame = Frame {
+            normal: splat(normal),
+            view: splat(view),
+        };
+        let (axis, [cosine, sine]) = brdf.sample(simd, &frame, Wide::splat(simd, u), 1);
+        single(spherical_direction(
+            simd,
+            axis,
+            [cosine, sine, Wide::splat(simd, v)],
+            1,
+        ))
+    }
+
     /// Samples the hemisphere of +z uniformly.
     fn sample_hemisphere([u, v]: [f64; 2]) -> DVec3 {
-        spherical_direction::<f64>(DVec3::Z, u, (1.0 - u * u).sqrt(), v)
+        spherical(DVec3::Z, [u, (1.0 - u * u).sqrt(), v])
     }
 
     fn all_brdfs() -> [Brdf<f64>; 4] {
@@ -278,13 +374,10 @@ mod tests {
         let color = DVec3::new(0.9, 0.5, 0.2);
         for [a, b, c, d] in random_numbers(1000) {
             let (light, view) = (sample_hemisphere([a, b]), sample_hemisphere([c, d]));
-            let frame = |view| Frame {
-                normal: DVec3::Z,
-                view,
-            };
+            let frame = |view| [DVec3::Z, view];
             for brdf in all_brdfs() {
-                let there = brdf.value(color, &frame(view), light);
-                let back = brdf.value(color, &frame(light), view);
+                let there = value(&brdf, color, frame(view), light);
+                let back = value(&brdf, color, frame(light), view);
                 assert!((there - back).length() <= 1e-10 * there.length(), "{brdf:?}");
             }
         }
@@ -293,23 +386,18 @@ mod tests {
     #[test]
     fn samples_follow_the_stated_density() {
         // The mean of g over sampled directions equals the integral of g times the density.
-        let frame = Frame {
-            normal: DVec3::Z,
-            view: DVec3::new(0.3, -0.4, 0.75f64.sqrt()),
-        };
+        let frame = [DVec3::Z, DVec3::new(0.3, -0.4, 0.75f64.sqrt())];
         let g = |direction: DVec3| (direction - DVec3::new(0.2, 0.5, 0.8)).length_squared();
         let count = 200_000;
         for brdf in [Brdf::Diffuse, Brdf::Glossy { exponent: 5.0 }] {
             let (mut sampled, mut integral, mut total) = (0.0, 0.0, 0.0);
             for [a, b, c, d] in random_numbers(count) {
-                sampled += g(brdf.sample(&frame, [a, b]));
-                let anywhere = spherical_direction::<f64>(
+                sampled += g(sample(&brdf, frame, [a, b]));
+                let anywhere = spherical(
                     DVec3::Z,
-                    2.0 * c - 1.0,
-                    (1.0 - (2.0 * c - 1.0).powi(2)).sqrt(),
-                    d,
+                    [2.0 * c - 1.0, (1.0 - (2.0 * c - 1.0).powi(2)).sqrt(), d],
                 );
-                let density = 4.0 * std::f64::consts::PI * brdf.density(&frame, anywhere);
+                let density = 4.0 * std::f64::consts::PI * scattering(&brdf, DVec3::ONE, frame, anywhere).1;
                 total += density;
                 integral += g(anywhere) * density;
             }
@@ -327,19 +415,15 @@ mod tests {
 
     #[test]
     fn brdfs_conserve_energy() {
-        let frame = |view| Frame {
-            normal: DVec3::Z,
-            view,
-        };
+        let frame = |view| [DVec3::Z, view];
         for brdf in all_brdfs().into_iter().skip(1) {
             for cosine in [0.2, 0.6, 0.95] {
-                let view =
-                    spherical_direction::<f64>(DVec3::Z, cosine, (1.0f64 - cosine * cosine).sqrt(), 0.1);
+                let view = spherical(DVec3::Z, [cosine, (1.0f64 - cosine * cosine).sqrt(), 0.1]);
                 // With cosine sampling, f cos / density = π f.
                 let albedo: f64 = random_numbers(20_000)
                     .map(|[a, b, _, _]| {
-                        let light = Brdf::Diffuse.sample(&frame(view), [a, b]);
-                        std::f64::consts::PI * brdf.value(DVec3::ONE, &frame(view), light).x
+                        let light = sample(&Brdf::Diffuse, frame(view), [a, b]);
+                        std::f64::consts::PI * value(&brdf, DVec3::ONE, frame(view), light).x
                     })
                     .sum::<f64>()
                     / 20_000.0;

@@ -1,7 +1,13 @@
 //! Rays, their intersections with surfaces, and the first hits of camera rays.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
 use crate::camera::topmost_figure;
-use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
+use crate::lanes::{Lanes, MAX_LANES, Wide, Wide3, lanes_of};
+use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream};
 use crate::spheres::NO_SURFACE;
@@ -53,60 +59,33 @@ impl<T: Real> FirstHit<T> {
     }
 }
 
-/// A point on a surface.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Hit<T: Real> {
-    pub(super) point: T::Vec3,
-    /// Of unit length. It points outward, or on an open surface toward the side of the incoming ray.
-    pub(super) normal: T::Vec3,
-    pub(super) surface: usize,
-}
-
-impl<T: Real> Hit<T> {
-    /// Returns the point, above the surface, from which the direction to a light is computed.
-    pub(super) fn light_ray_origin(&self, policy: &impl RayEpsilonPolicy<T>) -> T::Vec3 {
-        if policy.light_policy().from_ray_origin {
-            self.point + self.normal * policy.offset()
-        } else {
-            self.point
-        }
-    }
-
-    /// Creates a secondary ray to either side of the surface.
-    pub(super) fn spawn_ray(&self, direction: T::Vec3, policy: &impl RayEpsilonPolicy<T>) -> Ray<T> {
-        let offset = policy.offset();
-        let offset = if direction.dot(self.normal) < T::zero() {
-            -offset
-        } else {
-            offset
-        };
-        Ray {
-            origin: self.point + self.normal * offset + direction * policy.along(),
-            direction,
-            from: Some(self.surface),
-        }
-    }
-}
-
-/// Completes the unit vector w to an orthonormal basis: a = normalize(up × w), b = w × a, where up is y, or x
-/// if
-/// w.y| > 0.9.
-pub(super) fn tangent_basis<T: Real>(w: T::Vec3) -> [T::Vec3; 2] {
-    let [_, y, _] = w.to_array();
-    let up = if y.abs() > T::from_f64(0.9) {
-        [1.0, 0.0, 0.0]
-    } else {
-        [0.0, 1.0, 0.0]
-    };
-    let a = T::Vec3::from_f64(up).cross(w).normalize();
+/// Completes the unit vectors w to orthonormal bases: a = normalize(up × w), b = w × a, where up is y, or x if
+/// |w.y| > 0.9.
+#[inline(always)]
+fn tangent_basis<T: Real, S: Lanes<T>>(simd: S, w: Wide3<T, S>) -> [Wide3<T, S>; 2] {
+    let is_steep = Wide::splat(simd, T::from_f64(0.9)).less(w.1.abs());
+    let [zero, one] = [T::zero(), T::one()];
+    let up = Wide3::splat(simd, [one, zero, zero]).select(is_steep, Wide3::splat(simd, [zero, one, zero]));
+    let a = up.cross(w).normalize(simd);
     [a, w.cross(a)]
 }
 
-/// Returns the direction at an angle to w, given by its cosine and sine, rotated about w by `turn` full
+/// Returns the directions at an angle to w, given by its cosine and sine, rotated about w by `turn` full
 /// turns.
-pub(super) fn spherical_direction<T: Real>(w: T::Vec3, cosine: T, sine: T, turn: T) -> T::Vec3 {
-    let [a, b] = tangent_basis::<T>(w);
-    let (s, c) = (T::from_f64(std::f64::consts::TAU) * turn).sine_and_cosine();
+#[inline(always)]
+pub(super) fn spherical_direction<T: Real, S: Lanes<T>>(
+    simd: S,
+    w: Wide3<T, S>,
+    [cosine, sine, turn]: [Wide<T, S>; 3],
+    active: u32,
+) -> Wide3<T, S> {
+    let [a, b] = tangent_basis(simd, w);
+    let angles = (Wide::splat(simd, T::from_f64(std::f64::consts::TAU)) * turn).to_array();
+    let [mut sines, mut cosines] = [[T::zero(); MAX_LANES]; 2];
+    for lane in lanes_of(active) {
+        (sines[lane], cosines[lane]) = angles[lane].sine_and_cosine();
+    }
+    let [s, c] = [sines, cosines].map(|numbers| Wide::load(simd, &numbers));
     a * (sine * c) + b * (sine * s) + w * cosine
 }
 

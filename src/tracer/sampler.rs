@@ -9,7 +9,7 @@
 use toyproof_image::pcg;
 use toyproof_scene::{Sampler, unit};
 
-use crate::lanes::{Kernel, Lanes, Level, Vectorized};
+use crate::lanes::{Kernel, Lanes, Level, MAX_LANES, Vectorized, Wide, lanes_of};
 use crate::real::Real;
 use crate::spheres::PACKET_RAYS;
 
@@ -39,6 +39,8 @@ pub(super) enum SampleStream {
         index: u32,
         dimension: u32,
         seed: u32,
+        /// The numbers of the current four dimensions, which are computed together.
+        numbers: [f32; 4],
     },
 }
 
@@ -80,6 +82,7 @@ impl SampleStream {
                 index,
                 dimension: 0,
                 seed: seed(),
+                numbers: [0.0; 4],
             },
         }
     }
@@ -107,13 +110,18 @@ impl SampleStream {
                 index,
                 dimension,
                 seed,
+                numbers,
             } => {
                 if *dimension == SOBOL_DIMENSIONS {
                     *dimension = 0;
                     *seed = pcg(*seed);
                 }
+                let (set, at) = (*dimension / 4, *dimension as usize % 4);
+                if at == 0 {
+                    *numbers = sobol_burley::sample_4d(*index, set, *seed);
+                }
                 *dimension += 1;
-                f64::from(sobol_burley::sample(*index, *dimension - 1, *seed))
+                f64::from(numbers[at])
             }
         })
     }
@@ -138,6 +146,30 @@ impl SampleStream {
             _ => pair,
         }
     }
+}
+
+/// Returns the next number of each lane in `active`.
+#[inline(always)]
+pub(super) fn next_numbers<T: Real>(streams: &mut [SampleStream], active: u32) -> [T; MAX_LANES] {
+    let mut numbers = [T::zero(); MAX_LANES];
+    for lane in lanes_of(active) {
+        numbers[lane] = streams[lane].next_1d();
+    }
+    numbers
+}
+
+/// Returns the next point in the unit disk of each lane in `active`; see [`SampleStream::next_disk`].
+#[inline(always)]
+pub(super) fn next_disks<T: Real, S: Lanes<T>>(
+    simd: S,
+    streams: &mut [SampleStream],
+    active: u32,
+) -> [Wide<T, S>; 2] {
+    let [mut squares, mut turns] = [[T::zero(); MAX_LANES]; 2];
+    for lane in lanes_of(active) {
+        [squares[lane], turns[lane]] = streams[lane].next_disk();
+    }
+    [squares, turns].map(|numbers| Wide::load(simd, &numbers))
 }
 
 /// Maps the unit square to the unit disk, concentric squares to concentric circles: P. Shirley and K. Chiu,
@@ -193,6 +225,11 @@ impl Grid {
         }
     }
 
+    #[inline(always)]
+    fn with_index(self, index: u32) -> Self {
+        Self { index, ..self }
+    }
+
     /// Returns the jittered point in a cell.
     #[inline(always)]
     fn pair(self, cell: u32, seed: u32) -> [f64; 2] {
@@ -246,24 +283,30 @@ impl Strata {
         permute(self.grid.index, self.grid.count, self.seed)
     }
 
-    /// Returns the streams of one sample in each of several pixels, after their first pair, and those pairs.
+    /// Returns the streams of samples of several pixels, by their indices and pixels, after their first pair, and those pairs.
     pub(super) fn first_pairs(
         level: Level,
-        [index, count, set]: [u32; 3],
+        [count, set]: [u32; 2],
+        indices: &[u32; PACKET_RAYS],
         pixels: &[[u32; PACKET_RAYS]; 2],
     ) -> ([Self; PACKET_RAYS], [[f64; PACKET_RAYS]; 2]) {
-        let grid = Grid::new(index, count);
+        let grid = Grid::new(0, count);
         let mut pairs = [[0.0; PACKET_RAYS]; 2];
         let seeds = f64::run(
             level,
             FirstPairs {
                 grid,
                 set,
+                indices,
                 pixels,
                 pairs: &mut pairs,
             },
         );
-        (seeds.map(|seed| Self { grid, seed }), pairs)
+        let strata = |at: usize| Self {
+            grid: grid.with_index(indices[at]),
+            seed: seeds[at],
+        };
+        (std::array::from_fn(strata), pairs)
     }
 }
 
@@ -271,6 +314,7 @@ impl Strata {
 struct FirstPairs<'a> {
     grid: Grid,
     set: u32,
+    indices: &'a [u32; PACKET_RAYS],
     pixels: &'a [[u32; PACKET_RAYS]; 2],
     pairs: &'a mut [[f64; PACKET_RAYS]; 2],
 }
@@ -282,13 +326,17 @@ impl Kernel<f64> for FirstPairs<'_> {
     #[inline(always)]
     fn run<S: Lanes<f64>>(self, _: S) -> [u32; PACKET_RAYS] {
         let Self {
-            grid, set, pixels, ..
+            grid,
+            set,
+            indices,
+            pixels,
+            ..
         } = self;
         let (mut seeds, mut cells) = ([0; PACKET_RAYS], [0; PACKET_RAYS]);
         let scramble = Scramble::new(grid.count);
         for at in 0..PACKET_RAYS {
             seeds[at] = pcg(seed([pixels[0][at], pixels[1][at]], set));
-            cells[at] = scramble.apply(grid.index, seeds[at]);
+            cells[at] = scramble.apply(indices[at], seeds[at]);
         }
         while cells.iter().fold(0, |most, &cell| most.max(cell)) >= grid.count {
             for at in 0..PACKET_RAYS {
@@ -297,7 +345,7 @@ impl Kernel<f64> for FirstPairs<'_> {
             }
         }
         for at in 0..PACKET_RAYS {
-            [self.pairs[0][at], self.pairs[1][at]] = grid.pair(cells[at], seeds[at]);
+            [self.pairs[0][at], self.pairs[1][at]] = grid.with_index(indices[at]).pair(cells[at], seeds[at]);
         }
         seeds
     }
@@ -443,6 +491,19 @@ mod tests {
     }
 
     #[test]
+    fn sobol_numbers_are_those_of_their_dimensions() {
+        let mut stream = stream(Sampler::Sobol, 5);
+        let mut seed = seed([7, 11], 0);
+        for dimension in (0..SOBOL_DIMENSIONS).chain(0..9) {
+            let expected = f64::from(sobol_burley::sample(5, dimension, seed));
+            assert_eq!(stream.next_1d::<f64>(), expected, "{dimension}");
+            if dimension == SOBOL_DIMENSIONS - 1 {
+                seed = pcg(seed);
+            }
+        }
+    }
+
+    #[test]
     fn permute_is_a_bijection() {
         for count in [1, 2, 3, 10, 16, 37, 1000] {
             for seed in 0..20 {
@@ -474,14 +535,15 @@ mod tests {
             .into_iter()
             .flat_map(|count| Level::all().map(move |level| (count, level)))
         {
-            for index in [0, count / 2, count - 1] {
-                let (mut strata, pairs) = Strata::first_pairs(level, [index, count, 3], &pixels);
+            for first in [0, count / 2, count - 1] {
+                let indices = std::array::from_fn(|at| (first + at as u32 % 3) % count);
+                let (mut strata, pairs) = Strata::first_pairs(level, [count, 3], &indices, &pixels);
                 for at in 0..PACKET_RAYS {
-                    let mut single = Strata::new(index, count, seed([pixels[0][at], pixels[1][at]], 3));
+                    let mut single = Strata::new(indices[at], count, seed([pixels[0][at], pixels[1][at]], 3));
                     assert_eq!(
                         [pairs[0][at], pairs[1][at]],
                         single.next_2d(),
-                        "{count} {index} {level:?}"
+                        "{count} {first} {level:?}"
                     );
                     assert_eq!(strata[at].next_1d(), single.next_1d(), "the next number");
                 }

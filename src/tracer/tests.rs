@@ -556,6 +556,16 @@ fn every_instruction_set_and_number_of_threads_paints_the_same_bits() {
         })
         .collect();
     scenes.push(("mixed".to_owned(), scene(MIXED)));
+    // As many samples as are next to each other in packets.
+    for (name, samples, sampler) in [("mixed", 8, Sampler::Stratified), ("13", 16, Sampler::Sobol)] {
+        let mut scene = if name == "mixed" {
+            scene(MIXED)
+        } else {
+            exercise(name, [45, 27])
+        };
+        (scene.film.samples, scene.film.sampler) = (samples, sampler);
+        scenes.push((format!("{name}, {samples} samples"), scene));
+    }
     for camera in TURNED {
         scenes.push((camera.to_owned(), scene(&(MIXED.to_owned() + camera))));
     }

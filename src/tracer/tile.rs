@@ -1,16 +1,14 @@
 //! Rendering in tiles of 8×8 pixels, whose camera rays form one packet.
 
 use rayon::prelude::*;
-use smallvec::SmallVec;
 use toyproof_scene::Sampler;
 
 use crate::camera::topmost_figure;
-use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream, Strata, centered};
 use crate::spheres::{NO_SURFACE, PACKET_RAYS, Packet, PacketHits};
 use crate::transfer::tone_map_all;
-use crate::world::PathState;
+use crate::world::{Samples, each_slice};
 use crate::{Kernel, Tracer};
 
 /// Side of a tile in pixels.
@@ -36,12 +34,56 @@ impl Tile {
         }
     }
 
+    /// Returns whether the pixel at an index in row order is inside the image.
+    #[inline]
+    fn contains(&self, at: usize) -> bool {
+        (at as u32 % TILE_SIDE) < self.size[0] && (at as u32 / TILE_SIDE) < self.size[1]
+    }
+
     /// Returns the pixel at an index in row order. Indices beyond the edge of the image repeat the pixels at
     /// the edge, so that every ray of a packet belongs to a pixel.
     #[inline]
     fn pixel(&self, at: usize) -> [u32; 2] {
         let within = [at as u32 % TILE_SIDE, at as u32 / TILE_SIDE];
         [0, 1].map(|axis| self.corner[axis] + within[axis].min(self.size[axis] - 1))
+    }
+}
+
+/// Number of samples of a pixel that are next to each other in a packet, if the number of samples allows it:
+/// rays that differ little take the same turns, so that no lane waits for another.
+const ADJACENT_SAMPLES: usize = 8;
+
+/// Which samples the rays of a packet are.
+struct PacketSamples {
+    /// The pixel of each ray, by its index in the tile.
+    pixels: [usize; PACKET_RAYS],
+    /// The index of each ray among the samples of its pixel, which increases within the packet.
+    indices: [u32; PACKET_RAYS],
+}
+
+impl PacketSamples {
+    /// Returns the samples of one of the `count` packets in which a tile with `count` samples per pixel is traced.
+    /// Those of a pixel are in the order of their indices, over all packets.
+    fn new(number: u32, count: u32) -> Self {
+        if !count.is_multiple_of(ADJACENT_SAMPLES as u32) {
+            return Self {
+                pixels: std::array::from_fn(|at| at),
+                indices: [number; PACKET_RAYS],
+            };
+        }
+        // Blocks of 4×2 pixels, one after the other.
+        let groups = count / ADJACENT_SAMPLES as u32;
+        let (block, group) = ((number / groups) as usize, number % groups);
+        let corner = block / 2 * 2 * TILE_SIDE as usize + block % 2 * 4;
+        Self {
+            pixels: std::array::from_fn(|at| {
+                let pixel = at / ADJACENT_SAMPLES;
+                corner + pixel / 4 * TILE_SIDE as usize + pixel % 4
+            }),
+            indices: std::array::from_fn(|at| {
+                group * ADJACENT_SAMPLES as u32 + (at % ADJACENT_SAMPLES) as u32
+            }),
+        }
     }
 }
 
@@ -60,11 +102,11 @@ impl<T: Real> Tracer<T> {
         let count = T::from_f64(f64::from(self.film.samples));
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, self.film.sampler, 0);
-            let means: [[T; 3]; PACKET_RAYS] = sums.map(|sum| (sum / count).to_array());
-            let mut components: [T; 3 * PACKET_RAYS] = std::array::from_fn(|at| means[at / 3][at % 3]);
+            let mut components: [T; 3 * PACKET_RAYS] =
+                std::array::from_fn(|at| sums[at / PACKET_RAYS][at % PACKET_RAYS] / count);
             tone_map_all(&self.film, self.level, &mut components);
             tile.for_each_pixel(self.film.size[0], |at, in_band| {
-                let [r, g, b] = [0, 1, 2].map(|axis| components[3 * at + axis].to_f64() as f32);
+                let [r, g, b] = [0, 1, 2].map(|axis| components[axis * PACKET_RAYS + at].to_f64() as f32);
                 pixels[in_band] = [r, g, b, 1.0];
             });
         }
@@ -78,62 +120,77 @@ impl<T: Real> Tracer<T> {
         let mut means = vec![T::Vec3::ZERO; (TILE_SIDE.min(height - bottom) * width) as usize];
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, sampler, set);
-            tile.for_each_pixel(width, |at, in_band| means[in_band] = sums[at] / count);
+            tile.for_each_pixel(width, |at, in_band| {
+                means[in_band] = T::Vec3::from_array([0, 1, 2].map(|axis| sums[axis][at])) / count;
+            });
         }
         means
     }
 
     /// Sums the radiance of one set of samples for each pixel of a tile.
-    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [T::Vec3; PACKET_RAYS] {
-        let mut sums = [T::Vec3::ZERO; PACKET_RAYS];
+    fn sums(&self, tile: Tile, sampler: Sampler, set: u32) -> [[T; PACKET_RAYS]; 3] {
+        let mut sums = [[T::zero(); PACKET_RAYS]; 3];
         let count = self.film.samples;
-        for index in 0..count {
-            let mut stream = [const { SampleStream::Center }; PACKET_RAYS];
+        for number in 0..count {
+            let rays = PacketSamples::new(number, count);
+            let pixel = |at: usize| tile.pixel(rays.pixels[at]);
+            let mut streams = [const { SampleStream::Center }; PACKET_RAYS];
             let screen = match sampler {
                 Sampler::Center => self.pixel_centers(tile),
                 Sampler::Stratified => {
-                    let pixels = [0, 1].map(|axis| std::array::from_fn(|at| tile.pixel(at)[axis]));
-                    let (strata, pairs) = Strata::first_pairs(self.level, [index, count, set], &pixels);
-                    stream = strata.map(SampleStream::Stratified);
+                    let pixels = [0, 1].map(|axis| std::array::from_fn(|at| pixel(at)[axis]));
+                    let (strata, pairs) =
+                        Strata::first_pairs(self.level, [count, set], &rays.indices, &pixels);
+                    streams = strata.map(SampleStream::Stratified);
                     self.screen_positions(|at| {
-                        Self::sample_position(tile.pixel(at), centered([pairs[0][at], pairs[1][at]]))
+                        Self::sample_position(pixel(at), centered([pairs[0][at], pairs[1][at]]))
                     })
                 }
                 _ => self.screen_positions(|at| {
                     let sample = Sample {
-                        pixel: tile.pixel(at),
-                        index,
+                        pixel: pixel(at),
+                        index: rays.indices[at],
                         count,
                         set,
                     };
-                    stream[at] = SampleStream::new(sampler, sample);
-                    Self::sample_position(sample.pixel, stream[at].jitter())
+                    streams[at] = SampleStream::new(sampler, sample);
+                    Self::sample_position(sample.pixel, streams[at].jitter())
                 }),
             };
             let packet = self.camera.packet(&screen, self.level);
             let found = self.nearest_of_packet(&packet);
-            let mut paths: SmallVec<[PathState<T>; PACKET_RAYS]> = SmallVec::new();
-            let mut slots: SmallVec<[usize; PACKET_RAYS]> = SmallVec::new();
-            tile.for_each_pixel(self.film.size[0], |at, _| {
-                let figure = topmost_figure(&self.figures, [screen[0][at], screen[1][at]]);
-                let first = found.get(at);
-                match (figure, first.get()) {
-                    (Some(figure), _) => sums[at] = sums[at] + self.figures[figure].color,
-                    // The background fills much of many images and is cheap to evaluate.
-                    (None, None) => sums[at] = sums[at] + self.background(packet.ray(at).direction),
-                    (None, Some(_)) => {
-                        let stream = std::mem::replace(&mut stream[at], SampleStream::Center);
-                        paths.push(PathState::new(packet.ray(at), first, stream));
-                        slots.push(at);
-                    }
+            let (mut active, mut radiance) = (0, [[T::zero(); PACKET_RAYS]; 3]);
+            for (at, &pixel) in rays.pixels.iter().enumerate() {
+                if !tile.contains(pixel) {
+                    continue;
                 }
-            });
-            match &self.kernel {
-                Kernel::Spheres(world) => world.trace(&mut paths, &Exact),
-                Kernel::Shapes(world) => world.trace(&mut paths, &Exact),
+                match topmost_figure(&self.figures, [screen[0][at], screen[1][at]]) {
+                    Some(figure) => {
+                        let color = self.figures[figure].color.to_array();
+                        (0..3).for_each(|axis| radiance[axis][at] = color[axis]);
+                    }
+                    None => active |= 1 << at,
+                }
             }
-            for (path, at) in paths.iter().zip(slots) {
-                sums[at] = sums[at] + path.sum;
+            let origins = packet.all_origins();
+            let samples = Samples {
+                origins: each_slice(&origins),
+                directions: each_slice(&packet.directions),
+                t: found.t(),
+                surfaces: found.surfaces(),
+                active,
+                streams: &mut streams,
+                radiance: radiance.each_mut().map(|of_axis| &mut of_axis[..]),
+            };
+            match &self.kernel {
+                Kernel::Spheres(world) => world.trace(samples),
+                Kernel::Shapes(world) => world.trace(samples),
+            }
+            // The samples of a pixel are added in their order.
+            for (sums, radiance) in sums.iter_mut().zip(&radiance) {
+                for (&pixel, &more) in rays.pixels.iter().zip(radiance) {
+                    sums[pixel] = sums[pixel] + more;
+                }
             }
         }
         sums
@@ -160,9 +217,9 @@ impl<T: Real> Tracer<T> {
     fn screen_positions(&self, mut position: impl FnMut(usize) -> [T; 2]) -> [[T; PACKET_RAYS]; 2] {
         let [mut xs, mut ys] = [[T::zero(); PACKET_RAYS]; 2];
         for (at, (x, y)) in xs.iter_mut().zip(&mut ys).enumerate() {
-            [*x, *y] = self.camera.screen(position(at));
+            [*x, *y] = position(at);
         }
-        [xs, ys]
+        self.camera.screen_positions(self.level, &[xs, ys])
     }
 
     /// Finds the first hits of a packet of camera rays.
@@ -170,15 +227,6 @@ impl<T: Real> Tracer<T> {
         match &self.kernel {
             Kernel::Spheres(world) => world.nearest_of_packet(packet),
             Kernel::Shapes(world) => world.nearest_of_packet(packet),
-        }
-    }
-
-    /// Returns the radiance of a ray that misses everything.
-    #[inline]
-    fn background(&self, direction: T::Vec3) -> T::Vec3 {
-        match &self.kernel {
-            Kernel::Spheres(world) => world.background.color(direction),
-            Kernel::Shapes(world) => world.background.color(direction),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use pulp::{Scalar, Simd};
 
-use super::Lanes;
+use super::{Lanes, MAX_LANES};
 
 /// An instruction set: the operations that pulp's trait lacks.
 pub trait InstructionSet: Simd {
@@ -122,11 +122,32 @@ mod aarch64 {
     }
 }
 
+/// Bit i for lane i, as an unsigned integer per lane.
+const LANE_BITS_32: [u32; MAX_LANES] = lane_bits();
+const LANE_BITS_64: [u64; MAX_LANES] = {
+    let (bits, mut wide, mut at) = (lane_bits(), [0; MAX_LANES], 0);
+    while at < MAX_LANES {
+        wide[at] = bits[at] as u64;
+        at += 1;
+    }
+    wide
+};
+
+const fn lane_bits() -> [u32; MAX_LANES] {
+    let (mut bits, mut at) = ([0; MAX_LANES], 0);
+    while at < MAX_LANES {
+        bits[at] = 1 << at;
+        at += 1;
+    }
+    bits
+}
+
 macro_rules! lanes {
     ($number:ty, $numbers:ident, $mask:ident, $count:ident, $eight_type:ident, $eight:ident, $bits:ident,
      $splat:ident, $load:ident, $store:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $neg:ident,
      $sqrt:ident, $and:ident, $or:ident, $min:ident, $max:ident, $less:ident, $less_or_equal:ident, $equal:ident, $select:ident,
-     $reduce_min:ident, $reduce_max:ident, $reduce_sum:ident) => {
+     $reduce_min:ident, $reduce_max:ident, $reduce_sum:ident, $abs:ident,
+     $lane_bits:ident, $load_integers:ident, $splat_integer:ident, $and_integers:ident, $equal_integers:ident) => {
         impl<S: InstructionSet> Lanes<$number> for S {
             type Numbers = S::$numbers;
             type Mask = S::$mask;
@@ -149,7 +170,7 @@ macro_rules! lanes {
                 S::$store(&mut to[..S::$count]).0[0] = numbers;
             }
             lanes!(binary $numbers, add $add, sub $sub, mul $mul, div $div, and $and, or $or, min $min, max $max);
-            lanes!(unary $numbers, neg $neg, sqrt $sqrt);
+            lanes!(unary $numbers, neg $neg, sqrt $sqrt, abs $abs);
             lanes!(reduction $number, $numbers, reduce_min $reduce_min, reduce_max $reduce_max, reduce_sum $reduce_sum);
             lanes!(comparison $numbers, $mask, less $less, less_or_equal $less_or_equal, equal $equal);
             #[inline(always)]
@@ -159,6 +180,12 @@ macro_rules! lanes {
             #[inline(always)]
             fn bits(self, mask: S::$mask) -> u32 {
                 InstructionSet::$bits(self, mask)
+            }
+            #[inline(always)]
+            fn mask(self, bits: u32) -> S::$mask {
+                let lanes = S::$load_integers(&$lane_bits[..S::$count]).0[0];
+                let bits = Simd::$splat_integer(self, bits.into());
+                Simd::$equal_integers(self, Simd::$and_integers(self, bits, lanes), lanes)
             }
         }
     };
@@ -215,7 +242,13 @@ lanes!(
     select_f32s,
     reduce_min_f32s,
     reduce_max_f32s,
-    reduce_sum_f32s
+    reduce_sum_f32s,
+    abs_f32s,
+    LANE_BITS_32,
+    as_simd_u32s,
+    splat_u32s,
+    and_u32s,
+    equal_u32s
 );
 lanes!(
     f64,
@@ -244,5 +277,11 @@ lanes!(
     select_f64s,
     reduce_min_f64s,
     reduce_max_f64s,
-    reduce_sum_f64s
+    reduce_sum_f64s,
+    abs_f64s,
+    LANE_BITS_64,
+    as_simd_u64s,
+    splat_u64s,
+    and_u64s,
+    equal_u64s
 );

@@ -14,7 +14,7 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 
 use pulp::Scalar;
-pub(super) use wide::{Columns, Wide, Wide3};
+pub(super) use wide::{Columns, Wide, Wide3, lanes_of};
 
 /// SIMD instructions for one number type.
 pub trait Lanes<T>: Copy + Debug {
@@ -48,6 +48,8 @@ pub trait Lanes<T>: Copy + Debug {
     fn neg(self, a: Self::Numbers) -> Self::Numbers;
     /// √a
     fn sqrt(self, a: Self::Numbers) -> Self::Numbers;
+    /// |a|
+    fn abs(self, a: Self::Numbers) -> Self::Numbers;
     /// Bitwise and.
     fn and(self, a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     /// Bitwise or.
@@ -73,6 +75,8 @@ pub trait Lanes<T>: Copy + Debug {
     fn reduce_sum(self, a: Self::Numbers) -> T;
     /// Converts a mask to bits: bit i is lane i.
     fn bits(self, mask: Self::Mask) -> u32;
+    /// Converts bits to a mask: lane i is bit i.
+    fn mask(self, bits: u32) -> Self::Mask;
 }
 
 /// Maximum number of lanes over all instruction sets.
@@ -129,11 +133,19 @@ impl Level {
 pub trait Vectorized: Sized {
     /// Runs a kernel compiled for an instruction set.
     fn run<K: Kernel<Self>>(level: Level, kernel: K) -> K::Output;
+
+    /// Runs a kernel with one lane.
+    fn run_scalar<K: Kernel<Self>>(kernel: K) -> K::Output;
 }
 
 macro_rules! vectorized {
     ($($number:ty),*) => {
         $(impl Vectorized for $number {
+            #[inline(always)]
+            fn run_scalar<K: Kernel<Self>>(kernel: K) -> K::Output {
+                kernel.run(Scalar)
+            }
+
             #[inline(always)]
             fn run<K: Kernel<Self>>(level: Level, kernel: K) -> K::Output {
                 match level {

@@ -68,6 +68,10 @@ impl<T, S: Lanes<T>> Wide<T, S> {
         self.of(self.simd.sqrt(self.numbers))
     }
     #[inline(always)]
+    pub(in super::super) fn abs(self) -> Self {
+        self.of(self.simd.abs(self.numbers))
+    }
+    #[inline(always)]
     pub(in super::super) fn and(self, other: Self) -> Self {
         self.of(self.simd.and(self.numbers, other.numbers))
     }
@@ -95,10 +99,51 @@ impl<T, S: Lanes<T>> Wide<T, S> {
     pub(in super::super) fn equal(self, other: Self) -> S::Mask {
         self.simd.equal(self.numbers, other.numbers)
     }
+    /// Returns the lanes in which `self` < `other`, as bits.
+    #[inline(always)]
+    pub(in super::super) fn is_less(self, other: Self) -> u32 {
+        self.simd.bits(self.less(other))
+    }
     #[inline(always)]
     pub(in super::super) fn select(self, mask: S::Mask, no: Self) -> Self {
         self.of(self.simd.select(mask, self.numbers, no.numbers))
     }
+}
+
+impl<T: Float, S: Lanes<T>> Wide<T, S> {
+    /// Returns the numbers; entries beyond the lanes are 0.
+    #[inline(always)]
+    pub(in super::super) fn to_array(self) -> [T; MAX_LANES] {
+        let mut numbers = [T::zero(); MAX_LANES];
+        self.store(&mut numbers);
+        numbers
+    }
+    /// Returns the number itself if it is positive, else 0; 0 for NaN.
+    #[inline(always)]
+    pub(in super::super) fn positive(self) -> Self {
+        let zero = Self::splat(self.simd, T::zero());
+        self.select(zero.less(self), zero)
+    }
+    /// Replaces each number whose bit is set by a function of it.
+    #[inline(always)]
+    pub(in super::super) fn map(self, bits: u32, function: impl Fn(T) -> T) -> Self {
+        let mut numbers = self.to_array();
+        for lane in lanes_of(bits) {
+            numbers[lane] = function(numbers[lane]);
+        }
+        Self::load(self.simd, &numbers)
+    }
+}
+
+/// Iterates over the lanes whose bits are set.
+#[inline(always)]
+pub(in super::super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        // Within the bounds of arrays, which are not checked then.
+        (lane < 32).then_some(lane % MAX_LANES)
+    })
 }
 
 macro_rules! operator {
@@ -142,6 +187,25 @@ impl<T: Copy, S: Lanes<T>> Wide3<T, S> {
             Wide::load(simd, &x[at..]),
             Wide::load(simd, &y[at..]),
             Wide::load(simd, &z[at..]),
+        )
+    }
+    /// Loads one vector per lane from slices of components.
+    #[inline(always)]
+    pub(in super::super) fn load_slices(simd: S, [x, y, z]: [&[T]; 3]) -> Self {
+        Self(Wide::load(simd, x), Wide::load(simd, y), Wide::load(simd, z))
+    }
+    /// Multiplies component by component.
+    #[inline(always)]
+    pub(in super::super) fn times(self, other: Self) -> Self {
+        Self(self.0 * other.0, self.1 * other.1, self.2 * other.2)
+    }
+    /// The cross product, in the order of glam.
+    #[inline(always)]
+    pub(in super::super) fn cross(self, other: Self) -> Self {
+        Self(
+            self.1 * other.2 - other.1 * self.2,
+            self.2 * other.0 - other.2 * self.0,
+            self.0 * other.1 - other.0 * self.1,
         )
     }
     #[inline(always)]
@@ -228,6 +292,13 @@ impl<T: Float, S: Lanes<T>> Wide3<T, S> {
 #[repr(align(64))]
 pub(in super::super) struct Columns<T>([[T; MAX_LANES]; 3]);
 
+impl<T: Float, S: Lanes<T>> From<Wide3<T, S>> for Columns<T> {
+    #[inline(always)]
+    fn from(vectors: Wide3<T, S>) -> Self {
+        Self([vectors.0.to_array(), vectors.1.to_array(), vectors.2.to_array()])
+    }
+}
+
 impl<T: Copy> Columns<T> {
     /// Repeats one vector.
     pub(in super::super) fn splat([x, y, z]: [T; 3]) -> Self {
@@ -250,12 +321,5 @@ impl<T: Copy> Columns<T> {
     #[inline(always)]
     pub(in super::super) fn load<S: Lanes<T>>(&self, simd: S, at: usize) -> Wide3<T, S> {
         Wide3::load(simd, &self.0, at)
-    }
-
-    #[inline(always)]
-    pub(in super::super) fn store<S: Lanes<T>>(&mut self, vectors: Wide3<T, S>, at: usize) {
-        vectors.0.store(&mut self.0[0][at..]);
-        vectors.1.store(&mut self.0[1][at..]);
-        vectors.2.store(&mut self.0[2][at..]);
     }
 }

@@ -1,5 +1,10 @@
 //! Boxes.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
 use toyproof_scene as scene;
 
 use super::Primitive;
@@ -7,7 +12,7 @@ use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
 use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
-use crate::spheres::{Packet, PacketHits};
+use crate::spheres::{LaneRays, Packet, PacketHits};
 
 /// A box: the intersection of three slabs, each of the points p with `|p[i]| ≤ half[i]` in local coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -50,6 +55,35 @@ impl<T: Real> Cuboid<T> {
             leave = leave.min((side - o) / d);
         }
         (enter < leave).then_some([enter, leave])
+    }
+
+    /// Returns t of rays in lanes, infinite where there is no hit, by the operations of [`Cuboid::interval`].
+    #[inline(always)]
+    fn lane_ts<S: Lanes<T>>(
+        &self,
+        simd: S,
+        origin: Wide3<T, S>,
+        direction: Wide3<T, S>,
+        t_min: Wide<T, S>,
+    ) -> Wide<T, S> {
+        let [zero, infinity] = [T::zero(), T::infinity()].map(|number| Wide::splat(simd, number));
+        let relative = origin - Wide3::splat(simd, self.center.to_array());
+        let (mut enter, mut leave) = (-infinity, infinity);
+        for (axis, half) in self.axes.into_iter().zip(self.half) {
+            let axis = Wide3::splat(simd, axis.to_array());
+            let half = Wide::splat(simd, half);
+            let (o, d) = (axis.dot(relative), axis.dot(direction));
+            let side = (-half).select(d.less(zero), half);
+            let (near, far) = ((-side - o) / d, (side - o) / d);
+            // A line parallel to the slab is within it or misses the box.
+            let within = o.max(-o).less(half);
+            let parallel = d.equal(zero);
+            let near = (-infinity).select(within, infinity).select(parallel, near);
+            enter = enter.max(near);
+            leave = leave.min(infinity.select(parallel, far));
+        }
+        let t = enter.select(t_min.less(enter), leave);
+        t.select(enter.less(leave), infinity)
     }
 
     /// Returns the axis of the face on which a local point lies, up to rounding: the one whose face is
@@ -104,6 +138,18 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
         true
     }
 
+    #[inline(always)]
+    fn intersect_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        policy: &impl RayEpsilonPolicy<T>,
+        _: u32,
+    ) -> Wide<T, S> {
+        let t_min = Wide::splat(simd, policy.t_min(true));
+        self.lane_ts(simd, rays.origin, rays.direction, t_min)
+    }
+
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
         let point = ray.origin + ray.direction * t;
         let local = self.localize(point);
@@ -131,31 +177,10 @@ struct CuboidHits<'a, T: Real> {
 impl<T: Real> Kernel<T> for CuboidHits<'_, T> {
     type Output = ();
 
-    /// As [`Cuboid::interval`], with the same operations.
     #[inline(always)]
     fn run<S: Lanes<T>>(self, simd: S) {
-        let Cuboid { center, axes, half } = self.cuboid;
-        let axes = axes.map(|axis| Wide3::splat(simd, axis.to_array()));
-        let center = Wide3::splat(simd, center.to_array());
-        let half = half.map(|half| Wide::splat(simd, half));
-        let [zero, infinity] = [T::zero(), T::infinity()].map(|number| Wide::splat(simd, number));
-        let intersect = |origin, direction: Wide3<T, S>, t_min: Wide<T, S>| {
-            let relative: Wide3<T, S> = origin - center;
-            let (mut enter, mut leave) = (-infinity, infinity);
-            for (axis, half) in axes.into_iter().zip(half) {
-                let (o, d) = (axis.dot(relative), axis.dot(direction));
-                let side = (-half).select(d.less(zero), half);
-                let (near, far) = ((-side - o) / d, (side - o) / d);
-                // A line parallel to the slab is within it or misses the box.
-                let within = o.max(-o).less(half);
-                let parallel = d.equal(zero);
-                let near = (-infinity).select(within, infinity).select(parallel, near);
-                enter = enter.max(near);
-                leave = leave.min(infinity.select(parallel, far));
-            }
-            let t = enter.select(t_min.less(enter), leave);
-            t.select(enter.less(leave), infinity)
-        };
+        let cuboid = self.cuboid;
+        let intersect = |origin, direction, t_min| cuboid.lane_ts(simd, origin, direction, t_min);
         self.found
             .update_packet(simd, self.packet, self.number, intersect);
     }

@@ -14,11 +14,11 @@ use std::fmt::Debug;
 use toyproof_scene::{self as scene, Equation};
 
 use self::cuboid::Cuboid;
-use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide, Wide3};
+use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide, Wide3, lanes_of};
 use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
-use crate::spheres::{IntersectSphere, Packet, PacketHits};
+use crate::spheres::{IntersectSphere, LaneRays, Packet, PacketHits};
 
 /// A surface that rays can intersect.
 pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
@@ -35,6 +35,41 @@ pub(super) trait Primitive<T: Real>: Debug + Send + Sync {
     /// otherwise returns false.
     fn update_packet(&self, _: Level, _: &Packet<T>, _: &mut PacketHits<T>, _number: u32) -> bool {
         false
+    }
+
+    /// Like [`Primitive::intersect`] for the rays of the `active` lanes; not finite where there is no hit.
+    #[inline(always)]
+    fn intersect_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        policy: &impl RayEpsilonPolicy<T>,
+        active: u32,
+    ) -> Wide<T, S> {
+        let rays = rays.spill();
+        let mut t = [T::infinity(); MAX_LANES];
+        for lane in lanes_of(active) {
+            t[lane] = self.intersect(&rays.get(lane), policy).unwrap_or(t[lane]);
+        }
+        Wide::load(simd, &t)
+    }
+
+    /// Returns the normals of [`Primitive::surface`] for the rays of the `active` lanes.
+    #[inline(always)]
+    fn normals_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        t: Wide<T, S>,
+        active: u32,
+    ) -> Wide3<T, S> {
+        let (rays, t) = (rays.spill(), t.to_array());
+        let mut normals = Columns::splat([T::zero(); 3]);
+        for lane in lanes_of(active) {
+            let [_, normal] = self.surface(&rays.get(lane), t[lane]);
+            normals.set(lane, normal.to_array());
+        }
+        normals.load(simd, 0)
     }
 
     /// Returns the sphere if it is one.
@@ -105,6 +140,38 @@ impl<T: Real> Primitive<T> for Shape<T> {
         }
     }
 
+    #[inline(always)]
+    fn intersect_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        policy: &impl RayEpsilonPolicy<T>,
+        active: u32,
+    ) -> Wide<T, S> {
+        match self {
+            Self::Plane(plane) => plane.intersect_in_lanes(simd, rays, policy, active),
+            Self::Box(cuboid) => cuboid.intersect_in_lanes(simd, rays, policy, active),
+            Self::Quadric(quadric) => quadric.intersect_in_lanes(simd, rays, policy, active),
+            Self::Sphere(sphere) => sphere.intersect_in_lanes(simd, rays, policy, active),
+        }
+    }
+
+    #[inline(always)]
+    fn normals_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        t: Wide<T, S>,
+        active: u32,
+    ) -> Wide3<T, S> {
+        match self {
+            Self::Plane(plane) => plane.normals_in_lanes(simd, rays, t, active),
+            Self::Box(cuboid) => cuboid.normals_in_lanes(simd, rays, t, active),
+            Self::Quadric(quadric) => quadric.normals_in_lanes(simd, rays, t, active),
+            Self::Sphere(sphere) => sphere.normals_in_lanes(simd, rays, t, active),
+        }
+    }
+
     fn sphere(&self) -> Option<&Sphere<T>> {
         match self {
             Self::Sphere(sphere) => Some(sphere),
@@ -171,35 +238,6 @@ impl<T: Real> Primitive<T> for Sphere<T> {
 
     fn sphere(&self) -> Option<&Self> {
         Some(self)
-    }
-}
-
-/// Kernel that computes [`Primitive::surface`] for the first `count` rays and the spheres that they hit.
-#[derive(Debug)]
-pub(super) struct Surfaces<'a, T> {
-    pub(super) count: usize,
-    pub(super) origins: &'a Columns<T>,
-    pub(super) directions: &'a Columns<T>,
-    pub(super) t: &'a [T; MAX_LANES],
-    pub(super) centers: &'a Columns<T>,
-    /// Receives the points and the normals.
-    pub(super) out: &'a mut [Columns<T>; 2],
-}
-
-impl<T: Real> Kernel<T> for Surfaces<'_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, simd: S) {
-        let [points, normals] = self.out;
-        let mut at = 0;
-        while at < self.count {
-            let t = Wide::load(simd, &self.t[at..]);
-            let point = self.origins.load(simd, at) + self.directions.load(simd, at) * t;
-            points.store(point, at);
-            normals.store((point - self.centers.load(simd, at)).normalize(simd), at);
-            at += S::COUNT;
-        }
     }
 }
 
@@ -333,6 +371,14 @@ impl<T: Real> Plane<T> {
             normal: T::Vec3::from_f64(normal),
         }
     }
+
+    /// Returns t of rays in lanes.
+    #[inline(always)]
+    fn lane_ts<S: Lanes<T>>(&self, simd: S, origin: Wide3<T, S>, direction: Wide3<T, S>) -> Wide<T, S> {
+        let normal = Wide3::splat(simd, self.normal.to_array());
+        let point = Wide3::splat(simd, self.point.to_array());
+        normal.dot(point - origin) / normal.dot(direction)
+    }
 }
 
 impl<T: Real> Primitive<T> for Plane<T> {
@@ -366,6 +412,30 @@ impl<T: Real> Primitive<T> for Plane<T> {
         true
     }
 
+    #[inline(always)]
+    fn intersect_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        _: &impl RayEpsilonPolicy<T>,
+        _: u32,
+    ) -> Wide<T, S> {
+        self.lane_ts(simd, rays.origin, rays.direction)
+    }
+
+    #[inline(always)]
+    fn normals_in_lanes<S: Lanes<T>>(
+        &self,
+        simd: S,
+        rays: &LaneRays<T, S>,
+        _: Wide<T, S>,
+        _: u32,
+    ) -> Wide3<T, S> {
+        let normal = Wide3::splat(simd, self.normal.to_array());
+        let facing = normal.dot(rays.direction).less(Wide::splat(simd, T::zero()));
+        normal.select(facing, -normal)
+    }
+
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
         let point = ray.origin + ray.direction * t;
         let facing = self.normal.dot(ray.direction) < T::zero();
@@ -386,9 +456,8 @@ impl<T: Real> Kernel<T> for PlaneHits<'_, T> {
 
     #[inline(always)]
     fn run<S: Lanes<T>>(self, simd: S) {
-        let normal = Wide3::splat(simd, self.plane.normal.to_array());
-        let point = Wide3::splat(simd, self.plane.point.to_array());
-        let intersect = |origin, direction, _| normal.dot(point - origin) / normal.dot(direction);
+        let plane = self.plane;
+        let intersect = |origin, direction, _| plane.lane_ts(simd, origin, direction);
         self.found
             .update_packet(simd, self.packet, self.number, intersect);
     }

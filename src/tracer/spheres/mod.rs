@@ -11,12 +11,14 @@
 )]
 
 mod block;
+mod lanes;
 mod packet;
 mod single_ray;
 #[cfg(test)]
 mod tests;
 mod tree;
 
+pub(super) use lanes::{LaneHits, LaneRays};
 pub(super) use packet::{Origins, PACKET_RAYS, Packet, PacketHits};
 pub(super) use single_ray::Query;
 

@@ -5,8 +5,8 @@ use smallvec::SmallVec;
 use super::block::{Block, Reach, Slab, Slabs};
 use super::single_ray::push_sorted;
 use super::tree::{Child, Node};
-use super::{BLOCK_SIZE, NO_SURFACE, Roots, Spheres, discriminant, other_root};
-use crate::lanes::{Kernel, Lanes, MAX_LANES, Wide, Wide3};
+use super::{BLOCK_SIZE, NO_SURFACE, Roots, Spheres, discriminant};
+use crate::lanes::{Kernel, Lanes, Wide, Wide3};
 use crate::ray::{FirstHit, Ray};
 use crate::real::{Real, Vector};
 
@@ -22,66 +22,15 @@ pub(super) type Each<T> = [T; PACKET_RAYS];
 pub(in super::super) struct Packet<T> {
     pub(in super::super) origins: Origins<T>,
     pub(in super::super) directions: [Each<T>; 3],
-    /// The surface on which each ray starts and which it must not hit there; `None` if no ray starts on a
-    /// surface.
-    pub(super) from: Option<Each<T>>,
-    /// Exclusive lower bound for t of hits.
-    pub(super) t_min: T,
-    /// Number of rays in use: a multiple of the number of lanes.
-    pub(super) count: usize,
 }
 
 impl<T: Real> Packet<T> {
     /// Creates a full packet of rays that start on no surface.
     pub(in super::super) fn full(origins: Origins<T>, directions: [Each<T>; 3]) -> Self {
-        Self {
-            origins,
-            directions,
-            from: None,
-            t_min: T::zero(),
-            count: PACKET_RAYS,
-        }
+        Self { origins, directions }
     }
 
-    /// Creates a packet of one to [`PACKET_RAYS`] rays with the surfaces on which they start, for spheres
-    /// without a tree. Unused slots repeat the last ray.
-    pub(in super::super) fn partial<'a>(
-        rays: impl Iterator<Item = (&'a Ray<T>, Option<usize>)>,
-        t_min: T,
-    ) -> Self {
-        let mut origins = [[T::zero(); PACKET_RAYS]; 3];
-        let mut directions = origins;
-        let mut from = [T::tag(NO_SURFACE); PACKET_RAYS];
-        let mut put = |at: usize, [origin, direction]: [[T; 3]; 2]| {
-            for axis in 0..3 {
-                (origins[axis][at], directions[axis][at]) = (origin[axis], direction[axis]);
-            }
-        };
-        let mut last = [[T::zero(); 3]; 2];
-        let mut count = 0;
-        for (ray, surface) in rays {
-            last = [ray.origin.to_array(), ray.direction.to_array()];
-            put(count, last);
-            from[count] = T::tag(surface.map_or(NO_SURFACE, |surface| surface as u32));
-            count += 1;
-        }
-        let padded = count.next_multiple_of(MAX_LANES);
-        (count..padded).for_each(|at| put(at, last));
-        Self {
-            origins: Origins::Each(origins),
-            directions,
-            from: Some(from),
-            t_min,
-            count: padded,
-        }
-    }
-
-    /// Returns the number of rays, a multiple of the number of lanes.
-    pub(in super::super) fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Returns one ray. In a packet with surfaces, one that starts on none has the surface [`NO_SURFACE`].
+    /// Returns one ray.
     #[inline]
     pub(in super::super) fn ray(&self, at: usize) -> Ray<T> {
         let of = |[x, y, z]: &[Each<T>; 3]| T::Vec3::new(x[at], y[at], z[at]);
@@ -91,7 +40,15 @@ impl<T: Real> Packet<T> {
                 Origins::Each(origins) => of(origins),
             },
             direction: of(&self.directions),
-            from: self.from.as_ref().map(|from| from[at].untag() as usize),
+            from: None,
+        }
+    }
+
+    /// Returns the origin of each ray.
+    pub(in super::super) fn all_origins(&self) -> [Each<T>; 3] {
+        match &self.origins {
+            Origins::Shared(origin) => origin.map(|component| [component; PACKET_RAYS]),
+            Origins::Each(origins) => *origins,
         }
     }
 
@@ -132,21 +89,14 @@ impl<T: Real> PacketHits<T> {
         }
     }
 
-    /// No hits, with an exclusive upper bound of t for each ray.
-    pub(in super::super) fn before(limits: impl Iterator<Item = T>) -> Self {
-        let mut found = Self {
-            t: [T::zero(); PACKET_RAYS],
-            // No index is smaller, so that no hit at the bound replaces it.
-            tags: [T::tag(0); PACKET_RAYS],
-        };
-        found.t.iter_mut().zip(limits).for_each(|(t, limit)| *t = limit);
-        found
+    /// Returns t of each ray, infinite if there is no hit.
+    pub(in super::super) fn t(&self) -> &Each<T> {
+        &self.t
     }
 
-    /// Returns whether a ray has a hit before `limit`.
-    #[inline]
-    pub(in super::super) fn is_before(&self, ray: usize, limit: T) -> bool {
-        self.t[ray] < limit
+    /// Returns the surface that each ray hits, encoded by [`Real::tag`].
+    pub(in super::super) fn surfaces(&self) -> &Each<T> {
+        &self.tags
     }
 
     /// Replaces the hit of a ray if the given one is nearer; see [`FirstHit::update`].
@@ -159,8 +109,7 @@ impl<T: Real> PacketHits<T> {
     }
 
     /// Replaces the hits of all rays of a packet by those of a surface where these are nearer. `intersect` maps
-    /// origins and directions to t, which is not finite if there is no hit. Rays that start on the surface are
-    /// left out.
+    /// origins and directions to t, which is not finite if there is no hit.
     #[inline(always)]
     pub(in super::super) fn update_packet<S: Lanes<T>>(
         &mut self,
@@ -169,15 +118,11 @@ impl<T: Real> PacketHits<T> {
         number: u32,
         intersect: impl Fn(Wide3<T, S>, Wide3<T, S>, Wide<T, S>) -> Wide<T, S>,
     ) {
-        let [t_min, infinity] = [packet.t_min, T::infinity()].map(|number| Wide::splat(simd, number));
+        let [t_min, infinity] = [T::zero(), T::infinity()].map(|number| Wide::splat(simd, number));
         let mut at = 0;
-        while at < packet.count {
+        while at < PACKET_RAYS {
             let origins = packet.lane_origins(simd, at);
-            let mut t = intersect(origins, Wide3::load(simd, &packet.directions, at), t_min);
-            if let Some(from) = &packet.from {
-                let own = Wide::load(simd, &from[at..]).equal(Wide::splat(simd, T::tag(number)));
-                t = infinity.select(own, t);
-            }
+            let t = intersect(origins, Wide3::load(simd, &packet.directions, at), t_min);
             self.update_lanes(simd, at, t.select(t_min.less(t), infinity), number);
             at += S::COUNT;
         }
@@ -306,7 +251,7 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
     fn new(simd: S, packet: &'a Packet<T>, found: &'a mut PacketHits<T>) -> Self {
         let (mut a, mut inverse_a) = ([T::zero(); PACKET_RAYS], [T::zero(); PACKET_RAYS]);
         let mut at = 0;
-        while at < packet.count {
+        while at < PACKET_RAYS {
             let d = Wide3::load(simd, &packet.directions, at);
             d.dot(d).store(&mut a[at..]);
             (Wide::splat(simd, T::one()) / d.dot(d)).store(&mut inverse_a[at..]);
@@ -322,7 +267,7 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
                 Self::slab(simd, packet, 1),
                 Self::slab(simd, packet, 2),
             ),
-            limit: largest(simd, &found.t[..packet.count]),
+            limit: largest(simd, &found.t),
             found,
         }
     }
@@ -331,21 +276,16 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
     fn slab(simd: S, packet: &Packet<T>, axis: usize) -> Slab<T, S::Eight> {
         let origins = match &packet.origins {
             Origins::Shared(origin) => [origin[axis]; 2],
-            Origins::Each(origins) => range(simd, &origins[axis][..packet.count]),
+            Origins::Each(origins) => range(simd, &origins[axis]),
         };
-        let directions = range(simd, &packet.directions[axis][..packet.count]);
+        let directions = range(simd, &packet.directions[axis]);
         Slab::new(simd.eight(), origins, directions)
     }
 
     /// Intersects all rays with those spheres of a block that any ray may hit.
     #[inline(always)]
     fn intersect_block(&mut self, block: &Block<T>, reaches: &Reach<T>) {
-        let mut hits = (1 << reaches.count) - 1;
-        // Rays that start on surfaces are incoherent, and a ray must not miss its own sphere when rounding
-        // has put its origin outside of the bounds.
-        if self.packet.from.is_none() {
-            hits &= !self.misses(block, reaches);
-        }
+        let mut hits = !self.misses(block, reaches) & ((1 << reaches.count) - 1);
         let mut is_changed = false;
         while hits != 0 {
             let at = hits.trailing_zeros() as usize % BLOCK_SIZE;
@@ -353,7 +293,7 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
             is_changed |= self.intersect_sphere(block, at);
         }
         if is_changed {
-            self.limit = largest(self.simd, &self.found.t[..self.packet.count]);
+            self.limit = largest(self.simd, &self.found.t);
         }
     }
 
@@ -391,14 +331,14 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
                 let f = (Wide3::splat(simd, *origin) - center) * inverse_unit;
                 let c = f.dot(f) - radius2;
                 let mut at = 0;
-                while at < self.packet.count {
+                while at < PACKET_RAYS {
                     is_changed |= self.intersect_lanes(at, block, slot, f, c, radius2);
                     at += S::COUNT;
                 }
             }
             Origins::Each(origins) => {
                 let mut at = 0;
-                while at < self.packet.count {
+                while at < PACKET_RAYS {
                     let f = (Wide3::load(simd, origins, at) - center) * inverse_unit;
                     let c = f.dot(f) - radius2;
                     is_changed |= self.intersect_lanes(at, block, slot, f, c, radius2);
@@ -422,20 +362,10 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
     ) -> bool {
         let simd = self.simd;
         let d = Wide3::load(simd, &self.packet.directions, at);
-        let [along, mut disc] = discriminant(f, d, Wide::load(simd, &self.inverse_a[at..]), radius2);
+        let [along, disc] = discriminant(f, d, Wide::load(simd, &self.inverse_a[at..]), radius2);
         let [zero, t_min, infinity] =
-            [T::zero(), self.packet.t_min, T::infinity()].map(|number| Wide::splat(simd, number));
+            [T::zero(), T::zero(), T::infinity()].map(|number| Wide::splat(simd, number));
         let number = block.numbers[slot];
-        let tag = Wide::splat(simd, T::tag(number));
-        let own = self
-            .packet
-            .from
-            .as_ref()
-            .map(|from| Wide::load(simd, &from[at..]).equal(tag));
-        if let Some(own) = own {
-            // It may be negative for a ray tangent to the surface.
-            disc = zero.select(own, disc);
-        }
         let may_hit = zero.less_or_equal(disc);
         if simd.bits(may_hit) == 0 {
             return false;
@@ -449,10 +379,7 @@ impl<'a, T: Real, S: Lanes<T>> PacketTraversal<'a, T, S> {
             c,
             unit,
         };
-        let mut t = roots.beyond(simd, t_min).select(may_hit, infinity);
-        if let Some(own) = own {
-            t = other_root(simd, along, a, unit).select(own, t);
-        }
+        let t = roots.beyond(simd, t_min).select(may_hit, infinity);
         let t = t.select(t_min.less(t), infinity);
         self.found.update_lanes(simd, at, t, number)
     }

@@ -5,7 +5,7 @@ use toyproof_image::pcg;
 use toyproof_scene::unit as unit_interval;
 
 use super::*;
-use crate::lanes::Level;
+use crate::lanes::{Level, lanes_of};
 use crate::ray::Ray;
 use crate::real::{Real, Vector};
 
@@ -251,18 +251,51 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
         let limits: Vec<_> = (expected.iter().enumerate())
             .map(|(at, expected)| expected.map_or(T::one(), |(t, _)| t) * factors[at % 3])
             .collect();
-        let owned = rays.iter().map(|(ray, own)| (ray, own.map(|own| own as usize)));
-        let packet = Packet::partial(owned, t_min);
+        let owned = |at: usize| rays.get(at).unwrap_or(&rays[0]);
+        let component = |of: fn(&Ray<T>) -> T::Vec3| {
+            [0, 1, 2].map(|axis| std::array::from_fn(|at| of(&owned(at).0).to_array()[axis]))
+        };
+        let [origins, directions] = [component(|ray| ray.origin), component(|ray| ray.direction)];
         for level in Level::all() {
             let all = Spheres::new(&spheres, false, level);
-            let (mut found, mut limited) = (PacketHits::none(), PacketHits::before(limits.iter().copied()));
-            all.nearest_of_packet(&packet, &mut found);
-            all.nearest_of_packet(&packet, &mut limited);
+            let in_lanes = InLanes {
+                spheres: &all,
+                origins: &origins,
+                directions: &directions,
+                from: std::array::from_fn(|at| T::tag(owned(at).1.unwrap_or(NO_SURFACE))),
+                t_min,
+                limits: std::array::from_fn(|at| limits.get(at).copied().unwrap_or(T::one())),
+                ignored: std::array::from_fn(|at| {
+                    T::tag(
+                        expected
+                            .get(at)
+                            .copied()
+                            .flatten()
+                            .map_or(NO_SURFACE, |(_, number)| number),
+                    )
+                }),
+            };
+            let [found, limited, without] = T::run(level, in_lanes);
             for (at, (&expected, &limit)) in expected.iter().zip(&limits).enumerate() {
                 let case = format!("seed {seed}, {level:?}, ray {at}");
-                assert_eq!(hit_of(&found, at), expected, "{case}");
+                let (t, surface) = (found[at][0], found[at][1].untag());
+                assert_eq!((t < T::infinity()).then_some((t, surface)), expected, "{case}");
                 let is_before = expected.is_some_and(|(t, _)| t < limit);
-                assert_eq!(limited.is_before(at, limit), is_before, "{case}");
+                assert_eq!(limited[at][0] == T::one(), is_before, "{case}");
+                let (ray, own) = &rays[at];
+                let query = Query {
+                    origin: ray.origin.to_array(),
+                    direction: ray.direction.to_array(),
+                    t_min,
+                    t_max: limit,
+                    excluded: [expected.map_or(NO_SURFACE, |(_, number)| number), NO_SURFACE],
+                };
+                let other = oracle(&spheres, &query, own.unwrap_or(NO_SURFACE));
+                assert_eq!(
+                    without[at][0] == T::one(),
+                    other.is_some(),
+                    "{case}, without its sphere"
+                );
                 counts[0] += 1;
                 counts[1] += u32::from(expected.is_some_and(|(_, number)| Some(number) == rays[at].1));
             }
@@ -271,8 +304,62 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
     counts
 }
 
+/// Kernel that traces rays in lanes.
+struct InLanes<'a, T> {
+    spheres: &'a Spheres<T>,
+    origins: &'a [[T; PACKET_RAYS]; 3],
+    directions: &'a [[T; PACKET_RAYS]; 3],
+    from: [T; PACKET_RAYS],
+    t_min: T,
+    limits: [T; PACKET_RAYS],
+    ignored: [T; PACKET_RAYS],
+}
+
+impl<T: Real> Kernel<T> for InLanes<'_, T> {
+    /// For each ray: t and the surface of the nearest hit; 1 if there is a hit before its limit, else 0; the same
+    /// without the sphere `ignored`.
+    type Output = [[[T; 2]; PACKET_RAYS]; 3];
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) -> Self::Output {
+        let mut output = [[[T::zero(); 2]; PACKET_RAYS]; 3];
+        let t_min = Wide::splat(simd, self.t_min);
+        for at in (0..PACKET_RAYS).step_by(S::COUNT) {
+            let rays = LaneRays {
+                origin: Wide3::load(simd, self.origins, at),
+                direction: Wide3::load(simd, self.directions, at),
+                from: Wide::load(simd, &self.from[at..]),
+            };
+            let limits = Wide::load(simd, &self.limits[at..]);
+            let no_surface = Wide::splat(simd, T::tag(NO_SURFACE));
+            let ignored = Wide::load(simd, &self.ignored[at..]);
+            // Two sets of lanes that together are all: those outside of `active` must have no effect.
+            for active in [0x5555, 0xaaaa].map(|lanes| lanes & (u32::MAX >> (32 - S::COUNT))) {
+                let hits = self.spheres.nearest_in_lanes(simd, &rays, t_min, active);
+                let [t, surface] = [hits.t.to_array(), hits.surface.to_array()];
+                let limits = [t_min, limits];
+                let before = self.spheres.any_in_lanes(simd, &rays, limits, no_surface, active);
+                let without = self.spheres.any_in_lanes(simd, &rays, limits, ignored, active);
+                for lane in lanes_of(active) {
+                    let flag = |bits: u32| {
+                        [if bits >> lane & 1 != 0 {
+                            T::one()
+                        } else {
+                            T::zero()
+                        }; 2]
+                    };
+                    output[0][at + lane] = [t[lane], surface[lane]];
+                    output[1][at + lane] = flag(before);
+                    output[2][at + lane] = flag(without);
+                }
+            }
+        }
+        output
+    }
+}
+
 #[test]
-fn secondary_packets_match_single_rays() {
+fn secondary_rays_in_lanes_match_single_rays() {
     for [rays, own] in [
         compare_secondary::<f32>(1500, 15.0),
         compare_secondary::<f64>(1500, 30.0),

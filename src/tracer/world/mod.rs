@@ -1,20 +1,29 @@
 //! The scene in the tracer's number type, and ray queries.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
 mod path;
+mod points;
+mod queries;
 mod whitted;
 
 use toyproof_scene::{Integrator, Object, Requirements, Scene, Shape};
-pub(super) use whitted::PathState;
 
-use crate::lanes::Level;
+use self::whitted::Deferred;
+use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
 use crate::light::{Background, Light};
 use crate::material::{Material, Model};
-use crate::ray::{FirstHit, Hit, Ray};
+use crate::ray::{FirstHit, Ray};
 use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
 use crate::real::{Real, Vector};
 use crate::sampler::SampleStream;
 use crate::shape::Primitive;
-use crate::spheres::{NO_SURFACE, NumberedSphere, Packet, PacketHits, Query, Spheres};
+use crate::spheres::{
+    LaneHits, LaneRays, NO_SURFACE, NumberedSphere, PACKET_RAYS, Packet, PacketHits, Query, Spheres,
+};
 
 /// Surfaces and lights. `P` is the shape type of all surfaces: a single kind, where the scene has only that,
 /// for static dispatch.
@@ -133,38 +142,47 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         &self,
         ray: Ray<T>,
         first: FirstHit<T>,
-        stream: SampleStream,
+        mut stream: SampleStream,
         policy: &impl RayEpsilonPolicy<T>,
     ) -> T::Vec3 {
-        let mut path = [PathState::new(ray, first, stream)];
-        self.trace(&mut path, policy);
-        path[0].sum
+        let [origins, directions] =
+            [ray.origin, ray.direction].map(|vector| vector.to_array().map(|component| [component]));
+        let [t, surface] = first.tagged().map(|number| [number]);
+        let mut radiance = [[T::zero()]; 3];
+        let samples = Samples {
+            origins: each_slice(&origins),
+            directions: each_slice(&directions),
+            t: &t,
+            surfaces: &surface,
+            active: 1,
+            streams: std::slice::from_mut(&mut stream),
+            radiance: radiance.each_mut().map(|component| &mut component[..]),
+        };
+        T::run_scalar(Trace {
+            world: self,
+            samples,
+            policy,
+        });
+        let [[r], [g], [b]] = radiance;
+        T::Vec3::new(r, g, b)
     }
 
-    /// Adds up the radiance along several camera rays, at most [`PACKET_RAYS`](crate::spheres::PACKET_RAYS).
-    pub(super) fn trace(&self, paths: &mut [PathState<T>], policy: &impl RayEpsilonPolicy<T>) {
-        match self.integrator {
-            Integrator::Whitted => self.whitted(paths, policy),
-            Integrator::Path => {
-                for path in paths {
-                    path.sum = self.path(path.branch.ray, path.first, &mut path.stream, policy);
-                }
-            }
-        }
+    /// Computes the radiance along many camera rays.
+    pub(super) fn trace(&self, samples: Samples<'_, T>) {
+        T::run(
+            self.level,
+            Trace {
+                world: self,
+                samples,
+                policy: &Exact,
+            },
+        );
     }
 
     /// Returns the surface on which a ray starts and which it must not hit there. A ray with an offset origin
     /// has none.
     fn own_surface(ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<usize> {
         ray.from.filter(|_| policy.starts_on_surface())
-    }
-
-    /// Returns that surface if it is not a sphere.
-    fn own_other(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<usize> {
-        if self.others.is_empty() {
-            return None;
-        }
-        Self::own_surface(ray, policy).filter(|&own| self.shapes[own].sphere().is_none())
     }
 
     /// Creates the query for the spheres. The ray's own surface is excluded and tested separately.
@@ -211,41 +229,15 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     pub(super) fn nearest_of_packet(&self, packet: &Packet<T>) -> PacketHits<T> {
         let mut found = PacketHits::none();
         self.spheres.nearest_of_packet(packet, &mut found);
-        self.nearest_others_of_packet(packet, &mut found, &Exact);
-        found
-    }
-
-    /// Updates the hits of the rays of a packet by the shapes that are not spheres, except the surface on which a
-    /// ray starts.
-    pub(super) fn nearest_others_of_packet(
-        &self,
-        packet: &Packet<T>,
-        found: &mut PacketHits<T>,
-        policy: &impl RayEpsilonPolicy<T>,
-    ) {
         for &other in &self.others {
             let shape = &self.shapes[other];
-            if shape.update_packet(self.level, packet, found, other as u32) {
-                continue;
-            }
-            for at in 0..packet.len() {
-                let ray = packet.ray(at);
-                if ray.from != Some(other) {
-                    found.update(at, shape.intersect(&ray, policy), other);
+            if !shape.update_packet(self.level, packet, &mut found, other as u32) {
+                for at in 0..PACKET_RAYS {
+                    found.update(at, shape.intersect(&packet.ray(at), &Exact), other);
                 }
             }
         }
-    }
-
-    /// Computes the surface point of a first hit.
-    fn hit(&self, ray: &Ray<T>, first: FirstHit<T>) -> Option<Hit<T>> {
-        let (t, surface) = first.get()?;
-        let [point, normal] = self.shapes[surface].surface(ray, t);
-        Some(Hit {
-            point,
-            normal,
-            surface,
-        })
+        found
     }
 
     /// Returns whether anything except the surface `light` lies strictly between the origin of the ray and
@@ -291,5 +283,78 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             };
             light != Some(other) && t.is_some_and(|t| t < distance)
         })
+    }
+}
+
+/// Samples whose camera rays have been traced, and their radiance. The number of samples is a multiple of the
+/// number of lanes.
+pub(super) struct Samples<'a, T: Real> {
+    pub(super) origins: [&'a [T]; 3],
+    pub(super) directions: [&'a [T]; 3],
+    /// t of the first hits, infinite for none.
+    pub(super) t: &'a [T],
+    /// The surfaces of the first hits, encoded by [`Real::tag`].
+    pub(super) surfaces: &'a [T],
+    /// Bit i is set if sample i is to be traced.
+    pub(super) active: u64,
+    /// The random numbers of each sample.
+    pub(super) streams: &'a mut [SampleStream],
+    /// Receives the components of the radiance of each active sample.
+    pub(super) radiance: [&'a mut [T]; 3],
+}
+
+/// Returns the arrays as slices.
+pub(super) fn each_slice<T, const N: usize>(arrays: &[[T; N]; 3]) -> [&[T]; 3] {
+    arrays.each_ref().map(|array| &array[..])
+}
+
+/// Kernel that traces samples, each in a lane.
+struct Trace<'a, T: Real, P, R> {
+    world: &'a World<T, P>,
+    samples: Samples<'a, T>,
+    policy: &'a R,
+}
+
+impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T, P, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let Self {
+            world,
+            samples,
+            policy,
+        } = self;
+        let mut radiance = samples.radiance;
+        let mut deferred = Deferred::none();
+        let mut at = 0;
+        while at < samples.t.len() {
+            let active = (samples.active >> at) as u32 & (u32::MAX >> (32 - S::COUNT));
+            if active != 0 {
+                let rays = LaneRays {
+                    origin: Wide3::load_slices(simd, samples.origins.map(|of| &of[at..])),
+                    direction: Wide3::load_slices(simd, samples.directions.map(|of| &of[at..])),
+                    from: Wide::splat(simd, T::tag(NO_SURFACE)),
+                };
+                let hits = LaneHits {
+                    t: Wide::load(simd, &samples.t[at..]),
+                    surface: Wide::load(simd, &samples.surfaces[at..]),
+                };
+                let streams = &mut samples.streams[at..];
+                let Wide3(r, g, b) = match world.integrator {
+                    Integrator::Whitted => {
+                        let state = (streams, &mut deferred);
+                        world.whitted(simd, rays, hits, state, active, policy)
+                    }
+                    Integrator::Path => world.path(simd, rays, hits, streams, active, policy),
+                };
+                let mask = simd.mask(active);
+                for (all, new) in radiance.iter_mut().zip([r, g, b]) {
+                    let before = Wide::load(simd, &all[at..]);
+                    new.select(mask, before).store(&mut all[at..]);
+                }
+            }
+            at += S::COUNT;
+        }
     }
 }
