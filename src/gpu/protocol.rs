@@ -12,7 +12,7 @@ use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Hosted;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase};
+use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox};
 
 /// A request from the parent.
 #[derive(Debug, Serialize, Deserialize)]
@@ -38,6 +38,15 @@ pub(super) enum Job {
     Play(Option<Box<Frame>>, Vec<Readback>),
     /// Count the pixels of a frame in which the driver terminates a loop.
     WatchLoops(Box<DrawJob>),
+    /// Report how the process is restricted.
+    Sandbox,
+}
+
+impl Job {
+    /// Whether it loads a driver.
+    pub(super) fn needs_driver(&self) -> bool {
+        !matches!(self, Self::Translate(..) | Self::ReadWgsl(_) | Self::Sandbox)
+    }
 }
 
 /// A shader and the frame to render.
@@ -167,6 +176,7 @@ pub(super) enum Output {
     /// The name of the device.
     Opened(String),
     LoopTruncated(u64),
+    Sandbox(Sandbox),
 }
 
 /// Maximum length of a message in bytes: the text of a shader and the images of its channels.

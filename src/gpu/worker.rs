@@ -18,7 +18,7 @@ use super::protocol::{
     ChannelSampling, DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply,
     ShaderArtifact, receive, send,
 };
-use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, device, quirks};
+use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox, device, quirks, sandbox};
 
 /// A worker process, started on first use and restarted after each failure.
 #[derive(Debug)]
@@ -122,6 +122,17 @@ impl Worker {
     pub fn probe(&mut self) -> Result<Vec<Driver>, Failure> {
         match self.run(&Job::Probe(self.selector.clone()))? {
             Output::Drivers(drivers) => Ok(drivers),
+            _ => Err(unexpected_reply()),
+        }
+    }
+
+    /// Returns how the worker process is restricted.
+    ///
+    /// # Errors
+    /// If it does not start.
+    pub fn sandbox(&mut self) -> Result<Sandbox, Failure> {
+        match self.run(&Job::Sandbox)? {
+            Output::Sandbox(sandbox) => Ok(sandbox),
             _ => Err(unexpected_reply()),
         }
     }
@@ -367,7 +378,7 @@ impl Worker {
     fn run_job(&mut self, job: &Job, mut on_band: impl FnMut(Image)) -> Result<Output, Failure> {
         let mut running = match self.running.take() {
             Some(running) => running,
-            None => self.start()?,
+            None => self.start(job)?,
         };
         let mut deadline = Instant::now() + self.timeout;
         let mut start = Startup::new(self.start_timeout);
@@ -430,7 +441,11 @@ impl Worker {
             .flatten()
     }
 
-    fn start(&self) -> Result<RunningWorker, Failure> {
+    /// Starts a process for a job and those after it.
+    fn start(&self, job: &Job) -> Result<RunningWorker, Failure> {
+        if job.needs_driver() {
+            sandbox::create_caches();
+        }
         let mut command = Command::new(&self.program);
         command.args(&self.arguments);
         if let Some(manifest) = self.manifest.clone().or_else(|| self.default_manifest()) {
