@@ -91,6 +91,11 @@ impl<W: Write> Server<W> {
         // The parent closes the input when it is done.
         while let Ok(job) = receive(&mut input) {
             let result = match job {
+                Job::Open(selector) => {
+                    // If it fails, the next job fails again, and reports why.
+                    let _ = self.catch_panics(|server| server.open(&selector).map(|()| Output::Completed));
+                    continue;
+                }
                 Job::Probe(selector) => self.catch_panics(|server| server.probe(&selector)),
                 Job::Translate(lowered, target, float) => {
                     self.catch_panics(|server| server.translate(lowered, target, float))

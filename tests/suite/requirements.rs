@@ -104,7 +104,7 @@ fn new_worker(on: AdapterSelector) -> Worker {
 
 /// Reports, once for each reason, that the test of this thread is skipped, or a part of it.
 #[track_caller]
-fn skip(why: &str) {
+pub(crate) fn skip(why: &str) {
     static REPORTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     // libtest names the threads of tests, unless they all run on the main thread.
     let thread = thread::current();

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use seccompiler::{
     BackendError, BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter,
-    SeccompRule, TargetArch,
+    SeccompRule, TargetArch, sock_filter,
 };
 
 /// Forbidden system calls, whatever their arguments.
@@ -119,12 +119,9 @@ const FORBIDDEN_HERE: &[i64] = &[];
 /// The number of `fchmodat2` on all architectures, which not all versions of the libc crate name.
 const FCHMODAT2: i64 = 452;
 
-/// The bit in the numbers of x32, the interface of x86-64 with short pointers, which no driver uses. Some of
-/// its calls have numbers of their own, from 512.
+/// The smallest number of x32, the interface of x86-64 with short pointers, which no driver uses.
 #[cfg(target_arch = "x86_64")]
-const X32_BIT: i64 = 0x4000_0000;
-#[cfg(target_arch = "x86_64")]
-const X32_NUMBERS: std::ops::Range<i64> = 512..548;
+const X32: u32 = 0x4000_0000;
 
 /// The requests of `ioctl` that type into a terminal.
 const TERMINAL_INPUT: [u64; 2] = [0x5412, 0x541C];
@@ -143,14 +140,32 @@ pub(super) fn restrict() -> Result<(), String> {
     Ok(())
 }
 
-/// The filters for a process with that id.
-fn programs(process: u32) -> Result<[BpfProgram; 2], BackendError> {
+/// The filters for a process with that id, all of which the kernel obeys.
+fn programs(process: u32) -> Result<Vec<BpfProgram>, BackendError> {
     // A C library that is refused `clone3` calls `clone`, whose flags can be tested.
     let refused = Rules::from([(libc::SYS_clone3, Vec::new())]);
-    Ok([
+    Ok(vec![
         filter(forbidden(process)?, libc::EPERM)?,
         filter(refused, libc::ENOSYS)?,
+        #[cfg(target_arch = "x86_64")]
+        without_x32(),
     ])
+}
+
+/// Refuses x32, whose numbers are no rules' keys.
+#[cfg(target_arch = "x86_64")]
+fn without_x32() -> BpfProgram {
+    let instruction = |code, jt, jf, k| sock_filter { code, jt, jf, k };
+    let load = (libc::BPF_LD | libc::BPF_W | libc::BPF_ABS) as u16;
+    let jump_if_x32 = (libc::BPF_JMP | libc::BPF_JGE | libc::BPF_K) as u16;
+    let result = (libc::BPF_RET | libc::BPF_K) as u16;
+    vec![
+        // The first word is the number.
+        instruction(load, 0, 0, 0),
+        instruction(jump_if_x32, 0, 1, X32),
+        instruction(result, 0, 0, libc::SECCOMP_RET_ERRNO | libc::EPERM.unsigned_abs()),
+        instruction(result, 0, 0, libc::SECCOMP_RET_ALLOW),
+    ]
 }
 
 /// The program by which these calls fail with an error; all others are allowed.
@@ -174,12 +189,6 @@ fn forbidden(process: u32) -> Result<Rules, BackendError> {
     rules.insert(libc::SYS_prlimit64, vec![when(2, SeccompCmpOp::Ne, 0)?]);
     let types = TERMINAL_INPUT.map(|request| when(1, SeccompCmpOp::Eq, request));
     rules.insert(libc::SYS_ioctl, types.into_iter().collect::<Result<_, _>>()?);
-    #[cfg(target_arch = "x86_64")]
-    {
-        let same: Vec<_> = rules.keys().map(|call| call | X32_BIT).collect();
-        let own = X32_NUMBERS.map(|call| call | X32_BIT);
-        rules.extend(same.into_iter().chain(own).map(|call| (call, Vec::new())));
-    }
     Ok(rules)
 }
 
@@ -201,13 +210,14 @@ mod tests {
 
     /// What the filters return for a call: the kernel's `struct seccomp_data` is the number, the architecture,
     /// the instruction pointer and six arguments.
-    fn results(architecture: u32, call: i64, arguments: [u64; 6]) -> [u32; 2] {
+    fn results(architecture: u32, call: i64, arguments: [u64; 6]) -> Vec<u32> {
         let mut data = Vec::new();
         data.extend((call as u32).to_le_bytes());
         data.extend(architecture.to_le_bytes());
         data.extend(0_u64.to_le_bytes());
         data.extend(arguments.iter().flat_map(|argument| argument.to_le_bytes()));
-        programs(PROCESS).unwrap().map(|program| run(&program, &data))
+        let programs = programs(PROCESS).unwrap();
+        programs.iter().map(|program| run(program, &data)).collect()
     }
 
     /// Runs a program of the instructions that these filters consist of (`linux/bpf_common.h`).
@@ -242,9 +252,12 @@ mod tests {
     const NATIVE: u32 = 0xC000_00B7;
 
     fn result(call: i64, arguments: [u64; 6]) -> u32 {
-        // The kernel obeys the filter with the stricter result.
-        let [first, second] = results(NATIVE, call, arguments);
-        if first == ALLOW { second } else { first }
+        // The kernel obeys the strictest.
+        let results = results(NATIVE, call, arguments);
+        results
+            .into_iter()
+            .find(|&result| result != ALLOW)
+            .unwrap_or(ALLOW)
     }
 
     #[test]
