@@ -6,8 +6,8 @@ use std::time::Duration;
 use serde::Serialize;
 use toyproof_diagnostic::{grouped, path_name};
 use toyproof_gpu::{
-    AdapterSelector, Driver, Failure, INSTALL_HINT, LoopCap, is_pinned_by_user, lavapipe_manifest, manifests,
-    pinned,
+    AdapterSelector, Driver, Failure, INSTALL_HINT, LoopCap, SANDBOX_VARIABLE, is_pinned_by_user,
+    lavapipe_manifest, manifests, pinned,
 };
 
 use super::inputs::{self, DeviceSelector, Format};
@@ -40,6 +40,8 @@ struct Report {
     selected: Option<String>,
     /// Why it is selected.
     reason: Option<&'static str>,
+    /// How a worker process, which loads the drivers, is restricted; null if no driver is used.
+    sandbox: Option<String>,
     /// The drivers that start, the selected one first.
     drivers: Vec<DriverReport>,
     /// Why no driver can be used.
@@ -102,6 +104,7 @@ fn examine(device: &DeviceSelector) -> Result<Report, String> {
         is_pinned: is_pinned_by_user(),
         selected: None,
         reason: None,
+        sandbox: None,
         drivers: Vec::new(),
         error: None,
         tests: Vec::new(),
@@ -118,8 +121,9 @@ fn examine(device: &DeviceSelector) -> Result<Report, String> {
             return Ok(report);
         }
     };
-    let worker = inputs::worker(adapter.clone(), TIME_LIMIT)?;
-    match worker.with_all_drivers().probe() {
+    let mut worker = inputs::worker(adapter.clone(), TIME_LIMIT)?.with_all_drivers();
+    report.sandbox = worker.sandbox().ok().map(|sandbox| sandbox.to_string());
+    match worker.probe() {
         Ok(drivers) => {
             if let Some(selected) = drivers.first() {
                 report.selected = Some(selected.name.clone());
@@ -218,6 +222,9 @@ impl Report {
             terminal
                 .paragraph("toyproof's own evaluator needs no driver; `check` skips the toolchain check.");
         }
+        if let Some(sandbox) = &self.sandbox {
+            terminal.result(&format!("Sandbox of drivers: {sandbox}"));
+        }
         if !self.drivers.is_empty() {
             terminal.result("\nVulkan devices:");
             for driver in &self.drivers {
@@ -250,6 +257,9 @@ impl Report {
                     "remove or update the driver that does not start, or name another: \
                      VK_DRIVER_FILES=MANIFEST.json toyproof …",
                 );
+                terminal.help(&format!(
+                    "a driver that starts with {SANDBOX_VARIABLE}=off needs files outside of the system's folders"
+                ));
             }
             terminal.note(
                 "`check`, `run` and `debug` work without a driver, on the CPU; the toolchain check is skipped.",

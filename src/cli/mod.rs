@@ -32,7 +32,6 @@ mod zip;
 use std::ffi::OsString;
 use std::io;
 use std::panic;
-use std::thread::{self, JoinHandle};
 
 use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use toyproof_gpu as gpu;
@@ -217,18 +216,10 @@ impl Command {
     }
 }
 
-/// The size of a worker's stack: the default of a main thread on Linux.
-const STACK_BYTES: usize = 8 << 20;
-
 /// Serves as the worker process that `check`, `run`, `convert` and `doctor` start.
 fn serve_worker() -> Exit {
-    // Drivers compile shaders on this stack, so its size must not depend on the limit that the shell sets.
-    let serving = thread::Builder::new().stack_size(STACK_BYTES).spawn(|| {
-        let (input, output) = (io::stdin().lock(), io::stdout().lock());
-        gpu::serve(input, output)
-    });
-    match serving.map(JoinHandle::join) {
-        Ok(Ok(Ok(()))) => Exit::Success,
-        _ => Exit::Error,
+    match gpu::serve(io::stdin(), io::stdout()) {
+        Ok(()) => Exit::Success,
+        Err(_) => Exit::Error,
     }
 }

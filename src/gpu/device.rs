@@ -158,8 +158,9 @@ impl Device {
 
     fn from_adapter(adapter: Adapter) -> Result<Self, Failure> {
         let filterable = adapter.features() & Features::FLOAT32_FILTERABLE;
+        let blendable = adapter.features() & Features::FLOAT32_BLENDABLE;
         let descriptor = wgpu::DeviceDescriptor {
-            required_features: Features::PASSTHROUGH_SHADERS | filterable,
+            required_features: Features::PASSTHROUGH_SHADERS | filterable | blendable,
             required_limits: adapter.limits(),
             ..Default::default()
         };

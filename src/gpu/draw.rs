@@ -134,7 +134,7 @@ impl Device {
     /// Creates the pipeline; the driver may compile it at the first draw.
     pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
         self.with_error_scopes(|| {
-            let layout = Layout::new(&self.gpu, self.filterable, program.channels);
+            let layout = Layout::new(self, program.channels);
             let pipeline = layout.pipeline(&self.gpu, &self.driver_words(program));
             Ok(Compiled { layout, pipeline })
         })

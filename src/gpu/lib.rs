@@ -12,7 +12,7 @@
 //!
 //! let arguments: Vec<String> = std::env::args().skip(1).collect();
 //! if arguments == ["worker"] {
-//!     return serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
+//!     return serve(std::io::stdin(), std::io::stdout()).unwrap();
 //! }
 //! let program = std::env::current_exe().unwrap();
 //! let timeout = Duration::from_secs(10);
@@ -34,6 +34,7 @@ mod play;
 mod protocol;
 pub mod quirks;
 mod readback;
+mod sandbox;
 mod serve;
 mod texture;
 mod worker;
@@ -45,6 +46,7 @@ pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, man
 pub use draw::{DrawOutput, LocalRenderer};
 pub use protocol::{ChannelSampling, PlayedPasses, Readback, ShaderArtifact};
 pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
+pub use sandbox::{SANDBOX_VARIABLE, Sandbox};
 use serde::{Deserialize, Serialize};
 pub use serve::{MAX_MEMORY_BYTES, serve};
 use thiserror::Error;

@@ -5,11 +5,12 @@ use std::num::NonZeroU64;
 use toyproof_image::{BLOCK_BYTES, Frame};
 use toyproof_translate::naga_ir::Shape;
 use wgpu::{
-    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device,
+    BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, Features,
     PipelineLayout, RenderPipeline, Sampler, ShaderModule, ShaderStages, TextureView,
 };
 
 use super::protocol::ChannelSampling;
+use super::quirks::TWO_VARIANTS;
 use super::texture::{FORMAT, black, dimension, upload};
 
 /// Vertex shader with three vertices that cover the target, and three more outside of it: drawing those
@@ -25,6 +26,7 @@ const VERTEX_SHADER: &str = "
 #[derive(Debug)]
 pub(super) struct Layout {
     filterable: bool,
+    blends: bool,
     channels: [Shape; 4],
     bindings: BindGroupLayout,
     pipeline: PipelineLayout,
@@ -34,7 +36,8 @@ pub(super) struct Layout {
 impl Layout {
     /// Creates the layout with all nine bindings of the interface. None may be omitted, since wgpu renumbers
     /// bindings without gaps.
-    pub(super) fn new(device: &Device, filterable: bool, channels: [Shape; 4]) -> Self {
+    pub(super) fn new(owner: &super::device::Device, channels: [Shape; 4]) -> Self {
+        let (device, filterable) = (&owner.gpu, owner.filterable);
         let block = BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
@@ -76,6 +79,7 @@ impl Layout {
         });
         Self {
             filterable,
+            blends: owner.has(&TWO_VARIANTS) && device.features().contains(Features::FLOAT32_BLENDABLE),
             channels,
             bindings,
             pipeline,
@@ -102,7 +106,12 @@ impl Layout {
                 module: &fragment,
                 entry_point: Some("main"),
                 compilation_options: Default::default(),
-                targets: &[Some(FORMAT.into())],
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: FORMAT,
+                    // Its bits are those of the color, but lavapipe then compiles the shader once.
+                    blend: self.blends.then_some(wgpu::BlendState::REPLACE),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
             }),
             multiview_mask: None,
             cache: None,

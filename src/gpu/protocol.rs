@@ -12,7 +12,7 @@ use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Hosted;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase};
+use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox};
 
 /// A request from the parent.
 #[derive(Debug, Serialize, Deserialize)]
@@ -38,6 +38,28 @@ pub(super) enum Job {
     Play(Option<Box<Frame>>, Vec<Readback>),
     /// Count the pixels of a frame in which the driver terminates a loop.
     WatchLoops(Box<DrawJob>),
+    /// Report how the process is restricted.
+    Sandbox,
+    /// Load the driver. There is no result: the next job has it.
+    Open(AdapterSelector),
+}
+
+impl Job {
+    /// Whether it loads a driver.
+    pub(super) fn needs_driver(&self) -> bool {
+        !matches!(self, Self::Translate(..) | Self::ReadWgsl(_) | Self::Sandbox)
+    }
+
+    /// The number of pixels of the one image that it renders; none if it renders none, or several.
+    pub(super) fn pixels(&self) -> Option<u64> {
+        match self {
+            Self::Draw(job) | Self::WatchLoops(job) => {
+                let [width, height] = job.frame.size;
+                Some(u64::from(width) * u64::from(height))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// A shader and the frame to render.
@@ -152,7 +174,7 @@ impl ShaderArtifact {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Reply {
     Phase(Phase),
-    Band(Image),
+    Band(#[serde(with = "raw_pixels")] Image),
     Done(Result<Output, Failure>),
 }
 
@@ -167,10 +189,64 @@ pub(super) enum Output {
     /// The name of the device.
     Opened(String),
     LoopTruncated(u64),
+    Sandbox(Sandbox),
+}
+
+/// The pixels of an image as the bytes that memory holds, which are copied at once.
+mod raw_pixels {
+    use std::fmt;
+
+    use serde::de::{self, Visitor};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use toyproof_image::Image;
+
+    /// Bytes that are not a sequence of numbers.
+    struct Bytes<'a>(&'a [u8]);
+
+    impl Serialize for Bytes<'_> {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            serializer.serialize_bytes(self.0)
+        }
+    }
+
+    struct Pixels(Vec<[f32; 4]>);
+
+    impl<'de> Deserialize<'de> for Pixels {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            struct PixelsVisitor;
+            impl Visitor<'_> for PixelsVisitor {
+                type Value = Pixels;
+                fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                    f.write_str("the bytes of pixels")
+                }
+                fn visit_bytes<E: de::Error>(self, bytes: &[u8]) -> Result<Pixels, E> {
+                    let pixels = bytes.chunks_exact(size_of::<[f32; 4]>());
+                    Ok(Pixels(pixels.map(bytemuck::pod_read_unaligned).collect()))
+                }
+            }
+            deserializer.deserialize_bytes(PixelsVisitor)
+        }
+    }
+
+    pub(super) fn serialize<S: Serializer>(image: &Image, serializer: S) -> Result<S::Ok, S::Error> {
+        let bytes = Bytes(bytemuck::cast_slice(image.pixels()));
+        (image.size(), bytes).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Image, D::Error> {
+        let ([width, height], Pixels(pixels)) = <([u32; 2], Pixels)>::deserialize(deserializer)?;
+        if pixels.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(de::Error::custom("an image of another size"));
+        }
+        Ok(Image::new(width, height, pixels))
+    }
 }
 
 /// Maximum length of a message in bytes: the text of a shader and the images of its channels.
 const MAX_MESSAGE_BYTES: u64 = 1 << 30;
+
+/// Maximum memory that is allocated before the message arrives, in bytes: a band.
+const MAX_PREPARED_BYTES: u64 = 4 << 20;
 
 pub(super) fn send(mut to: impl Write, message: &impl Serialize) -> io::Result<()> {
     let bytes = postcard::to_stdvec(message).map_err(io::Error::other)?;
@@ -186,7 +262,7 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     if length > MAX_MESSAGE_BYTES {
         return Err(io::Error::other("message too long"));
     }
-    let mut bytes = Vec::new();
+    let mut bytes = Vec::with_capacity(length.min(MAX_PREPARED_BYTES) as usize);
     if from.take(length).read_to_end(&mut bytes)? as u64 != length {
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
@@ -202,8 +278,10 @@ mod tests {
         let nan = f32::from_bits(0x7fc0_1234);
         let image = Image::new(1, 1, vec![[nan, -0.0, f32::INFINITY, 1e-45]]);
         let mut pipe = Vec::new();
-        send(&mut pipe, &image).unwrap();
-        let back: Image = receive(&pipe[..]).unwrap();
+        send(&mut pipe, &Reply::Band(image.clone())).unwrap();
+        let Ok(Reply::Band(back)) = receive(&pipe[..]) else {
+            panic!("no band");
+        };
         assert_eq!(
             back.get(0, 0).map(f32::to_bits),
             image.get(0, 0).map(f32::to_bits)
@@ -213,6 +291,13 @@ mod tests {
     #[test]
     fn malformed_messages_are_errors_without_allocation() {
         assert!(receive::<Image>(&[0xff; 64][..]).is_err());
+        // A band of 1×2 pixels with the bytes of one.
+        let mut pipe = Vec::new();
+        let one = Image::new(1, 1, vec![[0.0; 4]]);
+        send(&mut pipe, &Reply::Band(one)).unwrap();
+        assert_eq!(pipe[9..11], [1, 1]);
+        pipe[10] = 2;
+        assert!(receive::<Reply>(&pipe[..]).is_err());
         assert!(receive::<Image>(&b"short"[..]).is_err());
     }
 }

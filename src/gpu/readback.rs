@@ -68,12 +68,11 @@ impl RowBuffer {
         let view = slice
             .get_mapped_range()
             .map_err(|error| Failure::Device(error.to_string()))?;
-        let pixels = view
-            .chunks(self.bytes_per_row as usize)
-            .take(rows)
-            .flat_map(|row| row[..16 * self.width as usize].chunks_exact(16))
-            .map(bytemuck::pod_read_unaligned)
-            .collect();
+        let mut pixels: Vec<[f32; 4]> = Vec::with_capacity(rows * self.width as usize);
+        for row in view.chunks(self.bytes_per_row as usize).take(rows) {
+            let row = row[..16 * self.width as usize].chunks_exact(16);
+            pixels.extend(row.map(bytemuck::pod_read_unaligned::<[f32; 4]>));
+        }
         drop(view);
         self.buffer.unmap();
         Ok(Image::new(self.width, rows as u32, pixels))

@@ -20,31 +20,44 @@ use super::protocol::{
 };
 use super::quirks::loop_probe::{self, Probe};
 use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
+use super::sandbox::{self, Sandbox};
 use super::{AdapterSelector, Failure, Phase, draw};
 
 /// Maximum size of a worker's address space in bytes.
 pub const MAX_MEMORY_BYTES: u64 = 6 << 30;
 /// Stack size for naga, which is recursive, in bytes.
 const TRANSLATOR_STACK_BYTES: usize = 256 << 20;
+/// Stack size of the thread that calls the driver, in bytes: the default of a main thread on Linux.
+const STACK_BYTES: usize = 8 << 20;
 
-/// Serves jobs until `input` ends. Call it in a separate process: it limits the process's memory, ties its
-/// lifetime to the parent's, and silences panics.
+/// Serves jobs until `input` ends. Call it in a separate process that does nothing else, before it starts
+/// threads: it limits the process's memory, its access to files and its system calls, ties its lifetime to the
+/// parent's, and silences panics.
 ///
 /// # Errors
 /// If a reply cannot be written, since the parent is gone.
-pub fn serve(input: impl Read, output: impl Write) -> io::Result<()> {
-    restrict_process();
+pub fn serve(input: impl Read + Send, output: impl Write + Send) -> io::Result<()> {
+    limit_process();
+    let sandbox = sandbox::enter();
     panic::set_hook(Box::new(|_| {}));
-    Server {
+    let mut server = Server {
         output,
+        sandbox,
         device: None,
         player: None,
-    }
-    .serve(input)
+    };
+    // Drivers compile shaders on this stack, so its size must not depend on the limit that the shell sets.
+    thread::scope(|scope| {
+        let serving = thread::Builder::new().stack_size(STACK_BYTES);
+        let serving = serving.spawn_scoped(scope, move || server.serve(input))?;
+        serving
+            .join()
+            .unwrap_or_else(|_| Err(io::ErrorKind::Other.into()))
+    })
 }
 
 /// Limits the process's memory and lets it die with its parent.
-fn restrict_process() {
+fn limit_process() {
     #[cfg(target_os = "linux")]
     {
         use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
@@ -67,6 +80,7 @@ fn restrict_process() {
 
 struct Server<W> {
     output: W,
+    sandbox: Sandbox,
     device: Option<(AdapterSelector, Device)>,
     /// The passes that are played, which own the device meanwhile.
     player: Option<(AdapterSelector, DevicePlayer)>,
@@ -77,6 +91,11 @@ impl<W: Write> Server<W> {
         // The parent closes the input when it is done.
         while let Ok(job) = receive(&mut input) {
             let result = match job {
+                Job::Open(selector) => {
+                    // If it fails, the next job fails again, and reports why.
+                    let _ = self.catch_panics(|server| server.open(&selector).map(|()| Output::Completed));
+                    continue;
+                }
                 Job::Probe(selector) => self.catch_panics(|server| server.probe(&selector)),
                 Job::Translate(lowered, target, float) => {
                     self.catch_panics(|server| server.translate(lowered, target, float))
@@ -93,6 +112,7 @@ impl<W: Write> Server<W> {
                     self.catch_panics(|server| server.play(frame.as_deref(), &wanted))
                 }
                 Job::WatchLoops(draw_job) => self.catch_panics(|server| server.watch_loops(*draw_job)),
+                Job::Sandbox => Ok(Output::Sandbox(self.sandbox.clone())),
             };
             if matches!(result, Err(Failure::Device(_))) {
                 self.device = None;

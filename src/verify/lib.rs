@@ -82,7 +82,7 @@
 //! use toyproof_gpu::{AdapterSelector, Worker, serve};
 //!
 //! if std::env::args().nth(1).as_deref() == Some("worker") {
-//!     serve(std::io::stdin().lock(), std::io::stdout().lock()).unwrap();
+//!     serve(std::io::stdin(), std::io::stdout()).unwrap();
 //!     return;
 //! }
 //! let program = std::env::current_exe().unwrap();

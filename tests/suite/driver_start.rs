@@ -16,7 +16,7 @@ use toyproof::translate::{FloatMode, lower};
 use toyproof::verify::{self, Case, Findings, Verdict, verify};
 
 use crate::program::{Run, command, run};
-use crate::requirements::{require_driver, require_program};
+use crate::requirements::{require_driver, require_program, require_worker, skip};
 use crate::support::wait::HANG_GUARD;
 use crate::support::{SPHERE, checked};
 
@@ -202,6 +202,11 @@ fn fake_driver(folder: &Path, does: &str) -> PathBuf {
          int vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *version) {{ {does} return 0; }}\n\
          void *vk_icdGetInstanceProcAddr(void *instance, const char *name) {{ {does} return 0; }}\n"
     );
+    compiled_driver(folder, &source)
+}
+
+/// Compiles a Vulkan driver from a file in C, and returns its manifest; needs `cc`.
+fn compiled_driver(folder: &Path, source: &str) -> PathBuf {
     fs::write(folder.join("driver.c"), source).unwrap();
     let mut compiler = Command::new("cc");
     compiler.current_dir(folder);
@@ -308,5 +313,96 @@ fn a_requested_driver_that_does_not_start_is_an_error() {
             .stdout
             .contains("driver.json: the worker process terminated"),
         "{doctor:?}"
+    );
+}
+
+/// A driver that tries what it must not do. Each attempt that succeeds prints its name. OUTSIDE is a file that
+/// it may neither read nor write.
+#[cfg(target_os = "linux")]
+const ATTEMPTS: &str = r#"
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+static void attempt(void) {
+    static int once; if (once++) return;
+    char *run[] = {"true", 0};
+    pid_t child = -1;
+    struct rlimit limit = {1L << 40, 1L << 40};
+    fprintf(stderr, "attempted:");
+    if (open(OUTSIDE ".new", O_WRONLY | O_CREAT, 0600) >= 0) fprintf(stderr, " create");
+    if (open(OUTSIDE, O_WRONLY) >= 0) fprintf(stderr, " write");
+    if (open(OUTSIDE, O_RDONLY) >= 0) fprintf(stderr, " read");
+    if (chmod(OUTSIDE, 0777) == 0) fprintf(stderr, " chmod");
+    if (unlink(OUTSIDE) == 0) fprintf(stderr, " unlink");
+    if (socket(AF_INET, SOCK_STREAM, 0) >= 0) fprintf(stderr, " socket");
+    if (socket(AF_UNIX, SOCK_STREAM, 0) >= 0) fprintf(stderr, " local-socket");
+    if (posix_spawn(&child, "/bin/true", 0, 0, run, 0) == 0) fprintf(stderr, " spawn");
+    child = fork();
+    if (child == 0) _exit(0);
+    if (child > 0) fprintf(stderr, " fork");
+    if (kill(getppid(), 0) == 0) fprintf(stderr, " signal");
+    if (setrlimit(RLIMIT_AS, &limit) == 0) fprintf(stderr, " limit");
+    execl("/bin/true", "true", (char *)0);
+    /* What drivers do still succeeds. */
+    if (open("/usr/share", O_RDONLY | O_DIRECTORY) < 0) fprintf(stderr, " cannot-read-system");
+    if (open("/dev/null", O_RDWR) < 0) fprintf(stderr, " cannot-write-null");
+    if (getrlimit(RLIMIT_AS, &limit) != 0) fprintf(stderr, " cannot-read-limit");
+    fprintf(stderr, " end\n");
+    _exit(3);
+}
+int vk_icdNegotiateLoaderICDInterfaceVersion(unsigned *version) { attempt(); return 0; }
+void *vk_icdGetInstanceProcAddr(void *instance, const char *name) { attempt(); return 0; }
+"#;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_driver_has_no_access_to_files_networks_and_processes() {
+    use toyproof::gpu::Sandbox;
+
+    if !require_driver() || !require_program("cc") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    // The folder of the driver is readable: the file is in another.
+    let outside = tempfile::tempdir().unwrap();
+    let file = outside.path().join("private");
+    let attempts = |variable: &str| {
+        fs::write(&file, "").unwrap();
+        let source = format!("#define OUTSIDE {:?}\n{ATTEMPTS}", file.display().to_string());
+        let manifest = compiled_driver(folder.path(), &source);
+        let mut command = command(folder.path());
+        command
+            .env("VK_ICD_FILENAMES", manifest)
+            .env_remove("VK_DRIVER_FILES")
+            .env("TOYPROOF_SANDBOX", variable);
+        let run = run(command.arg("doctor"));
+        assert_eq!(run.code, 2, "{run:?}");
+        run.stdout + &run.stderr
+    };
+    let mut worker = require_worker().expect("there is a driver");
+    match worker.sandbox().unwrap() {
+        Sandbox::Enabled {
+            landlock: Ok(_),
+            seccomp: Ok(()),
+        } => {
+            let text = attempts("on");
+            assert!(text.contains("attempted: end"), "{text}");
+            assert!(file.exists() && !outside.path().join("private.new").exists());
+        }
+        sandbox => skip(&format!("this kernel restricts less: {sandbox}")),
+    }
+    let text = attempts("off");
+    assert!(text.contains("disabled by TOYPROOF_SANDBOX=off"), "{text}");
+    assert!(
+        !file.exists() && outside.path().join("private.new").exists(),
+        "{text}"
     );
 }

@@ -160,7 +160,7 @@ fn main() -> ExitCode {
             reseed,
         } => references::print_disagreements(&exercise, tolerance, reseed),
         Task::Worker => {
-            toyproof::gpu::serve(io::stdin().lock(), io::stdout().lock()).expect("the parent listens");
+            toyproof::gpu::serve(io::stdin(), io::stdout()).expect("the parent listens");
         }
     }
     ExitCode::SUCCESS

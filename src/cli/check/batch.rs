@@ -132,11 +132,12 @@ impl<'a> Batch<'a> {
             ));
         }
         let threads = self.threads(todo.len());
+        let pixels = checkers.iter().map(Checker::pixels).max().unwrap_or(0);
         pool::for_each(
             &todo,
             threads,
             &stop,
-            || WorkerContext::new(self.args, threads),
+            || WorkerContext::new(self.args, threads, pixels),
             |context, index| {
                 let submission = &submissions[index];
                 checkers[submission.task].check(context, submission)

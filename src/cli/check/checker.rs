@@ -46,10 +46,15 @@ impl WorkerContext {
         }
     }
 
-    /// Creates the context for one of `threads` threads.
-    pub(super) fn new(args: &Args, threads: usize) -> Self {
+    /// Creates the context for one of `threads` threads that render images of up to that many pixels.
+    pub(super) fn new(args: &Args, threads: usize, pixels: u64) -> Self {
+        let mut worker = new_worker(args);
+        if let Some(worker) = &mut worker {
+            // The driver starts while the first shader is read and its scene is traced.
+            worker.warm_up(pixels);
+        }
         Self {
-            worker: new_worker(args),
+            worker,
             pool: pool::thread_pool(threads),
         }
     }
@@ -57,7 +62,8 @@ impl WorkerContext {
 
 /// Creates a worker; the arguments have been validated before.
 fn new_worker(args: &Args) -> Option<Worker> {
-    args.driver.worker().ok().flatten()
+    let worker = args.driver.worker().ok().flatten();
+    worker.map(Worker::with_plain_code_for_small_images)
 }
 
 /// Checks shaders, on any thread.
@@ -82,6 +88,13 @@ impl<'a> Checker<'a> {
             scenes: SceneCache::default(),
             other_scenes: other_scenes(plan.reference.scene.as_deref()),
         }
+    }
+
+    /// The number of pixels of the largest frame, unless its scene determines it.
+    pub(super) fn pixels(&self) -> u64 {
+        let frames = self.plan.frames.iter().map(|planned| planned.frame.size);
+        let pixels = frames.map(|[width, height]| u64::from(width) * u64::from(height));
+        pixels.max().unwrap_or(0)
     }
 
     /// Checks a shader and writes its images. A panic costs only this shader's verdict, which is then

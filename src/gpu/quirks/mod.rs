@@ -104,10 +104,24 @@ pub const OPAQUE_NUMBERS: Quirk = Quirk {
     scope: Scope::Affected,
 };
 
+/// A shader compiled twice.
+pub const TWO_VARIANTS: Quirk = Quirk {
+    name: "two-variants",
+    driver: DriverKind::Lavapipe,
+    versions: "Mesa 22.3.6; other versions were not measured",
+    symptom: "a fragment shader without blending is compiled twice, for tiles that a triangle covers and for \
+              those that it covers in part, which takes most of the time of a small image",
+    workaround: "the color is written by a blending operation that keeps its bits; one variant then serves both",
+    source: "src/gpu/pipeline.rs",
+    removal: "when the first frame takes as long without it on the supported versions of Mesa",
+    scope: Scope::Affected,
+};
+
 /// All known quirks.
-pub const QUIRKS: [Quirk; 11] = [
+pub const QUIRKS: [Quirk; 12] = [
     LOOP_CAP,
     OPAQUE_NUMBERS,
+    TWO_VARIANTS,
     Quirk {
         name: "loop-steps",
         driver: DriverKind::Lavapipe,
