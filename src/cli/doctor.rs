@@ -257,7 +257,7 @@ impl Report {
                     "remove or update the driver that does not start, or name another: \
                      VK_DRIVER_FILES=MANIFEST.json toyproof …",
                 );
-                terminal.help(&format!(
+                terminal.help(format_args!(
                     "a driver that starts with {SANDBOX_VARIABLE}=off needs files outside of the system's folders"
                 ));
             }

@@ -294,7 +294,7 @@ mod tests {
         assert!(libraries(&plain).is_empty() && libraries(&broken).is_empty());
         assert_eq!(libraries(folder.path()).len(), 2);
 
-        let list = format!("{}:{}", absolute.display(), plain.display());
+        let list = [&absolute, &plain].map(|path| path.to_str().unwrap()).join(":");
         let allowed = allowed(&[("VK_DRIVER_FILES", &list), ("LD_LIBRARY_PATH", "/srv/a:/srv/b")]);
         for readable in [
             &absolute,
@@ -311,7 +311,7 @@ mod tests {
         let mesa = |variables: &[(&str, &str)]| {
             let caches = allowed(variables).caches;
             let mesa = caches.iter().find(|path| path.ends_with("mesa_shader_cache"));
-            mesa.and_then(|path| Some(path.parent()?.display().to_string()))
+            mesa.and_then(|path| Some(path.parent()?.to_str()?.to_owned()))
         };
         let home = ("HOME", "/home/ada");
         let of = |path: &str| Some(path.to_owned());

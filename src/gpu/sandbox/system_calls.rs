@@ -317,7 +317,7 @@ mod tests {
         #[cfg(target_arch = "x86_64")]
         for call in [libc::SYS_socket, 520, 521] {
             assert_eq!(
-                result(call | X32_BIT, [0; 6]),
+                result(call | i64::from(X32), [0; 6]),
                 FAILS | libc::EPERM as u32,
                 "{call}"
             );

@@ -118,17 +118,16 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 points.normal = normals.select(mask, points.normal);
             }
             let material = &self.materials[surface as usize];
-            let color = match material.uniform_color() {
-                Some(color) => Wide3::splat(simd, color.to_array()),
-                None => {
-                    let [places, normals] = [points.point, points.normal].map(Columns::from);
-                    let mut colors = Columns::splat([T::zero(); 3]);
-                    for lane in lanes_of(lanes) {
-                        let at = || [&places, &normals].map(|of| T::Vec3::from_array(of.get(lane)));
-                        colors.set(lane, material.color(at).to_array());
-                    }
-                    colors.load(simd, 0)
+            let color = if let Some(color) = material.uniform_color() {
+                Wide3::splat(simd, color.to_array())
+            } else {
+                let [places, normals] = [points.point, points.normal].map(Columns::from);
+                let mut colors = Columns::splat([T::zero(); 3]);
+                for lane in lanes_of(lanes) {
+                    let at = || [&places, &normals].map(|of| T::Vec3::from_array(of.get(lane)));
+                    colors.set(lane, material.color(at).to_array());
                 }
+                colors.load(simd, 0)
             };
             points.color = color.select(mask, points.color);
         }
