@@ -6,7 +6,7 @@
 //! its right side, but evaluates the target's indices before it; a function's `inout` arguments are copied in
 //! when all arguments are evaluated. [`Effects`] states where such operands may occur. Indices are masked,
 //! divisors positive, shifts below 32, loops bounded. A float in a variable is a multiple of 1/16 of at most
-//! 64 ([`Range::VARIABLE`]); where an expression could exceed 24 bits, `tame` reduces it.
+//! 64 (`Range::VARIABLE`); where an expression could exceed 24 bits, `tame` reduces it.
 
 mod choices;
 mod digest;

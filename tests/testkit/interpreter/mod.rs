@@ -116,7 +116,7 @@ impl Interpreter<'_> {
     }
 }
 
-/// Operations that GLSL leaves undefined: each kind with its place, see [`site`].
+/// Operations that GLSL leaves undefined: each kind with its place, see `site`.
 pub type Faults = BTreeSet<(Fault, [u32; 4])>;
 
 /// A place as numbers that can be ordered.
