@@ -1,29 +1,40 @@
-//! The evaluator beside lavapipe's strict frame, in turns so that both meet the same noise; in processor time
-//! of all threads, which other work on the machine hardly moves. `cargo bench --bench evaluator`
+//! The evaluator beside lavapipe's strict frame, in turns, so that other work on the machine affects both; in processor time
+//! of all threads. `cargo bench --bench evaluator`
 
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "a benchmark's own words"
+    reason = "a benchmark prints its figures"
 )]
 
 use std::fs;
 
 use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
-use toyproof::eval::{Number, Program, RandomRounding, Seed, Settings, UndefinedPolicy};
+use toyproof::eval::{Engine, Number, Program, RandomRounding, Seed, Settings, UndefinedPolicy};
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::gpu::{AdapterSelector, LocalRenderer};
 use toyproof::image::Frame;
 use toyproof::translate::{FloatMode, lower_strict};
 
-const EXERCISES: [&str; 4] = [
+const EXERCISES: [&str; 15] = [
+    "01-sampling",
     "02-sphere",
+    "03-shading",
     "04-many-objects",
     "05-complex-scene",
     "06-reflections",
+    "07-diffuse",
+    "08-disney",
+    "09-soft-shadows",
+    "10-quadrics",
+    "11-animation",
+    "12-whitted",
+    "13-importance-sampling",
+    "14-accelerator",
+    "15-parallel-rays",
 ];
-const ROUNDS: usize = 15;
+const ROUNDS: usize = 9;
 
 fn checked(exercise: &str) -> Checked {
     let mut files = Files::default();
@@ -50,22 +61,48 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-fn render<N: Number>(program: &Program, undefined: UndefinedPolicy, noise: N::Noise) {
+fn render<N: Number>(
+    program: &Program,
+    undefined: UndefinedPolicy,
+    noise: N::Noise,
+    engine: Engine,
+    size: [u32; 2],
+) {
     let settings = Settings::<N> {
         undefined,
         noise,
+        engine,
         ..Settings::default()
     };
-    program
-        .render(&Frame::default(), &settings)
-        .expect("the course paints");
+    let frame = Frame {
+        size,
+        ..Frame::default()
+    };
+    program.render(&frame, &settings).expect("the course is rendered");
 }
 
+/// What is measured, in the order of the columns.
+const COLUMNS: [&str; 10] = [
+    "compile",
+    "code",
+    "lavapipe",
+    "f32",
+    "observing",
+    "handlers",
+    "f64",
+    "observing",
+    "handlers",
+    "perturbed",
+];
+
 fn main() {
-    println!("milliseconds of processor time at 640×360, medians of {ROUNDS} rounds in turns");
     println!(
-        "exercise               compile  lavapipe  f32     f32 observing  f64     f64 observing  f64 perturbed"
+        "milliseconds of processor time at 640×360, medians of {ROUNDS} rounds in turns. code: machine code for f32 \
+         and an image of one pixel; observing, handlers (instead of machine code) and perturbed: of the number type \
+         before them"
     );
+    let heads = COLUMNS.map(|column| format!("{column:>10}"));
+    println!("{:24}{}  f32/lavapipe  f64/lavapipe", "exercise", heads.concat());
     for exercise in EXERCISES {
         let checked = checked(exercise);
         let lowered = lower_strict(&checked);
@@ -81,23 +118,32 @@ fn main() {
                 None
             }
         };
-        let program = Program::new(&checked).expect("the course is small");
-        let mut times: [Vec<f64>; 7] = Default::default();
+        let new = || Program::new(&checked).expect("the course is small");
+        let program = new();
+        let size = Frame::default().size;
+        let mut times: [Vec<f64>; COLUMNS.len()] = Default::default();
         for round in 0..=ROUNDS {
-            let compile = time(|| drop(Program::new(&checked)));
+            use Engine::{Fastest, Handlers, Native};
+            use UndefinedPolicy::{Observed, Plain};
+            let compile = time(|| drop(new()));
+            let fresh = new();
+            let code = time(|| render::<f32>(&fresh, Plain, (), Native, [1, 1]));
             let gpu = time(|| {
                 if let Some(renderer) = &mut renderer {
-                    renderer.render().expect("it painted before");
+                    renderer.render().expect("it was rendered before");
                 }
             });
             let taken = [
                 compile,
+                code,
                 gpu,
-                time(|| render::<f32>(&program, UndefinedPolicy::Plain, ())),
-                time(|| render::<f32>(&program, UndefinedPolicy::Observed, ())),
-                time(|| render::<f64>(&program, UndefinedPolicy::Plain, ())),
-                time(|| render::<f64>(&program, UndefinedPolicy::Observed, ())),
-                time(|| render::<RandomRounding>(&program, UndefinedPolicy::Plain, Seed::double(1))),
+                time(|| render::<f32>(&program, Plain, (), Fastest, size)),
+                time(|| render::<f32>(&program, Observed, (), Fastest, size)),
+                time(|| render::<f32>(&program, Plain, (), Handlers, size)),
+                time(|| render::<f64>(&program, Plain, (), Fastest, size)),
+                time(|| render::<f64>(&program, Observed, (), Fastest, size)),
+                time(|| render::<f64>(&program, Plain, (), Handlers, size)),
+                time(|| render::<RandomRounding>(&program, Plain, Seed::double(1), Fastest, size)),
             ];
             // The first round warms up.
             if round > 0 {
@@ -106,18 +152,14 @@ fn main() {
                 }
             }
         }
-        let [
-            compile,
-            gpu,
-            single,
-            single_observing,
-            double,
-            double_observing,
-            perturbed,
-        ] = times.map(median);
+        let medians = times.map(median);
+        let [_, _, gpu, single, _, _, double, ..] = medians;
+        let cells = medians.map(|time| format!("{time:10.2}"));
         println!(
-            "{exercise:18} {compile:<8.2} {gpu:<9.2} {single:<7.2} {single_observing:<14.2} {double:<7.2} \
-             {double_observing:<14.2} {perturbed:.2}"
+            "{exercise:24}{}{:14.2}{:14.2}",
+            cells.concat(),
+            single / gpu,
+            double / gpu
         );
     }
 }

@@ -47,6 +47,7 @@ impl<T: Copy> Chunk<T> {
 ///
 /// Lanes of the mask in chunks whose bit is clear are unspecified.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[repr(C)]
 pub(crate) struct Active {
     pub(crate) chunks: u32,
     pub(crate) all: bool,

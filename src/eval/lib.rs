@@ -62,6 +62,8 @@ mod build;
 mod frame;
 mod ir;
 mod lower;
+#[cfg_attr(not(target_arch = "x86_64"), path = "native/absent.rs")]
+mod native;
 mod number;
 mod observe;
 mod ops;
@@ -83,7 +85,7 @@ pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
 pub use parametric::{ParametricProgram, Point, PointEvaluator};
 pub use passes::{PassFailure, PassRenderer, bound};
 pub use program::Program;
-pub use render::{Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
+pub use render::{Engine, Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
 pub use trace::{
     Call, CallId, Event, EventId, EventKind, ExecutionTrace, ForcedPrefix, PixelDebugger, TraceEvent,
     TraceSchema, TraceValue,

@@ -193,6 +193,16 @@ pub struct Observations {
 pub const MESA_CAP: u32 = 65_535;
 
 impl Observations {
+    /// Adds the loop iterations of pixels.
+    #[inline(always)]
+    pub(crate) fn count_iterations(&mut self, iterations: &[u32]) {
+        let most = iterations.iter().copied().max().unwrap_or(0);
+        self.max_iterations = self.max_iterations.max(most);
+        if most > MESA_CAP {
+            self.beyond_cap += iterations.iter().filter(|&&count| count > MESA_CAP).count() as u64;
+        }
+    }
+
     /// Adds the observations of a different part of the image.
     pub fn merge(&mut self, other: &Self) {
         self.max_iterations = self.max_iterations.max(other.max_iterations);

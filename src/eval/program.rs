@@ -15,6 +15,7 @@ use crate::ir::Function;
 use crate::lower::isel::Prepared;
 use crate::lower::linearize::{LinearCode, linearize};
 use crate::lower::regalloc::{Allocation, allocate_registers};
+use crate::native;
 use crate::number::{Number, RandomRounding};
 use crate::observe::{Observations, Site};
 use crate::opt::dce::eliminate_dead_code;
@@ -230,6 +231,7 @@ pub struct Compiled {
     pub(crate) shared: Vec<bool>,
     pub(crate) sites: Vec<Site>,
     pub(crate) schema: TraceSchema,
+    pub(crate) native: native::Cache,
 }
 
 impl Compiled {
@@ -267,6 +269,7 @@ impl Compiled {
                 shared,
                 sites,
                 schema,
+                native: native::Cache::default(),
             })
         })?
     }

@@ -57,6 +57,22 @@ pub struct Settings<'a, N: Number> {
     pub interrupt: Option<&'a AtomicBool>,
     /// The pixels that are needed, bottom row first; others may stay black. None means all.
     pub wanted: Option<&'a [bool]>,
+    /// What executes the program. The result is the same.
+    #[doc(hidden)]
+    pub engine: Engine,
+}
+
+/// What executes a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[doc(hidden)]
+pub enum Engine {
+    /// Machine code for many pixels, handlers for few.
+    #[default]
+    Fastest,
+    /// Handlers of instructions.
+    Handlers,
+    /// Machine code, where there is any.
+    Native,
 }
 
 impl<N: Number> Default for Settings<'_, N> {
@@ -70,6 +86,7 @@ impl<N: Number> Default for Settings<'_, N> {
             deadline: None,
             interrupt: None,
             wanted: None,
+            engine: Engine::Fastest,
         }
     }
 }

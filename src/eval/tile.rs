@@ -14,11 +14,12 @@ use crate::batch::{
 use crate::frame::{DISCARDED, UNDEFINED};
 use crate::lower::isel::Prepared;
 use crate::lower::regalloc::Location;
+use crate::native::{Native, Underflows};
 use crate::number::Number;
-use crate::observe::{MESA_CAP, Observations, Observed, Site, first_in_rows};
+use crate::observe::{Observations, Observed, Site, first_in_rows};
 use crate::ops::run;
 use crate::program::Compiled;
-use crate::render::{Failure, Limits, Places, Settings};
+use crate::render::{Engine, Failure, Limits, Places, Settings};
 use crate::trace::{ExecutionTrace, ForcedPrefix, Recorder};
 
 /// The reason why a band was not rendered.
@@ -49,6 +50,9 @@ impl BandError {
 const CHUNK_COLUMNS: usize = TILE_COLUMNS / 2;
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
+/// The number of pixels from which on making machine code pays.
+const MIN_NATIVE_PIXELS: u64 = 4096;
+
 /// A frame that is being rendered.
 pub(crate) struct FrameJob<'a, N: Number> {
     prepared: &'a Prepared<N>,
@@ -57,6 +61,8 @@ pub(crate) struct FrameJob<'a, N: Number> {
     settings: &'a Settings<'a, N>,
     floats: Vec<N>,
     words: Vec<u32>,
+    native: Option<Native<'a>>,
+    underflows: Underflows,
     sites: &'a [Site],
     size: [u32; 2],
     /// The sample positions, if they are not the pixel centers.
@@ -73,7 +79,14 @@ impl<'a, N: Number> FrameJob<'a, N> {
         size: [u32; 2],
     ) -> Self {
         let (floats, words) = prologue(prepared, settings, textures, limits);
+        let pays = match settings.engine {
+            Engine::Fastest => u64::from(size[0]) * u64::from(size[1]) >= MIN_NATIVE_PIXELS,
+            Engine::Handlers => false,
+            Engine::Native => true,
+        };
         Self {
+            native: pays.then(|| compiled.native(prepared)).flatten(),
+            underflows: Underflows::default(),
             prepared,
             textures,
             limits,
@@ -146,8 +159,14 @@ impl<'a, N: Number> FrameJob<'a, N> {
                 continue;
             }
             let corner = [left, first];
-            self.begin_tile(batch, corner);
-            run(batch, &self.prepared.code);
+            if let Some(native) = self.native {
+                native.run(batch, self.prepared, &self.underflows, |batch| {
+                    self.begin_tile(batch, corner);
+                });
+            } else {
+                self.begin_tile(batch, corner);
+                run(batch, &self.prepared.code);
+            }
             if let Some(stop) = batch.stopped.take() {
                 return Err(BandError::LoopStopped(stop));
             }
@@ -199,11 +218,20 @@ impl<'a, N: Number> FrameJob<'a, N> {
             let Some(row) = row else {
                 continue;
             };
-            for (chunk, cell) in batch.float_row(row).iter().enumerate() {
+            let row = batch.float_row(row);
+            for (chunk, cell) in row.iter().enumerate() {
+                // Chunks one above the other have the same columns, those side by side the same rows.
+                let same = match axis {
+                    0 => chunk.checked_sub(TILE_COLUMNS / CHUNK_COLUMNS),
+                    _ => (chunk % (TILE_COLUMNS / CHUNK_COLUMNS) > 0).then(|| chunk - 1),
+                };
                 let first = corner[axis] as usize + lane_position(chunk * LANES)[axis];
-                cell.set(std::array::from_fn(|lane| {
-                    N::from_f64(self.coordinate(axis, first + lane_position(lane)[axis]))
-                }));
+                cell.set(match same {
+                    Some(other) => row[other].get(),
+                    None => std::array::from_fn(|lane| {
+                        N::from_f64(self.coordinate(axis, first + lane_position(lane)[axis]))
+                    }),
+                });
             }
         }
         batch.iterations.set(0);
@@ -252,27 +280,30 @@ impl<'a, N: Number> FrameJob<'a, N> {
             (x < size[0] && y < size[1]).then_some([x, y])
         };
         let index = |[x, y]: [usize; 2]| (y - corner[1]) * size[0] + x;
-        let iterations = batch.iterations.get();
+        let is_inside = corner[0] + TILE_COLUMNS <= size[0] && corner[1] + self.rows() <= size[1];
         for chunk in 0..batch.width {
-            let (color, discarded) = self.outputs(batch, chunk);
-            let own_iterations = batch.own_iterations[chunk].get();
+            let outputs = self.outputs(batch, chunk);
             for row in 0..CHUNK_ROWS {
                 let Some(first) = at(chunk, lane_at([0, row])) else {
                     continue;
                 };
-                let count = CHUNK_COLUMNS.min(size[0] - first[0]);
-                let range = index(first)..index(first) + count;
-                for (column, (pixel, flag)) in pixels[range.clone()]
-                    .iter_mut()
-                    .zip(&mut flags[range])
-                    .enumerate()
-                {
-                    let lane = lane_at([column, row]) % LANES;
-                    *pixel = color.map(|component| component[lane]);
-                    *flag = if discarded[lane] != 0 { DISCARDED } else { 0 };
-                    let iterations = iterations + own_iterations[lane];
-                    observations.max_iterations = observations.max_iterations.max(iterations);
-                    observations.beyond_cap += u64::from(iterations > MESA_CAP);
+                let start = index(first);
+                // A known length is unrolled.
+                if is_inside {
+                    let range = start..start + CHUNK_COLUMNS;
+                    store_row(&mut pixels[range.clone()], &mut flags[range], &outputs, row);
+                } else {
+                    let range = start..start + CHUNK_COLUMNS.min(size[0] - first[0]);
+                    store_row(&mut pixels[range.clone()], &mut flags[range], &outputs, row);
+                }
+            }
+            let own = batch.own_iterations[chunk].get();
+            let iterations = own.map(|own| batch.iterations.get() + own);
+            if is_inside {
+                observations.count_iterations(&iterations);
+            } else {
+                for lane in (0..LANES).filter(|&lane| at(chunk, lane).is_some()) {
+                    observations.count_iterations(&iterations[lane..=lane]);
                 }
             }
         }
@@ -301,6 +332,21 @@ impl<'a, N: Number> FrameJob<'a, N> {
             faults: observed.into_values().collect(),
             ..Observations::default()
         });
+    }
+}
+
+/// Stores the colors and flags of a row of a chunk.
+#[inline(always)]
+fn store_row<N: Number>(
+    pixels: &mut [[N; 4]],
+    flags: &mut [u8],
+    (color, discarded): &([Lanes<N>; 4], Lanes<u32>),
+    row: usize,
+) {
+    for (column, (pixel, flag)) in pixels.iter_mut().zip(flags).enumerate() {
+        let lane = lane_at([column, row]) % LANES;
+        *pixel = [0, 1, 2, 3].map(|component: usize| color[component][lane]);
+        *flag = if discarded[lane] != 0 { DISCARDED } else { 0 };
     }
 }
 

@@ -45,6 +45,7 @@ mod large_batch;
 mod limits;
 mod literals;
 mod lookups;
+mod machine_code;
 mod math;
 mod miscompiles;
 mod nesting;

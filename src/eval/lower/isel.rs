@@ -19,6 +19,8 @@ use crate::program::Compiled;
 #[derive(Debug)]
 pub struct Prepared<N: Number> {
     pub(crate) code: Vec<Instruction<N>>,
+    /// The first instruction of each step, and the end.
+    pub(crate) positions: Vec<u32>,
     /// The initial values of scalars; those of computed constants are set by `prologue`.
     pub(crate) floats: Vec<N>,
     pub(crate) words: Vec<u32>,
@@ -68,7 +70,7 @@ impl Compiled {
             writer.compute(value);
         }
         let prologue = std::mem::take(&mut writer.code);
-        let code = writer.steps();
+        let (code, positions) = writer.steps();
         let mut floats = vec![N::default(); locations.scalars.floats as usize];
         let mut words = vec![0; locations.scalars.words as usize];
         let mut parameters = Vec::new();
@@ -103,6 +105,7 @@ impl Compiled {
         let [red, green, blue, alpha, discarded] = function.output;
         Prepared {
             code,
+            positions,
             floats,
             words,
             prologue,
@@ -153,7 +156,8 @@ impl<N: Number> Writer<'_, N> {
         });
     }
 
-    fn steps(&mut self) -> Vec<Instruction<N>> {
+    /// Emits all steps; returns also the first instruction of each, and the end.
+    fn steps(&mut self) -> (Vec<Instruction<N>>, Vec<u32>) {
         let linear = &self.compiled.linear;
         let mut positions = Vec::with_capacity(linear.steps.len() + 1);
         for (at, (step, mask)) in linear.steps.iter().enumerate() {
@@ -175,7 +179,7 @@ impl<N: Number> Writer<'_, N> {
                 code[positions[at] as usize].to = positions[*to as usize];
             }
         }
-        code
+        (code, positions)
     }
 
     fn step(&mut self, step: &Step) {

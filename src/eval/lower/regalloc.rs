@@ -28,6 +28,9 @@ pub(crate) enum Location {
 pub(crate) struct Allocation {
     values: Vec<Option<Location>>,
     cells: Vec<Option<Location>>,
+    /// The last step that may read each value and cell.
+    value_ends: Vec<u32>,
+    cell_ends: Vec<u32>,
     /// Whether a step is elided: its value already is in its location.
     pub(crate) elided: Vec<bool>,
     pub(crate) rows: PerKind,
@@ -54,6 +57,16 @@ impl Allocation {
     /// Returns the location of a value that is computed, or a constant.
     pub(crate) fn value(&self, value: Value) -> Option<Location> {
         self.values[value.0 as usize]
+    }
+
+    /// Returns the last step that may read a value, or whatever shares its location.
+    pub(crate) fn value_end(&self, value: Value) -> u32 {
+        self.value_ends[value.0 as usize]
+    }
+
+    /// Returns the last step that may read a cell.
+    pub(crate) fn cell_end(&self, cell: Cell) -> u32 {
+        self.cell_ends[cell.0 as usize]
     }
 
     /// Returns the location of a cell that is accessed.
@@ -321,6 +334,8 @@ impl Allocator<'_> {
         let mut locations = Allocation {
             values: vec![None; function.defs.len()],
             cells: vec![None; function.cells.len()],
+            value_ends: uses.values.iter().map(|range| range.end).collect(),
+            cell_ends: uses.cells.iter().map(|range| range.end).collect(),
             elided,
             rows: PerKind::default(),
             scalars: PerKind::default(),
@@ -337,6 +352,8 @@ impl Allocator<'_> {
             for cell in 0..count {
                 let location = if varies { Location::Row } else { Location::Scalar };
                 locations.cells[(first + cell) as usize] = Some(location(start + cell));
+                // An index may select it at any time.
+                locations.cell_ends[(first + cell) as usize] = NEVER;
             }
             (room.floats, room.words) = (start + count, start + count);
         }
@@ -346,6 +363,7 @@ impl Allocator<'_> {
         for (value, cell) in cell_of.iter().enumerate() {
             if let Some(cell) = cell {
                 locations.values[value] = locations.cells[cell.0 as usize];
+                locations.value_ends[value] = locations.cell_ends[cell.0 as usize];
             }
         }
         locations

@@ -237,8 +237,9 @@ impl<N: Number> Run<N> for Iterate {
     }
 }
 
+/// Checks the limits; jumps past the end if one is exceeded.
 #[cold]
-fn refuel<N: Number>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+pub(crate) fn refuel<N: Number>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
     batch.fuel.set(FUEL_ITERATIONS);
     let over_limit = batch.max_iterations() > batch.iteration_limit;
     if !over_limit && !batch.cancellation.is_cancelled() {

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::thread;
 
-use toyproof::eval::{Failure, Fault, Number, Observations, Program, Settings, Substitute, UndefinedPolicy};
+use toyproof::eval::{
+    Engine, Failure, Fault, Number, Observations, Program, Rendered, Settings, Substitute, UndefinedPolicy,
+};
 use toyproof::glsl::Checked;
 use toyproof::image::Frame;
 
@@ -90,15 +92,28 @@ impl Comparison<'_> {
     }
 
     fn run_in<E: Number, I: Real + Send>(&self, program: &Program, number: &str) -> Result<Tally, String> {
-        let settings = Settings {
-            undefined: self.policy,
-            max_iterations: 1 << 16,
-            ..Settings::<E>::default()
+        let rendered = |engine| {
+            let settings = Settings {
+                undefined: self.policy,
+                max_iterations: 1 << 16,
+                engine,
+                ..Settings::<E>::default()
+            };
+            program.render(self.frame, &settings)
         };
-        let rendered = match program.render(self.frame, &settings) {
-            Ok(rendered) => rendered,
-            Err(Failure::TooOften { .. }) => return Ok(self.skip("too many iterations")),
-            Err(failure) => return Err(format!("{number}, {:?}: {failure}", self.policy)),
+        let rendered = match (rendered(Engine::Handlers), rendered(Engine::Native)) {
+            (Ok(handlers), Ok(native)) => {
+                self.compare_engines(&handlers, &native)
+                    .map_err(|error| format!("{number}, {:?}: {error}", self.policy))?;
+                handlers
+            }
+            (Err(Failure::TooOften { .. }), Err(Failure::TooOften { .. })) => {
+                return Ok(self.skip("too many iterations"));
+            }
+            (handlers, native) => {
+                let failures = [handlers.err(), native.err()];
+                return Err(format!("{number}, {:?}: {failures:?}", self.policy));
+            }
         };
         let interpreter = Interpreter {
             checked: self.checked,
@@ -151,6 +166,30 @@ impl Comparison<'_> {
             compare_faults(expected, &rendered.observations).map_err(|error| format!("{number}: {error}"))?;
         }
         Ok(tally)
+    }
+
+    /// Compares every pixel and observation of the handlers with that of machine code. The signs and payloads of NaN are
+    /// not compared: the operands of a sum or product may be exchanged.
+    fn compare_engines<E: Number>(&self, handlers: &Rendered<E>, native: &Rendered<E>) -> Result<(), String> {
+        let [width, height] = self.frame.size;
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            let [a, b] = [handlers, native].map(|one| {
+                let buffer = &one.framebuffer;
+                (buffer.get(x, y).map(Number::to_f64), buffer.is_discarded(x, y))
+            });
+            let are_same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+            if a.1 != b.1 || !a.0.iter().zip(&b.0).all(are_same) {
+                return Err(format!("pixel {x}, {y}: handlers {a:?}, machine code {b:?}"));
+            }
+        }
+        if handlers.observations == native.observations {
+            Ok(())
+        } else {
+            Err(format!(
+                "handlers observed {:?}, machine code {:?}",
+                handlers.observations, native.observations
+            ))
+        }
     }
 
     fn covers_the_frame(&self) -> bool {

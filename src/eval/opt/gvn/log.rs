@@ -9,11 +9,11 @@ use rustc_hash::FxHasher;
 use crate::ir::{Block, Cell, Cells, LoopId, Node, Scope, Value};
 
 /// A map with a fast hash; its keys cannot be chosen adversarially.
-pub(super) type Map<K, V> = HashMap<K, V, BuildHasherDefault<FxHasher>>;
+pub(crate) type Map<K, V> = HashMap<K, V, BuildHasherDefault<FxHasher>>;
 
 /// A map that can be rolled back to an earlier state.
 #[derive(Debug)]
-pub(super) struct RollbackMap<K, V> {
+pub(crate) struct RollbackMap<K, V> {
     map: Map<K, V>,
     changes: Vec<(K, Option<V>)>,
 }
@@ -28,11 +28,11 @@ impl<K, V> Default for RollbackMap<K, V> {
 }
 
 impl<K: Copy + Eq + Hash, V: Copy + PartialEq> RollbackMap<K, V> {
-    pub(super) fn get(&self, key: K) -> Option<V> {
+    pub(crate) fn get(&self, key: K) -> Option<V> {
         self.map.get(&key).copied()
     }
 
-    pub(super) fn set(&mut self, key: K, value: Option<V>) {
+    pub(crate) fn set(&mut self, key: K, value: Option<V>) {
         let old = match value {
             Some(value) => self.map.insert(key, value),
             None => self.map.remove(&key),
@@ -42,21 +42,21 @@ impl<K: Copy + Eq + Hash, V: Copy + PartialEq> RollbackMap<K, V> {
         }
     }
 
-    pub(super) fn mark(&self) -> usize {
+    pub(crate) fn mark(&self) -> usize {
         self.changes.len()
     }
 
     /// Returns the keys changed since a mark.
-    pub(super) fn keys_since(&self, mark: usize) -> impl Iterator<Item = K> {
+    pub(crate) fn keys_since(&self, mark: usize) -> impl Iterator<Item = K> {
         self.changes[mark..].iter().map(|(key, _)| *key)
     }
 
     /// Returns the keys changed since a mark, with their current values.
-    pub(super) fn changes_since(&self, mark: usize) -> Map<K, Option<V>> {
+    pub(crate) fn changes_since(&self, mark: usize) -> Map<K, Option<V>> {
         self.keys_since(mark).map(|key| (key, self.get(key))).collect()
     }
 
-    pub(super) fn roll_back(&mut self, mark: usize) {
+    pub(crate) fn roll_back(&mut self, mark: usize) {
         for (key, old) in self.changes.drain(mark..).rev() {
             match old {
                 Some(value) => self.map.insert(key, value),

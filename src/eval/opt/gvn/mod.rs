@@ -5,7 +5,7 @@
 //! is the known one. Known words decide branches, select elements, and give the trip counts of loops.
 
 mod control;
-mod log;
+pub(crate) mod log;
 
 use self::control::{OpenLoop, OpenScope, UnrollBudget};
 use self::log::{Changes, RollbackMap};

@@ -1,0 +1,136 @@
+//! Operations on vector registers: the graph that a region is lifted to, and the constants that it uses.
+
+use super::assemble::{Constant, Opcode};
+use crate::ir::Kind;
+use crate::opt::gvn::log::Map;
+
+/// The arithmetic of the code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Precision {
+    /// Floats of 32 bits. The processor flushes denormal results to zero and records that it did.
+    Single,
+    /// Floats of 32 bits, with denormals flushed by operations of their own.
+    SingleExact,
+    Double,
+}
+
+impl Precision {
+    pub(super) fn is_double(self) -> bool {
+        self == Self::Double
+    }
+}
+
+/// A node of the graph of operations.
+pub(super) type NodeId = u32;
+
+/// An operand that a node does not have.
+pub(super) const NO_NODE: NodeId = u32::MAX;
+
+/// A table of rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) enum Bank {
+    Float,
+    Word,
+    Mask,
+    /// The iterations of each pixel: one row.
+    Iterations,
+}
+
+/// A place in memory that nodes are stored to.
+pub(super) type Row = (Bank, u32);
+
+/// What a node computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Action {
+    /// Loads from a row.
+    Row(Row),
+    /// Loads a scalar into all lanes.
+    Scalar(Kind, u32),
+    /// A constant of the pool.
+    Constant(u32),
+    Unary(Opcode),
+    UnaryImmediate(Opcode, u8),
+    Binary(Opcode),
+    BinaryImmediate(Opcode, u8),
+    /// The second operand where the third has its highest bit set, else the first.
+    Blend(Opcode),
+    /// Shifts words to the right.
+    ShiftRight(u8),
+    /// Takes the lower half of each lane of 64 bits.
+    Narrow,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Node {
+    pub(super) action: Action,
+    pub(super) operands: [NodeId; 3],
+    /// Whether the vector has 256 bits.
+    pub(super) wide: bool,
+}
+
+impl Node {
+    /// Whether it can be loaded at any time, so that it needs no register until it is used.
+    pub(super) fn is_lazy(&self) -> bool {
+        matches!(
+            self.action,
+            Action::Row(_) | Action::Scalar(..) | Action::Constant(_)
+        )
+    }
+}
+
+/// An item of a region, in execution order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Item {
+    Compute(NodeId),
+    /// Stores a node in a row. Earlier nodes than the last operand may have loaded the row's old content.
+    Store(Row, NodeId, NodeId),
+    /// Skips the items up to the matching [`Item::EndGuard`] if a mask is empty. They store to these rows,
+    /// whose old content earlier nodes than the last operand may have loaded.
+    Guard(NodeId, Vec<Row>, NodeId),
+    EndGuard,
+    /// Notes the pixels of a mask as faults of a site, if there are any.
+    Note(NodeId, u32),
+}
+
+/// A lifted region.
+#[derive(Debug, Default)]
+pub(super) struct Region {
+    pub(super) nodes: Vec<Node>,
+    pub(super) items: Vec<Item>,
+    /// The masks whose rows it writes for steps after it.
+    pub(super) masks: Vec<u32>,
+}
+
+/// The constants of a program.
+#[derive(Debug, Default)]
+pub(super) struct Pool {
+    pub(super) constants: Vec<Constant>,
+    numbers: Map<Constant, u32>,
+}
+
+impl Pool {
+    pub(super) fn number(&mut self, constant: Constant) -> u32 {
+        *self.numbers.entry(constant).or_insert_with(|| {
+            self.constants.push(constant);
+            self.constants.len() as u32 - 1
+        })
+    }
+}
+
+/// Returns a constant with a word in all lanes.
+pub(super) fn words(word: u32) -> Constant {
+    let mut constant = [0; 32];
+    for lane in constant.chunks_exact_mut(4) {
+        lane.copy_from_slice(&word.to_le_bytes());
+    }
+    constant
+}
+
+/// Returns a constant with a word of 64 bits in all lanes.
+pub(super) fn long_words(word: u64) -> Constant {
+    let mut constant = [0; 32];
+    for lane in constant.chunks_exact_mut(8) {
+        lane.copy_from_slice(&word.to_le_bytes());
+    }
+    constant
+}

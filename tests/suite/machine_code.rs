@@ -1,0 +1,71 @@
+//! Machine code has the bits of the handlers, in whole images of the course, with all treatments of undefined
+//! operations, in both precisions.
+
+use toyproof::eval::{Engine, Number, Program, Rendered, Settings, Substitute, UndefinedPolicy};
+use toyproof::image::Frame;
+
+use crate::support::{EXERCISES, checked};
+
+/// The bits of all pixels, bottom row first.
+fn bits<N: Number>(rendered: &Rendered<N>, [width, height]: [u32; 2]) -> Vec<[u64; 3]> {
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let colors = places.map(|(x, y)| rendered.framebuffer.get(x, y));
+    colors
+        .map(|color| color.map(|part| part.to_f64().to_bits()))
+        .collect()
+}
+
+fn compare<N: Number>(name: &str, program: &Program, undefined: UndefinedPolicy, frame: &Frame) {
+    let render = |engine| {
+        let settings = Settings::<N> {
+            undefined,
+            engine,
+            ..Settings::default()
+        };
+        program.render(frame, &settings).expect("the course is rendered")
+    };
+    let [handlers, native] = [Engine::Handlers, Engine::Native].map(render);
+    let case = || format!("{name}, {:?}, {undefined:?}", std::any::type_name::<N>());
+    let (expected, found) = (bits(&handlers, frame.size), bits(&native, frame.size));
+    let differing = expected.iter().zip(&found).filter(|(a, b)| a != b).count();
+    assert_eq!(differing, 0, "{}", case());
+    assert_eq!(handlers.observations, native.observations, "{}", case());
+}
+
+#[test]
+fn the_course_has_the_same_bits() {
+    for exercise in EXERCISES {
+        let program = Program::new(&checked(exercise.shader)).unwrap();
+        for size in [[61, 37], [160, 90]] {
+            let frame = Frame {
+                size,
+                ..Frame::default()
+            };
+            for undefined in [
+                UndefinedPolicy::Plain,
+                UndefinedPolicy::Observed,
+                UndefinedPolicy::Substitute(Substitute::NotANumber),
+            ] {
+                compare::<f32>(exercise.name, &program, undefined, &frame);
+                compare::<f64>(exercise.name, &program, undefined, &frame);
+            }
+        }
+    }
+}
+
+/// A scalar variable that is changed in its own location, after a region of vectors that reads it.
+#[test]
+fn a_variable_keeps_its_value_until_it_was_read() {
+    let text = "void mainImage(out vec4 color, in vec2 at) {\n\
+                    at[int(at.y) & 1] = 2.75;\n\
+                    for (float x = 0.0; x < 4.0; ++x) { at.y *= x; at.y = at.y; }\n\
+                    color = vec4(at, 0.0, 1.0);\n\
+                }\n";
+    let program = Program::new(&checked(text)).unwrap();
+    let frame = Frame {
+        size: [32, 18],
+        ..Frame::default()
+    };
+    compare::<f32>("variable", &program, UndefinedPolicy::Plain, &frame);
+    compare::<f64>("variable", &program, UndefinedPolicy::Plain, &frame);
+}
