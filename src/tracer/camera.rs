@@ -22,6 +22,9 @@ pub(super) struct Camera<T: Real> {
     projection: ScreenProjection<T>,
     width: T,
     height: T,
+    /// Where the centers of the columns of pixels are on the screen, and those of the rows.
+    columns: Vec<T>,
+    rows: Vec<T>,
 }
 
 #[derive(Debug)]
@@ -33,7 +36,8 @@ enum ScreenProjection<T> {
 impl<T: Real> Camera<T> {
     pub(super) fn new(scene: &Scene) -> Self {
         let [width, height] = scene.film.size.map(|side| T::from_f64(f64::from(side)));
-        Self {
+        let centers = |side: u32| (0..side).map(|at| T::from_f64(f64::from(at)) + T::from_f64(0.5));
+        let mut camera = Self {
             eye: T::Vec3::from_f64(scene.camera.eye),
             forward: T::Vec3::from_f64(scene.camera.forward()),
             axes: scene.camera.axes().map(|axes| axes.map(T::Vec3::from_f64)),
@@ -47,7 +51,19 @@ impl<T: Real> Camera<T> {
             },
             width,
             height,
-        }
+            columns: Vec::new(),
+            rows: Vec::new(),
+        };
+        let [columns, rows] = scene.film.size;
+        camera.columns = centers(columns).map(|fx| camera.screen_x(fx)).collect();
+        camera.rows = centers(rows).map(|fy| camera.screen_y(fy)).collect();
+        camera
+    }
+
+    /// Returns where the center of a pixel is on the screen.
+    #[inline]
+    pub(super) fn pixel_center(&self, [column, row]: [u32; 2]) -> [T; 2] {
+        [self.columns[column as usize], self.rows[row as usize]]
     }
 
     /// Maps the fragment coordinates (fx, fy), in pixels from the bottom left, to the screen: `x = 2 fx /
@@ -57,12 +73,12 @@ impl<T: Real> Camera<T> {
     }
 
     #[inline]
-    pub(super) fn screen_x(&self, fx: T) -> T {
+    fn screen_x(&self, fx: T) -> T {
         fx / self.width * T::from_f64(2.0) - T::one()
     }
 
     #[inline]
-    pub(super) fn screen_y(&self, fy: T) -> T {
+    fn screen_y(&self, fy: T) -> T {
         (fy / self.height * T::from_f64(2.0) - T::one()) / (self.width / self.height)
     }
 
@@ -109,30 +125,30 @@ impl<T: Real> Camera<T> {
 
     /// Creates a packet of such rays.
     pub(super) fn packet(&self, [x, y]: &[[T; PACKET_RAYS]; 2], level: Level) -> Packet<T> {
-        let [x_forward, y_forward, z_forward] = self.forward.to_array();
-        let mut directions = [
-            [x_forward; PACKET_RAYS],
-            [y_forward; PACKET_RAYS],
-            [z_forward; PACKET_RAYS],
-        ];
-        let origins = match self.projection {
+        match self.projection {
             ScreenProjection::Pinhole { screen_distance } => {
+                let mut packet = Packet::full(
+                    Origins::Shared(self.eye.to_array()),
+                    [[T::zero(); PACKET_RAYS]; 3],
+                );
                 let kernel = PinholeDirections {
                     x,
                     y,
                     screen_distance,
                     axes: self.axes.map(|axes| axes.map(T::Vec3::to_array)),
-                    directions: directions.each_mut().map(|component| &mut component[..]),
+                    directions: packet.directions.each_mut().map(|component| &mut component[..]),
                 };
                 T::run(level, kernel);
-                Origins::Shared(self.eye.to_array())
+                packet
             }
             ScreenProjection::Parallel { .. } => {
                 let start = |at: usize, axis: usize| self.parallel_origin([x[at], y[at]]).to_array()[axis];
-                Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| start(at, axis))))
+                Packet::full(
+                    Origins::Each([0, 1, 2].map(|axis| std::array::from_fn(|at| start(at, axis)))),
+                    self.forward.to_array().map(|component| [component; PACKET_RAYS]),
+                )
             }
-        };
-        Packet::full(origins, directions)
+        }
     }
 
     /// Returns the origin of a parallel ray.
@@ -177,8 +193,8 @@ impl<T: Real> Kernel<T> for ScreenPositions<'_, T> {
     }
 }
 
-/// Computes the unit directions from a pinhole to points (x, y, `screen_distance`) on the screen, to the right,
-/// up and forward.
+/// Computes the unit directions from a pinhole to points (x, y, `screen_distance`) on the screen, to the
+/// right, up and forward.
 struct PinholeDirections<'a, T> {
     x: &'a [T],
     y: &'a [T],

@@ -54,7 +54,7 @@ use self::camera::{Camera, Figure};
 use self::lanes::Level;
 use self::sampler::{Sample, SampleStream};
 use self::shape::{Shape, Sphere};
-use self::spheres::Spheres;
+use self::spheres::{NumberedSphere, Spheres};
 use self::world::World;
 use crate::ray::PrimaryHit;
 use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
@@ -165,18 +165,23 @@ impl<T: Real> Tracer<T> {
 
     fn with_level(scene: &Scene, frame_time: FrameTime, level: Level, previous: Option<Spheres<T>>) -> Self {
         let requirements = Requirements::of(scene);
-        let scene = &scene.at(frame_time);
+        let moved = requirements.motion.then(|| scene.at(frame_time));
+        let scene = moved.as_ref().unwrap_or(scene);
+        let spheres = |all: &[NumberedSphere<T>]| match previous {
+            Some(previous) => previous.moved(all),
+            None => Spheres::new(all, requirements.many_spheres, level),
+        };
         Self {
             film: scene.film,
             max_offset: scene.max_offset,
             camera: Camera::new(scene),
             figures: scene.figures.iter().map(Figure::new).collect(),
             kernel: if requirements.shapes {
-                Kernel::Shapes(World::new(scene, level, previous, |object| {
+                Kernel::Shapes(World::new(scene, level, spheres, |object| {
                     Shape::new(&object.shape)
                 }))
             } else {
-                Kernel::Spheres(World::new(scene, level, previous, |object| match object.shape {
+                Kernel::Spheres(World::new(scene, level, spheres, |object| match object.shape {
                     scene::Shape::Sphere { center, radius } => Sphere::new(center, radius),
                     _ => unreachable!("a scene that requires other shapes has the other kernel"),
                 }))

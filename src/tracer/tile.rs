@@ -1,5 +1,7 @@
 //! Rendering in tiles of 8×8 pixels, whose camera rays form one packet.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use toyproof_scene::Sampler;
 
@@ -22,16 +24,17 @@ struct Tile {
 }
 
 impl Tile {
-    /// Calls `with` for each pixel of the tile inside the image, with its index in the packet and its index
-    /// in a band that is `width` pixels wide.
+    /// Iterates over the rows of the tile inside the image: their indices in the packet, and those in a band
+    /// that is `width` pixels wide.
     #[inline]
-    fn for_each_pixel(&self, width: u32, mut with: impl FnMut(usize, usize)) {
-        for row in 0..self.size[1] {
-            for column in 0..self.size[0] {
-                let in_band = row * width + self.corner[0] + column;
-                with((row * TILE_SIDE + column) as usize, in_band as usize);
-            }
-        }
+    fn rows(&self, width: u32) -> impl Iterator<Item = [Range<usize>; 2]> {
+        let Self { corner, size } = *self;
+        (0..size[1]).map(move |row| {
+            [row * TILE_SIDE, row * width + corner[0]].map(|first| {
+                let first = first as usize;
+                first..first + size[0] as usize
+            })
+        })
     }
 
     /// Returns whether the pixel at an index in row order is inside the image.
@@ -62,8 +65,8 @@ struct PacketSamples {
 }
 
 impl PacketSamples {
-    /// Returns the samples of one of the `count` packets in which a tile with `count` samples per pixel is traced.
-    /// Those of a pixel are in the order of their indices, over all packets.
+    /// Returns the samples of one of the `count` packets in which a tile with `count` samples per pixel is
+    /// traced. Those of a pixel are in the order of their indices, over all packets.
     fn new(number: u32, count: u32) -> Self {
         if !count.is_multiple_of(ADJACENT_SAMPLES as u32) {
             return Self {
@@ -105,10 +108,12 @@ impl<T: Real> Tracer<T> {
             let mut components: [T; 3 * PACKET_RAYS] =
                 std::array::from_fn(|at| sums[at / PACKET_RAYS][at % PACKET_RAYS] / count);
             tone_map_all(&self.film, self.level, &mut components);
-            tile.for_each_pixel(self.film.size[0], |at, in_band| {
-                let [r, g, b] = [0, 1, 2].map(|axis| components[axis * PACKET_RAYS + at].to_f64() as f32);
-                pixels[in_band] = [r, g, b, 1.0];
-            });
+            for [in_packet, in_band] in tile.rows(self.film.size[0]) {
+                for (at, pixel) in in_packet.zip(&mut pixels[in_band]) {
+                    let [r, g, b] = [0, 1, 2].map(|axis| components[axis * PACKET_RAYS + at].to_f64() as f32);
+                    *pixel = [r, g, b, 1.0];
+                }
+            }
         }
     }
 
@@ -120,9 +125,11 @@ impl<T: Real> Tracer<T> {
         let mut means = vec![T::Vec3::ZERO; (TILE_SIDE.min(height - bottom) * width) as usize];
         for tile in self.tiles(bottom) {
             let sums = self.sums(tile, sampler, set);
-            tile.for_each_pixel(width, |at, in_band| {
-                means[in_band] = T::Vec3::from_array([0, 1, 2].map(|axis| sums[axis][at])) / count;
-            });
+            for [in_packet, in_band] in tile.rows(width) {
+                for (at, mean) in in_packet.zip(&mut means[in_band]) {
+                    *mean = T::Vec3::from_array([0, 1, 2].map(|axis| sums[axis][at])) / count;
+                }
+            }
         }
         means
     }
@@ -200,17 +207,16 @@ impl<T: Real> Tracer<T> {
     /// y.
     fn pixel_centers(&self, tile: Tile) -> [[T; PACKET_RAYS]; 2] {
         const SIDES: usize = TILE_SIDE as usize;
-        let half = T::from_f64(0.5);
-        let center = |axis: usize, at: usize| {
-            let along = tile.pixel(at * (SIDES + 1))[axis];
-            T::from_f64(f64::from(along)) + half
-        };
-        let x: [T; SIDES] = std::array::from_fn(|at| self.camera.screen_x(center(0, at)));
-        let y: [T; SIDES] = std::array::from_fn(|at| self.camera.screen_y(center(1, at)));
-        [
-            std::array::from_fn(|at| x[at % SIDES]),
-            std::array::from_fn(|at| y[at / SIDES]),
-        ]
+        let on_diagonal: [[T; 2]; SIDES] =
+            std::array::from_fn(|at| self.camera.pixel_center(tile.pixel(at * (SIDES + 1))));
+        let columns = on_diagonal.map(|[x, _]| x);
+        let [mut xs, mut ys] = [[T::zero(); PACKET_RAYS]; 2];
+        for (row, [_, y]) in on_diagonal.into_iter().enumerate() {
+            let row = row * SIDES..(row + 1) * SIDES;
+            xs[row.clone()].copy_from_slice(&columns);
+            ys[row].fill(y);
+        }
+        [xs, ys]
     }
 
     /// Maps positions in the image to the screen.
@@ -243,11 +249,11 @@ impl<T: Real> Tracer<T> {
             for tile in self.tiles(band as u32 * TILE_SIDE) {
                 let packet = self.camera.packet(&self.pixel_centers(tile), self.level);
                 let found = self.nearest_of_packet(&packet);
-                tile.for_each_pixel(width, |at, in_band| {
-                    if let Some((_, surface)) = found.get(at).get() {
-                        surfaces[in_band] = surface as u32;
+                for [in_packet, in_band] in tile.rows(width) {
+                    for (surface, tag) in surfaces[in_band].iter_mut().zip(&found.surfaces()[in_packet]) {
+                        *surface = tag.untag();
                     }
-                });
+                }
             }
         });
         surfaces

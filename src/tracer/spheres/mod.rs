@@ -10,7 +10,9 @@
     reason = "only what is inlined into a kernel is compiled for its instruction set"
 )]
 
+mod binary;
 mod block;
+mod collapse;
 mod lanes;
 mod packet;
 mod single_ray;

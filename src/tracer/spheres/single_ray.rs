@@ -1,5 +1,7 @@
 //! Traversal by a single ray, which is tested against eight spheres or boxes at once.
 
+use std::hint::select_unpredictable;
+
 use smallvec::SmallVec;
 
 use super::block::{Block, margin};
@@ -8,13 +10,15 @@ use super::{BLOCK_SIZE, Eight, Roots, Spheres, discriminant};
 use crate::lanes::{Kernel, Lanes, MAX_LANES, Wide, Wide3};
 use crate::real::Real;
 
-/// A query for hits strictly between two values of t, with at most two spheres excluded.
+/// A query for hits strictly between two values of t, with at most two spheres excluded. A sphere that is hit
+/// at the upper bound counts if its index is smaller than `number`.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Query<T> {
     pub(in super::super) origin: [T; 3],
     pub(in super::super) direction: [T; 3],
     pub(in super::super) t_min: T,
     pub(in super::super) t_max: T,
+    pub(in super::super) number: u32,
     /// Indices of spheres, or [`super::NO_SURFACE`].
     pub(in super::super) excluded: [u32; 2],
 }
@@ -112,7 +116,7 @@ struct RayTraversal<'a, T, S: Lanes<T>> {
     a: Wide<T, S>,
     inverse_a: Wide<T, S>,
     t_min: Wide<T, S>,
-    /// t of the nearest hit so far, or the upper bound of the query.
+    /// t of the nearest hit so far and its sphere, or the upper bound of the query.
     t: T,
     number: u32,
 }
@@ -131,14 +135,13 @@ impl<'a, T: Real, S: Lanes<T>> RayTraversal<'a, T, S> {
             inverse_a: Wide::splat(simd, T::one()) / a,
             t_min: Wide::splat(simd, query.t_min),
             t: query.t_max,
-            // No index is smaller, so that no hit at the bound replaces it.
-            number: 0,
+            number: query.number,
         }
     }
 
     #[inline(always)]
     fn has_hit(&self) -> bool {
-        self.t < self.query.t_max
+        self.t < self.query.t_max || self.number < self.query.number
     }
 
     #[inline(always)]
@@ -207,17 +210,18 @@ impl<'a, T: Real, S: Lanes<T>> RayTraversal<'a, T, S> {
         let mut next = || {
             let at = hits.trailing_zeros() as usize % BLOCK_SIZE;
             hits &= hits - 1;
-            ((nears[at], node.children[at]), hits == 0)
+            (at, hits == 0)
         };
         let (mut nearest, mut is_last) = next();
         while !is_last {
             let other;
             (other, is_last) = next();
-            let is_nearer = other.0 < nearest.0;
-            open.push(if is_nearer { nearest } else { other });
-            nearest = if is_nearer { other } else { nearest };
+            let is_nearer = nears[other] < nears[nearest];
+            let farther = select_unpredictable(is_nearer, nearest, other);
+            nearest = select_unpredictable(is_nearer, other, nearest);
+            open.push((nears[farther], node.children[farther]));
         }
-        Some(nearest.1)
+        Some(node.children[nearest])
     }
 
     /// Returns a mask of the boxes of a node that the ray crosses, and t where it enters them.

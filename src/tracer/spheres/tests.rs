@@ -4,6 +4,7 @@ use glam::DVec3;
 use toyproof_image::pcg;
 use toyproof_scene::unit as unit_interval;
 
+use super::binary::BinaryTree;
 use super::*;
 use crate::lanes::{Level, lanes_of};
 use crate::ray::Ray;
@@ -149,6 +150,7 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
             direction: rays[at].1,
             t_min: T::zero(),
             t_max: T::infinity(),
+            number: 0,
             excluded: [NO_SURFACE; 2],
         };
         let directions = [0, 1, 2].map(|axis| std::array::from_fn(|at| rays[at].1[axis]));
@@ -190,7 +192,12 @@ fn compare<T: Real>(seeds: u32, exponents: f64, away: f64) -> [u32; 2] {
                 // No hit before t; another hit may remain without the sphere, or beyond its t.
                 query.t_max = t;
                 assert!(!all.any(&query), "{case}, ray {at}");
-                query.t_max = T::infinity();
+                // At t, the sphere counts if it comes before the given one.
+                query.number = number + 1;
+                assert_eq!(all.nearest(&query), expected, "{case}, ray {at}");
+                query.number = number;
+                assert_eq!(all.nearest(&query), None, "{case}, ray {at}");
+                (query.t_max, query.number) = (T::infinity(), 0);
                 query.excluded = [excluded, number];
                 assert_eq!(
                     all.nearest(&query),
@@ -242,6 +249,7 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
                     direction: ray.direction.to_array(),
                     t_min,
                     t_max: T::infinity(),
+                    number: 0,
                     excluded: [NO_SURFACE; 2],
                 };
                 oracle(&spheres, &query, own.unwrap_or(NO_SURFACE))
@@ -288,6 +296,7 @@ fn compare_secondary<T: Real>(seeds: u32, exponents: f64) -> [u32; 2] {
                     direction: ray.direction.to_array(),
                     t_min,
                     t_max: limit,
+                    number: 0,
                     excluded: [expected.map_or(NO_SURFACE, |(_, number)| number), NO_SURFACE],
                 };
                 let other = oracle(&spheres, &query, own.unwrap_or(NO_SURFACE));
@@ -316,8 +325,8 @@ struct InLanes<'a, T> {
 }
 
 impl<T: Real> Kernel<T> for InLanes<'_, T> {
-    /// For each ray: t and the surface of the nearest hit; 1 if there is a hit before its limit, else 0; the same
-    /// without the sphere `ignored`.
+    /// For each ray: t and the surface of the nearest hit; 1 if there is a hit before its limit, else 0; the
+    /// same without the sphere `ignored`.
     type Output = [[[T; 2]; PACKET_RAYS]; 3];
 
     #[inline(always)]
@@ -419,5 +428,47 @@ fn nan_ray_does_not_affect_other_rays_of_a_packet() {
         let mut broken = directions;
         broken[1][0] = f64::NAN;
         assert_eq!(found(broken), before);
+    }
+}
+
+/// Each sphere is in one leaf, whatever the spheres are: in one place, on a line in growing distances, or
+/// without a place.
+#[test]
+fn leaves_partition_the_spheres() {
+    let mut random = Random(3);
+    let scattered: Vec<_> = (0..500).map(|_| (random.place(10.0).to_array(), 0.1)).collect();
+    let nested = (0..100).map(|at| ([1.0; 3], 0.5f64.powi(at)));
+    let growing = (0..400).map(|at| ([2f64.powi(at), 0.0, 0.0], 0.1));
+    let odd = (0..100).map(|at| ([f64::NAN, f64::from(at % 7), f64::INFINITY], f64::from(at)));
+    let sets: [Vec<_>; 6] = [
+        scattered.clone(),
+        nested.clone().collect(),
+        growing.clone().collect(),
+        odd.clone().collect(),
+        scattered.into_iter().chain(nested).chain(growing).collect(),
+        odd.take(9).collect(),
+    ];
+    for (set, spheres) in sets.iter().enumerate() {
+        let spheres: Vec<_> = (0..)
+            .zip(spheres)
+            .map(|(number, &(center, radius))| NumberedSphere {
+                center,
+                radius,
+                number,
+            })
+            .collect();
+        let tree = BinaryTree::build(&spheres);
+        let leaves: Vec<_> = (0..tree.len())
+            .filter(|&node| tree.halves(node).is_none())
+            .map(|node| tree.spheres(node))
+            .collect();
+        assert_eq!(leaves.len(), tree.leaves(), "set {set}");
+        assert!(
+            leaves.iter().all(|leaf| (1..=BLOCK_SIZE).contains(&leaf.len())),
+            "set {set}"
+        );
+        let mut all = leaves.concat();
+        all.sort_unstable();
+        assert_eq!(all, (0..spheres.len() as u32).collect::<Vec<_>>(), "set {set}");
     }
 }

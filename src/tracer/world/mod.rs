@@ -10,7 +10,7 @@ mod points;
 mod queries;
 mod whitted;
 
-use toyproof_scene::{Integrator, Object, Requirements, Scene, Shape};
+use toyproof_scene::{Integrator, Object, Scene, Shape};
 
 use self::whitted::Deferred;
 use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
@@ -54,12 +54,11 @@ struct Emitter<T: Real> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// Creates a world. `previous` are the spheres of the same scene at a different moment, whose tree is
-    /// reused if possible.
+    /// Creates a world. `store` stores the spheres.
     pub(super) fn new(
         scene: &Scene,
         level: Level,
-        previous: Option<Spheres<T>>,
+        store: impl FnOnce(&[NumberedSphere<T>]) -> Spheres<T>,
         shape: impl Fn(&Object) -> P,
     ) -> Self {
         let materials: Vec<_> = scene.objects.iter().map(Material::new).collect();
@@ -87,10 +86,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 .map(|light| Light::new(light, &scene.objects))
                 .collect(),
             shapes: scene.objects.iter().map(shape).collect(),
-            spheres: match previous {
-                Some(previous) => previous.moved(&spheres),
-                None => Spheres::new(&spheres, Requirements::of(scene).many_spheres, level),
-            },
+            spheres: store(&spheres),
             others: (0..scene.objects.len())
                 .filter(|&at| is_other(&scene.objects[at]))
                 .collect(),
@@ -198,6 +194,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             direction: ray.direction.to_array(),
             t_min: policy.t_min(ray.from.is_some()),
             t_max,
+            // No index is smaller, so that no hit at the bound counts.
+            number: 0,
             excluded: [own, light].map(|surface| surface.map_or(NO_SURFACE, |surface| surface as u32)),
         }
     }
@@ -205,11 +203,26 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
     /// Finds the nearest surface along a ray; at equal t, the one with the smallest index.
     pub(super) fn nearest(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> FirstHit<T> {
         let own = Self::own_surface(ray, policy);
-        let query = Self::query(ray, policy, own, None, T::infinity());
-        let first = self.spheres.nearest(&query);
-        let mut first = first.map_or_else(FirstHit::none, |(t, number)| FirstHit::new(t, number));
-        if let Some(own) = own {
-            first.update(self.shapes[own].intersect_own(ray, policy), own);
+        let update_by_own = |first: &mut FirstHit<T>| {
+            if let Some(own) = own {
+                first.update(self.shapes[own].intersect_own(ray, policy), own);
+            }
+        };
+        let mut first = FirstHit::none();
+        let mut query = Self::query(ray, policy, own, None, T::infinity());
+        // In a tree, the far side of the ray's own surface excludes most nodes.
+        let is_own_first = self.spheres.has_tree();
+        if is_own_first {
+            update_by_own(&mut first);
+            if let Some((t, own)) = first.get() {
+                (query.t_max, query.number) = (t, own as u32);
+            }
+        }
+        if let Some((t, number)) = self.spheres.nearest(&query) {
+            first = FirstHit::new(t, number);
+        }
+        if !is_own_first {
+            update_by_own(&mut first);
         }
         self.nearest_other(ray, &mut first, policy);
         first
