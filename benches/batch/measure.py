@@ -113,20 +113,20 @@ class Tool:
         )
 
 
-def check(tool, toyproof, shaders, size, timeout, on):
+def check(tool, toyproof, shaders, size, timeout, device):
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder, "hw")
         work.mkdir()
         for shader in shaders:
             shutil.copy(shader, work)
         out = pathlib.Path(folder, "out")
-        options = ["--size", size, "--timeout", f"{timeout}s", "--on", on, "--out", out]
+        options = ["--size", size, "--timeout", f"{timeout}s", "--device", device, "--out", out]
         tool.run([toyproof, "check", work, *options])
         report = json.loads((out / "verdict.json").read_text())
         for record in report["shaders"]:
             tool.told[record["verdict"]] += 1
             if record["verdict"] == "error":
-                print(f"  {on}: {record['shader']}: {record['reason']}", flush=True)
+                print(f"  {device}: {record['shader']}: {record['reason']}", flush=True)
 
 
 def paint(tool, python, shaders, size, limit):

@@ -1,6 +1,7 @@
 //! PNG (8 bits) and EXR (32-bit floats) files.
 
-use std::io::{self, Cursor};
+use std::borrow::Cow;
+use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
@@ -42,18 +43,23 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     let top_down = image.rows().rev().flatten();
     match Format::of(path)? {
         Format::Png => {
-            let rgb: Vec<_> = top_down.map(|&[r, g, b, _]| [r, g, b].map(quantize)).collect();
-            png([width, height], &rgb, path)
+            let rows = image.rows().rev();
+            let rows = rows.map(|row| row.iter().map(|&[r, g, b, _]| [r, g, b].map(quantize)).collect());
+            in_memory(path, |bytes| {
+                png([width, height], rows.map(Cow::<[_]>::Owned), bytes)
+            })
         }
         Format::Exr => {
             let rgba: Vec<[f32; 4]> = top_down.copied().collect();
-            encode_with(path, |bytes| {
-                image::codecs::openexr::OpenExrEncoder::new(bytes).write_image(
+            in_memory(path, |bytes| {
+                let encoder = image::codecs::openexr::OpenExrEncoder::new(bytes);
+                let encoded = encoder.write_image(
                     bytemuck::cast_slice(rgba.as_flattened()),
                     width,
                     height,
                     ExtendedColorType::Rgba32F,
-                )
+                );
+                encoded.map_err(io::Error::other)
             })
         }
     }
@@ -65,12 +71,17 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
 /// As [`encode`].
 pub fn encode_shown(image_rgb8: &Rgb8Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     match Format::of(path)? {
-        Format::Png => {
-            let rgb: Vec<_> = image_rgb8.rows().rev().flatten().copied().collect();
-            png(image_rgb8.size(), &rgb, path)
-        }
+        Format::Png => in_memory(path, |bytes| write_png(image_rgb8, bytes)),
         Format::Exr => encode(&Image::from(image_rgb8), path),
     }
+}
+
+/// Writes an image as a PNG, row by row: neither the file nor a copy of the image is in memory.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_png(image_rgb8: &Rgb8Image, out: &mut dyn Write) -> io::Result<()> {
+    png(image_rgb8.size(), image_rgb8.rows().rev().map(Cow::Borrowed), out)
 }
 
 enum Format {
@@ -89,21 +100,30 @@ impl Format {
     }
 }
 
-/// Encodes a PNG from rows in top-down order.
-fn png([width, height]: [u32; 2], rgb: &[[u8; 3]], path: &Path) -> Result<Vec<u8>, ImageError> {
-    encode_with(path, |bytes| {
-        image::codecs::png::PngEncoder::new_with_quality(
-            bytes,
-            image::codecs::png::CompressionType::Fast,
-            image::codecs::png::FilterType::Adaptive,
-        )
-        .write_image(rgb.as_flattened(), width, height, ExtendedColorType::Rgb8)
-    })
+/// Writes a PNG from rows in top-down order.
+fn png<'a>(
+    [width, height]: [u32; 2],
+    rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut encoder = encoder.write_header()?;
+    let mut image = encoder.stream_writer()?;
+    for row in rows {
+        image.write_all(row.as_flattened())?;
+    }
+    image.finish()?;
+    Ok(())
 }
 
-fn encode_with(
+/// Collects what `write` writes for the file at `path`.
+fn in_memory(
     path: &Path,
-    write: impl FnOnce(&mut Cursor<Vec<u8>>) -> image::ImageResult<()>,
+    write: impl FnOnce(&mut Cursor<Vec<u8>>) -> io::Result<()>,
 ) -> Result<Vec<u8>, ImageError> {
     let mut bytes = Cursor::new(Vec::new());
     match write(&mut bytes) {

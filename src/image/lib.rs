@@ -22,7 +22,7 @@ mod rgb8;
 mod script;
 mod texture;
 
-pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown};
+pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown, write_png};
 pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs};
 pub use keys::{KeySet, Keys};

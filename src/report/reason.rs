@@ -303,6 +303,7 @@ fn without_image(failure: &Failure, files: &Files) -> String {
         | Failure::Unreadable(_)
         | Failure::Unrendered(_)
         | Failure::Reference(_)
+        | Failure::Spool(_)
         | Failure::Gpu(_)
         | Failure::Panic(_) => failure.to_string(),
     }

@@ -388,6 +388,7 @@ fn without_image(failure: &Failure) -> Verdict {
         Failure::Unreadable(_)
         | Failure::InvalidScene(_)
         | Failure::Reference(_)
+        | Failure::Spool(_)
         | Failure::Gpu(_)
         | Failure::Cpu(Refused(_) | Interrupted)
         | Failure::Panic(_) => Verdict::Error,

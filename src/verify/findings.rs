@@ -95,6 +95,16 @@ pub struct CheckResult {
 }
 
 impl CheckResult {
+    /// The result of no band, with the memory for an image of that many pixels: growing step by step would leave
+    /// unused parts behind.
+    pub(super) fn of_pixels(count: usize) -> Self {
+        Self {
+            diff_levels: Vec::with_capacity(count),
+            statuses: Vec::with_capacity(count),
+            ..Self::default()
+        }
+    }
+
     /// Adds the band above the first `height` rows.
     pub(super) fn extend(&mut self, expected: &Image, actual: &Image, statuses: &[PixelStatus], height: u32) {
         self.summary

@@ -130,6 +130,8 @@ mod reseed;
 mod sample_loops;
 mod session;
 mod silhouette_precision;
+#[cfg(feature = "gpu")]
+mod spool;
 mod stochastic;
 pub mod trail;
 
@@ -237,6 +239,9 @@ pub enum Failure {
     /// The driver truncated loops in that many pixels.
     #[error("the driver stopped a loop in {} {}", grouped(*.0), plural(*.0, "pixel", "pixels"))]
     LoopTruncated(u64),
+    /// The GPU's image, which waited in a temporary file, cannot be read.
+    #[error("the image cannot be read from a temporary file: {0}")]
+    Spool(String),
     /// There was an internal error.
     #[error(transparent)]
     Panic(#[from] Panic),

@@ -2,7 +2,7 @@
 
 use std::iter;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::Instant;
 
@@ -10,16 +10,12 @@ use toyproof_diagnostic::Deadline;
 use toyproof_eval::{self as eval, Program, Refusal};
 use toyproof_gpu::{DrawOutput, SAFE_ITERATIONS};
 pub use toyproof_gpu::{Failure as GpuFailure, Worker};
-use toyproof_image::Image;
 use toyproof_translate::FloatMode;
 
 use crate::cpu::Evaluator;
 use crate::session::{IterationCount, VerifySession};
+use crate::spool::Spool;
 use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, GpuRun, join, notes, on_cpu, within};
-
-/// The capacity of the queue of GPU bands that wait to be compared: an image of 1920×1080. If a larger image
-/// has to wait, so does watching its loops.
-const MAX_QUEUED_BANDS: usize = 9;
 
 impl GpuRun {
     fn of(drawn: DrawOutput) -> Self {
@@ -44,14 +40,16 @@ pub(super) fn verify(
 ) -> Result<Findings, Failure> {
     // They share the cores, but none waits for another's latency. The worker runs on this thread: its process
     // ends with the thread that started it.
-    let comparing_session = &mut session;
+    let (comparing_session, bands) = (&mut session, &Spool::default());
     let (drawn, compared) = thread::scope(|scope| {
-        let (sender, bands) = mpsc::sync_channel(MAX_QUEUED_BANDS);
-        let comparing = scope.spawn(move || within(case.pool, move || comparing_session.bands(Some(&bands))));
-        let drawn = draw(worker, case, iteration_counts, &sender);
+        let comparing = scope.spawn(move || {
+            let mut next = || bands.receive().map_err(|error| Failure::Spool(error.to_string()));
+            within(case.pool, move || comparing_session.bands(Some(&mut next)))
+        });
+        let drawn = draw(worker, case, iteration_counts, bands);
         let is_usable = |drawn: &DrawOutput| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
         stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
-        drop(sender);
+        bands.close();
         (drawn, join(comparing))
     });
     let drawn = match drawn {
@@ -102,7 +100,7 @@ fn draw(
     worker: &mut Worker,
     case: &Case,
     iteration_counts: &Receiver<IterationCount>,
-    bands: &SyncSender<Image>,
+    bands: &Spool,
 ) -> Result<DrawOutput, Failure> {
     // A strict run has the evaluator's iteration counts, which are often known by now. Otherwise, no band is
     // waited for longer than the driver would need to render the image again.
@@ -111,16 +109,18 @@ fn draw(
         let last = counts.find(|counts| counts.most > SAFE_ITERATIONS || counts.is_last);
         last.is_some_and(|counts| counts.most <= SAFE_ITERATIONS)
     };
-    let send_band = |band| {
-        // If the receiver is gone, the comparison has failed and reports it.
-        let _ = bands.send(band);
-    };
     let watch = |drawn: &DrawOutput, render_time| {
         drawn.may_truncate_loops() && (case.float == FloatMode::Fast || !are_short(render_time))
     };
     let lowered = case
         .float
         .lower_within(case.checked, &Deadline::after(case.timeout))?;
-    let drawn = worker.draw_in_bands(lowered, case.frame.clone(), case.float, send_band, watch)?;
+    let drawn = worker.draw_in_bands(
+        lowered,
+        case.frame.clone(),
+        case.float,
+        |band| bands.send(band),
+        watch,
+    )?;
     Ok(drawn)
 }

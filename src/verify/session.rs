@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::Sender;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -56,6 +56,9 @@ pub(super) struct VerifySession<'a> {
     trace: Duration,
 }
 
+/// Returns the next band that a GPU rendered; none if the GPU failed.
+pub(super) type NextBand<'a> = dyn FnMut() -> Result<Option<Image>, Failure> + 'a;
+
 impl<'a> VerifySession<'a> {
     pub(super) fn new(
         case: &'a Case<'a>,
@@ -65,6 +68,7 @@ impl<'a> VerifySession<'a> {
     ) -> Self {
         let [width, height] = case.frame.size;
         let empty = || Rgb8Image::empty(width, height);
+        let pixels = width as usize * height as usize;
         let silhouettes = case
             .expected
             .and_then(Expected::as_scene)
@@ -81,9 +85,9 @@ impl<'a> VerifySession<'a> {
             evaluator,
             observed: Observations::default(),
             excludes_pixels: false,
-            algorithm: CheckResult::default(),
-            mixed: Mixed::of(u64::from(width) * u64::from(height)),
-            precision: CheckResult::default(),
+            algorithm: CheckResult::of_pixels(pixels),
+            mixed: Mixed::of(pixels as u64),
+            precision: CheckResult::of_pixels(pixels),
             toolchain: None,
             comparison: None,
             actual: empty(),
@@ -102,18 +106,18 @@ impl<'a> VerifySession<'a> {
     /// caller reports it.
     ///
     /// # Errors
-    /// Returns why there is no image, where no GPU renders one.
-    pub(super) fn bands(&mut self, gpu: Option<&Receiver<Image>>) -> Result<(), Failure> {
+    /// Returns why there is no image, where no GPU renders one, and the errors of `gpu`.
+    pub(super) fn bands(&mut self, mut gpu: Option<&mut NextBand<'_>>) -> Result<(), Failure> {
         for rows in self.case.frame.bands() {
             let (band, reference) = self.render(&rows)?;
-            let actual = match gpu {
+            let actual = match &mut gpu {
                 None => None,
-                Some(gpu) => match gpu.recv() {
-                    Ok(band) => Some(band),
-                    Err(_) => return Ok(()),
+                Some(next) => match next()? {
+                    Some(band) => Some(band),
+                    None => return Ok(()),
                 },
             };
-            if let (None, Err(failure)) = (gpu, &self.evaluator) {
+            if let (None, Err(failure)) = (&gpu, &self.evaluator) {
                 return Err(failure.clone().into());
             }
             self.compare(&rows, band.as_ref(), reference.as_deref(), actual.as_ref());
@@ -168,14 +172,18 @@ impl<'a> VerifySession<'a> {
         drawn: Option<&Image>,
     ) {
         let offset = rows.start;
+        let pixels = self.case.frame.size.map(|side| side as usize).iter().product();
         if let Some(actual) = drawn.or(band.map(|band| &band.single)) {
             self.actual.extend(actual);
             self.not_finite.record(actual, offset);
             if let (Some(reference), Some(image)) = (reference, &mut self.reference) {
                 image.extend(&reference.image);
-                let (comparison, levels) = compare::compare(&reference.image, actual);
+                let (comparison, mut levels) = compare::compare(&reference.image, actual);
                 match &mut self.comparison {
-                    None => self.comparison = Some((comparison, levels)),
+                    None => {
+                        levels.reserve_exact(pixels - levels.len());
+                        self.comparison = Some((comparison, levels));
+                    }
                     Some((whole, all)) => {
                         whole.extend(&comparison, offset);
                         all.extend(levels);
@@ -205,7 +213,9 @@ impl<'a> VerifySession<'a> {
         self.precision.extend(precise, actual, &statuses, offset);
         if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
             let statuses = compare::toolchain(&band.single, drawn, &band.undefined);
-            let check = self.toolchain.get_or_insert_default();
+            let check = self
+                .toolchain
+                .get_or_insert_with(|| CheckResult::of_pixels(pixels));
             check.extend(&band.single, drawn, &statuses, offset);
         }
         if let Some((_, _, double)) = &mut self.silhouettes {

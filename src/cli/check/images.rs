@@ -90,17 +90,13 @@ pub(super) fn keep(
 ) {
     for kind in kinds {
         let path = with_suffix(stem, kind.suffix);
-        let encoded = contain(Part::Image, || {
-            let shown = findings.and_then(kind.make)?;
-            Some(image::encode_shown(&shown, &path))
+        let kept = contain(Part::Image, || match findings.and_then(kind.make) {
+            Some(shown) => output::stream_inside(out, &path, |file| image::write_png(&shown, file)),
+            None => output::remove_inside(out, &path),
         });
-        let is_made = encoded.is_ok();
-        let kept = match encoded {
-            Ok(Some(Ok(bytes))) => output::write_inside(out, &path, &bytes),
-            Ok(None) => output::remove_inside(out, &path),
-            Ok(Some(Err(error))) => Err(io::Error::other(error)),
-            Err(panic) => Err(io::Error::other(format!("{}: {panic}", path_name(&path)))),
-        };
+        let is_made = kept.is_ok();
+        let kept =
+            kept.unwrap_or_else(|panic| Err(io::Error::other(format!("{}: {panic}", path_name(&path)))));
         if let Err(error) = kept {
             outcome.fail(format!("cannot write {error}"));
             outcome.lacks_image |= is_made;

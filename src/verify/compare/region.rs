@@ -1,5 +1,7 @@
 //! Connected regions of differing pixels: an object that is missing is one, rays that graze edges are none.
 
+use std::collections::VecDeque;
+
 use serde::{Deserialize, Serialize};
 
 use crate::compare::PixelStatus;
@@ -100,11 +102,12 @@ impl Search<'_> {
             return None;
         }
         self.is_visited[first] = true;
-        let mut left = vec![first];
+        // First in, first out: the edge of what was visited is much shorter than a path through it.
+        let mut left = VecDeque::from([first]);
         let mut pixels = 0;
         let (mut low, mut high) = ([i64::MAX; 2], [i64::MIN; 2]);
         let mut has_block = false;
-        while let Some(at) = left.pop() {
+        while let Some(at) = left.pop_front() {
             let [x, y] = [at as i64 % self.width, at as i64 / self.width];
             pixels += 1;
             low = [low[0].min(x), low[1].min(y)];
@@ -118,7 +121,7 @@ impl Search<'_> {
                 connected += 1;
                 if !self.is_visited[neighbor] {
                     self.is_visited[neighbor] = true;
-                    left.push(neighbor);
+                    left.push_back(neighbor);
                 }
             }
             has_block |= connected == MIN_SIDE * MIN_SIDE;
