@@ -3,7 +3,7 @@
  *
  * Standard input, binary, in the machine's byte order: the numbers of spheres and rays (two uint32), the spheres (x, y, z,
  * radius), the rays (origin, direction, nearest t), all float32. Then commands, a byte each:
- *   1  meet all rays one by one      8  eight at a time       i  the number of each ray's sphere
+ *   1  trace all rays one by one     8  eight at a time       i  the number of each ray's sphere
  *   u  user geometry: sixteen at a time, 8 by 2 pixels of an image of WIDTH by rays / WIDTH pixels, whose camera rays are
  *      computed here: from the origin to x in -1 to 1, y in proportion, at z = -2            j  as i, of the last command
  * Standard output: the seconds of processor time that building took, then for each command the seconds (float64), or for i
@@ -27,11 +27,11 @@ static double now(void) {
     return t.tv_sec + 1e-9 * t.tv_nsec;
 }
 
-static void take(void *to, size_t size, size_t count) {
+static void receive(void *to, size_t size, size_t count) {
     if (fread(to, size, count, stdin) != count) exit(2);
 }
 
-static void tell(const void *from, size_t size, size_t count) {
+static void send(const void *from, size_t size, size_t count) {
     fwrite(from, size, count, stdout);
     fflush(stdout);
 }
@@ -98,7 +98,7 @@ int main(void) {
     _mm_setcsr(_mm_getcsr() | 0x8040); /* Embree's manual: denormals are zero. */
 #endif
     uint32_t counts[2];
-    take(counts, sizeof counts, 1);
+    receive(counts, sizeof counts, 1);
     uint32_t spheres = counts[0], rays = counts[1];
     float(*ray)[7] = malloc(rays * sizeof *ray);
     uint32_t *ids = malloc(rays * sizeof *ids);
@@ -107,16 +107,16 @@ int main(void) {
     RTCScene scene = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     float *points = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, spheres);
-    take(points, 16, spheres);
+    receive(points, 16, spheres);
     sphere = (float(*)[4])points;
-    take(ray, sizeof *ray, rays);
+    receive(ray, sizeof *ray, rays);
     uint32_t packets = rays / PACKET;
     double start = now();
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcCommitScene(scene);
     double seconds = now() - start;
-    tell(&seconds, sizeof seconds, 1);
+    send(&seconds, sizeof seconds, 1);
 
     RTCScene user_scene = rtcNewScene(device);
     RTCGeometry user = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -176,8 +176,8 @@ int main(void) {
             }
         }
         seconds = now() - start;
-        if (command == 'i' || command == 'j') tell(ids, sizeof *ids, rays);
-        else tell(&seconds, sizeof seconds, 1);
+        if (command == 'i' || command == 'j') send(ids, sizeof *ids, rays);
+        else send(&seconds, sizeof seconds, 1);
     }
     return 0;
 }

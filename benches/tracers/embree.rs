@@ -1,4 +1,4 @@
-//! Embree's side: a small C program, compiled here, that meets our rays with our spheres when it is told to.
+//! Embree: a small C program, compiled here, that intersects given rays with given spheres on command.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -9,7 +9,7 @@ use toyproof::scene::{Scene, Shape};
 /// A ray: origin, direction, smallest t.
 pub(crate) type Ray = [f32; 7];
 
-/// The program at work.
+/// The running program.
 pub(crate) struct Embree {
     child: Child,
     to: ChildStdin,
@@ -19,7 +19,10 @@ pub(crate) struct Embree {
     pub(crate) build: f64,
 }
 
-/// Compiles the program; why it cannot, if it cannot.
+/// Compiles the program.
+///
+/// # Errors
+/// Why it cannot be compiled.
 pub(crate) fn compile(to: &Path) -> Result<(), String> {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/tracers/embree.c");
     let output = Command::new("cc")
@@ -32,7 +35,7 @@ pub(crate) fn compile(to: &Path) -> Result<(), String> {
     if output.status.success() {
         Ok(())
     } else {
-        Err("it needs Debian's libembree-dev".to_owned())
+        Err("it needs libembree-dev (Debian)".to_owned())
     }
 }
 
@@ -131,7 +134,7 @@ impl Embree {
 
 impl Drop for Embree {
     fn drop(&mut self) {
-        // It has nothing to lose.
+        // It keeps no state.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,12 +1,12 @@
-//! The reference tracer beside Embree, lavapipe and POV-Ray, in turns, so that all meet the same noise; in
-//! milliseconds of processor time, ours on one thread. Who is not installed is left out.
+//! The reference tracer compared with Embree, lavapipe and POV-Ray, in turns, so that noise affects all of them; in
+//! milliseconds of processor time, the tracer's on one thread. Programs that are not installed are left out.
 //! `cargo bench --bench tracers [-- rays povray threads features growth building]`
 
 #![expect(clippy::disallowed_methods, reason = "the paths are the benchmark's own")]
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "a benchmark's own words"
+    reason = "a benchmark reports to the terminal"
 )]
 
 mod embree;
@@ -35,7 +35,7 @@ use self::embree::{Embree, Ray};
 use self::scenes::{Random, light, material, spheres};
 
 const ROUNDS: usize = 7;
-/// The most spheres that a shader holds: beyond that, drivers take minutes to compile it.
+/// The largest number of spheres in a shader: with more, drivers take minutes to compile it.
 const MOST_IN_A_SHADER: usize = 100;
 
 /// Milliseconds that this process ran.
@@ -55,7 +55,7 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// The medians of several contestants, who take turns.
+/// The medians of several programs, which take turns.
 fn in_turns<const N: usize>(mut turn: impl FnMut() -> [f64; N]) -> [f64; N] {
     let mut times = [const { Vec::new() }; N];
     // The first round warms up.
@@ -68,7 +68,7 @@ fn in_turns<const N: usize>(mut turn: impl FnMut() -> [f64; N]) -> [f64; N] {
     times.map(median)
 }
 
-/// Lavapipe with the shader that paints a scene.
+/// Lavapipe with the shader of a scene.
 fn renderer(scene: &Scene) -> Option<LocalRenderer> {
     let text = export::shader(scene).ok()?;
     let mut files = Files::default();
@@ -83,7 +83,7 @@ fn renderer(scene: &Scene) -> Option<LocalRenderer> {
     .ok()
 }
 
-/// The camera rays, as float32, and those that leave what they meet in any direction.
+/// The camera rays, as float32, and rays in random directions from the points that they hit.
 fn rays(scene: &Scene) -> [Vec<(Ray, Option<usize>)>; 2] {
     let tracer = Tracer::<f32>::new(scene);
     let [width, height] = scene.film.size;
@@ -106,7 +106,7 @@ fn rays(scene: &Scene) -> [Vec<(Ray, Option<usize>)>; 2] {
             }
         }
     }
-    // In no order, as many as the camera's.
+    // In random order, as many as camera rays.
     let shuffled = (0..camera.len())
         .map(|_| others[(random.number() * others.len() as f64) as usize])
         .collect();
@@ -117,11 +117,11 @@ fn ray([ox, oy, oz]: [f32; 3], [dx, dy, dz]: [f32; 3], t_min: f32) -> Ray {
     [ox, oy, oz, dx, dy, dz, t_min]
 }
 
-fn meet_all<T: Real>(tracer: &Tracer<T>, rays: &[([T; 3], [T; 3], Option<usize>)]) -> usize {
-    let met = rays
+fn intersect_all<T: Real>(tracer: &Tracer<T>, rays: &[([T; 3], [T; 3], Option<usize>)]) -> usize {
+    let hits = rays
         .iter()
         .filter(|(origin, direction, from)| tracer.intersect(*origin, *direction, *from).is_some());
-    met.count()
+    hits.count()
 }
 
 fn in_numbers<T: Real>(rays: &[(Ray, Option<usize>)]) -> Vec<([T; 3], [T; 3], Option<usize>)> {
@@ -149,16 +149,16 @@ fn ratio(theirs: f64, ours: f64) -> String {
     }
 }
 
-/// The surfaces that camera rays meet, and those that shuffled ones meet.
-fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
+/// The surfaces that camera rays hit, and those that shuffled ones hit.
+fn compare_with_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
     println!(
-        "Milliseconds at 640×360 on one thread. Primary: making the camera rays, meeting what is nearest, storing which."
+        "Milliseconds at 640×360 on one thread. Primary: generating the camera rays, finding the nearest hits, storing their spheres."
     );
     println!(
-        "Shuffled: as many rays from what was met in any direction. Lavapipe paints the exported shader, and so does the picture.\n"
+        "Shuffled: as many rays, from the hit points in random directions. Lavapipe renders the exported shader, whose image is compared.\n"
     );
     println!(
-        "| spheres | f32 | f64 | picture f32 | f64 | Embree 1 | 8 | user geometry 16 | lavapipe | Embree 8 / f32 | 16 / f32 | lavapipe / f32 | / f64 \
+        "| spheres | f32 | f64 | image f32 | f64 | Embree 1 | 8 | user geometry 16 | lavapipe | Embree 8 / f32 | 16 / f32 | lavapipe / f32 | / f64 \
          | shuffled f32 | f64 | Embree 1 | f32 / Embree | other ids f32 | Embree |"
     );
     println!("|{}", "---|".repeat(19));
@@ -189,16 +189,16 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
                 theirs[1],
                 theirs[2],
                 gpu,
-                time(|| meet_all(&single, &shuffled32)),
-                time(|| meet_all(&double, &shuffled64)),
+                time(|| intersect_all(&single, &shuffled32)),
+                time(|| intersect_all(&double, &shuffled64)),
                 theirs[3],
             ]
         });
         let [
             f32,
             f64,
-            picture32,
-            picture64,
+            image32,
+            image64,
             one,
             eight,
             sixteen,
@@ -213,7 +213,7 @@ fn beside_embree_and_lavapipe(program: Option<&Path>, counts: &[usize]) {
             let sixteen = wrong(&primary.numbers_by_sixteens());
             format!("{}, user geometry {sixteen}", wrong(&primary.numbers()))
         });
-        let numbers = [f32, f64, picture32, picture64, one, eight, sixteen, gpu]
+        let numbers = [f32, f64, image32, image64, one, eight, sixteen, gpu]
             .map(cell)
             .join(" | ");
         let ratios = [eight, sixteen, gpu]
@@ -241,7 +241,7 @@ fn parse(text: &str) -> Scene {
     scene::parse(&files, file).expect("it is valid")
 }
 
-/// Seconds of processor time that POV-Ray says it traced.
+/// The trace time that POV-Ray reports, in seconds of processor time.
 fn povray(scene: &Scene, folder: &Path) -> Option<f64> {
     let source = folder.join("scene.pov");
     fs::write(&source, words::words(scene)).ok()?;
@@ -261,17 +261,17 @@ fn povray(scene: &Scene, folder: &Path) -> Option<f64> {
         .arg(format!("+O{}", folder.join("scene.png").display()))
         .output()
         .ok()?;
-    let told = String::from_utf8_lossy(&output.stderr);
-    let (_, trace) = told.split_once("Trace Time:")?;
+    let log = String::from_utf8_lossy(&output.stderr);
+    let (_, trace) = log.split_once("Trace Time:")?;
     let (_, with) = trace.split_once(" with ")?;
     let (seconds, _) = with.split_once(" CPU-seconds")?;
     seconds.trim().parse().ok()
 }
 
-fn beside_povray(folder: &Path) {
+fn compare_with_povray(folder: &Path) {
     let mut scene = parse(include_str!("whitted.toml"));
     if povray(&scene, folder).is_none() {
-        eprintln!("without POV-Ray: Debian has a package of that name");
+        eprintln!("POV-Ray is not installed (Debian: povray)");
         return;
     }
     scene.film.samples = 16;
@@ -386,7 +386,7 @@ static FEATURES: [Feature; 15] = [
         );
     }),
     ("a turned camera", |scene| {
-        // The same image, so that the price is that of the rays.
+        // The image is the same, so that only the rays cost time.
         scene.camera.look_at = Some([0.0, 0.0, -15.0]);
     }),
     ("motion", |scene| {
@@ -421,7 +421,7 @@ fn features() {
     let mut base = spheres(10, Model::Lambert);
     base.lights.push(light());
     println!(
-        "\nWhat features cost a picture of ten spheres under a light, 640×360, milliseconds, and times the picture without:\n"
+        "\nFeatures added to an image of ten spheres under a light, 640×360: milliseconds, and the ratio to the image without:\n"
     );
     println!("| | f32 | | f64 | |\n|---|---|---|---|---|");
     let (single, double) = (Tracer::<f32>::new(&base), Tracer::<f64>::new(&base));
@@ -454,7 +454,7 @@ fn exponent(points: &[(f64, f64)]) -> f64 {
     over / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }
 
-/// Prints how the time grows, and adds it to the chart.
+/// Prints the growth of the time, and adds it to the chart.
 fn growth(chart: &mut Scatter, name: &str, scenes: Vec<(f64, Scene)>) {
     println!("\n| {name} | f32 | f64 |\n|---|---|---|");
     let mut points = [Vec::new(), Vec::new()];
@@ -484,10 +484,10 @@ fn growth(chart: &mut Scatter, name: &str, scenes: Vec<(f64, Scene)>) {
 }
 
 fn growths(counts: &[usize]) {
-    println!("\nHow the time grows, a picture of flat colours, milliseconds:");
+    println!("\nGrowth of the time of an image of flat colors, milliseconds:");
     let mut chart = Scatter {
-        title: "Time of a picture of flat colours".to_owned(),
-        x_title: "how many".to_owned(),
+        title: "Time of an image of flat colors".to_owned(),
+        x_title: "number".to_owned(),
         y_title: "milliseconds of processor time".to_owned(),
         groups: Vec::new(),
         points: Vec::new(),
@@ -508,11 +508,11 @@ fn growths(counts: &[usize]) {
     };
     growth(&mut chart, "samples", [1, 4, 16, 64].map(sampled).into());
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("growth.svg");
-    fs::write(&path, chart.svg()).expect("there is room");
-    println!("\nDrawn in {}", path.display());
+    fs::write(&path, chart.svg()).expect("the folder is writable");
+    println!("\nChart: {}", path.display());
 }
 
-/// Kilobytes of this process in memory.
+/// The resident memory of this process in kB.
 fn resident() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
@@ -521,7 +521,9 @@ fn resident() -> f64 {
 }
 
 fn building(program: Option<&Path>, counts: &[usize]) {
-    println!("\nMaking a tracer, its tree included, milliseconds, and the memory it then holds:\n");
+    println!(
+        "\nConstructing a tracer, including its tree: milliseconds, and the memory that it then holds:\n"
+    );
     println!("| spheres | f32 | MB | f64 | MB | Embree |\n|---|---|---|---|---|---|");
     for &count in counts {
         let scene = spheres(count, Model::Emitter);
@@ -542,7 +544,7 @@ fn building(program: Option<&Path>, counts: &[usize]) {
     }
 }
 
-/// Two threads beside one, by the clock on the wall.
+/// Two threads compared with one, in wall-clock time.
 fn threads(one: &rayon::ThreadPool) {
     let two = rayon::ThreadPoolBuilder::new()
         .num_threads(2)
@@ -552,37 +554,37 @@ fn threads(one: &rayon::ThreadPool) {
     scene.film.samples = 4;
     scene.film.sampler = Sampler::Stratified;
     let (single, double) = (Tracer::<f32>::new(&scene), Tracer::<f64>::new(&scene));
-    let wall = |pool: &rayon::ThreadPool, picture: &(dyn Fn() + Sync)| {
+    let wall = |pool: &rayon::ThreadPool, image: &(dyn Fn() + Sync)| {
         let start = std::time::Instant::now();
-        pool.install(picture);
+        pool.install(image);
         1e3 * start.elapsed().as_secs_f64()
     };
-    let picture32 = || drop(single.render(|| ()));
-    let picture64 = || drop(double.render(|| ()));
+    let image32 = || drop(single.render(|| ()));
+    let image64 = || drop(double.render(|| ()));
     let [one32, two32, one64, two64] = in_turns(|| {
         [
-            wall(one, &picture32),
-            wall(&two, &picture32),
-            wall(one, &picture64),
-            wall(&two, &picture64),
+            wall(one, &image32),
+            wall(&two, &image32),
+            wall(one, &image64),
+            wall(&two, &image64),
         ]
     });
-    println!("\nThe seven spheres at four samples, milliseconds by the clock on the wall:\n");
-    println!("| | one thread | two | times as fast |\n|---|---|---|---|");
+    println!("\nThe seven spheres at four samples, milliseconds of wall-clock time:\n");
+    println!("| | one thread | two | ratio |\n|---|---|---|---|");
     println!("| f32 | {one32:.0} | {two32:.0} | {} |", ratio(one32, two32));
     println!("| f64 | {one64:.0} | {two64:.0} | {} |", ratio(one64, two64));
 }
 
-/// One of the tables, by the name that asks for it.
+/// A table and its name on the command line.
 type Part<'a> = (&'static str, &'a (dyn Fn() + Sync));
 
 fn main() {
-    let folder = tempfile::tempdir().expect("there is room");
+    let folder = tempfile::tempdir().expect("the folder is writable");
     let program = folder.path().join("embree");
     let program = match embree::compile(&program) {
         Ok(()) => Some(program.as_path()),
         Err(why) => {
-            eprintln!("without Embree: {why}");
+            eprintln!("Embree is left out: {why}");
             None
         }
     };
@@ -592,20 +594,20 @@ fn main() {
         .expect("one thread");
     let all = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000];
     let parts: [Part<'_>; 6] = [
-        ("rays", &|| beside_embree_and_lavapipe(program, &all)),
-        ("povray", &|| beside_povray(folder.path())),
+        ("rays", &|| compare_with_embree_and_lavapipe(program, &all)),
+        ("povray", &|| compare_with_povray(folder.path())),
         ("threads", &|| threads(&pool)),
         ("features", &features),
         ("growth", &|| growths(&all)),
         ("building", &|| building(program, &all[2..])),
     ];
     // Cargo adds options of its own.
-    let asked: Vec<_> = std::env::args()
+    let selected: Vec<_> = std::env::args()
         .skip(1)
         .filter(|word| !word.starts_with('-'))
         .collect();
     for (name, print) in parts {
-        if asked.is_empty() || asked.iter().any(|word| word == name) {
+        if selected.is_empty() || selected.iter().any(|word| word == name) {
             pool.install(print);
         }
     }

@@ -31,8 +31,8 @@ pub(crate) fn material(model: Model) -> Material {
     }
 }
 
-/// That many spheres in what the camera sees from 5 to 25 away, of such a size that they cover about a fourth
-/// of it. All numbers are float32's.
+/// Spheres at distances of 5 to 25 within the image, whose size is chosen so that they cover about a quarter of it. All
+/// numbers are float32's.
 pub(crate) fn spheres(count: usize, model: Model) -> Scene {
     let mut random = Random(7);
     let size = (6.0 / count as f64).sqrt().min(2.0);

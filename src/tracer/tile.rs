@@ -62,6 +62,8 @@ struct PacketSamples {
     pixels: [usize; PACKET_RAYS],
     /// The index of each ray among the samples of its pixel, which increases within the packet.
     indices: [u32; PACKET_RAYS],
+    /// Whether each ray is of the pixel with its own index.
+    is_in_order: bool,
 }
 
 impl PacketSamples {
@@ -72,6 +74,7 @@ impl PacketSamples {
             return Self {
                 pixels: std::array::from_fn(|at| at),
                 indices: [number; PACKET_RAYS],
+                is_in_order: true,
             };
         }
         // Blocks of 4×2 pixels, one after the other.
@@ -86,6 +89,31 @@ impl PacketSamples {
             indices: std::array::from_fn(|at| {
                 group * ADJACENT_SAMPLES as u32 + (at % ADJACENT_SAMPLES) as u32
             }),
+            is_in_order: false,
+        }
+    }
+
+    /// Returns a mask of the rays whose pixels are inside the image.
+    fn inside(&self, tile: Tile) -> u64 {
+        if tile.size == [TILE_SIDE; 2] {
+            return u64::MAX;
+        }
+        let inside = (0..PACKET_RAYS).filter(|&at| tile.contains(self.pixels[at]));
+        inside.fold(0, |mask, at| mask | 1 << at)
+    }
+
+    /// Adds the samples to the sums of their pixels, those of a pixel in their order.
+    fn add<T: Real>(&self, samples: &[[T; PACKET_RAYS]; 3], sums: &mut [[T; PACKET_RAYS]; 3]) {
+        for (sums, samples) in sums.iter_mut().zip(samples) {
+            if self.is_in_order {
+                for (sum, &sample) in sums.iter_mut().zip(samples) {
+                    *sum = *sum + sample;
+                }
+            } else {
+                for (&pixel, &sample) in self.pixels.iter().zip(samples) {
+                    sums[pixel] = sums[pixel] + sample;
+                }
+            }
         }
     }
 }
@@ -166,17 +194,14 @@ impl<T: Real> Tracer<T> {
             };
             let packet = self.camera.packet(&screen, self.level);
             let found = self.nearest_of_packet(&packet);
-            let (mut active, mut radiance) = (0, [[T::zero(); PACKET_RAYS]; 3]);
-            for (at, &pixel) in rays.pixels.iter().enumerate() {
-                if !tile.contains(pixel) {
-                    continue;
-                }
-                match topmost_figure(&self.figures, [screen[0][at], screen[1][at]]) {
-                    Some(figure) => {
+            let (mut active, mut radiance) = (rays.inside(tile), [[T::zero(); PACKET_RAYS]; 3]);
+            if !self.figures.is_empty() {
+                for at in 0..PACKET_RAYS {
+                    if let Some(figure) = topmost_figure(&self.figures, [screen[0][at], screen[1][at]]) {
+                        active &= !(1 << at);
                         let color = self.figures[figure].color.to_array();
                         (0..3).for_each(|axis| radiance[axis][at] = color[axis]);
                     }
-                    None => active |= 1 << at,
                 }
             }
             let origins = packet.all_origins();
@@ -193,12 +218,7 @@ impl<T: Real> Tracer<T> {
                 Kernel::Spheres(world) => world.trace(samples),
                 Kernel::Shapes(world) => world.trace(samples),
             }
-            // The samples of a pixel are added in their order.
-            for (sums, radiance) in sums.iter_mut().zip(&radiance) {
-                for (&pixel, &more) in rays.pixels.iter().zip(radiance) {
-                    sums[pixel] = sums[pixel] + more;
-                }
-            }
+            rays.add(&radiance, &mut sums);
         }
         sums
     }
