@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""The most memory that a command holds at once, with all that it starts: `benches/memory.py COMMAND…`.
+"""The most memory that a command and all that it starts hold at once: `benches/memory.py COMMAND…`.
 
-Asked every 5 ms: the sum of what each process holds (RSS), where pages that two share count twice, and the same with shared pages split (PSS).
+Sampled every 5 ms: the sum of the processes' resident sets (RSS), in which pages that two share count twice, and of their proportional
+sets (PSS), in which shared pages are divided.
 """
 
 import pathlib
@@ -33,7 +34,7 @@ def main():
             now = [sum(parts) for parts in zip(*map(held, tree(command.pid)))]
             most = [max(pair) for pair in zip(most, now)]
         except (OSError, KeyError):
-            pass  # One ended while it was asked.
+            pass  # A process ended meanwhile.
         time.sleep(0.005)
     rss, pss = (kilobytes / 1024 for kilobytes in most)
     print(f"{rss:.0f} MB of RSS, {pss:.0f} MB of PSS", file=sys.stderr)

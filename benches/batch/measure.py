@@ -1,10 +1,11 @@
-"""Checks a folder of shaders in one batch, and paints the same ones with wgpu-shadertoy, one process for each.
+"""Checks a folder of shaders in one batch, and renders the same ones with wgpu-shadertoy, one process for each.
 
     measure.py [--count N] [--chunk N] [--size WxH] [--timeout S] [--python PYTHON] [--limit S] TOYPROOF FOLDER
 
-PYTHON is the interpreter of a virtual environment that has wgpu-shadertoy; without it toyproof is measured alone. The tools take turns, a chunk of
-shaders each, so that whatever else the machine does slows all alike. Told of each: how many shaders came to an end, seconds on the wall, processor time of the tool and all that it
-starts, and the most memory that these held at a time (proportional set size, so that what is shared counts once).
+PYTHON is the interpreter of a virtual environment that has wgpu-shadertoy; without it, toyproof is measured alone. The tools take
+turns, a chunk of shaders each, so that other load slows all alike. For each tool: how many shaders were completed, wall-clock time,
+processor time of the tool and all that it starts, and the most memory that these held at once (proportional set size, so that shared
+pages count once).
 """
 
 import argparse
@@ -19,10 +20,10 @@ import tempfile
 import threading
 import time
 
-PAINT = pathlib.Path(__file__).with_name("paint.py")
+RENDER = pathlib.Path(__file__).with_name("render.py")
 
-# Between two looks at the memory.
-LOOK = 0.2
+# Seconds between two samples of the memory.
+INTERVAL = 0.2
 
 
 def arguments():
@@ -39,7 +40,7 @@ def arguments():
 
 
 def tree(root):
-    """The processes that `root` started, and it itself."""
+    """A process and all that it started."""
     children = collections.defaultdict(list)
     for entry in os.scandir("/proc"):
         if entry.name.isdigit():
@@ -55,7 +56,7 @@ def tree(root):
 
 
 def held(process):
-    """Bytes of memory, what is shared in proportion."""
+    """The proportional set size of a process in bytes."""
     try:
         lines = pathlib.Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()
     except OSError:
@@ -64,28 +65,28 @@ def held(process):
 
 
 class Tool:
-    """What a tool has taken."""
+    """The time, memory and results of a tool."""
 
     def __init__(self):
-        self.told = collections.Counter()
+        self.counts = collections.Counter()
         self.wall = 0.0
         self.processor = 0.0
         self.most = 0
 
     def run(self, command, limit=None):
-        """Its exit code; none if it had to be stopped."""
+        """Runs a command. Returns its exit code; none if it was stopped."""
         environment = {**os.environ, "MESA_SHADER_CACHE_DISABLE": "true"}
         quiet = subprocess.DEVNULL
         start = time.monotonic()
         running = subprocess.Popen(command, stdout=quiet, stderr=quiet, env=environment, start_new_session=True)
         done = threading.Event()
 
-        def look():
-            while not done.wait(LOOK):
+        def sample():
+            while not done.wait(INTERVAL):
                 self.most = max(self.most, sum(map(held, tree(running.pid))))
 
-        looking = threading.Thread(target=look)
-        looking.start()
+        sampling = threading.Thread(target=sample)
+        sampling.start()
         stopped = threading.Event()
 
         def stop():
@@ -100,16 +101,16 @@ class Tool:
         if timer:
             timer.cancel()
         done.set()
-        looking.join()
+        sampling.join()
         running.returncode = os.waitstatus_to_exitcode(status)
         self.processor += usage.ru_utime + usage.ru_stime
         return None if stopped.is_set() else running.returncode
 
     def line(self, name, count):
-        told = ", ".join(f"{number} {what}" for what, number in self.told.most_common())
+        counts = ", ".join(f"{number} {what}" for what, number in self.counts.most_common())
         return (
             f"{name:<16} {self.wall:8.1f} s {60 * count / self.wall:7.1f}/min {self.processor:8.1f} s of processor time "
-            f"{self.processor / count:6.3f} s each {self.processor / self.wall:5.2f} cores {self.most / 1e6:6.0f} MB  {told}"
+            f"{self.processor / count:6.3f} s each {self.processor / self.wall:5.2f} cores {self.most / 1e6:6.0f} MB  {counts}"
         )
 
 
@@ -124,15 +125,15 @@ def check(tool, toyproof, shaders, size, timeout, device):
         tool.run([toyproof, "check", work, *options])
         report = json.loads((out / "verdict.json").read_text())
         for record in report["shaders"]:
-            tool.told[record["verdict"]] += 1
+            tool.counts[record["verdict"]] += 1
             if record["verdict"] == "error":
                 print(f"  {device}: {record['shader']}: {record['reason']}", flush=True)
 
 
-def paint(tool, python, shaders, size, limit):
+def render(tool, python, shaders, size, limit):
     for shader in shaders:
-        code = tool.run([python, PAINT, shader, *size.split("x")], limit)
-        tool.told["painted" if code == 0 else "stopped" if code is None else "failed"] += 1
+        code = tool.run([python, RENDER, shader, *size.split("x")], limit)
+        tool.counts["rendered" if code == 0 else "stopped" if code is None else "failed"] += 1
 
 
 def main():
@@ -147,7 +148,7 @@ def main():
         check(lavapipe, toyproof, chunk, args.size, args.timeout, "lavapipe")
         check(cpu, toyproof, chunk, args.size, args.timeout, "cpu")
         if args.python:
-            paint(others, args.python.absolute(), chunk, args.size, args.limit)
+            render(others, args.python.absolute(), chunk, args.size, args.limit)
         count = start + len(chunk)
         print(f"{count} shaders, {args.size}")
         print(lavapipe.line("check, lavapipe", count))

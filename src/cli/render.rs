@@ -251,8 +251,10 @@ fn trace<T: Real>(
         Some(_) => ProgressBar::hidden(),
     };
     let Some(max_error) = args.max_error else {
+        let start = Instant::now();
         let rendered = tracer.render(|| bar.inc(1));
         bar.finish_and_clear();
+        terminal.detail(&format!("traced in {:.4} s", start.elapsed().as_secs_f64()));
         return rendered;
     };
     let (rendered, spent) = tracer.render_adaptive(max_error, || bar.inc(1));

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""toyproof's tracer and Mitsuba 3 (llvm_ad_rgb) in turns, one thread each, in processor time.
+"""toyproof's tracer and Mitsuba 3 (llvm_ad_rgb) in turns, one thread each.
 
     apt-get install libllvm19; python3 -m venv venv; venv/bin/pip install mitsuba==3.9.1 numpy
-    DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1 venv/bin/python benches/tracers/mitsuba.py TOYPROOF [ROUNDS]
+    DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1 venv/bin/python benches/tracers/compare_mitsuba.py TOYPROOF [ROUNDS]
 
 LLVM 15 and 16 abort on an instruction that Dr.Jit emits. Three comparisons, medians of ROUNDS (5) at 640x360, 16 samples:
 the seven spheres of whitted.toml, against Mitsuba's path integrator and against one that stops at diffuse surfaces;
@@ -18,7 +18,6 @@ import math
 import os
 import pathlib
 import re
-import resource
 import statistics
 import subprocess
 import sys
@@ -134,32 +133,21 @@ def mitsuba(scene, samples=SAMPLES, seed=0, integrator=None):
 
 
 def toyproof(file, sampler, precision, samples=SAMPLES, image=None):
-    """Milliseconds of processor time of the whole command without writing the image: less those of one sample of a pixel."""
-
-    def run(size, samples, to):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        command = [sys.argv[1], "render", file, "-o", to, "--size", size, "--samples", str(samples),
-                   "--sampler", sampler, "--precision", precision]
-        report = subprocess.run([*command, "-v"], check=True, capture_output=True, text=True,
-                                env={**os.environ, "RAYON_NUM_THREADS": "1"})
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return report.stderr + report.stdout, 1e3 * (after.ru_utime - before.ru_utime)
-
+    """Milliseconds that tracing took on one thread, as the command reports."""
     with tempfile.TemporaryDirectory() as folder:
-        to = image or f"{folder}/image.exr"
-        _, many = run(f"{SIZE[0]}x{SIZE[1]}", samples, to)
-        _, one = run(f"{SIZE[0]}x{SIZE[1]}", 1, f"{folder}/one.exr")
-    # The difference of two numbers of samples leaves out starting, and writing the image.
-    return (many - one) * samples / (samples - 1)
+        command = [sys.argv[1], "render", file, "-v", "-o", image or f"{folder}/image.png", "--size", f"{SIZE[0]}x{SIZE[1]}",
+                   "--samples", str(samples), "--sampler", sampler, "--precision", precision]
+        report = subprocess.run(command, check=True, capture_output=True, text=True, env={**os.environ, "RAYON_NUM_THREADS": "1"})
+    return 1e3 * float(re.search(r"traced in ([\d.]+) s", report.stderr + report.stdout)[1])
 
 
-def in_turns(contestants, rounds):
-    """Medians of all contestants."""
-    times = {name: [] for name in contestants}
-    for run in contestants.values():
+def in_turns(programs, rounds):
+    """The median time of each program."""
+    times = {name: [] for name in programs}
+    for run in programs.values():
         run()
     for _ in range(rounds):
-        for name, run in contestants.items():
+        for name, run in programs.items():
             times[name].append(run())
     return {name: statistics.median(of) for name, of in times.items()}
 
