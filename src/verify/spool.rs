@@ -1,5 +1,5 @@
-//! A queue of bands of an image that keeps only a few in memory, so that the worker can release its image while the
-//! comparison is still busy.
+//! A queue of bands of an image that keeps only a few in memory, so that the worker can release its image
+//! while the comparison is still busy.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -11,8 +11,8 @@ use toyproof_image::Image;
 /// The bands that are kept in memory: as many pixels as 960×540 has.
 const MAX_BANDS_IN_MEMORY: usize = 2;
 
-/// A queue with one sender and one receiver. What does not fit into memory is in an unnamed temporary file; if that
-/// cannot be written, in memory nevertheless.
+/// A queue with one sender and one receiver. What does not fit into memory is in an unnamed temporary file;
+/// if that cannot be written, in memory nevertheless.
 #[derive(Debug, Default)]
 pub(super) struct Spool {
     queue: Mutex<Queue>,
@@ -107,7 +107,7 @@ impl Queue {
 
     fn read(&mut self, [width, height]: [u32; 2], at: u64) -> io::Result<Image> {
         let mut pixels = vec![[0.0f32; 4]; width as usize * height as usize];
-        let file = self.file.as_mut().expect("a band in the file was written to it");
+        let file = self.file.as_mut().ok_or(io::ErrorKind::NotFound)?;
         file.seek(SeekFrom::Start(at))?;
         file.read_exact(bytemuck::cast_slice_mut(&mut pixels))?;
         Ok(Image::new(width, height, pixels))

@@ -1,5 +1,5 @@
-//! Lifting of single operations: each operation of the intermediate representation becomes a few nodes, whose bits are
-//! those of its handler.
+//! Lifting of single operations: each operation of the intermediate representation becomes a few nodes, whose
+//! bits are those of its handler.
 
 use super::assemble::{Constant, Opcode, op};
 use super::lift::{Content, Lifter, Word};

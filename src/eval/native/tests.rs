@@ -1,13 +1,13 @@
-//! Tests of the assembler. That machine code has the bits of the handlers is tested with whole programs, by the
-//! suite.
+//! Tests of the assembler. That machine code has the bits of the handlers is tested with whole programs, by
+//! the suite.
 
 use super::assemble::{
     Arithmetic, Assembler, Condition, Constant, Memory, R8, R9, R12, R13, R14, R15, RAX, RBP, RBX, RCX, RDI,
     RDX, RSI, RSP, Source, op,
 };
 
-/// Instructions, how they are emitted, and the bytes that GNU as 2.40 makes of them. Where an instruction has two
-/// encodings, `{load}` selects the one whose second operand may be in memory.
+/// Instructions, how they are emitted, and the bytes that GNU as 2.40 makes of them. Where an instruction has
+/// two encodings, `{load}` selects the one whose second operand may be in memory.
 type Encoding = (&'static str, fn(&mut Assembler), &'static str);
 
 #[test]
