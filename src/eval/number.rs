@@ -3,14 +3,27 @@
 use std::fmt::Debug;
 
 use toyproof_image::{Image, Texture};
+use toyproof_math::double;
 use toyproof_math::native::{self, flush};
 
 use crate::program::Backend;
 
+/// Applies a function to the numbers in each lane. A macro, since a function or a closure is a call in the loop
+/// if it is large.
+macro_rules! each {
+    ($function:expr, $($x:expr),+) => {{
+        let mut results = [Default::default(); L];
+        for lane in 0..L {
+            results[lane] = $function($($x[lane]),+);
+        }
+        results
+    }};
+}
+
 macro_rules! define_number {
     ($($method:ident: $double:path, $single:path;)*) => {
         /// A number type: f32 with denormals flushed and the expanded functions of [`toyproof_math`], as in
-        /// strict shaders; f64 with libm's functions; or f64 with random rounding.
+        /// strict shaders; f64 with functions as accurate as libm's; or f64 with random rounding.
         pub trait Number: Backend + Copy + Debug + Default + PartialOrd + Send + Sync + 'static {
             /// An additional operand of each rounded operation: the seed of random rounding, or nothing.
             type Noise: Copy + Debug + Default + Send + Sync;
@@ -68,16 +81,16 @@ macro_rules! define_number {
             #[must_use]
             fn round_even(self) -> Self;
             $(
-                #[doc = concat!("`", stringify!($method), "`")]
+                #[doc = concat!("`", stringify!($method), "` of each number")]
                 #[must_use]
-                fn $method(self, noise: Self::Noise) -> Self;
+                fn $method<const L: usize>(x: [Self; L], noise: Self::Noise) -> [Self; L];
             )*
-            /// Returns the angle of the point (other, self), in radians.
+            /// Returns the angles of the points (x, y), in radians.
             #[must_use]
-            fn atan2(self, other: Self, noise: Self::Noise) -> Self;
-            /// Returns `self` to the power of `other`; NaN for a negative base.
+            fn atan2<const L: usize>(y: [Self; L], x: [Self; L], noise: Self::Noise) -> [Self; L];
+            /// Returns x to the power of y for each pair; NaN for a negative base.
             #[must_use]
-            fn pow(self, other: Self, noise: Self::Noise) -> Self;
+            fn pow<const L: usize>(x: [Self; L], y: [Self; L], noise: Self::Noise) -> [Self; L];
         }
 
         impl Number for f32 {
@@ -126,17 +139,17 @@ macro_rules! define_number {
             exact!(f32, i32);
             $(
                 #[inline(always)]
-                fn $method(self, (): ()) -> Self {
-                    $single(self)
+                fn $method<const L: usize>(x: [Self; L], (): ()) -> [Self; L] {
+                    each!($single, x)
                 }
             )*
             #[inline(always)]
-            fn atan2(self, other: Self, (): ()) -> Self {
-                native::atan2(self, other)
+            fn atan2<const L: usize>(y: [Self; L], x: [Self; L], (): ()) -> [Self; L] {
+                each!(native::atan2, y, x)
             }
             #[inline(always)]
-            fn pow(self, other: Self, (): ()) -> Self {
-                native::pow(self, other)
+            fn pow<const L: usize>(x: [Self; L], y: [Self; L], (): ()) -> [Self; L] {
+                each!(native::pow, x, y)
             }
         }
 
@@ -185,17 +198,17 @@ macro_rules! define_number {
             exact!(f64, i64);
             $(
                 #[inline(always)]
-                fn $method(self, (): ()) -> Self {
-                    $double(self)
+                fn $method<const L: usize>(x: [Self; L], (): ()) -> [Self; L] {
+                    $double(x)
                 }
             )*
             #[inline(always)]
-            fn atan2(self, other: Self, (): ()) -> Self {
-                libm::atan2(self, other)
+            fn atan2<const L: usize>(y: [Self; L], x: [Self; L], (): ()) -> [Self; L] {
+                each!(libm::atan2, y, x)
             }
             #[inline(always)]
-            fn pow(self, other: Self, (): ()) -> Self {
-                if self < 0.0 { f64::NAN } else { libm::pow(self, other) }
+            fn pow<const L: usize>(x: [Self; L], y: [Self; L], (): ()) -> [Self; L] {
+                double::pow(x, y)
             }
         }
 
@@ -283,20 +296,18 @@ macro_rules! define_number {
             }
             $(
                 #[inline(always)]
-                fn $method(self, seed: Seed) -> Self {
-                    let value = $double(self.0);
-                    seed.round_randomly_unless(value, value.fract() == 0.0)
+                fn $method<const L: usize>(x: [Self; L], seed: Seed) -> [Self; L] {
+                    seed.round_unless_whole($double(Self::values(x)))
                 }
             )*
             #[inline(always)]
-            fn atan2(self, other: Self, seed: Seed) -> Self {
-                let value = libm::atan2(self.0, other.0);
-                seed.round_randomly_unless(value, value == 0.0)
+            fn atan2<const L: usize>(y: [Self; L], x: [Self; L], seed: Seed) -> [Self; L] {
+                let (y, x) = (Self::values(y), Self::values(x));
+                seed.round_unless_whole(each!(libm::atan2, y, x))
             }
             #[inline(always)]
-            fn pow(self, other: Self, seed: Seed) -> Self {
-                let value = Number::pow(self.0, other.0, ());
-                seed.round_randomly_unless(value, value.fract() == 0.0)
+            fn pow<const L: usize>(x: [Self; L], y: [Self; L], seed: Seed) -> [Self; L] {
+                seed.round_unless_whole(double::pow(Self::values(x), Self::values(y)))
             }
         }
     };
@@ -340,23 +351,36 @@ macro_rules! exact {
     };
 }
 
+/// libm's functions for several arguments.
+mod libm_lanes {
+    macro_rules! in_lanes {
+        ($($name:ident)*) => {$(
+            #[inline(always)]
+            pub(super) fn $name<const L: usize>(x: [f64; L]) -> [f64; L] {
+                each!(libm::$name, x)
+            }
+        )*};
+    }
+    in_lanes!(tan asin acos atan sinh cosh tanh asinh acosh atanh exp2 log2);
+}
+
 define_number! {
-    sin: libm::sin, native::sin;
-    cos: libm::cos, native::cos;
-    tan: libm::tan, native::tan;
-    asin: libm::asin, native::asin;
-    acos: libm::acos, native::acos;
-    atan: libm::atan, native::atan;
-    sinh: libm::sinh, native::sinh;
-    cosh: libm::cosh, native::cosh;
-    tanh: libm::tanh, native::tanh;
-    asinh: libm::asinh, native::asinh;
-    acosh: libm::acosh, native::acosh;
-    atanh: libm::atanh, native::atanh;
-    exp: libm::exp, native::exp;
-    exp2: libm::exp2, native::exp2;
-    log: libm::log, native::log;
-    log2: libm::log2, native::log2;
+    sin: double::sin, native::sin;
+    cos: double::cos, native::cos;
+    tan: libm_lanes::tan, native::tan;
+    asin: libm_lanes::asin, native::asin;
+    acos: libm_lanes::acos, native::acos;
+    atan: libm_lanes::atan, native::atan;
+    sinh: libm_lanes::sinh, native::sinh;
+    cosh: libm_lanes::cosh, native::cosh;
+    tanh: libm_lanes::tanh, native::tanh;
+    asinh: libm_lanes::asinh, native::asinh;
+    acosh: libm_lanes::acosh, native::acosh;
+    atanh: libm_lanes::atanh, native::atanh;
+    exp: double::exp, native::exp;
+    exp2: libm_lanes::exp2, native::exp2;
+    log: double::log, native::log;
+    log2: libm_lanes::log2, native::log2;
 }
 
 /// An f64 whose every inexact result is moved by −1, 0 or +1 units in the last place, of f64 or of f32.
@@ -365,6 +389,13 @@ define_number! {
 /// 2004) and Verrou. Exact results stay exact, or float loop counters would miscount.
 #[derive(Debug, Clone, Copy, Default, PartialEq, PartialOrd)]
 pub struct RandomRounding(pub f64);
+
+impl RandomRounding {
+    #[inline(always)]
+    fn values<const L: usize>(numbers: [Self; L]) -> [f64; L] {
+        each!(Self::to_f64, numbers)
+    }
+}
 
 /// The number of bits that the significand of f64 has more than that of f32.
 const EXTRA_BITS: u32 = f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS;
@@ -392,6 +423,17 @@ impl Seed {
             number,
             unit: EXTRA_BITS,
         }
+    }
+
+    /// Rounds the results of a function; integers are exact.
+    #[inline(always)]
+    fn round_unless_whole<const L: usize>(self, values: [f64; L]) -> [RandomRounding; L] {
+        let mut rounded = [RandomRounding::default(); L];
+        for lane in 0..L {
+            let value = values[lane];
+            rounded[lane] = self.round_randomly_unless(value, value.fract() == 0.0);
+        }
+        rounded
     }
 
     #[inline(always)]

@@ -24,6 +24,7 @@
 )]
 
 mod algebraic;
+pub mod double;
 mod exponential;
 mod expr_graph;
 mod float;

@@ -1,16 +1,37 @@
 //! The semantics of each operation on components.
 
+use crate::batch::{LANES, Lanes};
 use crate::ir::{Operation, for_each_operation};
 use crate::number::Number;
 
 /// An operation with one operand.
-pub(super) trait Of1<N: Number, A, R> {
+pub(super) trait Of1<N: Number, A: Copy, R: Copy + Default> {
     fn apply(a: A, noise: N::Noise) -> R;
+
+    /// Applies it to each lane.
+    #[inline(always)]
+    fn apply_to_lanes(a: Lanes<A>, noise: N::Noise) -> Lanes<R> {
+        let mut results = [R::default(); LANES];
+        for lane in 0..LANES {
+            results[lane] = Self::apply(a[lane], noise);
+        }
+        results
+    }
 }
 
 /// An operation with two operands.
-pub(super) trait Of2<N: Number, A, B, R> {
+pub(super) trait Of2<N: Number, A: Copy, B: Copy, R: Copy + Default> {
     fn apply(a: A, b: B, noise: N::Noise) -> R;
+
+    /// Applies it to each lane.
+    #[inline(always)]
+    fn apply_to_lanes(a: Lanes<A>, b: Lanes<B>, noise: N::Noise) -> Lanes<R> {
+        let mut results = [R::default(); LANES];
+        for lane in 0..LANES {
+            results[lane] = Self::apply(a[lane], b[lane], noise);
+        }
+        results
+    }
 }
 
 /// An operation with three operands.
@@ -86,24 +107,6 @@ apply! {
     Ceil(a: F) F = |_| a.ceil();
     Trunc(a: F) F = |_| a.trunc();
     RoundEven(a: F) F = |_| a.round_even();
-    Sin(a: F) F = |noise| a.sin(noise);
-    Cos(a: F) F = |noise| a.cos(noise);
-    Tan(a: F) F = |noise| a.tan(noise);
-    Asin(a: F) F = |noise| a.asin(noise);
-    Acos(a: F) F = |noise| a.acos(noise);
-    Atan(a: F) F = |noise| a.atan(noise);
-    Atan2(a: F, b: F) F = |noise| a.atan2(b, noise);
-    Sinh(a: F) F = |noise| a.sinh(noise);
-    Cosh(a: F) F = |noise| a.cosh(noise);
-    Tanh(a: F) F = |noise| a.tanh(noise);
-    Asinh(a: F) F = |noise| a.asinh(noise);
-    Acosh(a: F) F = |noise| a.acosh(noise);
-    Atanh(a: F) F = |noise| a.atanh(noise);
-    Exp(a: F) F = |noise| a.exp(noise);
-    Exp2(a: F) F = |noise| a.exp2(noise);
-    Log(a: F) F = |noise| a.log(noise);
-    Log2(a: F) F = |noise| a.log2(noise);
-    Pow(a: F, b: F) F = |noise| a.pow(b, noise);
     Less(a: F, b: F) W = |_| bool_word(a < b);
     LessEqual(a: F, b: F) W = |_| bool_word(a <= b);
     Equal(a: F, b: F) W = |_| bool_word(a == b);
@@ -151,6 +154,45 @@ apply! {
     // Uniform operands only, so the derivative is 0 (or NaN); rows have their own handlers.
     DFdx(a: F) F = |noise| a.sub(a, noise);
     DFdy(a: F) F = |noise| a.sub(a, noise);
+}
+
+/// Functions of [`Number`] that compute several results at once.
+macro_rules! functions {
+    ($($name:ident $function:ident($($argument:ident),+): $of:ident<$($kind:ident),+>;)*) => {$(
+        pub(super) struct $name;
+        impl<N: Number> $of<$($kind),+> for $name {
+            #[inline(always)]
+            fn apply($($argument: N,)+ noise: N::Noise) -> N {
+                let [result] = N::$function($([$argument],)+ noise);
+                result
+            }
+            #[inline(always)]
+            fn apply_to_lanes($($argument: Lanes<N>,)+ noise: N::Noise) -> Lanes<N> {
+                N::$function($($argument,)+ noise)
+            }
+        }
+    )*};
+}
+
+functions! {
+    Sin sin(x): Of1<N, N, N>;
+    Cos cos(x): Of1<N, N, N>;
+    Tan tan(x): Of1<N, N, N>;
+    Asin asin(x): Of1<N, N, N>;
+    Acos acos(x): Of1<N, N, N>;
+    Atan atan(x): Of1<N, N, N>;
+    Sinh sinh(x): Of1<N, N, N>;
+    Cosh cosh(x): Of1<N, N, N>;
+    Tanh tanh(x): Of1<N, N, N>;
+    Asinh asinh(x): Of1<N, N, N>;
+    Acosh acosh(x): Of1<N, N, N>;
+    Atanh atanh(x): Of1<N, N, N>;
+    Exp exp(x): Of1<N, N, N>;
+    Exp2 exp2(x): Of1<N, N, N>;
+    Log log(x): Of1<N, N, N>;
+    Log2 log2(x): Of1<N, N, N>;
+    Atan2 atan2(y, x): Of2<N, N, N, N>;
+    Pow pow(x, y): Of2<N, N, N, N>;
 }
 
 /// Rounds toward zero. Values that are too large become the largest f32 that fits an `int`: naga clamps to it

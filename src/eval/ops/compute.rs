@@ -18,12 +18,7 @@ impl<N: Number, O: Of1<N, T, R>, T: Component<N>, R: Component<N>> Run<N> for Ro
         let out = R::row(batch, instruction.out);
         let noise = batch.noise;
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let a = a[chunk].get();
-            let mut result = [R::default(); LANES];
-            for lane in 0..LANES {
-                result[lane] = O::apply(a[lane], noise);
-            }
-            out[chunk].set(result);
+            out[chunk].set(O::apply_to_lanes(a[chunk].get(), noise));
         });
         at + 1
     }
@@ -50,12 +45,7 @@ where
         let out = R::row(batch, instruction.out);
         let noise = batch.noise;
         for_each_chunk!(batch, instruction.mask, chunk => {
-            let (a, b) = (A::chunk(a, chunk), B::chunk(b, chunk));
-            let mut result = [R::default(); LANES];
-            for lane in 0..LANES {
-                result[lane] = O::apply(a[lane], b[lane], noise);
-            }
-            out[chunk].set(result);
+            out[chunk].set(O::apply_to_lanes(A::chunk(a, chunk), B::chunk(b, chunk), noise));
         });
         at + 1
     }

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use toyproof::math::Number;
+use toyproof::math::{Number, double};
 use toyproof::math::native::{self, flush};
 
 /// A number type. Arithmetic and the functions of §8 that `toyproof::math` composes come from [`Number`].
@@ -42,7 +42,7 @@ pub trait Real: Number<Bool = bool> + Debug + PartialOrd {
 }
 
 macro_rules! transcendental {
-    ($($variant:ident $name:ident;)*) => {
+    ($($variant:ident $name:ident, $double:expr;)*) => {
         /// The functions of one argument whose last bits are implementation-defined.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Transcendental {
@@ -58,30 +58,35 @@ macro_rules! transcendental {
 
             fn double(self, x: f64) -> f64 {
                 match self {
-                    $(Self::$variant => libm::$name(x),)*
+                    $(Self::$variant => $double(x),)*
                 }
             }
         }
     };
 }
 
+/// A function of several numbers, for one.
+fn in_one_lane(function: impl Fn([f64; 1]) -> [f64; 1]) -> impl Fn(f64) -> f64 {
+    move |x| function([x])[0]
+}
+
 transcendental! {
-    Sin sin;
-    Cos cos;
-    Tan tan;
-    Asin asin;
-    Acos acos;
-    Atan atan;
-    Sinh sinh;
-    Cosh cosh;
-    Tanh tanh;
-    Asinh asinh;
-    Acosh acosh;
-    Atanh atanh;
-    Exp exp;
-    Exp2 exp2;
-    Log log;
-    Log2 log2;
+    Sin sin, in_one_lane(double::sin);
+    Cos cos, in_one_lane(double::cos);
+    Tan tan, libm::tan;
+    Asin asin, libm::asin;
+    Acos acos, libm::acos;
+    Atan atan, libm::atan;
+    Sinh sinh, libm::sinh;
+    Cosh cosh, libm::cosh;
+    Tanh tanh, libm::tanh;
+    Asinh asinh, libm::asinh;
+    Acosh acosh, libm::acosh;
+    Atanh atanh, libm::atanh;
+    Exp exp, libm::exp;
+    Exp2 exp2, libm::exp2;
+    Log log, libm::log;
+    Log2 log2, libm::log2;
 }
 
 /// An f32 of which sums, differences, products and quotients that are denormal become zero.
