@@ -14,7 +14,12 @@ const LN_2: [f64; 2] = [f64::from_bits(0x3FE6_2E42_FEE0_0000), 1.908_214_929_270
 pub fn exp<const L: usize>(x: [f64; L]) -> [f64; L] {
     /// Below, the result and its scale are normal.
     const LIMIT: f64 = 708.0;
-    each!(lane, x[lane].abs() < LIMIT, regular_exp(x[lane]), libm::exp(x[lane]))
+    each!(
+        lane,
+        x[lane].abs() < LIMIT,
+        regular_exp(x[lane]),
+        libm::exp(x[lane])
+    )
 }
 
 #[inline(always)]
@@ -55,7 +60,12 @@ fn regular_exp(x: f64) -> f64 {
 #[inline(always)]
 #[must_use]
 pub fn log<const L: usize>(x: [f64; L]) -> [f64; L] {
-    each!(lane, is_normal_positive(x[lane]), regular_log(x[lane]), libm::log(x[lane]))
+    each!(
+        lane,
+        is_normal_positive(x[lane]),
+        regular_log(x[lane]),
+        libm::log(x[lane])
+    )
 }
 
 #[inline(always)]

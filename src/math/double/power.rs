@@ -17,7 +17,12 @@ pub fn pow<const L: usize>(x: [f64; L], y: [f64; L]) -> [f64; L] {
         let is_usual = is_normal_positive(x[lane]) & is_regular_exponent(y[lane]);
         is_regular[lane] = is_usual & products[lane].is_small();
     }
-    each!(lane, is_regular[lane], products[lane].exp2(), other_pow(x[lane], y[lane]))
+    each!(
+        lane,
+        is_regular[lane],
+        products[lane].exp2(),
+        other_pow(x[lane], y[lane])
+    )
 }
 
 fn other_pow(x: f64, y: f64) -> f64 {

@@ -54,7 +54,8 @@ const SPECIAL: [f64; 40] = [
 ];
 
 fn in_lanes(x: &[f64]) -> impl Iterator<Item = [f64; 8]> {
-    x.windows(8).map(|window| std::array::from_fn(|lane| window[lane]))
+    x.windows(8)
+        .map(|window| std::array::from_fn(|lane| window[lane]))
 }
 
 fn is_same(computed: f64, expected: f64) -> bool {
@@ -144,13 +145,20 @@ fn special_arguments_are_those_of_libm() {
     for x in in_lanes(&SPECIAL) {
         for (function, reference) in EXPONENTIAL.into_iter().chain(TRIGONOMETRIC) {
             for (computed, x) in function(x).into_iter().zip(x) {
-                assert!(distance(computed, reference(x)) <= 1, "{x:e}: {computed:e}, {:e}", reference(x));
+                assert!(
+                    distance(computed, reference(x)) <= 1,
+                    "{x:e}: {computed:e}, {:e}",
+                    reference(x)
+                );
             }
         }
         for y in SPECIAL {
             for (computed, x) in pow(x, [y; 8]).into_iter().zip(x) {
                 let expected = if x < 0.0 { f64::NAN } else { libm::pow(x, y) };
-                assert!(is_same(computed, expected), "{x:e}^{y:e}: {computed:e}, {expected:e}");
+                assert!(
+                    is_same(computed, expected),
+                    "{x:e}^{y:e}: {computed:e}, {expected:e}"
+                );
             }
         }
     }
@@ -171,12 +179,18 @@ fn large_angles_are_reduced_exactly() {
 /// formula of its own.
 #[test]
 fn most_sines_and_cosines_have_the_bits_of_libm() {
-    let angles: Vec<f64> = (0..80_000).map(|i| (f64::from(i) - 40_000.0) * 0.123_456_789).collect();
+    let angles: Vec<f64> = (0..80_000)
+        .map(|i| (f64::from(i) - 40_000.0) * 0.123_456_789)
+        .collect();
     for (function, reference) in TRIGONOMETRIC {
         let mut same = 0;
         for x in in_lanes(&angles).step_by(8) {
             let computed = function(x);
-            same += computed.into_iter().zip(x).filter(|&(computed, x)| is_same(computed, reference(x))).count();
+            same += computed
+                .into_iter()
+                .zip(x)
+                .filter(|&(computed, x)| is_same(computed, reference(x)))
+                .count();
         }
         assert!(same > 79_900, "{same}");
     }

@@ -193,7 +193,11 @@ fn reduce_by_integers(x: f64) -> Reduced {
     let scale = f64::from_bits(u64::from(1023 - 125 - shift) << 52);
     let head = (upper & !(UNIT - 1)) as f64 * (1_u128 << 64) as f64;
     let tail = ((upper & (UNIT - 1)) << 53 | lower >> 11) as f64 * UNIT as f64;
-    let sign = if (rest < 0) == x.is_sign_negative() { scale } else { -scale };
+    let sign = if (rest < 0) == x.is_sign_negative() {
+        scale
+    } else {
+        -scale
+    };
     Reduced {
         quadrants: if x.is_sign_negative() {
             (n as u64).wrapping_neg()

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use toyproof::math::{Number, double};
 use toyproof::math::native::{self, flush};
+use toyproof::math::{Number, double};
 
 /// A number type. Arithmetic and the functions of §8 that `toyproof::math` composes come from [`Number`].
 pub trait Real: Number<Bool = bool> + Debug + PartialOrd {
