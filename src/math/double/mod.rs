@@ -10,6 +10,12 @@
 //! assert_eq!(double::pow([2.0, 9.0], [3.0, 0.5]), [8.0, 3.0]);
 //! ```
 
+#![expect(
+    clippy::needless_bitwise_bool,
+    clippy::manual_range_contains,
+    reason = "loops are vectorized without branches"
+)]
+
 mod exponential;
 mod power;
 mod trigonometric;
@@ -63,11 +69,13 @@ macro_rules! each {
         let mut irregular = 0_u64;
         for $lane in 0..L {
             results[$lane] = $regular;
-            irregular += u64::from(!$is_regular);
+            let is_regular: bool = $is_regular;
+            irregular += u64::from(!is_regular);
         }
         if irregular > 0 {
             for $lane in 0..L {
-                if !$is_regular {
+                let is_regular: bool = $is_regular;
+                if !is_regular {
                     results[$lane] = $other;
                 }
             }
