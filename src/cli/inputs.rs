@@ -331,7 +331,7 @@ impl DriverArgs {
 
     /// Creates a worker that only translates shaders, without a driver.
     pub(super) fn translator(&self) -> Result<Worker, String> {
-        worker(AdapterSelector::Auto, self.timeout)
+        worker(AdapterSelector::Auto, self.timeout).map(Worker::without_driver)
     }
 
     /// Returns whether the evaluator may replace a missing driver.

@@ -14,6 +14,13 @@ use toyproof_translate::{FloatMode, Lowered};
 
 use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox};
 
+/// The parent's first message.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Setup {
+    /// Whether a job may load a driver.
+    pub(super) uses_driver: bool,
+}
+
 /// A request from the parent.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Job {
@@ -45,11 +52,6 @@ pub(super) enum Job {
 }
 
 impl Job {
-    /// Whether it loads a driver.
-    pub(super) fn needs_driver(&self) -> bool {
-        !matches!(self, Self::Translate(..) | Self::ReadWgsl(_) | Self::Sandbox)
-    }
-
     /// The number of pixels of the one image that it renders; none if it renders none, or several.
     pub(super) fn pixels(&self) -> Option<u64> {
         match self {

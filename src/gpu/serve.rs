@@ -16,7 +16,8 @@ use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
 use super::play::{self, DevicePlayer, PassRenderer};
 use super::protocol::{
-    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply, ShaderArtifact, receive, send,
+    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply, Setup, ShaderArtifact,
+    receive, send,
 };
 use super::quirks::loop_probe::{self, Probe};
 use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
@@ -36,9 +37,12 @@ const STACK_BYTES: usize = 8 << 20;
 ///
 /// # Errors
 /// If a reply cannot be written, since the parent is gone.
-pub fn serve(input: impl Read + Send, output: impl Write + Send) -> io::Result<()> {
+pub fn serve(mut input: impl Read + Send, output: impl Write + Send) -> io::Result<()> {
     limit_process();
-    let sandbox = sandbox::enter();
+    let Ok(setup) = receive::<Setup>(&mut input) else {
+        return Ok(());
+    };
+    let sandbox = sandbox::enter(setup.uses_driver);
     panic::set_hook(Box::new(|_| {}));
     let mut server = Server {
         output,

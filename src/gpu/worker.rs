@@ -15,7 +15,7 @@ use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::protocol::{
-    ChannelSampling, DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply,
+    ChannelSampling, DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply, Setup,
     ShaderArtifact, receive, send,
 };
 use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox, device, quirks, sandbox};
@@ -28,6 +28,7 @@ pub struct Worker {
     selector: AdapterSelector,
     timeout: Duration,
     start_timeout: Duration,
+    uses_driver: bool,
     all_drivers: bool,
     manifest: Option<PathBuf>,
     plain_code: PlainCode,
@@ -92,6 +93,7 @@ impl Worker {
             selector,
             timeout,
             start_timeout: timeout.max(START_TIMEOUT),
+            uses_driver: true,
             all_drivers: false,
             manifest: None,
             plain_code: PlainCode::Never,
@@ -106,6 +108,13 @@ impl Worker {
     #[must_use]
     pub fn with_start_timeout(mut self, start_timeout: Duration) -> Self {
         self.start_timeout = start_timeout;
+        self
+    }
+
+    /// Only translates and parses: no driver is looked for, and the process has no access to files.
+    #[must_use]
+    pub fn without_driver(mut self) -> Self {
+        self.uses_driver = false;
         self
     }
 
@@ -145,10 +154,9 @@ impl Worker {
         if self.running.is_some() || self.not_started.is_some() {
             return;
         }
-        let job = Job::Open(self.selector.clone());
         let is_plain = self.plain_code.applies_to(Some(pixels));
-        if let Ok(mut running) = self.start(&job, is_plain)
-            && send(&mut running.requests, &job).is_ok()
+        if let Ok(mut running) = self.start(is_plain)
+            && (!self.uses_driver || send(&mut running.requests, &Job::Open(self.selector.clone())).is_ok())
         {
             self.running = Some(running);
         }
@@ -419,10 +427,10 @@ impl Worker {
         let running = match self.running.take() {
             Some(running) if running.is_plain && !is_plain => {
                 running.end();
-                self.start(job, is_plain)?
+                self.start(is_plain)?
             }
             Some(running) => running,
-            None => self.start(job, is_plain)?,
+            None => self.start(is_plain)?,
         };
         let may_repeat = running.is_plain && self.plain_code == PlainCode::Small;
         let mut bands = 0;
@@ -440,7 +448,7 @@ impl Worker {
         if !(may_repeat && is_late && bands == 0) {
             return output;
         }
-        let running = self.start(job, false)?;
+        let running = self.start(false)?;
         let output = self.run_on(running, job, on_band);
         // The next image is compiled without optimizations again.
         if let Some(running) = self.running.take() {
@@ -512,14 +520,14 @@ impl Worker {
     /// all takes 20 ms instead of 170 ms.
     fn default_manifest(&self) -> Option<PathBuf> {
         let suffices = matches!(self.selector, AdapterSelector::Auto | AdapterSelector::Lavapipe);
-        (suffices && !self.all_drivers && !device::is_pinned_by_user())
+        (suffices && self.uses_driver && !self.all_drivers && !device::is_pinned_by_user())
             .then(device::lavapipe_manifest)
             .flatten()
     }
 
-    /// Starts a process for a job and those after it, whose code is plain if this is wanted and can be had.
-    fn start(&self, job: &Job, is_plain: bool) -> Result<RunningWorker, Failure> {
-        if job.needs_driver() {
+    /// Starts a process, whose code is plain if this is wanted and can be had.
+    fn start(&self, is_plain: bool) -> Result<RunningWorker, Failure> {
+        if self.uses_driver {
             sandbox::create_caches();
         }
         let mut command = Command::new(&self.program);
@@ -543,7 +551,7 @@ impl Worker {
             .spawn()
             .map_err(|error| Failure::Worker(format!("{}: {error}", path_name(&self.program))))?;
         let missing = || Failure::Worker("no pipe to the worker".to_owned());
-        let requests = child.stdin.take().ok_or_else(missing)?;
+        let mut requests = child.stdin.take().ok_or_else(missing)?;
         let mut output = child.stdout.take().ok_or_else(missing)?;
         let errors = child.stderr.take().ok_or_else(missing)?;
         #[cfg(target_os = "linux")]
@@ -551,6 +559,11 @@ impl Worker {
             // If the system refuses, messages take more turns.
             let _ = rustix::pipe::fcntl_setpipe_size(&output, PIPE_BYTES);
         }
+        let setup = Setup {
+            uses_driver: self.uses_driver,
+        };
+        // The end of the replies reveals a dead worker.
+        let _ = send(&mut requests, &setup);
         let (sender, replies) = mpsc::sync_channel(MAX_QUEUED_REPLIES);
         thread::spawn(move || {
             while let Ok(reply) = receive(&mut output) {

@@ -1,7 +1,8 @@
 //! PNG (8 bits) and EXR (32-bit floats) files.
 
 use std::borrow::Cow;
-use std::io::{self, Cursor, Write};
+use std::fs::File;
+use std::io::{self, BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
@@ -183,8 +184,10 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
             io::ErrorKind::NotFound => unreadable("no such file".to_owned()),
             _ => unreadable(error.to_string()),
         })?;
-    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::OpenExr)) {
-        return Err(unreadable("only PNG and EXR are supported".to_owned()));
+    match reader.format() {
+        Some(ImageFormat::Png) => check_palette(path).map_err(unreadable)?,
+        Some(ImageFormat::OpenExr) => {}
+        _ => return Err(unreadable("only PNG and EXR are supported".to_owned())),
     }
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
@@ -195,6 +198,20 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
     check_size(decoded.width().into(), decoded.height().into())
         .map_err(|error| unreadable(error.to_string()))?;
     Ok(decoded)
+}
+
+/// Rejects palettes of PNGs on which the decoder panics (png 0.18.1).
+fn check_palette(path: &Path) -> Result<(), String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let reader = png::Decoder::new(BufReader::new(file)).read_info();
+    let reader = reader.map_err(|error| error.to_string())?;
+    match reader.info().palette.as_deref() {
+        Some(palette) if palette.len() % 3 != 0 => Err(format!(
+            "its palette has {} bytes, which is not a multiple of three",
+            palette.len()
+        )),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -239,5 +256,26 @@ mod tests {
         let path = folder.path().join("a.png");
         std::fs::write(&path, "not an image").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("as an image"));
+    }
+
+    #[test]
+    fn palettes_of_a_wrong_length_are_rejected() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        for (length, is_valid) in [(3, true), (4, false), (5, false), (768, true)] {
+            let mut encoder = png::Encoder::new(File::create(&path).unwrap(), 1, 1);
+            encoder.set_color(png::ColorType::Indexed);
+            encoder.set_palette(vec![51; length]);
+            let mut encoder = encoder.write_header().unwrap();
+            encoder.write_image_data(&[0]).unwrap();
+            encoder.finish().unwrap();
+            match read(&path) {
+                Ok(image) => assert!(is_valid && image.get(0, 0) == [0.2, 0.2, 0.2, 1.0], "{length}"),
+                Err(error) => assert!(
+                    !is_valid && error.to_string().contains(&format!("palette has {length} bytes")),
+                    "{error}"
+                ),
+            }
+        }
     }
 }

@@ -413,3 +413,21 @@ fn a_driver_has_no_access_to_files_networks_and_processes() {
         "{text}"
     );
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_worker_without_a_driver_has_no_access_to_files() {
+    use toyproof::gpu::Sandbox;
+
+    let Some(worker) = require_worker() else {
+        return;
+    };
+    let mut worker = worker.without_driver();
+    match worker.sandbox().unwrap() {
+        Sandbox::Enabled { landlock: Ok(_), .. } => {
+            let found = worker.probe();
+            assert!(matches!(found, Err(Failure::NoDriver(_))), "{found:?}");
+        }
+        sandbox => skip(&format!("this kernel restricts less: {sandbox}")),
+    }
+}

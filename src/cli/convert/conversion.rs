@@ -106,8 +106,13 @@ impl Settings<'_> {
     /// Creates the context for one of `threads` threads.
     pub(super) fn worker_context(&self, threads: usize) -> Result<WorkerContext, String> {
         let images = FRAMES.len() as u32;
+        let mut translator = self.driver.translator()?;
+        if self.to != To::Lowered {
+            // The process starts while the first shader is read.
+            translator.warm_up(0);
+        }
         Ok(WorkerContext {
-            translator: self.driver.translator()?,
+            translator,
             runner: self.driver.worker_for(images)?.map(Worker::with_plain_code),
             pool: self.verify.then(|| pool::thread_pool(threads)).flatten(),
             browser: self

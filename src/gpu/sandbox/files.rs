@@ -65,8 +65,8 @@ const OTHER_CACHES: [&str; 3] = ["mesa_shader_cache_sf", "nvidia", "AMDVLK"];
 /// Reads a variable of the environment.
 type Environment<'a> = &'a dyn Fn(&str) -> Option<OsString>;
 
-/// What a worker may access.
-#[derive(Debug, PartialEq, Eq)]
+/// What a worker may access; nothing by default.
+#[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Allowed {
     /// Files, and folders with all that they contain.
     read: Vec<PathBuf>,

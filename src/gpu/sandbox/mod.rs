@@ -51,21 +51,26 @@ impl fmt::Display for Sandbox {
     }
 }
 
-/// Restricts this process, irrevocably.
+/// Restricts this process, irrevocably. Without a driver, it has no access to files.
 #[cfg(target_os = "linux")]
-pub(super) fn enter() -> Sandbox {
+pub(super) fn enter(uses_driver: bool) -> Sandbox {
     if std::env::var_os(SANDBOX_VARIABLE).is_some_and(|value| value == "off") {
         return Sandbox::Disabled;
     }
+    let allowed = if uses_driver {
+        files::Allowed::of(&|name| std::env::var_os(name))
+    } else {
+        files::Allowed::default()
+    };
     Sandbox::Enabled {
-        landlock: files::restrict(&files::Allowed::of(&|name| std::env::var_os(name))),
+        landlock: files::restrict(&allowed),
         seccomp: system_calls::restrict(),
     }
 }
 
 /// Restricts nothing.
 #[cfg(not(target_os = "linux"))]
-pub(super) fn enter() -> Sandbox {
+pub(super) fn enter(_uses_driver: bool) -> Sandbox {
     Sandbox::Unsupported
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Points<T, S: Lanes<T>> {
 }
 
 /// Surfaces, each with the lanes whose rays hit it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 struct Groups {
     entries: [(u32, u32); MAX_LANES],
     count: usize,
@@ -95,14 +95,13 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         hits: &LaneHits<T, S>,
         active: u32,
     ) -> Points<T, S> {
-        let groups = Groups::new(simd, hits.surface, active & hits.bits(simd));
         let mut center = Wide3::splat(simd, [T::zero(); 3]);
         let mut points = Points {
             point: rays.origin + rays.direction * hits.t,
             normal: center,
             color: center,
             surface: hits.surface,
-            groups,
+            groups: Groups::new(simd, hits.surface, active & hits.bits(simd)),
         };
         for (surface, lanes) in points.groups() {
             if let Some(sphere) = self.shapes[surface].sphere() {
@@ -110,8 +109,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             }
         }
         points.normal = (points.point - center).normalize(simd);
-        for at in 0..groups.count {
-            let (surface, lanes) = groups.entries[at % MAX_LANES];
+        for at in 0..points.groups.count {
+            let (surface, lanes) = points.groups.entries[at % MAX_LANES];
             let (shape, mask) = (&self.shapes[surface as usize], simd.mask(lanes));
             if shape.sphere().is_none() {
                 let normals = shape.normals_in_lanes(simd, rays, hits.t, lanes);
