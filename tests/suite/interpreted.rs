@@ -165,3 +165,20 @@ fn rare_statements_are_interpreted_to_the_bit() {
         assert!(tally.skipped.is_empty(), "{body}: {tally}");
     }
 }
+
+#[test]
+fn arguments_are_interpreted_in_the_order_of_glslang() {
+    let text = "int add(int a, int b) { return a * 16 + b; } int fixed_add(const int a, int b) { return a * 16 + b; }
+        void mainImage(out vec4 c, in vec2 p) {
+            int i = int(p.x), j = i;
+            c = vec4(add(i, i += 4), fixed_add(j, j += 4), i, j);
+        }";
+    let frame = Frame {
+        size: [4, 1],
+        ..Frame::default()
+    };
+    let pixels: Vec<_> = (0..4).map(|x| [x, 0]).collect();
+    let tally = compare(&checked("program", text), &frame, &pixels);
+    let tally = tally.unwrap_or_else(|error| panic!("{error}"));
+    assert!(tally.skipped.is_empty(), "{tally}");
+}

@@ -226,21 +226,24 @@ impl<N: Real> Run<'_, N> {
         let tree = self.tree;
         let parameters = &tree[function].parameters;
         let mut passed = Vec::new();
-        for &argument in arguments {
-            passed.push(if matches!(tree[argument].ty, Type::Sampler(_)) {
-                Argument::Sampler(self.channel(argument))
-            } else if let Some(place) = self.place(argument)? {
-                Argument::Place(place)
-            } else {
-                Argument::Value(self.value(argument)?)
-            });
-        }
-        let mut copied_out = Vec::new();
-        let mut copied_in = Vec::new();
-        for (argument, &parameter) in passed.into_iter().zip(parameters) {
+        for (&argument, &parameter) in arguments.iter().zip(parameters) {
             let VariableKind::Parameter(direction) = tree[parameter].kind else {
                 panic!("a parameter has a direction");
             };
+            // As in glslang, a variable is read after all arguments, unless the parameter is `const in`.
+            let is_read_later = direction != Direction::ConstIn;
+            let passed_as = if matches!(tree[argument].ty, Type::Sampler(_)) {
+                Argument::Sampler(self.channel(argument))
+            } else if is_read_later && let Some(place) = self.place(argument)? {
+                Argument::Place(place)
+            } else {
+                Argument::Value(self.value(argument)?)
+            };
+            passed.push((parameter, direction, passed_as));
+        }
+        let mut copied_out = Vec::new();
+        let mut copied_in = Vec::new();
+        for (parameter, direction, argument) in passed {
             match argument {
                 Argument::Sampler(channel) => {
                     self.samplers.insert(parameter, channel);
