@@ -162,6 +162,13 @@ impl Worker {
         }
     }
 
+    /// Ends the process, which releases the memory of the driver. The next job starts another one.
+    pub fn stop(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.end();
+        }
+    }
+
     /// Lists the Vulkan drivers, the selected one first.
     ///
     /// # Errors
@@ -451,9 +458,7 @@ impl Worker {
         let running = self.start(false)?;
         let output = self.run_on(running, job, on_band);
         // The next image is compiled without optimizations again.
-        if let Some(running) = self.running.take() {
-            running.end();
-        }
+        self.stop();
         output
     }
 
@@ -596,9 +601,7 @@ impl PlainCode {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        if let Some(running) = self.running.take() {
-            running.end();
-        }
+        self.stop();
     }
 }
 
