@@ -18,7 +18,7 @@ use crate::spool::Spool;
 use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, GpuRun, join, notes, on_cpu, within};
 
 /// Maximum number of pixels of an image after which the worker waits for the next shader. Comparing a larger
-/// one takes seconds, in which the driver would hold 100 MB; starting it again takes 50 ms.
+/// one takes seconds, in which the driver would hold 100 MB; starting it again takes a fraction of that time.
 const MAX_PIXELS_OF_IDLE_WORKER: u64 = 1 << 22;
 
 impl GpuRun {
