@@ -1,5 +1,6 @@
 //! The evaluator beside lavapipe's strict frame, in turns, so that other work on the machine affects both; in processor time
-//! of all threads. `cargo bench --bench evaluator`
+//! of all threads. `cargo bench --bench evaluator`, or `cargo bench --bench evaluator -- 02 14` for the exercises whose names
+//! contain one of these.
 
 #![expect(
     clippy::print_stdout,
@@ -7,7 +8,7 @@
     reason = "a benchmark prints its figures"
 )]
 
-use std::fs;
+use std::{env, fs};
 
 use rustix::time::{ClockId, clock_gettime};
 use toyproof::diagnostic::{File, Files};
@@ -78,7 +79,10 @@ fn render<N: Number>(
         size,
         ..Frame::default()
     };
-    program.render(&frame, &settings).expect("the course is rendered");
+    let rows = frame.rows();
+    program
+        .render_rows(&frame, rows, &settings)
+        .expect("the course is rendered");
 }
 
 /// What is measured, in the order of the columns.
@@ -103,7 +107,14 @@ fn main() {
     );
     let heads = COLUMNS.map(|column| format!("{column:>10}"));
     println!("{:24}{}  f32/lavapipe  f64/lavapipe", "exercise", heads.concat());
-    for exercise in EXERCISES {
+    // Cargo passes `--bench`.
+    let names: Vec<String> = env::args()
+        .skip(1)
+        .filter(|argument| !argument.starts_with("--"))
+        .collect();
+    let is_chosen =
+        |exercise: &str| names.is_empty() || names.iter().any(|name| exercise.contains(name.as_str()));
+    for exercise in EXERCISES.into_iter().filter(|exercise| is_chosen(exercise)) {
         let checked = checked(exercise);
         let lowered = lower_strict(&checked);
         let mut renderer = match LocalRenderer::new(

@@ -134,6 +134,7 @@ impl<N: Number> Framebuffer<N> {
 }
 
 /// Converts a pixel to its value in the GPU's render target.
+#[inline(always)]
 pub(crate) fn target_color<N: Number>(color: [N; 4], flag: u8) -> [f32; 4] {
     if flag & DISCARDED != 0 {
         return DISCARDED_COLOR;

@@ -319,29 +319,21 @@ impl Program {
         let band = size[0] as usize * job.rows();
         let bands = pixels.par_chunks_mut(band).zip(flags.par_chunks_mut(band));
         let observed = bands.enumerate().map_init(
-            || (job.batch(), vec![[N::default(); 4]; band]),
-            |(batch, colors), (tiles, (pixels, flags))| {
+            || job.batch(),
+            |batch, (tiles, (pixels, flags))| {
                 let first = start + (tiles * job.rows()) as u32;
                 let wanted = settings
                     .wanted
                     .map(|wanted| &wanted[tiles * band..][..pixels.len()]);
-                let colors = &mut colors[..pixels.len()];
-                match job.render_band(batch, first, (colors, flags), wanted) {
-                    Ok(observations) => {
-                        for ((pixel, &color), &flag) in pixels.iter_mut().zip(&*colors).zip(&*flags) {
-                            *pixel = keep(color, flag);
-                        }
-                        observations
-                    }
-                    Err(error) => {
-                        limits.failed.store(true, Ordering::Relaxed);
-                        failure
-                            .lock()
-                            .unwrap_or_else(PoisonError::into_inner)
-                            .get_or_insert(error);
-                        Observations::default()
-                    }
-                }
+                let rendered = job.render_band(batch, first, (pixels, flags), wanted, &keep);
+                rendered.unwrap_or_else(|error| {
+                    limits.failed.store(true, Ordering::Relaxed);
+                    failure
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner)
+                        .get_or_insert(error);
+                    Observations::default()
+                })
             },
         );
         let observations = observed.reduce(Observations::default, |mut all, part| {

@@ -142,13 +142,15 @@ impl<'a, N: Number> FrameJob<'a, N> {
         }
     }
 
-    /// Renders the row of tiles whose lowest row of pixels is `first`.
-    pub(crate) fn render_band(
+    /// Renders the row of tiles whose lowest row of pixels is `first`; `keep` converts the color and flags of a
+    /// pixel to its stored value. Tiles without wanted pixels are left as they are.
+    pub(crate) fn render_band<P>(
         &self,
         batch: &mut Batch<'_, N>,
         first: u32,
-        (pixels, flags): (&mut [[N; 4]], &mut [u8]),
+        (pixels, flags): (&mut [P], &mut [u8]),
         wanted: Option<&[bool]>,
+        keep: &impl Fn([N; 4], u8) -> P,
     ) -> Result<Observations, BandError> {
         let mut observations = Observations::default();
         for left in (0..self.size[0]).step_by(TILE_COLUMNS) {
@@ -170,7 +172,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
             if let Some(stop) = batch.stopped.take() {
                 return Err(BandError::LoopStopped(stop));
             }
-            self.end_tile(batch, corner, pixels, flags, &mut observations);
+            self.end_tile(batch, corner, (pixels, flags), keep, &mut observations);
         }
         Ok(observations)
     }
@@ -264,12 +266,12 @@ impl<'a, N: Number> FrameJob<'a, N> {
     }
 
     /// Stores the colors, flags and observations of those pixels of a batch that lie in the image.
-    fn end_tile(
+    fn end_tile<P>(
         &self,
         batch: &Batch<'_, N>,
         [left, low]: [u32; 2],
-        pixels: &mut [[N; 4]],
-        flags: &mut [u8],
+        (pixels, flags): (&mut [P], &mut [u8]),
+        keep: &impl Fn([N; 4], u8) -> P,
         observations: &mut Observations,
     ) {
         let size = self.size.map(|side| side as usize);
@@ -291,10 +293,10 @@ impl<'a, N: Number> FrameJob<'a, N> {
                 // A known length is unrolled.
                 if is_inside {
                     let range = start..start + CHUNK_COLUMNS;
-                    store_row(&mut pixels[range.clone()], &mut flags[range], &outputs, row);
+                    store_row(&mut pixels[range.clone()], &mut flags[range], &outputs, row, keep);
                 } else {
                     let range = start..start + CHUNK_COLUMNS.min(size[0] - first[0]);
-                    store_row(&mut pixels[range.clone()], &mut flags[range], &outputs, row);
+                    store_row(&mut pixels[range.clone()], &mut flags[range], &outputs, row, keep);
                 }
             }
             let own = batch.own_iterations[chunk].get();
@@ -337,16 +339,17 @@ impl<'a, N: Number> FrameJob<'a, N> {
 
 /// Stores the colors and flags of a row of a chunk.
 #[inline(always)]
-fn store_row<N: Number>(
-    pixels: &mut [[N; 4]],
+fn store_row<N: Number, P>(
+    pixels: &mut [P],
     flags: &mut [u8],
     (color, discarded): &([Lanes<N>; 4], Lanes<u32>),
     row: usize,
+    keep: &impl Fn([N; 4], u8) -> P,
 ) {
     for (column, (pixel, flag)) in pixels.iter_mut().zip(flags).enumerate() {
         let lane = lane_at([column, row]) % LANES;
-        *pixel = [0, 1, 2, 3].map(|component: usize| color[component][lane]);
         *flag = if discarded[lane] != 0 { DISCARDED } else { 0 };
+        *pixel = keep([0, 1, 2, 3].map(|component: usize| color[component][lane]), *flag);
     }
 }
 

@@ -10,7 +10,7 @@ use super::assemble::{
     Arithmetic, Assembler, Condition, Gpr, Label, Memory, R8, R9, R12, R13, R14, R15, RAX, RBP, RBX, RCX,
     RDX, RSI, RSP, Source, Vector, op,
 };
-use super::node::{Action, Bank, Item, NO_NODE, NodeId, Precision, Region, Row};
+use super::node::{Action, Bank, Guard, Item, NO_NODE, NodeId, Precision, Region, Row};
 use super::run::offsets;
 use crate::ir::Kind;
 
@@ -121,20 +121,19 @@ pub(super) fn emit_region(code: &mut Assembler, frame: &mut Frame, region: &Regi
         code.arithmetic32(Arithmetic::And, R9, Source::Register(CHUNKS.0));
     }
     for (at, &mask) in (0..).zip(&region.masks) {
-        let row = place_at(
-            MASKS,
-            0,
-            mask as i32 * CHUNK_BYTES * frame.width as i32 - CHUNK_BYTES,
-        );
-        let half = place_at(
-            MASKS,
-            0,
-            mask as i32 * CHUNK_BYTES * frame.width as i32 - CHUNK_BYTES / 2,
-        );
-        code.unary(op::VMOVAPS, true, SCRATCH, Source::Memory(row));
-        code.binary(op::VPOR, true, SCRATCH, SCRATCH, Source::Memory(half));
+        // By vectors as long as those that were stored: longer ones would wait until these are in the cache.
+        let wide = !frame.precision.is_double();
+        let end = mask as i32 * CHUNK_BYTES * frame.width as i32;
+        for (at, start) in (end - CHUNK_BYTES..end).step_by(step as usize).enumerate() {
+            let part = Source::Memory(place_at(MASKS, 0, start));
+            if at == 0 {
+                code.unary(op::VMOVAPS, wide, SCRATCH, part);
+            } else {
+                code.binary(op::VPOR, wide, SCRATCH, SCRATCH, part);
+            }
+        }
         code.arithmetic32(Arithmetic::Xor, RAX, Source::Register(RAX.0));
-        code.unary(op::VPTEST, true, SCRATCH, Source::Register(SCRATCH));
+        code.unary(op::VPTEST, wide, SCRATCH, Source::Register(SCRATCH));
         code.copy_if(Condition::NotZero, RAX, R9);
         code.arithmetic_memory32(Arithmetic::Or, Memory::at(RSP, 4 * at), RAX);
     }
@@ -201,7 +200,55 @@ const NEVER: u32 = u32::MAX;
 struct Snapshot {
     held: [NodeId; REGISTERS],
     slots: [u32; REGISTERS],
+    reserved: u16,
     end: Label,
+}
+
+/// A node to be moved to a register, from another or [`NO_REGISTER`].
+struct Move {
+    to: Vector,
+    from: Vector,
+    node: NodeId,
+}
+
+/// Calls a function with each node that an item uses. Merges whose result is not needed use none.
+fn for_each_operand(region: &Region, item: &Item, live: &[bool], visit: &mut dyn FnMut(NodeId)) {
+    match item {
+        Item::Compute(node) if live[*node as usize] => {
+            let operands = region.nodes[*node as usize].operands;
+            let operands = operands.into_iter().filter(|&operand| operand != NO_NODE);
+            operands.for_each(visit);
+        }
+        Item::Compute(_) => {}
+        Item::Store(_, node, _) | Item::Note(node, _) => visit(*node),
+        Item::Guard(guard) => visit(guard.mask),
+        Item::EndGuard(start) => {
+            let merges = merges(region, *start).iter();
+            let needed = merges.filter(|[merge, _]| live[*merge as usize]);
+            needed.flatten().copied().for_each(visit);
+        }
+    }
+}
+
+/// The merges of the guard at an index.
+fn merges(region: &Region, start: usize) -> &[[NodeId; 2]] {
+    match &region.items[start] {
+        Item::Guard(guard) => &guard.merges,
+        _ => &[],
+    }
+}
+
+/// Returns which nodes what is stored or noted depends on.
+fn live_nodes(region: &Region) -> Vec<bool> {
+    let mut live = vec![false; region.nodes.len()];
+    for item in region.items.iter().rev() {
+        let mut used = Vec::new();
+        for_each_operand(region, item, &live, &mut |node| used.push(node));
+        for node in used {
+            live[node as usize] = true;
+        }
+    }
+    live
 }
 
 struct Registers<'a> {
@@ -229,24 +276,19 @@ struct Registers<'a> {
     /// The nodes that load each row, in order, latest first.
     row_nodes: Map<Row, Vec<NodeId>>,
     guards: Vec<Snapshot>,
+    /// The register that is best for each node.
+    hints: Vec<Vector>,
+    /// The set of registers that are best for nodes to come.
+    reserved: u16,
 }
 
 impl<'a> Registers<'a> {
     fn new(code: &'a mut Assembler, frame: &'a mut Frame, region: &'a Region, scalar: bool) -> Self {
         let count = region.nodes.len();
+        let live = live_nodes(region);
         let for_each_use = |visit: &mut dyn FnMut(NodeId, u32)| {
             for (at, item) in (0..).zip(&region.items) {
-                match item {
-                    Item::Compute(node) => {
-                        let operands = region.nodes[*node as usize].operands;
-                        operands
-                            .iter()
-                            .filter(|&&operand| operand != NO_NODE)
-                            .for_each(|&operand| visit(operand, at));
-                    }
-                    Item::Store(_, node, _) | Item::Guard(node, ..) | Item::Note(node, _) => visit(*node, at),
-                    Item::EndGuard => {}
-                }
+                for_each_operand(region, item, &live, &mut |node| visit(node, at));
             }
         };
         let mut first_use = vec![0; count + 1];
@@ -284,6 +326,8 @@ impl<'a> Registers<'a> {
             stale: vec![false; count],
             row_nodes,
             guards: Vec::new(),
+            hints: vec![NO_REGISTER; count],
+            reserved: 0,
         }
     }
 
@@ -293,9 +337,7 @@ impl<'a> Registers<'a> {
             match item {
                 Item::Compute(node) => {
                     // Nodes without uses are not computed.
-                    if self.next(*node) == NEVER {
-                        self.drop_operands(*node, at);
-                    } else {
+                    if self.next(*node) != NEVER {
                         self.compute(*node, at);
                     }
                 }
@@ -305,8 +347,8 @@ impl<'a> Registers<'a> {
                     self.store(*row, *node, register);
                     self.used(*node, at);
                 }
-                Item::Guard(mask, rows, before) => self.begin_guard(*mask, rows, *before, at),
-                Item::EndGuard => self.end_guard(at),
+                Item::Guard(guard) => self.begin_guard(guard, at),
+                Item::EndGuard(start) => self.end_guard(merges(self.region, *start), at),
                 Item::Note(node, site) => self.note(*node, *site, at),
             }
             if self.slot_count > MAX_SLOTS {
@@ -377,13 +419,19 @@ impl<'a> Registers<'a> {
 
     /// Returns a register that is not among those of a set, and makes it free.
     fn free_register(&mut self, keep: u16) -> Vector {
-        let candidates = (0..REGISTERS).filter(|register| keep >> register & 1 == 0);
+        let is_free = |register: &usize| self.held[*register] == NO_NODE && keep >> register & 1 == 0;
+        let is_reserved = |register: &usize| self.reserved >> register & 1 != 0;
+        let mut free = (0..REGISTERS).filter(is_free);
+        if let Some(register) = free
+            .clone()
+            .find(|register| !is_reserved(register))
+            .or(free.next())
+        {
+            return register as Vector;
+        }
         let mut best = (0, 0);
-        for register in candidates {
+        for register in (0..REGISTERS).filter(|register| keep >> register & 1 == 0) {
             let node = self.held[register];
-            if node == NO_NODE {
-                return register as Vector;
-            }
             let next = self.next(node);
             if next >= best.1 {
                 best = (register, next);
@@ -543,7 +591,23 @@ impl<'a> Registers<'a> {
                 self.code
                     .binary_immediate(op::VSHUFPS, false, to, from, high, EVEN_LANES);
             }
+            Action::Merge => {
+                let source = self.source(a, at, 0);
+                self.drop_operands(id, at);
+                let to = self.hinted(id).unwrap_or_else(|| match source {
+                    Source::Register(from) if self.held[usize::from(from)] == NO_NODE => from,
+                    _ => self.free_register(0),
+                });
+                self.hold(id, to);
+                self.copy(wide, to, source);
+            }
             Action::Row(_) | Action::Scalar(..) | Action::Constant(_) => {}
+        }
+    }
+
+    fn copy(&mut self, wide: bool, to: Vector, source: Source) {
+        if !matches!(source, Source::Register(from) if from == to) {
+            self.code.unary(op::VMOVAPS, wide, to, source);
         }
     }
 
@@ -558,9 +622,15 @@ impl<'a> Registers<'a> {
     /// Passes the operands of a node, and returns a register for its result, which may be that of an operand.
     fn result(&mut self, id: NodeId, at: u32) -> Vector {
         self.drop_operands(id, at);
-        let register = self.free_register(0);
+        let register = self.hinted(id).unwrap_or_else(|| self.free_register(0));
         self.hold(id, register);
         register
+    }
+
+    /// Returns the register that is best for a node, if it is free.
+    fn hinted(&self, node: NodeId) -> Option<Vector> {
+        let hint = self.hints[node as usize];
+        (hint != NO_REGISTER && self.held[usize::from(hint)] == NO_NODE).then_some(hint)
     }
 
     /// Loads the nodes that need the content of a row which is about to change.
@@ -601,17 +671,17 @@ impl<'a> Registers<'a> {
         self.code.unary(op::VMOVAPS_STORE, wide, register, to);
     }
 
-    fn begin_guard(&mut self, mask: NodeId, rows: &[Row], before: NodeId, at: u32) {
-        let register = self.load(mask, 0);
-        for &row in rows {
-            self.keep_old(row, before, at, 1 << register);
+    fn begin_guard(&mut self, guard: &Guard, at: u32) {
+        let register = self.load(guard.mask, 0);
+        for &row in &guard.rows {
+            self.keep_old(row, guard.before, at, 1 << register);
         }
         let end = self.code.label();
-        let wide = self.region.nodes[mask as usize].wide;
+        let wide = self.region.nodes[guard.mask as usize].wide;
         self.code
             .unary(op::VPTEST, wide, register, Source::Register(register));
         self.code.jump_if(Condition::Zero, end);
-        self.used(mask, at);
+        self.used(guard.mask, at);
         let slots = self.held.map(|node| match node {
             NO_NODE => NO_SLOT,
             node => self.slots[node as usize],
@@ -619,17 +689,66 @@ impl<'a> Registers<'a> {
         self.guards.push(Snapshot {
             held: self.held,
             slots,
+            reserved: self.reserved,
             end,
         });
+        // Their registers are free until they are assigned again, and best used for what is assigned.
+        for &[merge, last] in &guard.merges {
+            let register = self.register_of[merge as usize];
+            if register != NO_REGISTER {
+                self.held[usize::from(register)] = NO_NODE;
+                self.register_of[merge as usize] = NO_REGISTER;
+                self.hints[last as usize] = register;
+                self.reserved |= 1 << register;
+            }
+        }
     }
 
-    fn end_guard(&mut self, at: u32) {
-        let Some(Snapshot { held, slots, end }) = self.guards.pop() else {
+    fn end_guard(&mut self, merges: &[[NodeId; 2]], at: u32) {
+        let Some(Snapshot {
+            held,
+            slots,
+            reserved,
+            end,
+        }) = self.guards.pop()
+        else {
             return;
         };
-        let current = std::mem::replace(&mut self.held, [NO_NODE; REGISTERS]);
+        self.reserved = reserved;
+        let needed = merges.iter().filter(|[merge, _]| self.is_used_after(*merge, at));
+        let needed: Vec<[NodeId; 2]> = needed.copied().collect();
+        let mut moves = Vec::new();
+        for &[merge, last] in &needed {
+            let from = self.register_of[last as usize];
+            if let Some(to) = held.iter().position(|&node| node == merge) {
+                moves.push(Move {
+                    to: to as Vector,
+                    from,
+                    node: last,
+                });
+            } else {
+                let from = if from == NO_REGISTER {
+                    self.load_into(last, SCRATCH);
+                    SCRATCH
+                } else {
+                    from
+                };
+                let to = Source::Memory(Self::slot(self.slots[merge as usize]));
+                self.code.unary(op::VMOVAPS_STORE, true, from, to);
+            }
+        }
+        self.move_together(moves);
+        let mut current = std::mem::replace(&mut self.held, [NO_NODE; REGISTERS]);
         for node in current.into_iter().filter(|&node| node != NO_NODE) {
             self.register_of[node as usize] = NO_REGISTER;
+        }
+        for &[merge, last] in &needed {
+            if let Some(register) = held.iter().position(|&node| node == merge) {
+                current[register] = merge;
+                self.free_slot(merge);
+            }
+            self.used(last, at);
+            self.used(merge, at);
         }
         for register in 0..REGISTERS {
             let node = held[register];
@@ -646,6 +765,28 @@ impl<'a> Registers<'a> {
             }
         }
         self.code.bind(end);
+    }
+
+    /// Moves nodes as if all at once: none is overwritten before it has been moved.
+    fn move_together(&mut self, mut moves: Vec<Move>) {
+        while let Some(first) = moves.first() {
+            let is_free = |to: Vector| moves.iter().all(|other| other.to == to || other.from != to);
+            let Some(ready) = moves.iter().position(|one| is_free(one.to)) else {
+                // All are in cycles.
+                let to = first.to;
+                self.copy(true, SCRATCH, Source::Register(to));
+                for other in moves.iter_mut().filter(|other| other.from == to) {
+                    other.from = SCRATCH;
+                }
+                continue;
+            };
+            let Move { to, from, node } = moves.swap_remove(ready);
+            if from == NO_REGISTER {
+                self.load_into(node, to);
+            } else {
+                self.copy(true, to, Source::Register(from));
+            }
+        }
     }
 
     fn note(&mut self, node: NodeId, site: u32, at: u32) {

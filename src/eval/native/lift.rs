@@ -2,13 +2,14 @@
 //!
 //! A *region* is a sequence of steps without loops and without calls, which is executed for one vector of
 //! pixels after the other. Branches in it are *guards*: operations that are skipped where a mask is empty.
-//! Rows are read when they are first needed, and written at the end of the guard or region if they are still
-//! needed then.
+//! Rows are read when they are first needed, and written at the end of the region if they are still needed
+//! then. A guard that changes a row whose content is known changes a *merge*, a node that has the content
+//! behind the guard; other rows are written at the end of the guard.
 
 use std::ops::Range;
 
 use super::assemble::op;
-use super::node::{Action, Bank, Item, NO_NODE, NodeId, Pool, Precision, Region, Row, words};
+use super::node::{Action, Bank, Guard, Item, NO_NODE, NodeId, Pool, Precision, Region, Row, words};
 use super::plan::{Class, Plan};
 use crate::ir::{Kind, Value, ValueDef};
 use crate::lower::linearize::Step;
@@ -48,7 +49,7 @@ const MIN_GUARD: usize = 4;
 
 /// Lifts regions.
 pub(super) struct Lifter<'a> {
-    compiled: &'a Compiled,
+    pub(super) compiled: &'a Compiled,
     pub(super) precision: Precision,
     /// Whether it lifts scalars.
     pub(super) scalar: bool,
@@ -392,25 +393,38 @@ impl<'a> Lifter<'a> {
         }
         written.sort_unstable();
         written.dedup();
-        // What the rows hold if the steps are skipped; masks from the guarded one on are not needed later.
-        for &row in &written {
-            if let Some(held) = self.rows.get(row).filter(|held| held.dirty)
-                && Self::is_needed(row, held, at + 1, guarded)
-            {
-                self.store(row, held);
-            }
-        }
+        let kept = written.iter().filter(|row| Self::is_kept(**row, guarded));
+        let merged: Vec<(Row, Held)> = kept
+            .filter_map(|&row| {
+                let held = self.rows.get(row)?;
+                let content = self.merge(row, held.content);
+                Some((row, Held { content, ..held }))
+            })
+            .collect();
         let marks = (self.rows.mark(), self.converted.mark());
         let mask = match self.mask(guarded) {
             Word::Narrow(node) => self.converted.get(node).unwrap_or(node),
             Word::Wide(node) => node,
         };
         let (start, before) = (self.region.items.len(), self.region.nodes.len() as NodeId);
-        self.region.items.push(Item::EndGuard);
+        self.region.items.push(Item::EndGuard(start));
         self.range(steps);
+        let (mut merges, mut results) = (Vec::new(), Vec::new());
+        for (row, before) in merged {
+            let held = self.rows.get(row).unwrap_or(before);
+            merges.push(self.merge_pair(before.content, held.content));
+            let held = Held {
+                content: before.content,
+                dirty: true,
+                ..held
+            };
+            results.push((row, held));
+        }
         for &row in &written {
             if let Some(held) = self.rows.get(row).filter(|held| held.dirty)
-                && Self::is_needed(row, held, until, guarded)
+                && Self::is_kept(row, guarded)
+                && held.end >= until
+                && results.iter().all(|(merged, _)| *merged != row)
             {
                 self.store(row, held);
             }
@@ -425,13 +439,52 @@ impl<'a> Lifter<'a> {
             .collect();
         stored.sort_unstable();
         stored.dedup();
-        self.region.items[start] = Item::Guard(mask, stored, before);
-        self.region.items.push(Item::EndGuard);
+        self.region.items[start] = Item::Guard(Guard {
+            mask,
+            rows: stored,
+            before,
+            merges,
+        });
+        self.region.items.push(Item::EndGuard(start));
         self.rows.roll_back(marks.0);
         self.converted.roll_back(marks.1);
         for row in written {
             self.rows.set(row, None);
         }
+        for (row, held) in results {
+            self.rows.set(row, Some(held));
+        }
+    }
+
+    /// Returns a merge whose content is first that of a row.
+    fn merge(&mut self, row: Row, content: Content) -> Content {
+        let merge =
+            |lifter: &mut Self, from, wide| lifter.node(Action::Merge, [from, NO_NODE, NO_NODE], wide);
+        match content {
+            Content::Float(node) => Content::Float(merge(self, node, true)),
+            // Masks are mostly used with floats.
+            Content::Word(word)
+                if self.precision.is_double() && (row.0 == Bank::Mask || self.has_wide(word)) =>
+            {
+                let node = self.as_lanes(word);
+                Content::Word(Word::Wide(merge(self, node, true)))
+            }
+            Content::Word(word) => {
+                let (node, wide) = (self.narrow(word), self.words_are_wide());
+                Content::Word(Word::Narrow(merge(self, node, wide)))
+            }
+        }
+    }
+
+    /// Returns a merge and the node that is assigned to it.
+    fn merge_pair(&mut self, merge: Content, last: Content) -> [NodeId; 2] {
+        let last = match (merge, last) {
+            (Content::Word(Word::Wide(_)), Content::Word(last)) => self.as_lanes(last),
+            (_, Content::Word(last)) => self.narrow(last),
+            (_, Content::Float(last)) => last,
+        };
+        let (Content::Float(merge) | Content::Word(Word::Wide(merge) | Word::Narrow(merge))) = merge;
+        [merge, last]
     }
 
     fn range(&mut self, steps: Range<u32>) {
@@ -441,12 +494,9 @@ impl<'a> Lifter<'a> {
         }
     }
 
-    /// Whether a row is read from a step on, behind a guard.
-    fn is_needed(row: Row, held: Held, from: u32, guarded: u32) -> bool {
-        match row {
-            (Bank::Mask, mask) => mask < guarded,
-            _ => held.end >= from,
-        }
+    /// Whether a row that a guard changes can be read behind it: of masks, those around the guarded one.
+    fn is_kept(row: Row, guarded: u32) -> bool {
+        row.0 != Bank::Mask || row.1 < guarded
     }
 
     /// Adds the rows that a step writes.

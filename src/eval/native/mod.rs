@@ -424,14 +424,14 @@ impl Writer<'_> {
                 let condition = if when { Condition::NotZero } else { Condition::Zero };
                 self.code.jump_if(condition, self.label(to));
             }
-            Step::Iterate(_) => return self.iterate(at),
+            Step::Iterate(_) => return self.region(at),
             _ => return None,
         }
         Some(at + 1)
     }
 
-    /// Checks the limits from time to time, and counts an iteration, with the region that begins there.
-    fn iterate(&mut self, at: u32) -> Option<u32> {
+    /// Checks the limits from time to time, and counts an iteration of all pixels.
+    fn iterate(&mut self, at: u32) {
         let (entry, back) = (self.code.label(), self.code.label());
         let instruction = self.positions[at as usize];
         self.refuels.push((entry, back, instruction));
@@ -440,13 +440,11 @@ impl Writer<'_> {
         self.code.arithmetic_immediate32(Arithmetic::Sub, fuel, 1);
         self.code.jump_if(Condition::Below, entry);
         self.code.bind(back);
-        if self.mask(at) != Some(0) {
-            return self.region(at);
+        if self.mask(at) == Some(0) {
+            self.code.load64(RAX, Memory::at(CONTEXT, offsets::ITERATIONS));
+            let iterations = Source::Memory(Memory::at(RAX, 0));
+            self.code.arithmetic_immediate32(Arithmetic::Add, iterations, 1);
         }
-        self.code.load64(RAX, Memory::at(CONTEXT, offsets::ITERATIONS));
-        let iterations = Source::Memory(Memory::at(RAX, 0));
-        self.code.arithmetic_immediate32(Arithmetic::Add, iterations, 1);
-        Some(at + 1)
     }
 
     /// Emits a region and the jump at its end; returns the next step.
@@ -454,7 +452,7 @@ impl Writer<'_> {
         let (compiled, plan) = (self.compiled, self.plan);
         let base = self.mask(start)?;
         let mut lifter = Lifter::new(compiled, plan, self.frame.precision, false, &mut self.pool);
-        let mut hoisted = Vec::new();
+        let (mut hoisted, mut iterations) = (Vec::new(), Vec::new());
         let mut branch = None;
         let mut at = start;
         while lifter.size() <= MAX_NODES && (at == start || !plan.targets[at as usize]) {
@@ -481,9 +479,12 @@ impl Writer<'_> {
                     at += 1;
                     break;
                 }
-                // An iteration, which is counted with what follows it.
-                Class::Control if at == start => {
-                    lifter.step(at);
+                // Iterations of all pixels are counted before the region, those of some in it.
+                Class::Control if matches!(compiled.linear.steps[at as usize].0, Step::Iterate(_)) => {
+                    iterations.push(at);
+                    if mask.0 != 0 {
+                        lifter.step(at);
+                    }
                     at += 1;
                 }
                 Class::Control | Class::ScalarStore | Class::Call => break,
@@ -496,6 +497,9 @@ impl Writer<'_> {
         };
         let last_mask = mask_at(at).max(jump.and_then(|(_, to)| mask_at(to)));
         let region = lifter.finish(at, last_mask);
+        for at in iterations {
+            self.iterate(at);
+        }
         self.hoisted(&hoisted)?;
         emit::emit_region(&mut self.code, &mut self.frame, &region, base)?;
         if let Some((mask, to)) = jump {

@@ -58,6 +58,8 @@ pub(super) enum Action {
     ShiftRight(u8),
     /// Takes the lower half of each lane of 64 bits.
     Narrow,
+    /// Its operand, until the end of a guard assigns another node to it.
+    Merge,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,12 +86,23 @@ pub(super) enum Item {
     Compute(NodeId),
     /// Stores a node in a row. Earlier nodes than the last operand may have loaded the row's old content.
     Store(Row, NodeId, NodeId),
-    /// Skips the items up to the matching [`Item::EndGuard`] if a mask is empty. They store to these rows,
-    /// whose old content earlier nodes than the last operand may have loaded.
-    Guard(NodeId, Vec<Row>, NodeId),
-    EndGuard,
+    Guard(Guard),
+    /// The end of a guard, given by its index: assigns its merges.
+    EndGuard(usize),
     /// Notes the pixels of a mask as faults of a site, if there are any.
     Note(NodeId, u32),
+}
+
+/// Skips the items up to and including the matching [`Item::EndGuard`] if a mask is empty.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Guard {
+    pub(super) mask: NodeId,
+    /// The rows that are stored to in it.
+    pub(super) rows: Vec<Row>,
+    /// Earlier nodes than this may have loaded the old content of the rows.
+    pub(super) before: NodeId,
+    /// Each [`Action::Merge`] that the end assigns to, and what it assigns.
+    pub(super) merges: Vec<[NodeId; 2]>,
 }
 
 /// A lifted region.

@@ -4,7 +4,7 @@
 use super::assemble::{Constant, Opcode, op};
 use super::lift::{Content, Lifter, Word};
 use super::node::{Action, Item, NO_NODE, Node, NodeId, Precision, long_words, words};
-use crate::ir::{Kind, NONE, Operation, Value};
+use crate::ir::{Kind, NONE, Operation, Value, ValueDef};
 use crate::observe::Predicate;
 
 // The predicates of comparisons.
@@ -166,7 +166,7 @@ impl Lifter<'_> {
     /// Returns a word in lanes as wide as those of floats.
     pub(super) fn as_lanes(&mut self, word: Word) -> NodeId {
         match word {
-            Word::Narrow(node) if !self.precision.is_double() => node,
+            Word::Narrow(node) if !self.precision.is_double() || self.is_ones(word) => node,
             Word::Wide(node) => node,
             Word::Narrow(node) => self.converted.get(node).unwrap_or_else(|| {
                 let wide = self.node(Action::Unary(op::VPMOVSXDQ), [node, NO_NODE, NO_NODE], true);
@@ -177,8 +177,17 @@ impl Lifter<'_> {
         }
     }
 
+    /// Whether all bits of a word are set, in any lanes.
+    fn is_ones(&self, word: Word) -> bool {
+        let (Word::Narrow(node) | Word::Wide(node)) = word;
+        match self.region.nodes[node as usize].action {
+            Action::Constant(number) => self.pool.constants[number as usize] == words(u32::MAX),
+            _ => false,
+        }
+    }
+
     /// Whether a word exists in wide lanes.
-    fn has_wide(&self, word: Word) -> bool {
+    pub(super) fn has_wide(&self, word: Word) -> bool {
         match word {
             Word::Wide(_) => true,
             Word::Narrow(node) => self.converted.get(node).is_some(),
@@ -187,6 +196,9 @@ impl Lifter<'_> {
 
     /// An operation on bits, in the form that the operands have.
     pub(super) fn logic(&mut self, opcode: Opcode, a: Word, b: Word) -> Word {
+        if opcode == op::VPAND && self.is_ones(b) {
+            return a;
+        }
         if self.precision.is_double() && (self.has_wide(a) || self.has_wide(b)) {
             let [a, b] = [self.as_lanes(a), self.as_lanes(b)];
             return Word::Wide(self.bits2(opcode, a, b));
@@ -275,6 +287,13 @@ impl Lifter<'_> {
                 Kind::Float => floats[at] = self.float_value(operands[at]),
                 Kind::Word => words_of[at] = self.word_value(operands[at]),
             }
+        }
+        let is_shift = matches!(
+            operation,
+            Operation::ShiftLeft | Operation::ShiftRightInt | Operation::ShiftRightUint
+        );
+        if is_shift && let ValueDef::Word(count) = self.compiled.function.def(operands[1]) {
+            words_of[1] = Word::Narrow(self.constant(words(count & 31)));
         }
         match self.float_operation(operation, floats, words_of[0]) {
             Some(float) => Content::Float(float),
@@ -427,6 +446,10 @@ impl Lifter<'_> {
 
     /// A shift by the lowest five bits of a word.
     pub(super) fn shift(&mut self, opcode: Opcode, u: NodeId, v: NodeId) -> NodeId {
+        // Constants are below 32.
+        if matches!(self.region.nodes[v as usize].action, Action::Constant(_)) {
+            return self.word2(opcode, u, v);
+        }
         let bits = self.constant(words(31));
         let count = self.word2(op::VPAND, v, bits);
         self.word2(opcode, u, count)

@@ -56,6 +56,9 @@ pub struct Interpreter<'a> {
 /// The maximum number of derivatives that a pixel takes one after the other: each costs another run.
 const MAX_DERIVATIVES: usize = 256;
 
+/// The maximum number of steps of all runs for a pixel, in multiples of [`Interpreter::max_steps`].
+const MAX_FULL_RUNS: u64 = 4;
+
 /// The stack on which the tree is walked, in bytes: a sum of thousands of terms is as deep.
 pub const STACK_BYTES: usize = 512 << 20;
 
@@ -65,21 +68,22 @@ impl Interpreter<'_> {
     #[must_use]
     pub fn pixel<N: Real>(&self, [x, y]: [u32; 2]) -> (Outcome<N>, Faults) {
         let mut exchanged: Vec<Exchange<N>> = Vec::new();
+        let mut steps = 0;
         loop {
-            let (reached, faults) = self.run(&exchanged, [x, y]);
+            let (reached, faults) = self.run(&exchanged, [x, y], &mut steps);
             let reached = match reached {
                 Ok(color) => return (Outcome::Color(color), faults),
                 Err(Stop::Discarded) => return (Outcome::Discarded, faults),
                 Err(Stop::Skipped(reason)) => return (Outcome::Skipped(reason), faults),
                 Err(Stop::Derivative(reached)) => reached,
             };
-            if exchanged.len() == MAX_DERIVATIVES {
+            if exchanged.len() == MAX_DERIVATIVES || steps > MAX_FULL_RUNS * self.max_steps {
                 return (Outcome::Skipped("too many derivatives"), faults);
             }
             let mut quad = [reached.operand; 4];
             for (at, operand) in quad.iter_mut().enumerate() {
                 let pixel = [x & !1 | at as u32 & 1, y & !1 | at as u32 >> 1];
-                match self.run(&exchanged, pixel).0 {
+                match self.run(&exchanged, pixel, &mut steps).0 {
                     Err(Stop::Derivative(other))
                         if other.path == reached.path && other.expr == reached.expr =>
                     {
@@ -97,8 +101,13 @@ impl Interpreter<'_> {
         }
     }
 
-    /// Runs a pixel up to its end, or up to the first derivative that is not known yet.
-    fn run<N: Real>(&self, exchanged: &[Exchange<N>], pixel: [u32; 2]) -> (Result<[N; 4], N>, Faults) {
+    /// Runs a pixel up to its end, or up to the first derivative that is not known yet. Adds its steps to `steps`.
+    fn run<N: Real>(
+        &self,
+        exchanged: &[Exchange<N>],
+        pixel: [u32; 2],
+        steps: &mut u64,
+    ) -> (Result<[N; 4], N>, Faults) {
         let mut run = Run {
             tree: &self.checked.tree,
             interpreter: self,
@@ -112,7 +121,9 @@ impl Interpreter<'_> {
             is_undefined: false,
             steps: 0,
         };
-        (run.main(), run.faults)
+        let result = run.main();
+        *steps += run.steps;
+        (result, run.faults)
     }
 }
 

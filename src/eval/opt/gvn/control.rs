@@ -230,7 +230,7 @@ struct Checkpoint {
     scopes: u32,
     cell_values: usize,
     available: usize,
-    words: usize,
+    constants: usize,
     /// The number of paths out of each open scope.
     paths: Vec<usize>,
 }
@@ -274,7 +274,7 @@ impl ValueNumbering<'_> {
             scopes: self.function.scopes,
             cell_values: self.cell_values.mark(),
             available: self.available.mark(),
-            words: self.words.mark(),
+            constants: self.constants.mark(),
             paths: self.open_scopes.iter().map(|exit| exit.paths.len()).collect(),
         }
     }
@@ -291,7 +291,7 @@ impl ValueNumbering<'_> {
         for (exit, &paths) in self.open_scopes.iter_mut().zip(&checkpoint.paths) {
             exit.paths.truncate(paths);
         }
-        self.words.roll_back(checkpoint.words);
+        self.constants.roll_back(checkpoint.constants);
         self.function.defs.truncate(checkpoint.values);
         self.is_constant.truncate(checkpoint.values);
         self.function.scopes = checkpoint.scopes;

@@ -6,6 +6,7 @@
 
 mod control;
 pub(crate) mod log;
+mod reduce;
 
 use self::control::{OpenLoop, OpenScope, UnrollBudget};
 use self::log::{Changes, RollbackMap};
@@ -29,7 +30,7 @@ pub(crate) fn number_values(function: &mut Function, traced: bool) {
         templates,
         changes: Changes::of(&body, scopes, function.loops.len()),
         is_constant: Vec::new(),
-        words: RollbackMap::default(),
+        constants: RollbackMap::default(),
         function,
         traced,
         cell_values: RollbackMap::default(),
@@ -62,8 +63,8 @@ struct ValueNumbering<'a> {
     changes: Changes,
     /// Which values depend on inputs of the frame and constants only.
     is_constant: Vec<bool>,
-    /// The values of word constants.
-    words: RollbackMap<u32, Value>,
+    /// The values of constants.
+    constants: RollbackMap<ValueDef, Value>,
     traced: bool,
     cell_values: RollbackMap<Cell, Value>,
     available: RollbackMap<(ValueDef, u32), Value>,
@@ -236,11 +237,8 @@ impl ValueNumbering<'_> {
         for at in 0..self.templates.len() {
             let def = self.templates[at];
             match def {
-                ValueDef::Word(word) => self.replacements[at] = self.word(word),
-                ValueDef::Float(_)
-                | ValueDef::Input(..)
-                | ValueDef::Parameter(..)
-                | ValueDef::FragCoord(_) => {
+                ValueDef::Word(_) | ValueDef::Float(_) => self.replacements[at] = self.constant(def),
+                ValueDef::Input(..) | ValueDef::Parameter(..) | ValueDef::FragCoord(_) => {
                     self.replacements[at] = self.push_value(def);
                 }
                 ValueDef::Operation(..)
@@ -277,12 +275,13 @@ impl ValueNumbering<'_> {
         }
     }
 
-    fn word(&mut self, word: u32) -> Value {
-        if let Some(value) = self.words.get(word) {
+    /// Returns the value of a word or float constant.
+    fn constant(&mut self, def: ValueDef) -> Value {
+        if let Some(value) = self.constants.get(def) {
             return value;
         }
-        let value = self.push_value(ValueDef::Word(word));
-        self.words.set(word, Some(value));
+        let value = self.push_value(def);
+        self.constants.set(def, Some(value));
         value
     }
 
@@ -306,7 +305,7 @@ impl ValueNumbering<'_> {
                 let index = self.known_word(index);
                 index.map_or(def, |index| ValueDef::Load(cells.clamped(offset, index)))
             }
-            _ => def,
+            _ => self.reduce(def),
         };
         let key = (def, self.epoch(def));
         let found = match def {
@@ -346,7 +345,9 @@ impl ValueNumbering<'_> {
             (Operation::Select | Operation::SelectWord, [Some(word), ..]) => {
                 Some(operands[if word == 0 { 2 } else { 1 }])
             }
-            (_, [Some(a), Some(b), Some(c)]) => fold(operation, [a, b, c]).map(|word| self.word(word)),
+            (_, [Some(a), Some(b), Some(c)]) => {
+                fold(operation, [a, b, c]).map(|word| self.constant(ValueDef::Word(word)))
+            }
             _ => None,
         }
     }
