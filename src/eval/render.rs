@@ -73,6 +73,8 @@ pub enum Engine {
     Handlers,
     /// Machine code, where there is any.
     Native,
+    /// Machine code for AVX2, although the processor may have AVX-512.
+    Avx2,
 }
 
 impl<N: Number> Default for Settings<'_, N> {

@@ -81,11 +81,10 @@ impl<'a, N: Number> FrameJob<'a, N> {
         let (floats, words) = prologue(prepared, settings, textures, limits);
         let pays = match settings.engine {
             Engine::Fastest => u64::from(size[0]) * u64::from(size[1]) >= MIN_NATIVE_PIXELS,
-            Engine::Handlers => false,
-            Engine::Native => true,
+            Engine::Handlers | Engine::Native | Engine::Avx2 => true,
         };
         Self {
-            native: pays.then(|| compiled.native(prepared)).flatten(),
+            native: pays.then(|| compiled.native(prepared, settings.engine)).flatten(),
             underflows: Underflows::default(),
             prepared,
             textures,

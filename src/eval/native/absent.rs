@@ -4,6 +4,7 @@ use crate::batch::Batch;
 use crate::lower::isel::Prepared;
 use crate::number::Number;
 use crate::program::Compiled;
+use crate::render::Engine;
 
 /// No machine code.
 #[derive(Debug, Default)]
@@ -20,7 +21,7 @@ pub(crate) struct Underflows;
 impl Compiled {
     /// Returns no machine code.
     #[expect(clippy::unused_self, reason = "the interface is the one of other processors")]
-    pub(crate) fn native<N: Number>(&self, _: &Prepared<N>) -> Option<Native<'_>> {
+    pub(crate) fn native<N: Number>(&self, _: &Prepared<N>, _: Engine) -> Option<Native<'_>> {
         None
     }
 }

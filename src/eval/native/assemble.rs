@@ -1,5 +1,5 @@
 //! An assembler for the instructions that [`super::emit`] needs: AVX2 in the VEX encoding, and a few
-//! general-purpose ones (Intel, “Software Developer's Manual”, volume 2).
+//! general-purpose ones (Intel, “Software Developer's Manual”, volume 2); those of AVX-512 are in `evex`.
 
 /// A general-purpose register, by its number in the encoding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub(super) const R13: Gpr = Gpr(13);
 pub(super) const R14: Gpr = Gpr(14);
 pub(super) const R15: Gpr = Gpr(15);
 
-/// A vector register: xmm or ymm, which share their numbers.
+/// A vector register: xmm, ymm or zmm, which share their numbers.
 pub(super) type Vector = u8;
 
 /// A memory operand: `base + index · 2^scale + displacement`, or a constant after the code.
@@ -53,55 +53,96 @@ pub(super) enum Source {
     Memory(Memory),
 }
 
-/// The opcode of a VEX instruction.
+/// The opcode of a VEX instruction, and of the EVEX instruction with the same name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Opcode {
     /// The implied prefix: none, 66, F3, F2.
-    prefix: u8,
+    pub(super) prefix: u8,
     /// The implied leading bytes: 0F, 0F 38, 0F 3A.
-    map: u8,
+    pub(super) map: u8,
+    /// The bit W of the VEX encoding.
     wide: bool,
-    byte: u8,
+    /// The bit W of the EVEX encoding, which is set where lanes have 64 bits.
+    pub(super) long: bool,
+    pub(super) byte: u8,
 }
 
-const fn opcode(prefix: u8, map: u8, byte: u8) -> Opcode {
+pub(super) const fn opcode(prefix: u8, map: u8, byte: u8) -> Opcode {
     Opcode {
         prefix,
         map,
         wide: false,
+        long: false,
         byte,
+    }
+}
+
+/// An opcode whose lanes have 64 bits.
+pub(super) const fn long(prefix: u8, map: u8, byte: u8) -> Opcode {
+    Opcode {
+        long: true,
+        ..opcode(prefix, map, byte)
+    }
+}
+
+/// The vectors of the code. *Wide* ones hold as many floats as possible, the others half as many bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Vectors {
+    /// 256 and 128 bits.
+    #[default]
+    Avx2,
+    /// 512 and 256 bits.
+    Avx512,
+}
+
+impl Vectors {
+    /// Returns the longest vectors of this processor that there is code for, if any.
+    pub(super) fn detect() -> Option<Self> {
+        if !is_x86_feature_detected!("avx2") {
+            return None;
+        }
+        let has_long = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
+        Some(if has_long { Self::Avx512 } else { Self::Avx2 })
+    }
+
+    /// The number of bytes of a wide vector.
+    pub(super) fn bytes(self) -> i32 {
+        match self {
+            Self::Avx2 => 32,
+            Self::Avx512 => 64,
+        }
     }
 }
 
 /// Opcodes; names are those of the manual.
 pub(super) mod op {
-    use super::{Opcode, opcode};
+    use super::{Opcode, long, opcode};
 
     pub(crate) const VADDPS: Opcode = opcode(0, 1, 0x58);
-    pub(crate) const VADDPD: Opcode = opcode(1, 1, 0x58);
+    pub(crate) const VADDPD: Opcode = long(1, 1, 0x58);
     pub(crate) const VMULPS: Opcode = opcode(0, 1, 0x59);
-    pub(crate) const VMULPD: Opcode = opcode(1, 1, 0x59);
+    pub(crate) const VMULPD: Opcode = long(1, 1, 0x59);
     pub(crate) const VSUBPS: Opcode = opcode(0, 1, 0x5C);
-    pub(crate) const VSUBPD: Opcode = opcode(1, 1, 0x5C);
+    pub(crate) const VSUBPD: Opcode = long(1, 1, 0x5C);
     pub(crate) const VMINPS: Opcode = opcode(0, 1, 0x5D);
-    pub(crate) const VMINPD: Opcode = opcode(1, 1, 0x5D);
+    pub(crate) const VMINPD: Opcode = long(1, 1, 0x5D);
     pub(crate) const VDIVPS: Opcode = opcode(0, 1, 0x5E);
-    pub(crate) const VDIVPD: Opcode = opcode(1, 1, 0x5E);
+    pub(crate) const VDIVPD: Opcode = long(1, 1, 0x5E);
     pub(crate) const VMAXPS: Opcode = opcode(0, 1, 0x5F);
-    pub(crate) const VMAXPD: Opcode = opcode(1, 1, 0x5F);
+    pub(crate) const VMAXPD: Opcode = long(1, 1, 0x5F);
     pub(crate) const VSQRTPS: Opcode = opcode(0, 1, 0x51);
-    pub(crate) const VSQRTPD: Opcode = opcode(1, 1, 0x51);
+    pub(crate) const VSQRTPD: Opcode = long(1, 1, 0x51);
     pub(crate) const VCMPPS: Opcode = opcode(0, 1, 0xC2);
-    pub(crate) const VCMPPD: Opcode = opcode(1, 1, 0xC2);
+    pub(crate) const VCMPPD: Opcode = long(1, 1, 0xC2);
     pub(crate) const VROUNDPS: Opcode = opcode(1, 3, 0x08);
-    pub(crate) const VROUNDPD: Opcode = opcode(1, 3, 0x09);
+    pub(crate) const VROUNDPD: Opcode = long(1, 3, 0x09);
     pub(crate) const VBLENDVPS: Opcode = opcode(1, 3, 0x4A);
     pub(crate) const VBLENDVPD: Opcode = opcode(1, 3, 0x4B);
     pub(crate) const VSHUFPS: Opcode = opcode(0, 1, 0xC6);
     pub(crate) const VPERMILPS: Opcode = opcode(1, 3, 0x04);
     pub(crate) const VPERMPD: Opcode = Opcode {
         wide: true,
-        ..opcode(1, 3, 0x01)
+        ..long(1, 3, 0x01)
     };
     pub(crate) const VMOVAPS: Opcode = opcode(0, 1, 0x28);
     pub(crate) const VMOVAPS_STORE: Opcode = opcode(0, 1, 0x29);
@@ -112,15 +153,15 @@ pub(super) mod op {
     pub(crate) const VMOVSD: Opcode = opcode(3, 1, 0x10);
     pub(crate) const VMOVSD_STORE: Opcode = opcode(3, 1, 0x11);
     pub(crate) const VBROADCASTSS: Opcode = opcode(1, 2, 0x18);
-    pub(crate) const VBROADCASTSD: Opcode = opcode(1, 2, 0x19);
+    pub(crate) const VBROADCASTSD: Opcode = long(1, 2, 0x19);
     pub(crate) const VEXTRACTI128: Opcode = opcode(1, 3, 0x39);
     pub(crate) const VPMOVSXDQ: Opcode = opcode(1, 2, 0x25);
     pub(crate) const VCVTDQ2PS: Opcode = opcode(0, 1, 0x5B);
     pub(crate) const VCVTTPS2DQ: Opcode = opcode(2, 1, 0x5B);
     pub(crate) const VCVTDQ2PD: Opcode = opcode(2, 1, 0xE6);
-    pub(crate) const VCVTTPD2DQ: Opcode = opcode(1, 1, 0xE6);
+    pub(crate) const VCVTTPD2DQ: Opcode = long(1, 1, 0xE6);
     pub(crate) const VCVTPS2PD: Opcode = opcode(0, 1, 0x5A);
-    pub(crate) const VCVTPD2PS: Opcode = opcode(1, 1, 0x5A);
+    pub(crate) const VCVTPD2PS: Opcode = long(1, 1, 0x5A);
     pub(crate) const VPAND: Opcode = opcode(1, 1, 0xDB);
     pub(crate) const VPANDN: Opcode = opcode(1, 1, 0xDF);
     pub(crate) const VPOR: Opcode = opcode(1, 1, 0xEB);
@@ -166,12 +207,15 @@ pub(super) enum Arithmetic {
     Compare = 7,
 }
 
-/// A constant of the pool: as many bytes as a vector has.
-pub(super) type Constant = [u8; 32];
+/// A constant of the pool: as many bytes as the longest vector has.
+pub(super) type Constant = [u8; CONSTANT_BYTES];
+
+pub(super) const CONSTANT_BYTES: usize = 64;
 
 /// Machine code under construction.
 #[derive(Debug, Default)]
 pub(super) struct Assembler {
+    vectors: Vectors,
     code: Vec<u8>,
     /// The position of each label; [`UNBOUND`] until it is known.
     labels: Vec<u32>,
@@ -183,7 +227,17 @@ pub(super) struct Assembler {
 
 const UNBOUND: u32 = u32::MAX;
 
+/// The immediate operand of a shuffle that takes the lower halves of lanes of 64 bits of both operands.
+const EVEN_LANES: u8 = 0x88;
+
 impl Assembler {
+    pub(super) fn new(vectors: Vectors) -> Self {
+        Self {
+            vectors,
+            ..Self::default()
+        }
+    }
+
     pub(super) fn label(&mut self) -> Label {
         self.labels.push(UNBOUND);
         Label(self.labels.len() as u32 - 1)
@@ -209,23 +263,24 @@ impl Assembler {
             let relative = self.labels[label.0 as usize].wrapping_sub(at + 4);
             self.code[at as usize..][..4].copy_from_slice(&relative.to_le_bytes());
         }
-        self.code.resize(self.code.len().next_multiple_of(32), 0);
+        self.code
+            .resize(self.code.len().next_multiple_of(CONSTANT_BYTES), 0);
         let pool_start = self.code.len() as u32;
         for (at, constant, after) in self.constants {
-            let relative = pool_start + 32 * constant - (at + 4 + u32::from(after));
+            let relative = pool_start + CONSTANT_BYTES as u32 * constant - (at + 4 + u32::from(after));
             self.code[at as usize..][..4].copy_from_slice(&relative.to_le_bytes());
         }
         self.code.extend(pool.iter().flatten());
         self.code
     }
 
-    fn bytes(&mut self, bytes: &[u8]) {
+    pub(super) fn bytes(&mut self, bytes: &[u8]) {
         self.code.extend_from_slice(bytes);
     }
 
     /// Writes the `ModRM` byte of an operand, with what belongs to it. `after` is the number of bytes of the
-    /// instruction that follow.
-    fn operand(&mut self, register: u8, source: Source, after: u8) {
+    /// instruction that follow. Short displacements have one byte if `shortens`.
+    pub(super) fn operand(&mut self, register: u8, source: Source, after: u8, shortens: bool) {
         let register = (register & 7) << 3;
         match source {
             Source::Register(other) => self.bytes(&[0xC0 | register | other & 7]),
@@ -243,8 +298,8 @@ impl Assembler {
                 // Without displacement, RBP and R13 would mean something else.
                 let (mode, bytes) = match short {
                     Ok(0) if base.0 & 7 != 5 => (0x00, 0),
-                    Ok(_) => (0x40, 1),
-                    Err(_) => (0x80, 4),
+                    Ok(_) if shortens => (0x40, 1),
+                    _ => (0x80, 4),
                 };
                 match index {
                     Some((index, scale)) => {
@@ -260,7 +315,7 @@ impl Assembler {
     }
 
     /// The high bits of the index and of the base or second register.
-    fn high_bits(source: Source) -> (u8, u8) {
+    pub(super) fn high_bits(source: Source) -> (u8, u8) {
         match source {
             Source::Register(register) => (0, register >> 3),
             Source::Memory(Memory::At { base, index, .. }) => {
@@ -273,19 +328,51 @@ impl Assembler {
     fn vex(&mut self, op: Opcode, wide: bool, register: u8, second: u8, source: Source, after: u8) {
         let (index, base) = Self::high_bits(source);
         let inverted = |bit: u8| bit ^ 1;
-        let common = (!second & 15) << 3 | u8::from(wide) << 2 | op.prefix;
+        // Vectors of AVX-512 that are not wide have 256 bits.
+        let is_256 = wide || self.vectors == Vectors::Avx512;
+        let common = (!second & 15) << 3 | u8::from(is_256) << 2 | op.prefix;
         if index == 0 && base == 0 && op.map == 1 && !op.wide {
             self.bytes(&[0xC5, inverted(register >> 3) << 7 | common, op.byte]);
         } else {
             let first = inverted(register >> 3) << 7 | inverted(index) << 6 | inverted(base) << 5 | op.map;
             self.bytes(&[0xC4, first, u8::from(op.wide) << 7 | common, op.byte]);
         }
-        self.operand(register, source, after);
+        self.operand(register, source, after, true);
     }
 
-    /// `to = op(source)`, or a store of `to`. `wide` is whether vectors have 256 bits, here and below.
+    /// Whether an instruction is one of AVX-512.
+    fn is_evex(&self, wide: bool) -> bool {
+        wide && self.vectors == Vectors::Avx512
+    }
+
+    /// `to = op(source)`, or a store of `to`. `wide` is whether vectors are wide, here and below.
     pub(super) fn unary(&mut self, op: Opcode, wide: bool, to: Vector, source: Source) {
-        self.vex(op, wide, to, 0, source, 0);
+        if self.is_evex(wide) {
+            self.evex(op, to, 0, source, 0);
+        } else {
+            self.vex(op, wide, to, 0, source, 0);
+        }
+    }
+
+    /// Sets the condition [`Condition::Zero`] if all bits of a vector are 0.
+    pub(super) fn test(&mut self, wide: bool, vector: Vector) {
+        if self.is_evex(wide) {
+            self.test_evex(vector);
+        } else {
+            self.vex(op::VPTEST, wide, vector, 0, Source::Register(vector), 0);
+        }
+    }
+
+    /// Takes the lower half of each lane of 64 bits of a wide vector. Changes `scratch`.
+    pub(super) fn narrow(&mut self, to: Vector, from: Vector, scratch: Vector) {
+        match self.vectors {
+            Vectors::Avx2 => {
+                let high = Source::Register(scratch);
+                self.unary_immediate(op::VEXTRACTI128, true, from, high, 1);
+                self.binary_immediate(op::VSHUFPS, false, to, from, high, EVEN_LANES);
+            }
+            Vectors::Avx512 => self.narrow_evex(to, from),
+        }
     }
 
     /// As [`Self::unary`], with an immediate operand.
@@ -297,13 +384,23 @@ impl Assembler {
         source: Source,
         immediate: u8,
     ) {
-        self.vex(op, wide, to, 0, source, 1);
+        if self.is_evex(wide) {
+            self.evex(op, to, 0, source, 1);
+        } else {
+            self.vex(op, wide, to, 0, source, 1);
+        }
         self.bytes(&[immediate]);
     }
 
     /// `to = op(a, b)`
     pub(super) fn binary(&mut self, op: Opcode, wide: bool, to: Vector, a: Vector, b: Source) {
-        self.vex(op, wide, to, a, b, 0);
+        if !self.is_evex(wide) {
+            self.vex(op, wide, to, a, b, 0);
+        } else if matches!(op, op::VPCMPEQD | op::VPCMPGTD) {
+            self.compare_evex(op, to, a, b, None);
+        } else {
+            self.evex(op, to, a, b, 0);
+        }
     }
 
     /// As [`Self::binary`], with an immediate operand.
@@ -316,11 +413,16 @@ impl Assembler {
         b: Source,
         immediate: u8,
     ) {
-        self.vex(op, wide, to, a, b, 1);
-        self.bytes(&[immediate]);
+        if self.is_evex(wide) {
+            // Of the instructions with two operands and an immediate, only comparisons are wide.
+            self.compare_evex(op, to, a, b, Some(immediate));
+        } else {
+            self.vex(op, wide, to, a, b, 1);
+            self.bytes(&[immediate]);
+        }
     }
 
-    /// `to = yes` where the highest bit of `mask` is set, else `no`.
+    /// `to = yes` where the highest bit of `mask` is set, else `no`. All bits of a lane of `mask` are the same.
     pub(super) fn blend(
         &mut self,
         op: Opcode,
@@ -330,13 +432,21 @@ impl Assembler {
         yes: Source,
         mask: Vector,
     ) {
-        self.vex(op, wide, to, no, yes, 1);
-        self.bytes(&[mask << 4]);
+        if self.is_evex(wide) {
+            self.blend_evex(to, no, yes, mask);
+        } else {
+            self.vex(op, wide, to, no, yes, 1);
+            self.bytes(&[mask << 4]);
+        }
     }
 
     /// Shifts words of `from` by an immediate; `digit` selects how.
     pub(super) fn shift(&mut self, wide: bool, digit: u8, to: Vector, from: Vector, count: u8) {
-        self.vex(op::VPSHIFTD, wide, digit, to, Source::Register(from), 1);
+        if self.is_evex(wide) {
+            self.evex(op::VPSHIFTD, digit, to, Source::Register(from), 1);
+        } else {
+            self.vex(op::VPSHIFTD, wide, digit, to, Source::Register(from), 1);
+        }
         self.bytes(&[count]);
     }
 
@@ -353,7 +463,7 @@ impl Assembler {
             self.bytes(&[0x40 | rex]);
         }
         self.bytes(opcode);
-        self.operand(register, source, after);
+        self.operand(register, source, after, true);
     }
 
     /// Loads 64 bits.

@@ -8,7 +8,7 @@ use crate::opt::gvn::log::Map;
 
 use super::assemble::{
     Arithmetic, Assembler, Condition, Gpr, Label, Memory, R8, R9, R12, R13, R14, R15, RAX, RBP, RBX, RCX,
-    RDX, RSI, RSP, Source, Vector, op,
+    RDX, RSI, RSP, Source, Vector, Vectors, op,
 };
 use super::node::{Action, Bank, Guard, Item, NO_NODE, NodeId, Precision, Region, Row};
 use super::run::offsets;
@@ -36,7 +36,6 @@ const CHUNK_BYTES: i32 = 64;
 /// The stack frame: accumulators of masks, then the caller's stack pointer, then spilled vectors.
 pub(super) const SAVED_STACK: i32 = 248;
 const SPILLED: i32 = 256;
-const VECTOR_BYTES: i32 = 32;
 /// The number of accumulators.
 const MAX_MASKS: usize = 62;
 /// The number of vectors that may be spilled.
@@ -57,6 +56,7 @@ pub(super) struct Note {
 /// What regions of a program share.
 pub(super) struct Frame {
     pub(super) precision: Precision,
+    pub(super) vectors: Vectors,
     /// The number of chunks in a row.
     pub(super) width: u32,
     /// The number of vectors that were spilled at once.
@@ -67,7 +67,17 @@ pub(super) struct Frame {
 impl Frame {
     /// The bytes of the stack frame.
     pub(super) fn stack_bytes(&self) -> i32 {
-        SPILLED + self.slots as i32 * VECTOR_BYTES
+        SPILLED + self.slots as i32 * self.vectors.bytes()
+    }
+
+    /// The bytes of the words of a vector.
+    fn step(&self) -> i32 {
+        let bytes = self.vectors.bytes();
+        if self.precision.is_double() {
+            bytes / 2
+        } else {
+            bytes
+        }
     }
 }
 
@@ -105,13 +115,13 @@ pub(super) fn emit_region(code: &mut Assembler, frame: &mut Frame, region: &Regi
         let row = place(frame, (Bank::Mask, base));
         let wide = !frame.precision.is_double();
         code.unary(op::VMOVAPS, wide, SCRATCH, Source::Memory(row));
-        code.unary(op::VPTEST, wide, SCRATCH, Source::Register(SCRATCH));
+        code.test(wide, SCRATCH);
         code.jump_if(Condition::Zero, skip);
     }
     Registers::new(code, frame, region, false).items()?;
     code.bind(skip);
-    let step = if frame.precision.is_double() { 16 } else { 32 };
-    code.arithmetic_immediate32(Arithmetic::Add, Source::Register(OFFSET.0), step);
+    let step = frame.step();
+    code.arithmetic_immediate32(Arithmetic::Add, Source::Register(OFFSET.0), step as u32);
     code.arithmetic32(Arithmetic::Compare, OFFSET, Source::Register(CHUNK_END.0));
     code.jump_if(Condition::NotZero, next_vector);
     // Which masks have pixels in this chunk.
@@ -133,7 +143,7 @@ pub(super) fn emit_region(code: &mut Assembler, frame: &mut Frame, region: &Regi
             }
         }
         code.arithmetic32(Arithmetic::Xor, RAX, Source::Register(RAX.0));
-        code.unary(op::VPTEST, wide, SCRATCH, Source::Register(SCRATCH));
+        code.test(wide, SCRATCH);
         code.copy_if(Condition::NotZero, RAX, R9);
         code.arithmetic_memory32(Arithmetic::Or, Memory::at(RSP, 4 * at), RAX);
     }
@@ -407,8 +417,8 @@ impl<'a> Registers<'a> {
         }
     }
 
-    fn slot(slot: u32) -> Memory {
-        Memory::at(RSP, SPILLED + slot as i32 * VECTOR_BYTES)
+    fn slot(&self, slot: u32) -> Memory {
+        Memory::at(RSP, SPILLED + slot as i32 * self.frame.vectors.bytes())
     }
 
     /// Whether a node can be loaded again at any time.
@@ -445,7 +455,7 @@ impl<'a> Registers<'a> {
                 self.slot_count - 1
             });
             self.slots[node as usize] = slot;
-            let to = Source::Memory(Self::slot(slot));
+            let to = Source::Memory(self.slot(slot));
             self.code.unary(op::VMOVAPS_STORE, true, register as Vector, to);
         }
         self.register_of[node as usize] = NO_REGISTER;
@@ -474,7 +484,7 @@ impl<'a> Registers<'a> {
         let slot = self.slots[node as usize];
         let wide = self.region.nodes[node as usize].wide;
         if slot != NO_SLOT {
-            let from = Source::Memory(Self::slot(slot));
+            let from = Source::Memory(self.slot(slot));
             self.code.unary(op::VMOVAPS, true, register, from);
             return;
         }
@@ -529,7 +539,7 @@ impl<'a> Registers<'a> {
             let is_last = !self.is_used_after(node, at);
             let memory = match self.region.nodes[index].action {
                 Action::Constant(constant) => Some(Memory::Constant(constant)),
-                _ if slot != NO_SLOT && is_last => Some(Self::slot(slot)),
+                _ if slot != NO_SLOT && is_last => Some(self.slot(slot)),
                 Action::Row(row) if is_last && !self.scalar && !self.stale[index] => {
                     Some(place(self.frame, row))
                 }
@@ -586,10 +596,7 @@ impl<'a> Registers<'a> {
             Action::Narrow => {
                 let from = self.load(a, 0);
                 let to = self.result(id, at);
-                let high = Source::Register(SCRATCH);
-                self.code.unary_immediate(op::VEXTRACTI128, true, from, high, 1);
-                self.code
-                    .binary_immediate(op::VSHUFPS, false, to, from, high, EVEN_LANES);
+                self.code.narrow(to, from, SCRATCH);
             }
             Action::Merge => {
                 let source = self.source(a, at, 0);
@@ -678,8 +685,7 @@ impl<'a> Registers<'a> {
         }
         let end = self.code.label();
         let wide = self.region.nodes[guard.mask as usize].wide;
-        self.code
-            .unary(op::VPTEST, wide, register, Source::Register(register));
+        self.code.test(wide, register);
         self.code.jump_if(Condition::Zero, end);
         self.used(guard.mask, at);
         let slots = self.held.map(|node| match node {
@@ -733,7 +739,7 @@ impl<'a> Registers<'a> {
                 } else {
                     from
                 };
-                let to = Source::Memory(Self::slot(self.slots[merge as usize]));
+                let to = Source::Memory(self.slot(self.slots[merge as usize]));
                 self.code.unary(op::VMOVAPS_STORE, true, from, to);
             }
         }
@@ -793,8 +799,7 @@ impl<'a> Registers<'a> {
         let register = self.load(node, 0);
         let wide = self.region.nodes[node as usize].wide;
         let (entry, back) = (self.code.label(), self.code.label());
-        self.code
-            .unary(op::VPTEST, wide, register, Source::Register(register));
+        self.code.test(wide, register);
         self.code.jump_if(Condition::NotZero, entry);
         self.code.bind(back);
         self.frame.notes.push(Note {
@@ -806,6 +811,3 @@ impl<'a> Registers<'a> {
         self.used(node, at);
     }
 }
-
-/// The lower halves of lanes of 64 bits, from both operands.
-const EVEN_LANES: u8 = 0x88;

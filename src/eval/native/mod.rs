@@ -1,9 +1,9 @@
-//! Machine code for AVX2: what the handlers of [`ops`](crate::ops) do, without their traffic to memory.
+//! Machine code for AVX2 and AVX-512: what the handlers of [`ops`](crate::ops) do, without their traffic to memory.
 //!
 //! A handler reads and writes rows of 256 pixels for each operation. Machine code keeps values in registers
 //! over a whole *region*, a part of the program without loops, for one vector of pixels after the other
 //! (`plan`: which steps form regions; `lift` and `operation`: their `node`s; `emit`: registers and instructions;
-//! `assemble`: bytes; `run`: memory, and calls). What has no form there is executed by its handler. The bits
+//! `assemble`, `evex`: bytes; `run`: memory, and calls). What has no form there is executed by its handler. The bits
 //! are the same: tests compare both.
 //!
 //! In f32, the processor flushes denormal results. Rust code must not change MXCSR, but machine code may, as
@@ -14,6 +14,7 @@
 
 mod assemble;
 mod emit;
+mod evex;
 mod lift;
 mod node;
 mod operation;
@@ -28,8 +29,8 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use self::assemble::{
-    Arithmetic, Assembler, Condition, Label, Memory, R8, R12, R13, R14, R15, RAX, RBP, RBX, RCX, RDI, RDX,
-    RSI, RSP, Source, op,
+    Arithmetic, Assembler, CONSTANT_BYTES, Condition, Label, Memory, R8, R12, R13, R14, R15, RAX, RBP, RBX,
+    RCX, RDI, RDX, RSI, RSP, Source, Vectors, op,
 };
 use self::emit::{CONTEXT, FLOAT_SCALARS, FLOATS, Frame, MASKS, SAVED_STACK, WORD_SCALARS, WORDS};
 use self::lift::Lifter;
@@ -42,19 +43,17 @@ use crate::lower::linearize::Step;
 use crate::lower::regalloc::Location;
 use crate::number::Number;
 use crate::program::Compiled;
+use crate::render::Engine;
 
-/// The machine code of a program, made when it is first needed.
+/// The machine code of a program for each kind of vectors and each [`Precision`], made when it is first needed.
 #[derive(Debug, Default)]
-pub(crate) struct Cache {
-    single: OnceLock<Option<Executable>>,
-    single_exact: OnceLock<Option<Executable>>,
-    double: OnceLock<Option<Executable>>,
-}
+pub(crate) struct Cache([[OnceLock<Option<Executable>>; 3]; 2]);
 
 /// The machine code of a program for a number type.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Native<'a> {
     compiled: &'a Compiled,
+    vectors: Vectors,
     precision: Precision,
     code: &'a Executable,
 }
@@ -69,8 +68,9 @@ const MAX_NODES: usize = 8_000;
 const MAX_TABLE: usize = 1 << 30;
 
 impl Compiled {
-    /// Returns the machine code for a number type; none if there is none for it, or on this processor.
-    pub(crate) fn native<N: Number>(&self, prepared: &Prepared<N>) -> Option<Native<'_>> {
+    /// Returns the machine code for a number type and an engine; none if there is none for it, or on this
+    /// processor.
+    pub(crate) fn native<N: Number>(&self, prepared: &Prepared<N>, engine: Engine) -> Option<Native<'_>> {
         let precision = if TypeId::of::<N>() == TypeId::of::<f32>() {
             Precision::Single
         } else if TypeId::of::<N>() == TypeId::of::<f64>() {
@@ -78,30 +78,35 @@ impl Compiled {
         } else {
             return None;
         };
-        let code = self.executable(precision, prepared)?;
+        let best = Vectors::detect()?;
+        let vectors = match engine {
+            Engine::Handlers => return None,
+            Engine::Avx2 => Vectors::Avx2,
+            Engine::Fastest | Engine::Native => best,
+        };
+        let code = self.executable(vectors, precision, prepared)?;
         Some(Native {
             compiled: self,
+            vectors,
             precision,
             code,
         })
     }
 
-    fn executable<N: Number>(&self, precision: Precision, prepared: &Prepared<N>) -> Option<&Executable> {
-        let cache = &self.native;
-        let slot = match precision {
-            Precision::Single => &cache.single,
-            Precision::SingleExact => &cache.single_exact,
-            Precision::Double => &cache.double,
-        };
-        let code = slot.get_or_init(|| {
-            let is_supported = std::arch::is_x86_feature_detected!("avx2");
+    fn executable<N: Number>(
+        &self,
+        vectors: Vectors,
+        precision: Precision,
+        prepared: &Prepared<N>,
+    ) -> Option<&Executable> {
+        let code = self.native.0[vectors as usize][precision as usize].get_or_init(|| {
             let rows = prepared.float_rows.max(prepared.word_rows).max(prepared.masks);
             let is_small = self.linear.steps.len() <= MAX_STEPS
                 && rows * prepared.width * size_of::<[f64; crate::batch::LANES]>() <= MAX_TABLE;
-            if !is_supported || !is_small {
+            if !is_small {
                 return None;
             }
-            Executable::new(&assemble(self, precision, prepared)?)
+            Executable::new(&assemble(self, vectors, precision, prepared)?)
         });
         code.as_ref()
     }
@@ -136,7 +141,10 @@ impl Native<'_> {
             batch.notes.borrow_mut().sites.clear();
         }
         begin(batch);
-        match self.compiled.executable(Precision::SingleExact, prepared) {
+        match self
+            .compiled
+            .executable(self.vectors, Precision::SingleExact, prepared)
+        {
             Some(code) => {
                 code.run(batch, &prepared.code);
             }
@@ -148,9 +156,14 @@ impl Native<'_> {
 }
 
 /// Assembles a program; none if it has no machine code.
-fn assemble<N: Number>(compiled: &Compiled, precision: Precision, prepared: &Prepared<N>) -> Option<Vec<u8>> {
+fn assemble<N: Number>(
+    compiled: &Compiled,
+    vectors: Vectors,
+    precision: Precision,
+    prepared: &Prepared<N>,
+) -> Option<Vec<u8>> {
     let plan = plan(compiled)?;
-    let mut code = Assembler::default();
+    let mut code = Assembler::new(vectors);
     let labels = plan
         .targets
         .iter()
@@ -164,6 +177,7 @@ fn assemble<N: Number>(compiled: &Compiled, precision: Precision, prepared: &Pre
         pool: Pool::default(),
         frame: Frame {
             precision,
+            vectors,
             width: prepared.width as u32,
             slots: 0,
             notes: Vec::new(),
@@ -220,7 +234,7 @@ impl Writer<'_> {
         code.arithmetic_immediate64(Arithmetic::Sub, RSP, 0);
         let frame_size = code.len() - 4;
         // Vectors are aligned.
-        code.arithmetic_immediate64(Arithmetic::And, RSP, -32);
+        code.arithmetic_immediate64(Arithmetic::And, RSP, -(CONSTANT_BYTES as i32));
         code.store64(Memory::at(RSP, SAVED_STACK), RAX);
         for (register, offset) in [
             (FLOATS, offsets::FLOATS),
@@ -321,8 +335,9 @@ impl Writer<'_> {
             self.code.push(register);
         }
         self.code.arithmetic_immediate64(Arithmetic::Sub, RSP, 8);
+        let bytes = self.frame.vectors.bytes();
         let vectors =
-            |vector: u8| Source::Memory(Memory::at(CONTEXT, offsets::VECTORS + 32 * i32::from(vector)));
+            |vector: u8| Source::Memory(Memory::at(CONTEXT, offsets::VECTORS + bytes * i32::from(vector)));
         for vector in 0..16 {
             self.code.unary(op::VMOVUPS_STORE, true, vector, vectors(vector));
         }

@@ -1,6 +1,6 @@
 //! Operations on vector registers: the graph that a region is lifted to, and the constants that it uses.
 
-use super::assemble::{Constant, Opcode};
+use super::assemble::{CONSTANT_BYTES, Constant, Opcode};
 use crate::ir::Kind;
 use crate::opt::gvn::log::Map;
 
@@ -66,7 +66,7 @@ pub(super) enum Action {
 pub(super) struct Node {
     pub(super) action: Action,
     pub(super) operands: [NodeId; 3],
-    /// Whether the vector has 256 bits.
+    /// Whether the vector is wide, see [`Vectors`](super::assemble::Vectors).
     pub(super) wide: bool,
 }
 
@@ -132,7 +132,7 @@ impl Pool {
 
 /// Returns a constant with a word in all lanes.
 pub(super) fn words(word: u32) -> Constant {
-    let mut constant = [0; 32];
+    let mut constant = [0; CONSTANT_BYTES];
     for lane in constant.chunks_exact_mut(4) {
         lane.copy_from_slice(&word.to_le_bytes());
     }
@@ -141,7 +141,7 @@ pub(super) fn words(word: u32) -> Constant {
 
 /// Returns a constant with a word of 64 bits in all lanes.
 pub(super) fn long_words(word: u64) -> Constant {
-    let mut constant = [0; 32];
+    let mut constant = [0; CONSTANT_BYTES];
     for lane in constant.chunks_exact_mut(8) {
         lane.copy_from_slice(&word.to_le_bytes());
     }

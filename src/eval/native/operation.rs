@@ -36,7 +36,7 @@ impl Lifter<'_> {
         self.node(Action::Constant(number), [NO_NODE; 3], true)
     }
 
-    /// Whether vectors of words have 256 bits.
+    /// Whether vectors of words are wide.
     pub(super) fn words_are_wide(&self) -> bool {
         !self.precision.is_double()
     }

@@ -44,9 +44,9 @@ struct Context {
     status: u32,
     scratch: u32,
     /// Vector registers while a function is called.
-    vectors: [[u8; 32]; 16],
+    vectors: [[u8; 64]; 16],
     /// The pixels to note.
-    hit: [u32; 8],
+    hit: [u32; LANES],
 }
 
 /// The places of the fields.
@@ -122,8 +122,8 @@ impl Executable {
             own_mxcsr: 0,
             status: 0,
             scratch: 0,
-            vectors: [[0; 32]; 16],
-            hit: [0; 8],
+            vectors: [[0; 64]; 16],
+            hit: [0; LANES],
         };
         #[expect(unsafe_code, reason = "the entry of machine code is an address")]
         // SAFETY: the memory holds a function with this signature, made for this processor and for batches

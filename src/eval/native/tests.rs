@@ -3,7 +3,7 @@
 
 use super::assemble::{
     Arithmetic, Assembler, Condition, Constant, Memory, R8, R9, R12, R13, R14, R15, RAX, RBP, RBX, RCX, RDI,
-    RDX, RSI, RSP, Source, op,
+    RDX, RSI, RSP, Source, Vectors, op,
 };
 
 /// Instructions, how they are emitted, and the bytes that GNU as 2.40 makes of them. Where an instruction has
@@ -97,8 +97,79 @@ fn instructions_are_encoded_as_by_another_assembler() {
         ("call [rdi+100]", |code| code.call_memory(Memory::at(RDI, 100)), "ff5764"),
         ("ret", |code| code.ret(), "c3"),
     ];
+    check(Vectors::Avx2, encodings);
+}
+
+#[test]
+#[rustfmt::skip]
+fn instructions_of_avx512_are_encoded_as_by_another_assembler() {
+    let encodings: &[Encoding] = &[
+        ("vmovaps zmm9, zmm3", |code| code.unary(op::VMOVAPS, true, 9, Source::Register(3)), "62717c4828cb"),
+        ("vmovaps zmm14, [rbx]", |code| code.unary(op::VMOVAPS, true, 14, Source::Memory(Memory::at(RBX, 0))), "62717c482833"),
+        ("vmovaps [r12+rcx*2+0x1001], zmm2", |code| code.unary(op::VMOVAPS_STORE, true, 2, Source::Memory(Memory::At { base: R12, index: Some((RCX, 1)), displacement: 0x1001 })), "62d17c4829944c01100000"),
+        ("vmovups [rsp+0x123], zmm8", |code| code.unary(op::VMOVUPS_STORE, true, 8, Source::Memory(Memory::at(RSP, 0x123))), "62717c4811842423010000"),
+        ("vmovaps zmm7, [rbp+r9+0x777]", |code| code.unary(op::VMOVAPS, true, 7, Source::Memory(Memory::At { base: RBP, index: Some((R9, 0)), displacement: 0x777 })), "62b17c4828bc0d77070000"),
+        ("vbroadcastss zmm5, dword ptr [r15+0x121]", |code| code.unary(op::VBROADCASTSS, true, 5, Source::Memory(Memory::at(R15, 0x121))), "62d27d4818af21010000"),
+        ("vbroadcastsd zmm12, qword ptr [r13+0x121]", |code| code.unary(op::VBROADCASTSD, true, 12, Source::Memory(Memory::at(R13, 0x121))), "6252fd4819a521010000"),
+        ("vsqrtps zmm0, zmm15", |code| code.unary(op::VSQRTPS, true, 0, Source::Register(15)), "62d17c4851c7"),
+        ("vsqrtpd zmm10, zmm1", |code| code.unary(op::VSQRTPD, true, 10, Source::Register(1)), "6271fd4851d1"),
+        ("vcvtdq2ps zmm1, zmm2", |code| code.unary(op::VCVTDQ2PS, true, 1, Source::Register(2)), "62f17c485bca"),
+        ("vcvttps2dq zmm1, zmm2", |code| code.unary(op::VCVTTPS2DQ, true, 1, Source::Register(2)), "62f17e485bca"),
+        ("vcvtdq2pd zmm1, ymm2", |code| code.unary(op::VCVTDQ2PD, true, 1, Source::Register(2)), "62f17e48e6ca"),
+        ("vcvttpd2dq ymm1, zmm2", |code| code.unary(op::VCVTTPD2DQ, true, 1, Source::Register(2)), "62f1fd48e6ca"),
+        ("vcvtps2pd zmm1, ymm2", |code| code.unary(op::VCVTPS2PD, true, 1, Source::Register(2)), "62f17c485aca"),
+        ("vcvtpd2ps ymm1, zmm2", |code| code.unary(op::VCVTPD2PS, true, 1, Source::Register(2)), "62f1fd485aca"),
+        ("vpmovsxdq zmm3, ymm4", |code| code.unary(op::VPMOVSXDQ, true, 3, Source::Register(4)), "62f27d4825dc"),
+        ("vpmovqd ymm11, zmm4", |code| code.narrow(11, 4, 15), "62d27e4835e3"),
+        ("vptestmd k1, zmm13, zmm13; kortestw k1, k1", |code| code.test(true, 13), "62d2154827cdc5f898c9"),
+        ("vrndscaleps zmm2, zmm9, 9", |code| code.unary_immediate(op::VROUNDPS, true, 2, Source::Register(9), 9), "62d37d4808d109"),
+        ("vrndscalepd zmm2, zmm9, 11", |code| code.unary_immediate(op::VROUNDPD, true, 2, Source::Register(9), 11), "62d3fd4809d10b"),
+        ("vpermpd zmm11, zmm6, 0x4E", |code| code.unary_immediate(op::VPERMPD, true, 11, Source::Register(6), 0x4E), "6273fd4801de4e"),
+        ("vpermilps zmm1, zmm2, 0xB1", |code| code.unary_immediate(op::VPERMILPS, true, 1, Source::Register(2), 0xB1), "62f37d4804cab1"),
+        ("vcmpps k1, zmm5, zmm6, 3; vpmovm2d zmm4, k1", |code| code.binary_immediate(op::VCMPPS, true, 4, 5, Source::Register(6), 3), "62f15448c2ce0362f27e4838e1"),
+        ("vcmppd k1, zmm5, [rbx], 4; vpmovm2q zmm4, k1", |code| code.binary_immediate(op::VCMPPD, true, 4, 5, Source::Memory(Memory::at(RBX, 0)), 4), "62f1d548c20b0462f2fe4838e1"),
+        ("vpcmpeqd k1, zmm5, zmm6; vpmovm2d zmm4, k1", |code| code.binary(op::VPCMPEQD, true, 4, 5, Source::Register(6)), "62f1554876ce62f27e4838e1"),
+        ("vpcmpgtd k1, zmm5, zmm6; vpmovm2d zmm4, k1", |code| code.binary(op::VPCMPGTD, true, 4, 5, Source::Register(6)), "62f1554866ce62f27e4838e1"),
+        ("vpternlogd zmm5, zmm13, zmm6, 0xB8", |code| code.blend(op::VBLENDVPS, true, 5, 5, Source::Register(6), 13), "62f3154825eeb8"),
+        ("vmovaps zmm4, zmm5; vpternlogd zmm4, zmm13, zmm6, 0xB8", |code| code.blend(op::VBLENDVPD, true, 4, 5, Source::Register(6), 13), "62f17c4828e562f3154825e6b8"),
+        ("vpternlogd zmm6, zmm13, zmm5, 0xE2", |code| code.blend(op::VBLENDVPD, true, 6, 5, Source::Register(6), 13), "62f3154825f5e2"),
+        ("vpternlogd zmm13, zmm5, zmm6, 0xAC", |code| code.blend(op::VBLENDVPD, true, 13, 5, Source::Register(6), 13), "6273554825eeac"),
+        ("vpsrld zmm9, zmm3, 31", |code| code.shift(true, op::SHIFT_RIGHT, 9, 3, 31), "62f1354872d31f"),
+        ("vaddps zmm9, zmm15, zmm8", |code| code.binary(op::VADDPS, true, 9, 15, Source::Register(8)), "6251044858c8"),
+        ("vaddpd zmm9, zmm15, zmm8", |code| code.binary(op::VADDPD, true, 9, 15, Source::Register(8)), "6251854858c8"),
+        ("vsubps zmm9, zmm15, zmm8", |code| code.binary(op::VSUBPS, true, 9, 15, Source::Register(8)), "625104485cc8"),
+        ("vsubpd zmm9, zmm15, zmm8", |code| code.binary(op::VSUBPD, true, 9, 15, Source::Register(8)), "625185485cc8"),
+        ("vmulps zmm9, zmm15, zmm8", |code| code.binary(op::VMULPS, true, 9, 15, Source::Register(8)), "6251044859c8"),
+        ("vmulpd zmm9, zmm15, zmm8", |code| code.binary(op::VMULPD, true, 9, 15, Source::Register(8)), "6251854859c8"),
+        ("vdivps zmm9, zmm15, zmm8", |code| code.binary(op::VDIVPS, true, 9, 15, Source::Register(8)), "625104485ec8"),
+        ("vdivpd zmm9, zmm15, zmm8", |code| code.binary(op::VDIVPD, true, 9, 15, Source::Register(8)), "625185485ec8"),
+        ("vminps zmm9, zmm15, zmm8", |code| code.binary(op::VMINPS, true, 9, 15, Source::Register(8)), "625104485dc8"),
+        ("vminpd zmm9, zmm15, zmm8", |code| code.binary(op::VMINPD, true, 9, 15, Source::Register(8)), "625185485dc8"),
+        ("vmaxps zmm9, zmm15, zmm8", |code| code.binary(op::VMAXPS, true, 9, 15, Source::Register(8)), "625104485fc8"),
+        ("vmaxpd zmm9, zmm15, zmm8", |code| code.binary(op::VMAXPD, true, 9, 15, Source::Register(8)), "625185485fc8"),
+        ("vpandd zmm4, zmm5, zmm6", |code| code.binary(op::VPAND, true, 4, 5, Source::Register(6)), "62f15548dbe6"),
+        ("vpandnd zmm4, zmm5, zmm6", |code| code.binary(op::VPANDN, true, 4, 5, Source::Register(6)), "62f15548dfe6"),
+        ("vpord zmm4, zmm5, zmm6", |code| code.binary(op::VPOR, true, 4, 5, Source::Register(6)), "62f15548ebe6"),
+        ("vpxord zmm4, zmm5, zmm6", |code| code.binary(op::VPXOR, true, 4, 5, Source::Register(6)), "62f15548efe6"),
+        ("vpaddd zmm4, zmm5, zmm6", |code| code.binary(op::VPADDD, true, 4, 5, Source::Register(6)), "62f15548fee6"),
+        ("vpsubd zmm4, zmm5, zmm6", |code| code.binary(op::VPSUBD, true, 4, 5, Source::Register(6)), "62f15548fae6"),
+        ("vpmulld zmm4, zmm5, zmm6", |code| code.binary(op::VPMULLD, true, 4, 5, Source::Register(6)), "62f2554840e6"),
+        ("vpminsd zmm4, zmm5, zmm6", |code| code.binary(op::VPMINSD, true, 4, 5, Source::Register(6)), "62f2554839e6"),
+        ("vpminud zmm4, zmm5, zmm6", |code| code.binary(op::VPMINUD, true, 4, 5, Source::Register(6)), "62f255483be6"),
+        ("vpmaxsd zmm4, zmm5, zmm6", |code| code.binary(op::VPMAXSD, true, 4, 5, Source::Register(6)), "62f255483de6"),
+        ("vpmaxud zmm4, zmm5, zmm6", |code| code.binary(op::VPMAXUD, true, 4, 5, Source::Register(6)), "62f255483fe6"),
+        ("vpsllvd zmm4, zmm5, zmm6", |code| code.binary(op::VPSLLVD, true, 4, 5, Source::Register(6)), "62f2554847e6"),
+        ("vpsrlvd zmm4, zmm5, zmm6", |code| code.binary(op::VPSRLVD, true, 4, 5, Source::Register(6)), "62f2554845e6"),
+        ("vpsravd zmm4, zmm5, zmm6", |code| code.binary(op::VPSRAVD, true, 4, 5, Source::Register(6)), "62f2554846e6"),
+        ("vpaddd ymm4, ymm5, ymm6", |code| code.binary(op::VPADDD, false, 4, 5, Source::Register(6)), "c5d5fee6"),
+    ];
+    check(Vectors::Avx512, encodings);
+}
+
+/// Checks that instructions have the expected bytes.
+fn check(vectors: Vectors, encodings: &[Encoding]) {
     for (text, emit, expected) in encodings {
-        let mut code = Assembler::default();
+        let mut code = Assembler::new(vectors);
         emit(&mut code);
         let mut bytes = code.finish(&[]);
         // Constants are aligned.
@@ -110,7 +181,7 @@ fn instructions_are_encoded_as_by_another_assembler() {
 
 #[test]
 fn addresses_are_relative_to_the_next_instruction() {
-    let constant: Constant = [7; 32];
+    let constant: Constant = [7; 64];
     let mut code = Assembler::default();
     let [before, after] = [(); 2].map(|()| code.label());
     code.bind(before);
@@ -118,10 +189,10 @@ fn addresses_are_relative_to_the_next_instruction() {
     code.jump_if(Condition::Zero, before);
     code.bind(after);
     code.binary_immediate(op::VCMPPS, true, 0, 1, Source::Memory(Memory::Constant(1)), 3);
-    let bytes = code.finish(&[[0; 32], constant]);
+    let bytes = code.finish(&[[0; 64], constant]);
     assert_eq!(bytes[..5], [0xE9, 6, 0, 0, 0]);
     assert_eq!(bytes[5..11], [0x0F, 0x84, 0xF5, 0xFF, 0xFF, 0xFF]);
-    // The instruction is 11 to 20, and its constant begins at 64.
-    assert_eq!(bytes[11..20], [0xC5, 0xF4, 0xC2, 0x05, 44, 0, 0, 0, 3]);
-    assert_eq!(bytes[64..], constant);
+    // The instruction is 11 to 20, and its constant begins at 128.
+    assert_eq!(bytes[11..20], [0xC5, 0xF4, 0xC2, 0x05, 108, 0, 0, 0, 3]);
+    assert_eq!(bytes[128..], constant);
 }

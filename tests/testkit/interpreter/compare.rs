@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::fmt::Display;
 use std::thread;
 
 use toyproof::eval::{
@@ -101,19 +102,23 @@ impl Comparison<'_> {
             };
             program.render(self.frame, &settings)
         };
-        let rendered = match (rendered(Engine::Handlers), rendered(Engine::Native)) {
-            (Ok(handlers), Ok(native)) => {
-                self.compare_engines(&handlers, &native)
-                    .map_err(|error| format!("{number}, {:?}: {error}", self.policy))?;
-                handlers
+        let case = |error: &dyn Display| format!("{number}, {:?}: {error}", self.policy);
+        let handlers = rendered(Engine::Handlers);
+        for engine in [Engine::Native, Engine::Avx2] {
+            match (&handlers, rendered(engine)) {
+                (Ok(handlers), Ok(native)) => {
+                    let compared = self.compare_engines(handlers, &native);
+                    compared.map_err(|error| case(&format_args!("{engine:?}: {error}")))?;
+                }
+                (Err(Failure::TooOften { .. }), Err(Failure::TooOften { .. })) => {}
+                (handlers, native) => {
+                    let failures = [handlers.as_ref().err(), native.as_ref().err()];
+                    return Err(case(&format_args!("{engine:?}: {failures:?}")));
+                }
             }
-            (Err(Failure::TooOften { .. }), Err(Failure::TooOften { .. })) => {
-                return Ok(self.skip("too many iterations"));
-            }
-            (handlers, native) => {
-                let failures = [handlers.err(), native.err()];
-                return Err(format!("{number}, {:?}: {failures:?}", self.policy));
-            }
+        }
+        let Ok(rendered) = handlers else {
+            return Ok(self.skip("too many iterations"));
         };
         let interpreter = Interpreter {
             checked: self.checked,
