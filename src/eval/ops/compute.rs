@@ -3,6 +3,8 @@
 use std::marker::PhantomData;
 
 use super::apply::{self, Of1, Of2, Of3, ty};
+#[cfg(target_arch = "x86_64")]
+use super::avx512;
 use super::{Any, Component, Handler, Instruction, Level, One, Row, Run, Source, for_each_chunk, handler};
 use crate::batch::{Batch, LANES, Lanes};
 use crate::ir::{Operation, for_each_operation};
@@ -221,7 +223,43 @@ pub(crate) fn compute<N: Number>(level: Level, operation: Operation, rows: [bool
             }
         };
     }
+    #[cfg(target_arch = "x86_64")]
+    if level == Level::Avx512
+        && let Some(function) = function_avx512(operation)
+    {
+        return function;
+    }
     frequent_mixed(level, operation, rows).unwrap_or_else(|| for_each_operation!(select))
+}
+
+/// Returns the handler of a function, with AVX-512; none for other operations and rare functions.
+#[cfg(target_arch = "x86_64")]
+fn function_avx512<N: Number>(operation: Operation) -> Option<Handler<N>> {
+    macro_rules! one {
+        ($name:ident) => {
+            avx512::<N, Rows1<apply::$name, N, N>>
+        };
+    }
+    macro_rules! two {
+        ($name:ident) => {
+            avx512::<N, Rows2<apply::$name, Any, Any, N, N, N>>
+        };
+    }
+    Some(match operation {
+        Operation::Sin => one!(Sin),
+        Operation::Cos => one!(Cos),
+        Operation::Tan => one!(Tan),
+        Operation::Asin => one!(Asin),
+        Operation::Acos => one!(Acos),
+        Operation::Atan => one!(Atan),
+        Operation::Atan2 => two!(Atan2),
+        Operation::Exp => one!(Exp),
+        Operation::Exp2 => one!(Exp2),
+        Operation::Log => one!(Log),
+        Operation::Log2 => one!(Log2),
+        Operation::Pow => two!(Pow),
+        _ => return None,
+    })
 }
 
 /// Returns the handler of a frequent operation on rows and scalars. Scalars stay in registers there, which is

@@ -47,14 +47,22 @@ pub(crate) enum Level {
     /// AVX2 and FMA: eight floats at once.
     #[cfg(target_arch = "x86_64")]
     Avx2,
+    /// AVX-512 for functions such as `pow`, else AVX2. A function is a long chain of operations, which takes
+    /// the same time for sixteen floats on processors that execute few instructions ahead.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
 }
 
 impl Level {
     /// Returns the best level that this processor supports.
     pub(crate) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-            return Self::Avx2;
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            let has_long = is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512bw")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl");
+            return if has_long { Self::Avx512 } else { Self::Avx2 };
         }
         Self::Base
     }
@@ -70,7 +78,7 @@ fn handler<N: Number, R: Run<N>>(level: Level) -> Handler<N> {
     match level {
         Level::Base => base::<N, R>,
         #[cfg(target_arch = "x86_64")]
-        Level::Avx2 => avx2::<N, R>,
+        Level::Avx2 | Level::Avx512 => avx2::<N, R>,
     }
 }
 
@@ -81,6 +89,12 @@ fn base<N: Number, R: Run<N>>(batch: &Batch<'_, N>, instruction: &Instruction<N>
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn avx2<N: Number, R: Run<N>>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+    R::run(batch, instruction, at)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
+fn avx512<N: Number, R: Run<N>>(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
     R::run(batch, instruction, at)
 }
 
