@@ -85,6 +85,11 @@ macro_rules! define_number {
                 #[must_use]
                 fn $method<const L: usize>(x: [Self; L], noise: Self::Noise) -> [Self; L];
             )*
+            /// Returns sines and cosines, with the bits that they have alone.
+            #[must_use]
+            fn sin_cos<const L: usize>(x: [Self; L], noise: Self::Noise) -> ([Self; L], [Self; L]) {
+                (Self::sin(x, noise), Self::cos(x, noise))
+            }
             /// Returns the angles of the points (x, y), in radians.
             #[must_use]
             fn atan2<const L: usize>(y: [Self; L], x: [Self; L], noise: Self::Noise) -> [Self; L];
@@ -144,6 +149,14 @@ macro_rules! define_number {
                 }
             )*
             #[inline(always)]
+            fn sin_cos<const L: usize>(x: [Self; L], (): ()) -> ([Self; L], [Self; L]) {
+                let (mut sin, mut cos) = ([0.0; L], [0.0; L]);
+                for lane in 0..L {
+                    (sin[lane], cos[lane]) = native::sin_cos(x[lane]);
+                }
+                (sin, cos)
+            }
+            #[inline(always)]
             fn atan2<const L: usize>(y: [Self; L], x: [Self; L], (): ()) -> [Self; L] {
                 each!(native::atan2, y, x)
             }
@@ -202,6 +215,10 @@ macro_rules! define_number {
                     $double(x)
                 }
             )*
+            #[inline(always)]
+            fn sin_cos<const L: usize>(x: [Self; L], (): ()) -> ([Self; L], [Self; L]) {
+                double::sin_cos(x)
+            }
             #[inline(always)]
             fn atan2<const L: usize>(y: [Self; L], x: [Self; L], (): ()) -> [Self; L] {
                 each!(libm::atan2, y, x)

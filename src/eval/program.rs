@@ -22,6 +22,7 @@ use crate::opt::dce::eliminate_dead_code;
 use crate::opt::divergence::Divergence;
 use crate::opt::fuse::fuse;
 use crate::opt::gvn::number_values;
+use crate::opt::pair::pair;
 use crate::render::{Failure, Part, Settings, Substitute, UndefinedPolicy};
 use crate::trace::{ExecutionTrace, ForcedPrefix, PixelDebugger, TraceSchema};
 
@@ -255,6 +256,7 @@ impl Compiled {
             deadline.check()?;
             let divergence = Divergence::of(&function, &groups);
             fuse(&mut function, &divergence);
+            pair(&mut function);
             deadline.check()?;
             let linear = linearize(&function, &divergence, options.trace);
             deadline.check()?;

@@ -1,5 +1,5 @@
-//! Compile times of adversarial shaders are linear in their length: each program here is so large that any
-//! pass with quadratic cost would take minutes, or exhaust the memory.
+//! Passes on functions. Compile times of adversarial shaders are linear in their length: programs for that
+//! are so large that any pass with quadratic cost would take minutes, or exhaust the memory.
 
 use toyproof_diagnostic::{File, Files, Span};
 use toyproof_glsl::tree::Place;
@@ -12,6 +12,7 @@ use crate::lower::linearize::{LinearCode, Step, linearize};
 use crate::opt::dce::eliminate_dead_code;
 use crate::opt::divergence::Divergence;
 use crate::opt::gvn::number_values;
+use crate::opt::pair::pair;
 
 /// Builds a function of words, with a divergent condition.
 struct FunctionBuilder {
@@ -209,6 +210,68 @@ fn a_branch_used_only_by_its_own_condition_is_removed() {
         _ => None,
     });
     assert_eq!(inside, Some(1));
+}
+
+/// A division by `divisor`, and what the pass makes of it.
+fn reduced_division(divisor: f64) -> Option<(Operation, ValueDef)> {
+    let mut builder = FunctionBuilder::new(1, 0, 0);
+    let mut body = std::mem::take(&mut builder.function.body);
+    let x = builder.value(ValueDef::FragCoord(Axis::Y));
+    let constant = builder.value(ValueDef::Float(divisor.to_bits()));
+    let quotient = builder.make(
+        ValueDef::Operation(Operation::Div, [x, constant, NONE]),
+        &mut body,
+    );
+    let bits = builder.make(
+        ValueDef::Operation(Operation::ToBits, [quotient, NONE, NONE]),
+        &mut body,
+    );
+    body.push(store(0, bits));
+    builder.function.body = body;
+    let mut function = builder.output([0, 0]);
+    number_values(&mut function, false);
+    function.body.iter().find_map(|node| match node {
+        Node::Let(value) => match function.def(*value) {
+            ValueDef::Operation(operation @ (Operation::Mul | Operation::Div), [_, by, _]) => {
+                Some((operation, function.def(by)))
+            }
+            _ => None,
+        },
+        _ => None,
+    })
+}
+
+#[test]
+fn a_division_by_a_power_of_two_becomes_a_multiplication() {
+    let float = |number: f64| ValueDef::Float(number.to_bits());
+    for (divisor, factor) in [(16_777_216.0, 1.0 / 16_777_216.0), (-0.25, -4.0)] {
+        assert_eq!(reduced_division(divisor), Some((Operation::Mul, float(factor))));
+    }
+    // Other reciprocals are rounded, or denormal in f32.
+    for divisor in [3.0, 0.1, 0.0, f64::INFINITY, f64::exp2(127.0), f64::exp2(-127.0)] {
+        assert_eq!(reduced_division(divisor), Some((Operation::Div, float(divisor))));
+    }
+}
+
+#[test]
+fn the_sine_and_the_cosine_of_an_angle_become_neighbors() {
+    let mut builder = FunctionBuilder::new(1, 0, 0);
+    let mut body = Block::new();
+    let [x, y] = [Axis::X, Axis::Y].map(|axis| builder.value(ValueDef::FragCoord(axis)));
+    let mut function_of =
+        |operation, angle| builder.make(ValueDef::Operation(operation, [angle, NONE, NONE]), &mut body);
+    let cosine = function_of(Operation::Cos, x);
+    let other = function_of(Operation::Sin, y);
+    let root = function_of(Operation::Sqrt, x);
+    let sine = function_of(Operation::Sin, x);
+    let last = function_of(Operation::Cos, root);
+    builder.function.body = body;
+    pair(&mut builder.function);
+    let values = builder.function.body.iter().map(|node| match node {
+        Node::Let(value) => *value,
+        _ => NONE,
+    });
+    assert_eq!(values.collect::<Vec<_>>(), [cosine, sine, other, root, last]);
 }
 
 /// A loop in which each cell takes the value of the next one.

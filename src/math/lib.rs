@@ -40,7 +40,7 @@ pub use self::exponential::{
 };
 pub use self::expr_graph::{Binary, ExprGraph, FloatTerm, Kind, Step, StepId, Unary};
 pub use self::float::{Bits, Float, Number, Word};
-pub use self::trigonometric::{acos, asin, atan, atan2, cos, sin, tan};
+pub use self::trigonometric::{acos, asin, atan, atan2, cos, sin, sin_cos, tan};
 
 /// Transcendental functions of f32 that flush denormal arguments and results, as drivers do.
 ///
@@ -58,6 +58,14 @@ pub mod native {
             bits
         };
         f32::from_bits(kept)
+    }
+
+    /// `sin` and `cos`
+    #[inline(always)]
+    #[must_use]
+    pub fn sin_cos(x: f32) -> (f32, f32) {
+        let (sine, cosine) = super::sin_cos(flush(x));
+        (flush(sine), flush(cosine))
     }
 
     macro_rules! flushing {

@@ -18,9 +18,8 @@ use super::two_float::TwoFloat;
 #[must_use]
 pub fn sin<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
-    let value = TwoFloat::select(is_odd::<F>(quadrant), cosine(r), sine(r)).value();
-    let value = negate_if(negate_if(value, quadrant << 30), x.to_bits());
-    F::select(is_finite(x), value, nan(x))
+    let value = TwoFloat::select(is_odd::<F>(quadrant), cosine(r), sine(r));
+    signed_sine(x, quadrant, value)
 }
 
 /// `cos(x)`, x in radians; NaN for infinities.
@@ -28,8 +27,33 @@ pub fn sin<F: Float>(x: F) -> F {
 #[must_use]
 pub fn cos<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
-    let value = TwoFloat::select(is_odd::<F>(quadrant), sine(r), cosine(r)).value();
-    let value = negate_if(value, (quadrant + 1) << 30);
+    let value = TwoFloat::select(is_odd::<F>(quadrant), sine(r), cosine(r));
+    signed_cosine(x, quadrant, value)
+}
+
+/// `sin(x)` and `cos(x)`, with the bits that they have alone.
+#[inline(always)]
+#[must_use]
+pub fn sin_cos<F: Float>(x: F) -> (F, F) {
+    let (r, quadrant) = reduce(x);
+    let (odd, sine, cosine) = (is_odd::<F>(quadrant), sine(r), cosine(r));
+    (
+        signed_sine(x, quadrant, TwoFloat::select(odd, cosine, sine)),
+        signed_cosine(x, quadrant, TwoFloat::select(odd, sine, cosine)),
+    )
+}
+
+/// `sin(x)` with its sign, from the magnitude in x's quadrant.
+#[inline(always)]
+fn signed_sine<F: Float>(x: F, quadrant: F::Bits, value: TwoFloat<F>) -> F {
+    let value = negate_if(negate_if(value.value(), quadrant << 30), x.to_bits());
+    F::select(is_finite(x), value, nan(x))
+}
+
+/// `cos(x)` with its sign, from the magnitude in x's quadrant.
+#[inline(always)]
+fn signed_cosine<F: Float>(x: F, quadrant: F::Bits, value: TwoFloat<F>) -> F {
+    let value = negate_if(value.value(), (quadrant + 1) << 30);
     F::select(is_finite(x), value, nan(x))
 }
 

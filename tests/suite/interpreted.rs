@@ -140,7 +140,7 @@ fn lookups_and_derivatives_are_interpreted_to_the_bit() {
 }
 
 /// Statements, effects and variables that random programs do not have.
-const PROGRAMS: [&str; 7] = [
+const PROGRAMS: [&str; 8] = [
     // The depth is zero once, not where it is mentioned.
     "for (int i = 0; i < 3; i++) { c.x += gl_FragDepth; gl_FragDepth += 1.0; }",
     "if (p.x > 3.0) { gl_FragDepth = 3.0; } c.y = gl_FragDepth; if (p.y > 2.0) c.x = gl_PointCoord.x; c.z = gl_PointCoord.y;",
@@ -149,6 +149,8 @@ const PROGRAMS: [&str; 7] = [
     "int i = 0; do { if (i == 2) continue; c.x += float(i); } while (i++ < int(p.x)); while (bool go = c.y < p.y) { c.y += float(go); }",
     "float whole; c.x = modf(-p.x * 1.7, whole); c.y = whole; vec2 w; c.zw = modf(p / 3.0, w); c.xy += w;",
     "int k = int(p.x) - 3; int a[3]; a[0] = 1; a[1] = 2; a[2] = 3; c = vec4(a[k], 7 / k, -7 % k, 1 << (k * 20)); c.x += pow(p.x - 2.5, 0.5);",
+    // Sines and cosines of the same angle: one after the other, behind effects and branches, and where only one is reached.
+    "float a = p.x * p.y; c.x = cos(a); a += c.x; c.y = sin(a) + cos(a); if (p.x > 4.0) { c.z = sin(p.x); } c.w = cos(p.x); for (int i = 0; i < 3; i++) { c.z += sin(a); if (c.z > 1.0) break; c.w -= cos(a); a = -a * 1.7; }",
 ];
 
 #[test]

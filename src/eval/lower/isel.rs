@@ -7,12 +7,13 @@ use toyproof_image::Frame;
 use crate::batch::LANES;
 use crate::frame::{float_input, frame_counter};
 use crate::ir::Kind;
-use crate::ir::{NONE, Value, ValueDef};
+use crate::ir::{NONE, Operation, Value, ValueDef};
 use crate::lower::linearize::Step;
 use crate::lower::regalloc::Location;
 use crate::number::Number;
 use crate::observe::Predicate;
 use crate::ops::{self, Instruction, Level};
+use crate::opt::pair::partner;
 use crate::program::Compiled;
 
 /// Executable code for one number type and frame.
@@ -159,27 +160,72 @@ impl<N: Number> Writer<'_, N> {
     /// Emits all steps; returns also the first instruction of each, and the end.
     fn steps(&mut self) -> (Vec<Instruction<N>>, Vec<u32>) {
         let linear = &self.compiled.linear;
+        let jumps = linear
+            .steps
+            .iter()
+            .enumerate()
+            .filter_map(|(at, (step, _))| match *step {
+                Step::Split { empty: to, .. }
+                | Step::Remove { empty: to, .. }
+                | Step::JumpIfEmpty(to)
+                | Step::Jump(to)
+                | Step::JumpIf { to, .. } => Some((at, to as usize)),
+                _ => None,
+            });
+        let mut is_target = vec![false; linear.steps.len() + 1];
+        for (_, to) in jumps.clone() {
+            is_target[to] = true;
+        }
         let mut positions = Vec::with_capacity(linear.steps.len() + 1);
+        let mut is_done = false;
         for (at, (step, mask)) in linear.steps.iter().enumerate() {
             positions.push(self.code.len() as u32);
             self.mask = u32::from(mask.0);
-            if !self.compiled.locations.elided[at] {
+            if std::mem::take(&mut is_done) || self.compiled.locations.elided[at] {
+                continue;
+            }
+            is_done = !is_target[at + 1] && self.sine_and_cosine(at);
+            if !is_done {
                 self.step(step);
             }
         }
         positions.push(self.code.len() as u32);
         let mut code = std::mem::take(&mut self.code);
-        for (at, (step, _)) in linear.steps.iter().enumerate() {
-            if let Step::Split { empty: to, .. }
-            | Step::Remove { empty: to, .. }
-            | Step::JumpIfEmpty(to)
-            | Step::Jump(to)
-            | Step::JumpIf { to, .. } = step
-            {
-                code[positions[at] as usize].to = positions[*to as usize];
-            }
+        for (at, to) in jumps {
+            code[positions[at] as usize].to = positions[to];
         }
         (code, positions)
+    }
+
+    /// Emits one instruction for a step and the next if they compute the sine and the cosine of an angle.
+    fn sine_and_cosine(&mut self, at: usize) -> bool {
+        let Compiled {
+            function,
+            linear,
+            locations,
+            ..
+        } = self.compiled;
+        let (Some((Step::Compute(first), mask)), Some((Step::Compute(second), next_mask))) =
+            (linear.steps.get(at), linear.steps.get(at + 1))
+        else {
+            return false;
+        };
+        let (ValueDef::Operation(operation, [angle, ..]), ValueDef::Operation(other, [other_angle, ..])) =
+            (function.def(*first), function.def(*second))
+        else {
+            return false;
+        };
+        let is_pair = partner(operation) == Some(other)
+            && (angle, mask) == (other_angle, next_mask)
+            && !locations.elided[at + 1];
+        let [(angle, has_row), (out, out_is_row), (to, to_is_row)] =
+            [angle, *first, *second].map(|value| self.value(value));
+        if !(is_pair && has_row && out_is_row && to_is_row) {
+            return false;
+        }
+        let run = ops::sine_and_cosine(self.level, operation == Operation::Sin);
+        self.push(run, out, [angle, 0, 0], to);
+        true
     }
 
     fn step(&mut self, step: &Step) {

@@ -87,6 +87,42 @@ where
     }
 }
 
+/// The sine and the cosine of a row into the rows `out` and `to`, or the other way round.
+struct SineAndCosine<const SINE_FIRST: bool>;
+
+impl<N: Number, const SINE_FIRST: bool> Run<N> for SineAndCosine<SINE_FIRST> {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        let angle = batch.float_row(instruction.operands[0]);
+        let [out, to] = [instruction.out, instruction.to].map(|row| batch.float_row(row));
+        let [sines, cosines] = if SINE_FIRST { [out, to] } else { [to, out] };
+        let noise = batch.noise;
+        for_each_chunk!(batch, instruction.mask, chunk => {
+            let (sine, cosine) = N::sin_cos(angle[chunk].get(), noise);
+            sines[chunk].set(sine);
+            cosines[chunk].set(cosine);
+        });
+        at + 1
+    }
+}
+
+/// Returns the handler of the sine and the cosine of a row.
+pub(crate) fn sine_and_cosine<N: Number>(level: Level, sine_first: bool) -> Handler<N> {
+    #[cfg(target_arch = "x86_64")]
+    if level == Level::Avx512 {
+        return if sine_first {
+            avx512::<N, SineAndCosine<true>>
+        } else {
+            avx512::<N, SineAndCosine<false>>
+        };
+    }
+    if sine_first {
+        handler::<N, SineAndCosine<true>>(level)
+    } else {
+        handler::<N, SineAndCosine<false>>(level)
+    }
+}
+
 /// Any operation on scalars, into a scalar. `to` is the operation: scalars take so little of the time that one
 /// handler serves all.
 struct Scalars;

@@ -4,3 +4,4 @@ pub(crate) mod dce;
 pub(crate) mod divergence;
 pub(crate) mod fuse;
 pub(crate) mod gvn;
+pub(crate) mod pair;

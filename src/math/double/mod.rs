@@ -25,7 +25,7 @@ mod tests;
 
 pub use self::exponential::{exp, log};
 pub use self::power::pow;
-pub use self::trigonometric::{cos, sin};
+pub use self::trigonometric::{cos, sin, sin_cos};
 
 /// A float to which an integer of less than 51 bits is added to convert it: the sum has the integer, in two's
 /// complement, in its lowest bits. Rounding to the nearest integer is the same sum.

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::{cos, exp, log, pow, sin};
+use super::{cos, exp, log, pow, sin, sin_cos};
 
 type Function = (fn([f64; 8]) -> [f64; 8], fn(f64) -> f64);
 
@@ -129,10 +129,12 @@ proptest! {
     ) {
         let [sines, cosines, exponentials, logarithms] = [sin(x), cos(x), exp(y), log(y)];
         let powers = pow(x, y);
+        let pairs = sin_cos(x);
         for lane in 0..8 {
             let ([x], [y]) = ([x[lane]], [y[lane]]);
             prop_assert!(is_same(sin([x])[0], sines[lane]));
             prop_assert!(is_same(cos([x])[0], cosines[lane]));
+            prop_assert!(is_same(sines[lane], pairs.0[lane]) && is_same(cosines[lane], pairs.1[lane]));
             prop_assert!(is_same(exp([y])[0], exponentials[lane]));
             prop_assert!(is_same(log([y])[0], logarithms[lane]));
             prop_assert!(is_same(pow([x], [y])[0], powers[lane]));

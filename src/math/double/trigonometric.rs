@@ -12,19 +12,41 @@ use super::{FRACTION, INTEGER};
 #[inline(always)]
 #[must_use]
 pub fn sin<const L: usize>(x: [f64; L]) -> [f64; L] {
-    sin_of_sum(x, 0)
+    sines(reduce_all(x), 0)
 }
 
 /// `cos(x)`, x in radians; NaN for infinities.
 #[inline(always)]
 #[must_use]
 pub fn cos<const L: usize>(x: [f64; L]) -> [f64; L] {
-    sin_of_sum(x, 1)
+    sines(reduce_all(x), 1)
 }
 
-/// The sine of `x + quadrants·π/2`.
+/// `sin(x)` and `cos(x)`, with the bits that they have alone.
 #[inline(always)]
-fn sin_of_sum<const L: usize>(x: [f64; L], quadrants: u64) -> [f64; L] {
+#[must_use]
+pub fn sin_cos<const L: usize>(x: [f64; L]) -> ([f64; L], [f64; L]) {
+    let reduced = reduce_all(x);
+    let (mut sin, mut cos) = ([0.0; L], [0.0; L]);
+    for lane in 0..L {
+        (sin[lane], cos[lane]) = (reduced[lane].sin(0), reduced[lane].sin(1));
+    }
+    (sin, cos)
+}
+
+/// The sines of the angles plus `quadrants·π/2`.
+#[inline(always)]
+fn sines<const L: usize>(reduced: [Reduced; L], quadrants: u64) -> [f64; L] {
+    let mut results = [0.0; L];
+    for lane in 0..L {
+        results[lane] = reduced[lane].sin(quadrants);
+    }
+    results
+}
+
+/// Reduces each angle.
+#[inline(always)]
+fn reduce_all<const L: usize>(x: [f64; L]) -> [Reduced; L] {
     let mut reduced = [Reduced::default(); L];
     let mut irregular = 0;
     for lane in 0..L {
@@ -38,11 +60,7 @@ fn sin_of_sum<const L: usize>(x: [f64; L], quadrants: u64) -> [f64; L] {
             }
         }
     }
-    let mut results = [0.0; L];
-    for lane in 0..L {
-        results[lane] = reduced[lane].sin(quadrants);
-    }
-    results
+    reduced
 }
 
 /// An angle `head + tail + quadrants·π/2`; only the lowest two bits of `quadrants` count.

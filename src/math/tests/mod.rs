@@ -5,7 +5,7 @@ mod accuracy;
 use proptest::prelude::*;
 
 use super::{
-    Matrix, cross, determinant, distance, dot, faceforward, inverse, length, mix, modulo, normalize,
+    Matrix, cross, determinant, distance, dot, faceforward, inverse, length, mix, modulo, native, normalize,
     outer_product, reflect, refract, smoothstep,
 };
 
@@ -54,6 +54,15 @@ proptest! {
         prop_assert!(near(dot(&w, &m.times_vector(&v)), dot(&m.vector_times(&w), &v)));
         let outer = outer_product(&w, &v);
         prop_assert!(outer.times_vector(&v).iter().zip(&w).all(|(&a, &w)| near(a, w * dot(&v, &v))));
+    }
+
+    #[test]
+    fn a_sine_and_cosine_have_the_bits_that_they_have_alone(bits in any::<u32>(), small in -100.0_f32..100.0) {
+        for x in [f32::from_bits(bits), small] {
+            let (sine, cosine) = native::sin_cos(x);
+            prop_assert_eq!(sine.to_bits(), native::sin(x).to_bits());
+            prop_assert_eq!(cosine.to_bits(), native::cos(x).to_bits());
+        }
     }
 
     #[test]
