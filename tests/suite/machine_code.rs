@@ -105,3 +105,24 @@ fn branches_exchange_variables() {
         compare::<f64>("exchanges", &program, undefined, &frame);
     }
 }
+
+/// A variable that has one value for all pixels, and is set to a derivative of one.
+#[test]
+fn a_uniform_variable_may_be_a_derivative() {
+    let text = "float rate = 3.0; vec2 slope = vec2(2.5);\n\
+                void mainImage(out vec4 color, in vec2 at) {\n\
+                    color = vec4(at, 0.0, 1.0);\n\
+                    for (int i = 0; i < iFrame + 2; i++) {\n\
+                        color.xy += slope * at;\n\
+                        slope.x = dFdx(rate);\n\
+                        rate += 1.5;\n\
+                    }\n\
+                }\n";
+    let program = Program::new(&checked(text)).unwrap();
+    let frame = Frame {
+        size: [32, 18],
+        ..Frame::default()
+    };
+    compare::<f32>("derivative", &program, UndefinedPolicy::Plain, &frame);
+    compare::<f64>("derivative", &program, UndefinedPolicy::Plain, &frame);
+}

@@ -154,12 +154,14 @@ fn classify(step: &Step, stored: &[bool], compiled: &Compiled) -> Option<Class> 
             // A variable must keep its value until the region before has read it.
             let changes_variable = is_scalar && stored[value.0 as usize];
             match function.def(value) {
+                // A scalar has no neighbors in its vector.
+                ValueDef::Operation(Operation::DFdx | Operation::DFdy, _) if changes_variable => Class::Call,
+                ValueDef::Operation(Operation::DFdx | Operation::DFdy, _) if is_scalar => Class::ScalarCall,
                 ValueDef::Operation(operation, _) if changes_variable && has_vector_form(operation) => {
                     Class::ScalarStore
                 }
                 _ if changes_variable => Class::Call,
                 ValueDef::Operation(operation, _) if is_row && has_vector_form(operation) => Class::Vector,
-                ValueDef::Operation(Operation::DFdx | Operation::DFdy, _) if is_scalar => Class::ScalarCall,
                 ValueDef::Operation(operation, _) if is_scalar && has_vector_form(operation) => Class::Scalar,
                 ValueDef::Load(_) if is_row => Class::Vector,
                 ValueDef::Load(_) if is_scalar => Class::Scalar,
