@@ -141,8 +141,8 @@ impl<'a, N: Number> FrameJob<'a, N> {
         }
     }
 
-    /// Renders the row of tiles whose lowest row of pixels is `first`; `keep` converts the color and flags of a
-    /// pixel to its stored value. Tiles without wanted pixels are left as they are.
+    /// Renders the row of tiles whose lowest row of pixels is `first`; `keep` converts the color and flags of
+    /// a pixel to its stored value. Tiles without wanted pixels are left as they are.
     pub(crate) fn render_band<P>(
         &self,
         batch: &mut Batch<'_, N>,

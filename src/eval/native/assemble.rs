@@ -422,7 +422,8 @@ impl Assembler {
         }
     }
 
-    /// `to = yes` where the highest bit of `mask` is set, else `no`. All bits of a lane of `mask` are the same.
+    /// `to = yes` where the highest bit of `mask` is set, else `no`. All bits of a lane of `mask` are the
+    /// same.
     pub(super) fn blend(
         &mut self,
         op: Opcode,

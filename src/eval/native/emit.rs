@@ -4,15 +4,17 @@
 //! is moved to the stack (Belady, “A Study of Replacement Algorithms for a Virtual-Storage Computer”, IBM
 //! Systems Journal 5(2), 1966).
 
-use crate::opt::gvn::log::Map;
+mod guard;
 
+use self::guard::Snapshot;
 use super::assemble::{
     Arithmetic, Assembler, Condition, Gpr, Label, Memory, R8, R9, R12, R13, R14, R15, RAX, RBP, RBX, RCX,
     RDX, RSI, RSP, Source, Vector, Vectors, op,
 };
-use super::node::{Action, Bank, Guard, Item, NO_NODE, NodeId, Precision, Region, Row};
+use super::node::{Action, Bank, Item, NO_NODE, NodeId, Precision, Region, Row};
 use super::run::offsets;
 use crate::ir::Kind;
+use crate::opt::gvn::log::Map;
 
 /// The base registers of the tables in memory, which stay the same.
 pub(super) const FLOATS: Gpr = RBX;
@@ -206,61 +208,6 @@ const NO_REGISTER: u8 = u8::MAX;
 const NO_SLOT: u32 = u32::MAX;
 const NEVER: u32 = u32::MAX;
 
-/// The state at the start of a guard, which its end restores.
-struct Snapshot {
-    held: [NodeId; REGISTERS],
-    slots: [u32; REGISTERS],
-    reserved: u16,
-    end: Label,
-}
-
-/// A node to be moved to a register, from another or [`NO_REGISTER`].
-struct Move {
-    to: Vector,
-    from: Vector,
-    node: NodeId,
-}
-
-/// Calls a function with each node that an item uses. Merges whose result is not needed use none.
-fn for_each_operand(region: &Region, item: &Item, live: &[bool], visit: &mut dyn FnMut(NodeId)) {
-    match item {
-        Item::Compute(node) if live[*node as usize] => {
-            let operands = region.nodes[*node as usize].operands;
-            let operands = operands.into_iter().filter(|&operand| operand != NO_NODE);
-            operands.for_each(visit);
-        }
-        Item::Compute(_) => {}
-        Item::Store(_, node, _) | Item::Note(node, _) => visit(*node),
-        Item::Guard(guard) => visit(guard.mask),
-        Item::EndGuard(start) => {
-            let merges = merges(region, *start).iter();
-            let needed = merges.filter(|[merge, _]| live[*merge as usize]);
-            needed.flatten().copied().for_each(visit);
-        }
-    }
-}
-
-/// The merges of the guard at an index.
-fn merges(region: &Region, start: usize) -> &[[NodeId; 2]] {
-    match &region.items[start] {
-        Item::Guard(guard) => &guard.merges,
-        _ => &[],
-    }
-}
-
-/// Returns which nodes what is stored or noted depends on.
-fn live_nodes(region: &Region) -> Vec<bool> {
-    let mut live = vec![false; region.nodes.len()];
-    for item in region.items.iter().rev() {
-        let mut used = Vec::new();
-        for_each_operand(region, item, &live, &mut |node| used.push(node));
-        for node in used {
-            live[node as usize] = true;
-        }
-    }
-    live
-}
-
 struct Registers<'a> {
     code: &'a mut Assembler,
     frame: &'a mut Frame,
@@ -295,10 +242,10 @@ struct Registers<'a> {
 impl<'a> Registers<'a> {
     fn new(code: &'a mut Assembler, frame: &'a mut Frame, region: &'a Region, scalar: bool) -> Self {
         let count = region.nodes.len();
-        let live = live_nodes(region);
+        let live = region.live_nodes();
         let for_each_use = |visit: &mut dyn FnMut(NodeId, u32)| {
             for (at, item) in (0..).zip(&region.items) {
-                for_each_operand(region, item, &live, &mut |node| visit(node, at));
+                region.for_each_operand(item, &live, &mut |node| visit(node, at));
             }
         };
         let mut first_use = vec![0; count + 1];
@@ -358,7 +305,7 @@ impl<'a> Registers<'a> {
                     self.used(*node, at);
                 }
                 Item::Guard(guard) => self.begin_guard(guard, at),
-                Item::EndGuard(start) => self.end_guard(merges(self.region, *start), at),
+                Item::EndGuard(start) => self.end_guard(self.region.merges(*start), at),
                 Item::Note(node, site) => self.note(*node, *site, at),
             }
             if self.slot_count > MAX_SLOTS {
@@ -676,123 +623,6 @@ impl<'a> Registers<'a> {
         };
         let to = Source::Memory(place(self.frame, row));
         self.code.unary(op::VMOVAPS_STORE, wide, register, to);
-    }
-
-    fn begin_guard(&mut self, guard: &Guard, at: u32) {
-        let register = self.load(guard.mask, 0);
-        for &row in &guard.rows {
-            self.keep_old(row, guard.before, at, 1 << register);
-        }
-        let end = self.code.label();
-        let wide = self.region.nodes[guard.mask as usize].wide;
-        self.code.test(wide, register);
-        self.code.jump_if(Condition::Zero, end);
-        self.used(guard.mask, at);
-        let slots = self.held.map(|node| match node {
-            NO_NODE => NO_SLOT,
-            node => self.slots[node as usize],
-        });
-        self.guards.push(Snapshot {
-            held: self.held,
-            slots,
-            reserved: self.reserved,
-            end,
-        });
-        // Their registers are free until they are assigned again, and best used for what is assigned.
-        for &[merge, last] in &guard.merges {
-            let register = self.register_of[merge as usize];
-            if register != NO_REGISTER {
-                self.held[usize::from(register)] = NO_NODE;
-                self.register_of[merge as usize] = NO_REGISTER;
-                self.hints[last as usize] = register;
-                self.reserved |= 1 << register;
-            }
-        }
-    }
-
-    fn end_guard(&mut self, merges: &[[NodeId; 2]], at: u32) {
-        let Some(Snapshot {
-            held,
-            slots,
-            reserved,
-            end,
-        }) = self.guards.pop()
-        else {
-            return;
-        };
-        self.reserved = reserved;
-        let needed = merges.iter().filter(|[merge, _]| self.is_used_after(*merge, at));
-        let needed: Vec<[NodeId; 2]> = needed.copied().collect();
-        let mut moves = Vec::new();
-        for &[merge, last] in &needed {
-            let from = self.register_of[last as usize];
-            if let Some(to) = held.iter().position(|&node| node == merge) {
-                moves.push(Move {
-                    to: to as Vector,
-                    from,
-                    node: last,
-                });
-            } else {
-                let from = if from == NO_REGISTER {
-                    self.load_into(last, SCRATCH);
-                    SCRATCH
-                } else {
-                    from
-                };
-                let to = Source::Memory(self.slot(self.slots[merge as usize]));
-                self.code.unary(op::VMOVAPS_STORE, true, from, to);
-            }
-        }
-        self.move_together(moves);
-        let mut current = std::mem::replace(&mut self.held, [NO_NODE; REGISTERS]);
-        for node in current.into_iter().filter(|&node| node != NO_NODE) {
-            self.register_of[node as usize] = NO_REGISTER;
-        }
-        for &[merge, last] in &needed {
-            if let Some(register) = held.iter().position(|&node| node == merge) {
-                current[register] = merge;
-                self.free_slot(merge);
-            }
-            self.used(last, at);
-            self.used(merge, at);
-        }
-        for register in 0..REGISTERS {
-            let node = held[register];
-            if node == NO_NODE || !self.is_used_after(node, at) {
-                continue;
-            }
-            if current[register] != node {
-                self.load_into(node, register as Vector);
-            }
-            self.hold(node, register as Vector);
-            // Where the guard was skipped, nothing was spilled in it.
-            if slots[register] == NO_SLOT {
-                self.free_slot(node);
-            }
-        }
-        self.code.bind(end);
-    }
-
-    /// Moves nodes as if all at once: none is overwritten before it has been moved.
-    fn move_together(&mut self, mut moves: Vec<Move>) {
-        while let Some(first) = moves.first() {
-            let is_free = |to: Vector| moves.iter().all(|other| other.to == to || other.from != to);
-            let Some(ready) = moves.iter().position(|one| is_free(one.to)) else {
-                // All are in cycles.
-                let to = first.to;
-                self.copy(true, SCRATCH, Source::Register(to));
-                for other in moves.iter_mut().filter(|other| other.from == to) {
-                    other.from = SCRATCH;
-                }
-                continue;
-            };
-            let Move { to, from, node } = moves.swap_remove(ready);
-            if from == NO_REGISTER {
-                self.load_into(node, to);
-            } else {
-                self.copy(true, to, Source::Register(from));
-            }
-        }
     }
 
     fn note(&mut self, node: NodeId, site: u32, at: u32) {

@@ -1,10 +1,11 @@
-//! Machine code for AVX2 and AVX-512: what the handlers of [`ops`](crate::ops) do, without their traffic to memory.
+//! Machine code for AVX2 and AVX-512: what the handlers of [`ops`](crate::ops) do, without their traffic to
+//! memory.
 //!
 //! A handler reads and writes rows of 256 pixels for each operation. Machine code keeps values in registers
 //! over a whole *region*, a part of the program without loops, for one vector of pixels after the other
-//! (`plan`: which steps form regions; `lift` and `operation`: their `node`s; `emit`: registers and instructions;
-//! `assemble`, `evex`: bytes; `run`: memory, and calls). What has no form there is executed by its handler. The bits
-//! are the same: tests compare both.
+//! (`plan`: which steps form regions; `lift` and `operation`: their `node`s; `emit`: registers and
+//! instructions; `assemble`, `evex`: bytes; `run`: memory, and calls). What has no form there is executed by
+//! its handler. The bits are the same: tests compare both.
 //!
 //! In f32, the processor flushes denormal results. Rust code must not change MXCSR, but machine code may, as
 //! long as it restores it. The processor decides after rounding whether a result is denormal, and
@@ -45,7 +46,8 @@ use crate::number::Number;
 use crate::program::Compiled;
 use crate::render::Engine;
 
-/// The machine code of a program for each kind of vectors and each [`Precision`], made when it is first needed.
+/// The machine code of a program for each kind of vectors and each [`Precision`], made when it is first
+/// needed.
 #[derive(Debug, Default)]
 pub(crate) struct Cache([[OnceLock<Option<Executable>>; 3]; 2]);
 

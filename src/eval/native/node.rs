@@ -114,6 +114,48 @@ pub(super) struct Region {
     pub(super) masks: Vec<u32>,
 }
 
+impl Region {
+    /// The merges of the guard at an index.
+    pub(super) fn merges(&self, start: usize) -> &[[NodeId; 2]] {
+        match &self.items[start] {
+            Item::Guard(guard) => &guard.merges,
+            _ => &[],
+        }
+    }
+
+    /// Calls a function with each node that an item uses. Merges whose result is not needed use none.
+    pub(super) fn for_each_operand(&self, item: &Item, live: &[bool], visit: &mut dyn FnMut(NodeId)) {
+        match item {
+            Item::Compute(node) if live[*node as usize] => {
+                let operands = self.nodes[*node as usize].operands;
+                let operands = operands.into_iter().filter(|&operand| operand != NO_NODE);
+                operands.for_each(visit);
+            }
+            Item::Compute(_) => {}
+            Item::Store(_, node, _) | Item::Note(node, _) => visit(*node),
+            Item::Guard(guard) => visit(guard.mask),
+            Item::EndGuard(start) => {
+                let merges = self.merges(*start).iter();
+                let needed = merges.filter(|[merge, _]| live[*merge as usize]);
+                needed.flatten().copied().for_each(visit);
+            }
+        }
+    }
+
+    /// Returns which nodes what is stored or noted depends on.
+    pub(super) fn live_nodes(&self) -> Vec<bool> {
+        let mut live = vec![false; self.nodes.len()];
+        for item in self.items.iter().rev() {
+            let mut used = Vec::new();
+            self.for_each_operand(item, &live, &mut |node| used.push(node));
+            for node in used {
+                live[node as usize] = true;
+            }
+        }
+        live
+    }
+}
+
 /// The constants of a program.
 #[derive(Debug, Default)]
 pub(super) struct Pool {

@@ -1,5 +1,5 @@
-//! Strength reduction: operations with known operands are replaced by cheaper ones with the same bits in every
-//! number type.
+//! Strength reduction: operations with known operands are replaced by cheaper ones, which have the same bits
+//! in every number type.
 
 use super::ValueNumbering;
 use crate::ir::{Operation, Value, ValueDef};

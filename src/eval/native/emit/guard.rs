@@ -1,0 +1,142 @@
+//! Guards: what is in registers is the same on the way around a guard and behind it, except that the end of a
+//! guard assigns merges.
+
+use super::{NO_NODE, NO_REGISTER, NO_SLOT, NodeId, REGISTERS, Registers, SCRATCH};
+use crate::native::assemble::{Condition, Label, Source, Vector, op};
+use crate::native::node::Guard;
+
+/// The state at the start of a guard, which its end restores.
+pub(super) struct Snapshot {
+    held: [NodeId; REGISTERS],
+    slots: [u32; REGISTERS],
+    reserved: u16,
+    end: Label,
+}
+
+/// A node to be moved to a register, from another or [`NO_REGISTER`].
+struct Move {
+    to: Vector,
+    from: Vector,
+    node: NodeId,
+}
+
+impl Registers<'_> {
+    /// Skips the items up to the end of a guard if its mask is empty.
+    pub(super) fn begin_guard(&mut self, guard: &Guard, at: u32) {
+        let register = self.load(guard.mask, 0);
+        for &row in &guard.rows {
+            self.keep_old(row, guard.before, at, 1 << register);
+        }
+        let end = self.code.label();
+        let wide = self.region.nodes[guard.mask as usize].wide;
+        self.code.test(wide, register);
+        self.code.jump_if(Condition::Zero, end);
+        self.used(guard.mask, at);
+        let slots = self.held.map(|node| match node {
+            NO_NODE => NO_SLOT,
+            node => self.slots[node as usize],
+        });
+        self.guards.push(Snapshot {
+            held: self.held,
+            slots,
+            reserved: self.reserved,
+            end,
+        });
+        // Their registers are free until they are assigned again, and best used for what is assigned.
+        for &[merge, last] in &guard.merges {
+            let register = self.register_of[merge as usize];
+            if register != NO_REGISTER {
+                self.held[usize::from(register)] = NO_NODE;
+                self.register_of[merge as usize] = NO_REGISTER;
+                self.hints[last as usize] = register;
+                self.reserved |= 1 << register;
+            }
+        }
+    }
+
+    /// Ends the last guard: assigns its merges, and restores the registers that it began with.
+    pub(super) fn end_guard(&mut self, merges: &[[NodeId; 2]], at: u32) {
+        let Some(Snapshot {
+            held,
+            slots,
+            reserved,
+            end,
+        }) = self.guards.pop()
+        else {
+            return;
+        };
+        self.reserved = reserved;
+        let needed = merges.iter().filter(|[merge, _]| self.is_used_after(*merge, at));
+        let needed: Vec<[NodeId; 2]> = needed.copied().collect();
+        let mut moves = Vec::new();
+        for &[merge, last] in &needed {
+            let from = self.register_of[last as usize];
+            if let Some(to) = held.iter().position(|&node| node == merge) {
+                moves.push(Move {
+                    to: to as Vector,
+                    from,
+                    node: last,
+                });
+            } else {
+                let from = if from == NO_REGISTER {
+                    self.load_into(last, SCRATCH);
+                    SCRATCH
+                } else {
+                    from
+                };
+                let to = Source::Memory(self.slot(self.slots[merge as usize]));
+                self.code.unary(op::VMOVAPS_STORE, true, from, to);
+            }
+        }
+        self.move_together(moves);
+        let mut current = std::mem::replace(&mut self.held, [NO_NODE; REGISTERS]);
+        for node in current.into_iter().filter(|&node| node != NO_NODE) {
+            self.register_of[node as usize] = NO_REGISTER;
+        }
+        for &[merge, last] in &needed {
+            if let Some(register) = held.iter().position(|&node| node == merge) {
+                current[register] = merge;
+                self.free_slot(merge);
+            }
+            self.used(last, at);
+            self.used(merge, at);
+        }
+        for register in 0..REGISTERS {
+            let node = held[register];
+            if node == NO_NODE || !self.is_used_after(node, at) {
+                continue;
+            }
+            if current[register] != node {
+                self.load_into(node, register as Vector);
+            }
+            self.hold(node, register as Vector);
+            // Where the guard was skipped, nothing was spilled in it.
+            if slots[register] == NO_SLOT {
+                self.free_slot(node);
+            }
+        }
+        self.code.bind(end);
+    }
+
+    /// Moves nodes as if all at once: none is overwritten before it has been moved.
+    fn move_together(&mut self, mut moves: Vec<Move>) {
+        while let Some(first) = moves.first() {
+            let is_free = |to: Vector| moves.iter().all(|other| other.to == to || other.from != to);
+            let Some(ready) = moves.iter().position(|one| is_free(one.to)) else {
+                // All are in cycles.
+                let to = first.to;
+                self.copy(true, SCRATCH, Source::Register(to));
+                for other in moves.iter_mut().filter(|other| other.from == to) {
+                    other.from = SCRATCH;
+                }
+                continue;
+            };
+            let Move { to, from, node } = moves.swap_remove(ready);
+            if from == NO_REGISTER {
+                self.load_into(node, to);
+            } else {
+                self.copy(true, to, Source::Register(from));
+            }
+        }
+    }
+}
