@@ -212,44 +212,80 @@ fn a_branch_used_only_by_its_own_condition_is_removed() {
     assert_eq!(inside, Some(1));
 }
 
-/// A division by `divisor`, and what the pass makes of it.
-fn reduced_division(divisor: f64) -> Option<(Operation, ValueDef)> {
+/// Returns the operations that value numbering makes of a float, with the definitions of their operands.
+fn numbered(
+    float: impl FnOnce(&mut FunctionBuilder, &mut Block) -> Value,
+) -> Vec<(Operation, [Option<ValueDef>; 2])> {
     let mut builder = FunctionBuilder::new(1, 0, 0);
     let mut body = std::mem::take(&mut builder.function.body);
-    let x = builder.value(ValueDef::FragCoord(Axis::Y));
-    let constant = builder.value(ValueDef::Float(divisor.to_bits()));
-    let quotient = builder.make(
-        ValueDef::Operation(Operation::Div, [x, constant, NONE]),
-        &mut body,
-    );
-    let bits = builder.make(
-        ValueDef::Operation(Operation::ToBits, [quotient, NONE, NONE]),
-        &mut body,
-    );
+    let float = float(&mut builder, &mut body);
+    let bits = builder.make(operation(Operation::ToBits, [float, NONE]), &mut body);
     body.push(store(0, bits));
     builder.function.body = body;
     let mut function = builder.output([0, 0]);
     number_values(&mut function, false);
-    function.body.iter().find_map(|node| match node {
-        Node::Let(value) => match function.def(*value) {
-            ValueDef::Operation(operation @ (Operation::Mul | Operation::Div), [_, by, _]) => {
-                Some((operation, function.def(by)))
-            }
-            _ => None,
-        },
+    let defs = function.body.iter().filter_map(|node| match node {
+        Node::Let(value) => Some(function.def(*value)),
         _ => None,
-    })
+    });
+    let operations = defs.filter_map(|def| match def {
+        ValueDef::Operation(operation, [a, b, _]) => {
+            let operands = [a, b].map(|operand| (operand != NONE).then(|| function.def(operand)));
+            Some((operation, operands))
+        }
+        _ => None,
+    });
+    operations.collect()
+}
+
+fn operation(operation: Operation, [a, b]: [Value; 2]) -> ValueDef {
+    ValueDef::Operation(operation, [a, b, NONE])
 }
 
 #[test]
 fn a_division_by_a_power_of_two_becomes_a_multiplication() {
     let float = |number: f64| ValueDef::Float(number.to_bits());
+    let y = ValueDef::FragCoord(Axis::Y);
+    let quotient = |divisor: f64| {
+        numbered(|builder, body| {
+            let [y, divisor] = [y, float(divisor)].map(|def| builder.value(def));
+            builder.make(operation(Operation::Div, [y, divisor]), body)
+        })
+    };
     for (divisor, factor) in [(16_777_216.0, 1.0 / 16_777_216.0), (-0.25, -4.0)] {
-        assert_eq!(reduced_division(divisor), Some((Operation::Mul, float(factor))));
+        let product = (Operation::Mul, [Some(y), Some(float(factor))]);
+        assert!(quotient(divisor).contains(&product), "{divisor}");
     }
     // Other reciprocals are rounded, or denormal in f32.
     for divisor in [3.0, 0.1, 0.0, f64::INFINITY, f64::exp2(127.0), f64::exp2(-127.0)] {
-        assert_eq!(reduced_division(divisor), Some((Operation::Div, float(divisor))));
+        let same = (Operation::Div, [Some(y), Some(float(divisor))]);
+        assert!(quotient(divisor).contains(&same), "{divisor}");
+    }
+}
+
+#[test]
+fn a_word_whose_highest_bit_is_known_to_be_0_is_converted_as_an_integer() {
+    let conversions = |making: Operation, known: u32| {
+        let operations = numbered(|builder, body| {
+            let known = builder.word(known);
+            let word = builder.make(operation(making, [builder.varying, known]), body);
+            builder.make(operation(Operation::FromUint, [word, NONE]), body)
+        });
+        let operations = operations.into_iter().map(|(operation, _)| operation);
+        operations
+            .filter(|operation| matches!(operation, Operation::FromInt | Operation::FromUint))
+            .collect::<Vec<_>>()
+    };
+    for (making, known) in [(Operation::ShiftRightUint, 8), (Operation::And, 0x7FFF_FFFF)] {
+        assert_eq!(conversions(making, known), [Operation::FromInt]);
+    }
+    // A shift by 32 is one by 0.
+    for (making, known) in [
+        (Operation::ShiftRightUint, 32),
+        (Operation::ShiftRightInt, 8),
+        (Operation::And, 0x8000_0000),
+    ] {
+        assert_eq!(conversions(making, known), [Operation::FromUint]);
     }
 }
 

@@ -79,10 +79,8 @@ impl<'a, N: Number> FrameJob<'a, N> {
         size: [u32; 2],
     ) -> Self {
         let (floats, words) = prologue(prepared, settings, textures, limits);
-        let pays = match settings.engine {
-            Engine::Fastest => u64::from(size[0]) * u64::from(size[1]) >= MIN_NATIVE_PIXELS,
-            Engine::Handlers | Engine::Native | Engine::Avx2 => true,
-        };
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let pays = settings.engine != Engine::Fastest || pixels >= MIN_NATIVE_PIXELS;
         Self {
             native: pays.then(|| compiled.native(prepared, settings.engine)).flatten(),
             underflows: Underflows::default(),

@@ -184,3 +184,30 @@ fn arguments_are_interpreted_in_the_order_of_glslang() {
     let tally = tally.unwrap_or_else(|error| panic!("{error}"));
     assert!(tally.skipped.is_empty(), "{tally}");
 }
+
+/// Each derivative runs the quad again, up to where it is.
+#[test]
+fn derivatives_in_loops_are_limited_by_the_steps_of_all_runs() {
+    let text = "void mainImage(out vec4 c, in vec2 p) {
+            c = vec4(0.0);
+            for (int i = 0; i < 40; i++) { c.x += fwidth(c.x + p.x); }
+        }";
+    let checked = checked("program", text);
+    let frame = Frame {
+        size: [2, 2],
+        ..Frame::default()
+    };
+    let compared = |max_steps| {
+        let comparison = Comparison {
+            checked: &checked,
+            frame: &frame,
+            policy: POLICIES[0],
+            pixels: &[[0, 0]],
+            max_steps,
+        };
+        comparison.run().unwrap_or_else(|error| panic!("{error}"))
+    };
+    // One run takes fewer than a thousand steps, all of them more than four thousand.
+    assert_eq!(compared(1_000).skipped["too many derivatives"], 2);
+    assert!(compared(MAX_STEPS).skipped.is_empty());
+}

@@ -42,6 +42,19 @@ fn compare<N: Number>(name: &str, program: &Program, undefined: UndefinedPolicy,
     }
 }
 
+/// Compares a small image of a shader.
+fn compare_text(name: &str, text: &str) {
+    let program = Program::new(&checked(text)).unwrap();
+    let frame = Frame {
+        size: [48, 27],
+        ..Frame::default()
+    };
+    for undefined in [UndefinedPolicy::Plain, UndefinedPolicy::Observed] {
+        compare::<f32>(name, &program, undefined, &frame);
+        compare::<f64>(name, &program, undefined, &frame);
+    }
+}
+
 #[test]
 fn the_course_has_the_same_bits() {
     for exercise in EXERCISES {
@@ -71,13 +84,7 @@ fn a_variable_keeps_its_value_until_it_was_read() {
                     for (float x = 0.0; x < 4.0; ++x) { at.y *= x; at.y = at.y; }\n\
                     color = vec4(at, 0.0, 1.0);\n\
                 }\n";
-    let program = Program::new(&checked(text)).unwrap();
-    let frame = Frame {
-        size: [32, 18],
-        ..Frame::default()
-    };
-    compare::<f32>("variable", &program, UndefinedPolicy::Plain, &frame);
-    compare::<f64>("variable", &program, UndefinedPolicy::Plain, &frame);
+    compare_text("variable", text);
 }
 
 /// Branches that exchange, rotate and replace variables, so that registers are assigned in cycles behind them.
@@ -95,15 +102,7 @@ fn branches_exchange_variables() {
                     if (n < 0) { float x = v.x; v.x = v.y; v.y = x; v.z = sqrt(abs(v.z)); v.w = v.x / 3.0; }\n\
                     color = v + float(n & 7);\n\
                 }\n";
-    let program = Program::new(&checked(text)).unwrap();
-    let frame = Frame {
-        size: [48, 27],
-        ..Frame::default()
-    };
-    for undefined in [UndefinedPolicy::Plain, UndefinedPolicy::Observed] {
-        compare::<f32>("exchanges", &program, undefined, &frame);
-        compare::<f64>("exchanges", &program, undefined, &frame);
-    }
+    compare_text("exchanges", text);
 }
 
 /// A variable that has one value for all pixels, and is set to a derivative of one.
@@ -118,11 +117,5 @@ fn a_uniform_variable_may_be_a_derivative() {
                         rate += 1.5;\n\
                     }\n\
                 }\n";
-    let program = Program::new(&checked(text)).unwrap();
-    let frame = Frame {
-        size: [32, 18],
-        ..Frame::default()
-    };
-    compare::<f32>("derivative", &program, UndefinedPolicy::Plain, &frame);
-    compare::<f64>("derivative", &program, UndefinedPolicy::Plain, &frame);
+    compare_text("derivative", text);
 }

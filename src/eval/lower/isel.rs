@@ -215,12 +215,15 @@ impl<N: Number> Writer<'_, N> {
         else {
             return false;
         };
-        let is_pair = partner(operation) == Some(other)
-            && (angle, mask) == (other_angle, next_mask)
-            && !locations.elided[at + 1];
+        if partner(operation) != Some(other)
+            || (angle, mask) != (other_angle, next_mask)
+            || locations.elided[at + 1]
+        {
+            return false;
+        }
         let [(angle, has_row), (out, out_is_row), (to, to_is_row)] =
             [angle, *first, *second].map(|value| self.value(value));
-        if !(is_pair && has_row && out_is_row && to_is_row) {
+        if !(has_row && out_is_row && to_is_row) {
             return false;
         }
         let run = ops::sine_and_cosine(self.level, operation == Operation::Sin);

@@ -25,6 +25,7 @@ mod table {
 }
 
 impl Assembler {
+    /// An instruction with these registers and this operand; `after` is as in [`Self::operand`].
     pub(super) fn evex(&mut self, op: Opcode, register: u8, second: u8, source: Source, after: u8) {
         let (index, base) = Self::high_bits(source);
         let inverted = |bit: u8| bit ^ 1;
@@ -53,16 +54,18 @@ impl Assembler {
         self.evex(spread, to, 0, Source::Register(MASK), 0);
     }
 
+    /// As [`Self::test`].
     pub(super) fn test_evex(&mut self, vector: Vector) {
         self.evex(VPTESTMD, MASK, vector, Source::Register(vector), 0);
         self.bytes(&KORTESTW);
     }
 
+    /// As [`Self::narrow`].
     pub(super) fn narrow_evex(&mut self, to: Vector, from: Vector) {
         self.evex(VPMOVQD, from, 0, Source::Register(to), 0);
     }
 
-    /// The instruction overwrites its first operand.
+    /// As [`Self::blend`], by an instruction that overwrites its first operand.
     pub(super) fn blend_evex(&mut self, to: Vector, no: Vector, yes: Source, mask: Vector) {
         let (b, c, table) = if to == mask {
             (no, yes, table::A_SELECTS_C_OR_B)

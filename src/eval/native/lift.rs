@@ -393,14 +393,15 @@ impl<'a> Lifter<'a> {
         }
         written.sort_unstable();
         written.dedup();
-        let kept = written.iter().filter(|row| Self::is_kept(**row, guarded));
-        let merged: Vec<(Row, Held)> = kept
-            .filter_map(|&row| {
-                let held = self.rows.get(row)?;
+        let (mut merged, mut unknown) = (Vec::new(), Vec::new());
+        for &row in written.iter().filter(|row| Self::is_kept(**row, guarded)) {
+            if let Some(held) = self.rows.get(row) {
                 let content = self.merge(row, held.content);
-                Some((row, Held { content, ..held }))
-            })
-            .collect();
+                merged.push((row, Held { content, ..held }));
+            } else {
+                unknown.push(row);
+            }
+        }
         let marks = (self.rows.mark(), self.converted.mark());
         let mask = match self.mask(guarded) {
             Word::Narrow(node) => self.converted.get(node).unwrap_or(node),
@@ -420,12 +421,8 @@ impl<'a> Lifter<'a> {
             };
             results.push((row, held));
         }
-        for &row in &written {
-            if let Some(held) = self.rows.get(row).filter(|held| held.dirty)
-                && Self::is_kept(row, guarded)
-                && held.end >= until
-                && results.iter().all(|(merged, _)| *merged != row)
-            {
+        for row in unknown {
+            if let Some(held) = self.rows.get(row).filter(|held| held.dirty && held.end >= until) {
                 self.store(row, held);
             }
         }

@@ -145,10 +145,10 @@ impl Region {
     /// Returns which nodes what is stored or noted depends on.
     pub(super) fn live_nodes(&self) -> Vec<bool> {
         let mut live = vec![false; self.nodes.len()];
+        let mut used = Vec::new();
         for item in self.items.iter().rev() {
-            let mut used = Vec::new();
             self.for_each_operand(item, &live, &mut |node| used.push(node));
-            for node in used {
+            for node in used.drain(..) {
                 live[node as usize] = true;
             }
         }

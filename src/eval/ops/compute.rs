@@ -3,9 +3,10 @@
 use std::marker::PhantomData;
 
 use super::apply::{self, Of1, Of2, Of3, ty};
-#[cfg(target_arch = "x86_64")]
-use super::avx512;
-use super::{Any, Component, Handler, Instruction, Level, One, Row, Run, Source, for_each_chunk, handler};
+use super::{
+    Any, Component, Handler, Instruction, Level, One, Row, Run, Source, for_each_chunk, function_handler,
+    handler,
+};
 use crate::batch::{Batch, LANES, Lanes};
 use crate::ir::{Operation, for_each_operation};
 use crate::number::Number;
@@ -108,18 +109,10 @@ impl<N: Number, const SINE_FIRST: bool> Run<N> for SineAndCosine<SINE_FIRST> {
 
 /// Returns the handler of the sine and the cosine of a row.
 pub(crate) fn sine_and_cosine<N: Number>(level: Level, sine_first: bool) -> Handler<N> {
-    #[cfg(target_arch = "x86_64")]
-    if level == Level::Avx512 {
-        return if sine_first {
-            avx512::<N, SineAndCosine<true>>
-        } else {
-            avx512::<N, SineAndCosine<false>>
-        };
-    }
     if sine_first {
-        handler::<N, SineAndCosine<true>>(level)
+        function_handler::<N, SineAndCosine<true>>(level)
     } else {
-        handler::<N, SineAndCosine<false>>(level)
+        function_handler::<N, SineAndCosine<false>>(level)
     }
 }
 
@@ -259,26 +252,21 @@ pub(crate) fn compute<N: Number>(level: Level, operation: Operation, rows: [bool
             }
         };
     }
-    #[cfg(target_arch = "x86_64")]
-    if level == Level::Avx512
-        && let Some(function) = function_avx512(operation)
-    {
-        return function;
-    }
-    frequent_mixed(level, operation, rows).unwrap_or_else(|| for_each_operation!(select))
+    function(level, operation)
+        .or_else(|| frequent_mixed(level, operation, rows))
+        .unwrap_or_else(|| for_each_operation!(select))
 }
 
-/// Returns the handler of a function, with AVX-512; none for other operations and rare functions.
-#[cfg(target_arch = "x86_64")]
-fn function_avx512<N: Number>(operation: Operation) -> Option<Handler<N>> {
+/// Returns the handler of a function; none for other operations, and for functions that are rare.
+fn function<N: Number>(level: Level, operation: Operation) -> Option<Handler<N>> {
     macro_rules! one {
         ($name:ident) => {
-            avx512::<N, Rows1<apply::$name, N, N>>
+            function_handler::<N, Rows1<apply::$name, N, N>>(level)
         };
     }
     macro_rules! two {
         ($name:ident) => {
-            avx512::<N, Rows2<apply::$name, Any, Any, N, N, N>>
+            function_handler::<N, Rows2<apply::$name, Any, Any, N, N, N>>(level)
         };
     }
     Some(match operation {

@@ -47,8 +47,8 @@ pub(crate) enum Level {
     /// AVX2 and FMA: eight floats at once.
     #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// AVX-512 for functions such as `pow`, else AVX2. A function is a long chain of operations, which takes
-    /// the same time for sixteen floats on processors that execute few instructions ahead.
+    /// AVX-512 for functions such as `pow`, else AVX2. A function is a chain of operations that is longer than
+    /// the out-of-order window of many processors, and takes these as long for sixteen floats as for eight.
     #[cfg(target_arch = "x86_64")]
     Avx512,
 }
@@ -79,6 +79,15 @@ fn handler<N: Number, R: Run<N>>(level: Level) -> Handler<N> {
         Level::Base => base::<N, R>,
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 | Level::Avx512 => avx2::<N, R>,
+    }
+}
+
+/// As [`handler`], for functions, see [`Level::Avx512`].
+fn function_handler<N: Number, R: Run<N>>(level: Level) -> Handler<N> {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => avx512::<N, R>,
+        _ => handler::<N, R>(level),
     }
 }
 

@@ -49,7 +49,7 @@ pub struct Interpreter<'a> {
     pub frame: &'a Frame,
     /// What undefined operations give.
     pub undefined: UndefinedPolicy,
-    /// The maximum number of expressions and statements that a pixel may run.
+    /// The maximum number of expressions and statements of one run of a pixel.
     pub max_steps: u64,
 }
 

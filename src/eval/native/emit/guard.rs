@@ -42,7 +42,7 @@ impl Registers<'_> {
             reserved: self.reserved,
             end,
         });
-        // Their registers are free until they are assigned again, and best used for what is assigned.
+        // The registers of merges are free until the end assigns to them, and best used for what it assigns.
         for &[merge, last] in &guard.merges {
             let register = self.register_of[merge as usize];
             if register != NO_REGISTER {
