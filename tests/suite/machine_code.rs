@@ -87,24 +87,6 @@ fn a_variable_keeps_its_value_until_it_was_read() {
     compare_text("variable", text);
 }
 
-/// Branches that exchange, rotate and replace variables, so that registers are assigned in cycles behind them.
-#[test]
-fn branches_exchange_variables() {
-    let text = "void mainImage(out vec4 color, in vec2 at) {\n\
-                    vec4 v = vec4(at, at.x * 0.5, at.y * 0.25);\n\
-                    int n = int(at.x);\n\
-                    bool odd = (n & 1) == 1;\n\
-                    if (v.x > 9.5) { v = v.yxwz; n += 3; odd = !odd; }\n\
-                    if (odd) {\n\
-                        v = v.wxyz * 1.5; v.x += float(n);\n\
-                        if (v.y > 8.0) { v = v.zxyw - 2.5; v.w *= v.x; n = -n; }\n\
-                    }\n\
-                    if (n < 0) { float x = v.x; v.x = v.y; v.y = x; v.z = sqrt(abs(v.z)); v.w = v.x / 3.0; }\n\
-                    color = v + float(n & 7);\n\
-                }\n";
-    compare_text("exchanges", text);
-}
-
 /// A variable that has one value for all pixels, and is set to a derivative of one.
 #[test]
 fn a_uniform_variable_may_be_a_derivative() {

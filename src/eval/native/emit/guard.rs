@@ -14,6 +14,7 @@ pub(super) struct Snapshot {
 }
 
 /// A node to be moved to a register, from another or [`NO_REGISTER`].
+#[derive(Debug, Clone, Copy)]
 struct Move {
     to: Vector,
     from: Vector,
@@ -88,7 +89,13 @@ impl Registers<'_> {
                 self.code.unary(op::VMOVAPS_STORE, true, from, to);
             }
         }
-        self.move_together(moves);
+        for Move { to, from, node } in in_order(moves) {
+            if from == NO_REGISTER {
+                self.load_into(node, to);
+            } else {
+                self.copy(true, to, Source::Register(from));
+            }
+        }
         let mut current = std::mem::replace(&mut self.held, [NO_NODE; REGISTERS]);
         for node in current.into_iter().filter(|&node| node != NO_NODE) {
             self.register_of[node as usize] = NO_REGISTER;
@@ -117,26 +124,46 @@ impl Registers<'_> {
         }
         self.code.bind(end);
     }
+}
 
-    /// Moves nodes as if all at once: none is overwritten before it has been moved.
-    fn move_together(&mut self, mut moves: Vec<Move>) {
-        while let Some(first) = moves.first() {
-            let is_free = |to: Vector| moves.iter().all(|other| other.to == to || other.from != to);
-            let Some(ready) = moves.iter().position(|one| is_free(one.to)) else {
-                // All are in cycles.
-                let to = first.to;
-                self.copy(true, SCRATCH, Source::Register(to));
-                for other in moves.iter_mut().filter(|other| other.from == to) {
-                    other.from = SCRATCH;
-                }
-                continue;
-            };
-            let Move { to, from, node } = moves.swap_remove(ready);
-            if from == NO_REGISTER {
-                self.load_into(node, to);
-            } else {
-                self.copy(true, to, Source::Register(from));
+/// Orders moves so that no register is overwritten before it has been moved. Cycles are cut by a move to
+/// [`SCRATCH`].
+fn in_order(mut moves: Vec<Move>) -> Vec<Move> {
+    let mut ordered = Vec::with_capacity(moves.len() + 1);
+    while let Some(&first) = moves.first() {
+        let is_free = |to: Vector| moves.iter().all(|other| other.to == to || other.from != to);
+        if let Some(ready) = moves.iter().position(|one| is_free(one.to)) {
+            ordered.push(moves.swap_remove(ready));
+            continue;
+        }
+        // All are in cycles.
+        let from = first.to;
+        ordered.push(Move {
+            to: SCRATCH,
+            from,
+            ..first
+        });
+        for other in moves.iter_mut().filter(|other| other.from == from) {
+            other.from = SCRATCH;
+        }
+    }
+    ordered
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_assignments_of_four_registers_are_as_if_at_once() {
+        for case in 0..4_u32.pow(4) {
+            let sources = [0, 1, 2, 3].map(|at: u32| (case / 4_u32.pow(at) % 4) as Vector);
+            let moves = (0..).zip(sources).map(|(to, from)| Move { to, from, node: 0 });
+            let mut registers: Vec<Vector> = (0..=SCRATCH).collect();
+            for Move { to, from, .. } in in_order(moves.collect()) {
+                registers[usize::from(to)] = registers[usize::from(from)];
             }
+            assert_eq!(registers[..4], sources);
         }
     }
 }
