@@ -33,7 +33,7 @@ pub struct Program {
     /// The variant that records undefined operations.
     observing: OnceLock<Result<Compiled, Refusal>>,
     /// The variants that substitute a number, or NaN, for undefined results; compiled on first use.
-    substituted: [OnceLock<Result<Compiled, Refusal>>; 2],
+    substituted: [OnceLock<Result<Compiled, Refusal>>; Substitute::ALL.len()],
     /// The variant without records; compiled on first use.
     plain: OnceLock<Result<Compiled, Refusal>>,
     /// The variant that records traces; compiled on first use.
@@ -100,7 +100,7 @@ impl Program {
             ),
             UndefinedPolicy::Plain => self.compiled(&self.plain, BuildOptions::default()),
             UndefinedPolicy::Substitute(other) => self.compiled(
-                &self.substituted[usize::from(other == Substitute::NotANumber)],
+                &self.substituted[other as usize],
                 BuildOptions {
                     undefined: UndefinedMode::Substitute(other),
                     ..BuildOptions::default()

@@ -3,9 +3,10 @@
 use toyproof_glsl::tree::{BuiltIn, ExprId, Place, Scalar, Type};
 
 use super::lvalue::{LValue, component_count};
-use super::{Builder, Result};
+use super::{Builder, Result, UndefinedMode};
 use crate::ir::{Kind, NONE, Operation, Value};
 use crate::observe::{Fault, Predicate};
+use crate::render::Substitute;
 
 impl Builder<'_> {
     pub(super) fn built_in(
@@ -241,6 +242,12 @@ impl Builder<'_> {
             (B::Atan, _) => {
                 self.check(Fault::ArcOfNothing, at, Predicate::BothZero, [x, y]);
                 O::Atan2
+            }
+            (B::Pow, _)
+                if self.options.undefined == UndefinedMode::Substitute(Substitute::OtherImplementation) =>
+            {
+                let base = self.unary(O::Abs, x);
+                return self.binary(O::Pow, base, y);
             }
             (B::Pow, _) => {
                 self.check(Fault::PowDomain, at, Predicate::PowUndefined, [x, y]);

@@ -48,6 +48,7 @@ impl Builder<'_> {
     pub(super) fn substitute_undefined_all<const N: usize>(&mut self, values: [Value; N]) -> [Value; N] {
         let other = match self.options.undefined {
             UndefinedMode::Substitute(Substitute::NotANumber) => f64::NAN,
+            UndefinedMode::Substitute(Substitute::OtherImplementation) => 0.0,
             _ => SUBSTITUTE_NUMBER,
         };
         let unresolved = std::mem::take(&mut self.unresolved);

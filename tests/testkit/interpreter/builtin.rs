@@ -1,6 +1,6 @@
 //! Built-in functions (§8).
 
-use toyproof::eval::Fault;
+use toyproof::eval::{Fault, Substitute, UndefinedPolicy};
 use toyproof::glsl::tree::{BuiltIn, ExprId, Type};
 use toyproof::math::{self, Matrix};
 
@@ -209,6 +209,12 @@ impl<N: Real> Run<'_, N> {
                 }
             }
             (B::Atan, Component::Float(y), Component::Float(x)) => Component::Float(y.atan2(x)),
+            (B::Pow, Component::Float(base), Component::Float(exponent))
+                if self.interpreter.undefined
+                    == UndefinedPolicy::Substitute(Substitute::OtherImplementation) =>
+            {
+                Component::Float(base.abs().pow(exponent))
+            }
             (B::Pow, Component::Float(base), Component::Float(exponent)) => {
                 let zero = N::from_f64(0.0);
                 let is_outside = base < zero || base == zero && exponent <= zero;

@@ -49,11 +49,12 @@ impl fmt::Display for Tally {
 }
 
 /// All treatments of undefined operations.
-pub const POLICIES: [UndefinedPolicy; 4] = [
+pub const POLICIES: [UndefinedPolicy; 5] = [
     UndefinedPolicy::Observed,
     UndefinedPolicy::Plain,
     UndefinedPolicy::Substitute(Substitute::Number),
     UndefinedPolicy::Substitute(Substitute::NotANumber),
+    UndefinedPolicy::Substitute(Substitute::OtherImplementation),
 ];
 
 /// A comparison of a shader in a frame.

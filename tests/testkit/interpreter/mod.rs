@@ -266,6 +266,7 @@ impl<N: Real> Run<'_, N> {
             Component::Float(_) => Component::float(match substitute {
                 Substitute::Number => 0.5,
                 Substitute::NotANumber => f64::NAN,
+                Substitute::OtherImplementation => 0.0,
             }),
             Component::Int(_) => Component::Int(0),
             Component::Uint(_) => Component::Uint(0),
