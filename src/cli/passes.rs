@@ -12,10 +12,10 @@ use toyproof_player::{Clock, Source, Target};
 use toyproof_project::{PassKind, Rendering};
 use toyproof_scene::{MAX_SAMPLES, Sampler, Scene};
 use toyproof_translate::FloatMode;
-use toyproof_verify::Failure;
 use toyproof_verify::growth::{Frames, Growth, follow};
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 use toyproof_verify::trail::{Trail, trail};
+use toyproof_verify::{Failure, driver_failure, is_replaceable};
 
 use super::project::Passes;
 
@@ -52,7 +52,7 @@ pub(super) struct BoundFrame {
     pub(super) double: Frame,
     /// How far float32 is from that.
     pub(super) growth: Growth,
-    /// Warnings about the buffers.
+    /// Warnings about the buffers, and about a driver that failed.
     pub(super) notes: Vec<Diagnostic>,
     /// The first difference of the driver's passes.
     pub(super) difference: Option<PassDifference>,
@@ -68,13 +68,15 @@ struct Subject<'a> {
 
 /// Binds what the image of a shader reads in this frame: the textures that do not change, and the buffers
 /// after all passes of this frame and of those before it, in float32. Returns what the frames before it
-/// contribute, if the image depends on them.
+/// contribute, if the image depends on them. A driver that fails is left out if there is a reference, as in the check
+/// of the image.
 ///
 /// # Errors
 /// Why the buffers cannot be rendered.
 pub(super) fn bind(
     passes: &Passes,
     frame: &mut Frame,
+    has_reference: bool,
     renderers: Renderers<'_>,
 ) -> Result<Option<BoundFrame>, Failure> {
     let (timeout, pool) = (renderers.timeout, renderers.pool);
@@ -85,7 +87,21 @@ pub(super) fn bind(
         return Ok(None);
     }
     let clock = clock(frame);
-    let mut device = open(renderers, &subject.shader)?;
+    let mut failed = None;
+    let mut leave_out = |failure: Failure| match &failure {
+        Failure::Gpu(gpu) if is_replaceable(gpu, has_reference) => {
+            failed = Some(driver_failure(&failure));
+            Ok(())
+        }
+        _ => Err(failure),
+    };
+    let mut device = match open(renderers, &subject.shader) {
+        Ok(device) => device,
+        Err(failure) => {
+            leave_out(failure)?;
+            None
+        }
+    };
     // The image of the last frame is compared with more care.
     let targets: Vec<Target> = rendering.graph.passes().iter().map(|pass| pass.target).collect();
     let mut difference = None;
@@ -98,10 +114,16 @@ pub(super) fn bind(
         pool,
     };
     let history = follow(&frames, |inputs, playback| {
-        let Some(device) = device.as_mut().filter(|_| difference.is_none()) else {
+        let Some(playback) = device.as_mut().filter(|_| difference.is_none()) else {
             return Ok(());
         };
-        let images = device.render(inputs, &targets).map_err(Failure::Gpu)?;
+        let images = match playback.render(inputs, &targets) {
+            Ok(images) => images,
+            Err(failure) => {
+                device = None;
+                return leave_out(Failure::Gpu(failure));
+            }
+        };
         difference = images.iter().zip(&targets).find_map(|(image, &pass)| {
             let pixels = differing(playback.texture(pass)?, image);
             (pixels > 0).then_some(PassDifference {
@@ -118,10 +140,12 @@ pub(super) fn bind(
     *frame = subject.bound(frame, |buffer| {
         history.single.texture(Target::Buffer(buffer)).cloned()
     });
+    let mut notes = history.notes;
+    notes.extend(failed);
     Ok(Some(BoundFrame {
         double,
         growth: history.growth,
-        notes: history.notes,
+        notes,
         difference,
     }))
 }

@@ -122,6 +122,10 @@ codes! {
     NanInBuffer "W0607" "NaN in a buffer",
     NeverInitialized "W0608" "A buffer that stays zero",
     VisibleGrowth "W0609" "Rounding errors that become visible over frames",
+    // Findings about the toolchain and the checks.
+    DriverFailure "W0610" "A shader of which the driver renders no image",
+    ToolchainDifference "W0611" "An image of the driver that differs from the evaluator's",
+    OnlySingle "W0612" "A shader that cannot be evaluated in double precision",
 }
 
 /// The error about a shader that takes too long to compile, in any stage.

@@ -121,12 +121,19 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
             let region = regions.largest_compact.filter(|_| share.ratio() <= MAX_DIFFERING);
             Statement::new(differing(*share)).details(region.map(compact_region))
         }
-        Reason::SelfIntersection(share) => Statement::new(format!(
-            "{} {} on rounding errors {}",
-            pixels(*share),
-            plural(share.count, "depends", "depend"),
-            percentage(*share)
-        )),
+        Reason::SelfIntersection(cause) => {
+            let share = cause.pixels;
+            let sentence = format!(
+                "{} {} on rounding errors {}",
+                pixels(share),
+                plural(share.count, "depends", "depend"),
+                percentage(share)
+            );
+            Statement::new(match cause.in_double {
+                true => sentence,
+                false => format!("the shader is correct in double precision, but in float32 {sentence}"),
+            })
+        }
         Reason::Undefined(share) => Statement::new(format!(
             "{} {} on undefined behavior {}",
             pixels(*share),
@@ -157,9 +164,17 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
         Reason::Growth(growth) => Statement::new(growth.sentence()).details(growth.consequences()),
         &Reason::Agrees {
             differing,
-            excluded,
+            ill_conditioned,
+            undefined,
+            undefined_region,
             tied,
-        } => agrees(differing, excluded, tied),
+            imprecise_reference,
+        } => agrees(
+            differing,
+            [ill_conditioned, undefined],
+            undefined_region,
+            [tied, imprecise_reference],
+        ),
         Reason::Permitted {
             difference,
             text,
@@ -173,30 +188,56 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
     }
 }
 
-fn agrees(differing: Share, excluded: u64, tied: u64) -> Statement {
+fn agrees(
+    differing: Share,
+    [ill_conditioned, undefined]: [u64; 2],
+    undefined_region: Option<Region>,
+    [tied, imprecise]: [u64; 2],
+) -> Statement {
     let Share { count, of } = differing;
-    let statement = match (count, excluded) {
-        (0, 0) => Statement::new(format!("all {} pixels agree with the reference", grouped(of))),
-        (0, excluded) => Statement::new(format!(
-            "{} of {} pixels agree with the reference; the others are ill-conditioned or undefined",
-            grouped(of.saturating_sub(excluded)),
-            grouped(of)
-        )),
-        _ => Statement::new(format!(
+    let mut reason = match (count, ill_conditioned + undefined) {
+        (0, 0) => format!("all {} pixels agree with the reference", grouped(of)),
+        (0, excluded) => {
+            let others = match (ill_conditioned, undefined) {
+                (_, 0) => "are ill-conditioned",
+                (0, _) => "depend on undefined behavior",
+                _ => "are ill-conditioned or depend on undefined behavior",
+            };
+            format!(
+                "{} of {} pixels agree with the reference; the others {others}",
+                grouped(of.saturating_sub(excluded)),
+                grouped(of)
+            )
+        }
+        _ => format!(
             "{} from the reference, within the tolerance of {} %",
             of_all(differing, ["differs", "differ"]),
             100.0 * MAX_DIFFERING
-        )),
+        ),
     };
-    match tied {
-        0 => statement,
-        tied => statement.detail(format!(
-            "in {} {}, rounding decides the color of the reference itself, as where an edge passes exactly through the \
-             sample point",
-            grouped(tied),
-            plural(tied, "pixel", "pixels")
-        )),
+    if let Some(region) = undefined_region {
+        let [x, y] = region.middle();
+        reason += &format!(
+            "; an area of {} pixels around ({x}, {y}) was left out, since it depends on undefined behavior",
+            grouped(region.pixels)
+        );
     }
+    let mut statement = Statement::new(reason);
+    let pixels = |count| format!("in {} {}", grouped(count), plural(count, "pixel", "pixels"));
+    if imprecise > 0 {
+        statement = statement.detail(format!(
+            "{}, float32 is not precise enough, neither for the shader nor for the reference",
+            pixels(imprecise)
+        ));
+    }
+    if tied > 0 {
+        statement = statement.detail(format!(
+            "{}, rounding decides the color of the reference itself, as where an edge passes exactly through the \
+             sample point",
+            pixels(tied)
+        ));
+    }
+    statement
 }
 
 fn permitted(difference: Difference, text: &str, differing: Share) -> Statement {

@@ -1,5 +1,5 @@
 //! Detects rays that hit the surface they start from (“acne”). Rounding decides it in each pixel, so that it
-//! resembles a lack of precision; but more precision does not help, and it is a mistake.
+//! resembles a lack of precision; where double precision has it too, more precision does not help.
 
 use rayon::prelude::*;
 use toyproof_scene::Sampler;
@@ -7,7 +7,7 @@ use toyproof_tracer::{RayEpsilons, Tracer};
 
 use super::CheckResult;
 use crate::compare::PixelStatus;
-use crate::decide::{MAX_UNSTABLE, Share};
+use crate::decide::{MAX_UNSTABLE, SelfIntersection, Share};
 use crate::mistake::KnownMistake;
 
 /// The largest number of pixels that are examined.
@@ -33,7 +33,7 @@ pub(super) fn detect(
     size: [u32; 2],
     algorithm: Option<&CheckResult>,
     precision: Option<&CheckResult>,
-) -> Option<Share> {
+) -> Option<SelfIntersection> {
     let epsilons = tracer.acne();
     if epsilons.is_empty() {
         return None;
@@ -42,27 +42,32 @@ pub(super) fn detect(
     let decided_by_rounding =
         |check: &&CheckResult| check.summary.ill_conditioned - check.summary.tied > check.summary.differing;
     let algorithm = algorithm.into_iter().filter(decided_by_rounding);
-    let algorithm = algorithm.map(|check| (check, MAX_UNSTABLE, MIN_EXPLAINED_SHARE_IN_DOUBLE));
+    let algorithm = algorithm.map(|check| (check, true, MAX_UNSTABLE, MIN_EXPLAINED_SHARE_IN_DOUBLE));
     let precision = precision
         .into_iter()
-        .map(|check| (check, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
-    algorithm.chain(precision).find_map(|(check, least, most)| {
-        let summary = &check.summary;
-        let differing = Share::of(
-            summary,
-            summary.differing + summary.ill_conditioned - summary.tied,
-        );
-        if differing.ratio() <= least {
-            return None;
-        }
-        let pixels: Vec<DifferingPixel> = pixels_to_examine(check, size)
-            .into_par_iter()
-            .filter_map(|pixel| DifferingPixel::at(tracer, check, size, pixel))
-            .collect();
-        let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &epsilons));
-        let is_explained = explained.count() as f64 >= most * pixels.len() as f64;
-        (is_explained && !pixels.is_empty()).then_some(differing)
-    })
+        .map(|check| (check, false, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
+    algorithm
+        .chain(precision)
+        .find_map(|(check, in_double, least, most)| {
+            let summary = &check.summary;
+            let differing = Share::of(
+                summary,
+                summary.differing + summary.ill_conditioned - summary.tied,
+            );
+            if differing.ratio() <= least {
+                return None;
+            }
+            let pixels: Vec<DifferingPixel> = pixels_to_examine(check, size)
+                .into_par_iter()
+                .filter_map(|pixel| DifferingPixel::at(tracer, check, size, pixel))
+                .collect();
+            let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &epsilons));
+            let is_explained = explained.count() as f64 >= most * pixels.len() as f64;
+            (is_explained && !pixels.is_empty()).then_some(SelfIntersection {
+                pixels: differing,
+                in_double,
+            })
+        })
 }
 
 /// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those

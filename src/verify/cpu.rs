@@ -25,6 +25,15 @@ pub(super) fn evaluate_at(program: &Program, frame: &Frame, places: &Places) -> 
     program.at(frame, places, &settings).ok()
 }
 
+/// The time limit of the evaluations that a comparison needs beside the images, as a multiple of an image's. They
+/// decide what a pixel's difference means, so that only a hang may exceed it.
+const OTHER_TIME_FACTOR: u32 = 4;
+/// The same as a multiple of the time that the image in f64 took: up to [`PERTURBATIONS`] images, each of which takes
+/// about eight times as long.
+///
+/// [`PERTURBATIONS`]: crate::compare::PERTURBATIONS
+const PERTURBED_TIME_FACTOR: u32 = 64;
+
 /// Renders a shader band by band.
 pub(super) struct Evaluator<'a> {
     program: &'a Program,
@@ -33,16 +42,17 @@ pub(super) struct Evaluator<'a> {
     double_frame: Option<&'a Frame>,
     /// Set when the images are no longer needed.
     stop: &'a AtomicBool,
-    /// The deadline of all images.
-    deadline: Instant,
-    /// The time left for the images in f32 and in f64, each with the default policy for undefined behavior
-    /// and with substitutes.
-    single: [TimeBudget; 2],
-    double: [TimeBudget; 2],
+    /// The time left for the images in f32 and in f64.
+    single: TimeBudget,
+    double: TimeBudget,
     /// The time left for the image in f64 of what earlier frames render in f32.
     step: TimeBudget,
-    /// The time left for all perturbed images.
+    /// The time left for all images with substitutes for undefined operations.
+    substituted: TimeBudget,
+    /// The time left for all perturbed images, without the part that depends on `double_time`.
     perturbed: TimeBudget,
+    /// The time that images in f64 took.
+    double_time: Cell<Duration>,
 }
 
 /// The time left for an image, all bands together.
@@ -52,14 +62,22 @@ struct TimeBudget(Cell<Duration>);
 pub(super) struct Band {
     /// In f32, with the bits of a strict GPU run.
     pub(super) single: Image,
-    /// In f64, rounded once at the end.
-    pub(super) double: Image,
-    /// The same of what earlier frames render in f32, where the frame depends on them.
-    pub(super) step: Option<Image>,
+    /// In f64; why it could not be evaluated, where only float32 could.
+    pub(super) double: Result<DoubleBand, Failure>,
     /// Pixels whose color depends on undefined behavior, in f32 or in f64.
     pub(super) undefined: Vec<bool>,
     /// Observations in f32.
     pub(super) observed: Observations,
+}
+
+/// A band in double precision, rounded once at the end.
+pub(super) struct DoubleBand {
+    /// The image.
+    pub(super) image: Image,
+    /// The image of what earlier frames render in f32, where the frame depends on them.
+    pub(super) step: Option<Image>,
+    /// The images with other results of undefined operations; none if these have no substitutes.
+    pub(super) substituted: Option<Vec<Image>>,
 }
 
 /// An image in one number type, with its undefined pixels and observations.
@@ -68,30 +86,25 @@ pub(super) struct Evaluated {
     pub(super) image: Image,
     /// Pixels whose color depends on undefined behavior.
     pub(super) undefined: Vec<bool>,
+    /// The images with other results of undefined operations; none if these have no substitutes.
+    substituted: Option<Vec<Image>>,
     pub(super) observed: Observations,
 }
 
 impl<'a> Evaluator<'a> {
-    /// Creates an evaluator with the time limits `each` for an image and `perturbed` for all perturbed ones,
-    /// and a deadline for all.
-    pub(super) fn new(
-        program: &'a Program,
-        frame: &'a Frame,
-        [each, perturbed]: [Duration; 2],
-        deadline: Instant,
-        stop: &'a AtomicBool,
-    ) -> Self {
-        let pair = || [TimeBudget::new(each), TimeBudget::new(each)];
+    /// Creates an evaluator with a time limit for an image.
+    pub(super) fn new(program: &'a Program, frame: &'a Frame, limit: Duration, stop: &'a AtomicBool) -> Self {
         Self {
             program,
             frame,
             double_frame: None,
             stop,
-            deadline,
-            single: pair(),
-            double: pair(),
-            step: TimeBudget::new(each),
-            perturbed: TimeBudget::new(perturbed),
+            single: TimeBudget::new(limit),
+            double: TimeBudget::new(limit),
+            step: TimeBudget::new(limit),
+            substituted: TimeBudget::new(limit * OTHER_TIME_FACTOR),
+            perturbed: TimeBudget::new(limit * OTHER_TIME_FACTOR),
+            double_time: Cell::new(Duration::ZERO),
         }
     }
 
@@ -106,61 +119,75 @@ impl<'a> Evaluator<'a> {
 
     /// Renders some rows in f32 alone.
     pub(super) fn single(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
-        self.evaluate::<f32>(self.frame, rows, &self.single)
+        let rendered = self.render_as::<f32>(self.frame, rows, UndefinedPolicy::Observed, &self.single)?;
+        self.with_undefined::<f32>(self.frame, rows, rendered)
     }
 
     /// Renders some rows in f64 alone.
     pub(super) fn double(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
-        self.evaluate::<f64>(self.double_frame.unwrap_or(self.frame), rows, &self.double)
-    }
-
-    fn evaluate<N: Number>(
-        &self,
-        frame: &Frame,
-        rows: &Range<u32>,
-        [budget, substituted]: &[TimeBudget; 2],
-    ) -> Result<Evaluated, Failure> {
-        let rendered = self.render_as::<N>(frame, rows, UndefinedPolicy::Observed, budget)?;
-        let undefined = self.undefined_pixels::<N>(frame, rows, &rendered, substituted);
-        Ok(Evaluated {
-            image: rendered.image,
-            undefined,
-            observed: rendered.observations,
-        })
+        let frame = self.double_frame.unwrap_or(self.frame);
+        let start = Instant::now();
+        let rendered = self.render_as::<f64>(frame, rows, UndefinedPolicy::Observed, &self.double)?;
+        self.double_time.set(self.double_time.get() + start.elapsed());
+        self.with_undefined::<f64>(frame, rows, rendered)
     }
 
     /// Renders some rows. Calls `report_iterations` with the largest number of loop iterations of a pixel in
     /// f32 as soon as it is known.
+    ///
+    /// # Errors
+    /// If float32 cannot be evaluated, or the evaluator is interrupted.
     pub(super) fn render(
         &self,
         rows: &Range<u32>,
         report_iterations: impl FnOnce(u32),
     ) -> Result<Band, Failure> {
-        let frame = self.frame;
-        let single = self.render_as::<f32>(frame, rows, UndefinedPolicy::Observed, &self.single[0])?;
+        let single = self.render_as::<f32>(self.frame, rows, UndefinedPolicy::Observed, &self.single)?;
         report_iterations(single.observations.max_iterations);
-        let mut undefined = self.undefined_pixels::<f32>(frame, rows, &single, &self.single[1]);
+        let single = self.with_undefined::<f32>(self.frame, rows, single)?;
+        let mut undefined = single.undefined;
+        let double = match self.double_band(rows, &mut undefined) {
+            Err(Failure::Interrupted) => return Err(Failure::Interrupted),
+            double => double,
+        };
+        Ok(Band {
+            single: single.image,
+            double,
+            undefined,
+            observed: single.observed,
+        })
+    }
+
+    /// Renders some rows in f64, and adds the pixels that are undefined there.
+    fn double_band(&self, rows: &Range<u32>, undefined: &mut [bool]) -> Result<DoubleBand, Failure> {
         let double = self.double(rows)?;
         let step = self
             .double_frame
-            .map(|_| self.render_as::<f64>(frame, rows, UndefinedPolicy::Plain, &self.step))
+            .map(|_| self.render_as::<f64>(self.frame, rows, UndefinedPolicy::Plain, &self.step))
             .transpose()?;
         for (undefined, undefined_in_double) in undefined.iter_mut().zip(double.undefined) {
             *undefined |= undefined_in_double;
         }
-        Ok(Band {
-            single: single.image,
-            double: double.image,
+        Ok(DoubleBand {
+            image: double.image,
             step: step.map(|step| step.image),
-            undefined,
-            observed: single.observations,
+            substituted: double.substituted,
         })
     }
 
     /// Renders some rows in f64 with every operation perturbed by a unit of the seed or not at all, at least
-    /// in the `wanted` pixels; none if the time limit is exceeded.
-    pub(super) fn perturbed(&self, rows: &Range<u32>, seed: Seed, wanted: &[bool]) -> Option<Image> {
-        self.perturbed.spend(self.deadline, |deadline| {
+    /// in the `wanted` pixels; none if a loop then does not end.
+    ///
+    /// # Errors
+    /// If it takes much longer than the image did.
+    pub(super) fn perturbed(
+        &self,
+        rows: &Range<u32>,
+        seed: Seed,
+        wanted: &[bool],
+    ) -> Result<Option<Image>, Failure> {
+        let extra = self.double_time.get() * PERTURBED_TIME_FACTOR;
+        self.perturbed.spend(extra, |deadline| {
             let settings = Settings::<RandomRounding> {
                 undefined: UndefinedPolicy::Plain,
                 noise: seed,
@@ -170,47 +197,67 @@ impl<'a> Evaluator<'a> {
             };
             let frame = self.double_frame.unwrap_or(self.frame);
             let rendered = self.program.render_rows(frame, rows.clone(), &settings);
-            rendered.ok().map(|rendered| rendered.image)
+            match rendered {
+                Ok(rendered) => Ok(Some(rendered.image)),
+                Err(Failure::TooOften { .. }) => Ok(None),
+                Err(failure) => Err(failure),
+            }
         })
     }
 
-    /// Finds the pixels with undefined operations whose color changes with the result of these. If the time
-    /// limit is exceeded, all of them count.
-    fn undefined_pixels<N: Number>(
+    /// Finds the pixels with undefined operations whose color changes with the results of these; without
+    /// substitutes, all of them count.
+    fn with_undefined<N: Number>(
         &self,
         frame: &Frame,
         rows: &Range<u32>,
-        default_image: &RenderedF32,
-        budget: &TimeBudget,
-    ) -> Vec<bool> {
-        let candidates = default_image.undefined.clone();
+        rendered: RenderedF32,
+    ) -> Result<Evaluated, Failure> {
+        let candidates = rendered.undefined;
         let is_derivative = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
-        // No substitute stands for the value of a derivative.
-        if !candidates.contains(&true) || default_image.observations.faults.iter().any(is_derivative) {
-            return candidates;
+        // Derivatives have no substitute value.
+        let mut substituted = match rendered.observations.faults.iter().any(is_derivative) {
+            true => None,
+            false => Some(Vec::new()),
+        };
+        if candidates.contains(&true) && substituted.is_some() {
+            substituted = self.with_substitutes::<N>(frame, rows)?;
         }
-        let mut undefined = vec![false; candidates.len()];
-        for substituted in [Substitute::Number, Substitute::NotANumber] {
-            if undefined == candidates {
-                break;
+        let undefined = match &substituted {
+            None => candidates,
+            Some(images) => {
+                let changes = |at: usize| {
+                    let bits = |image: &Image| image.pixels()[at].map(f32::to_bits);
+                    images.iter().any(|image| bits(image) != bits(&rendered.image))
+                };
+                let pixels = candidates.iter().enumerate();
+                pixels.map(|(at, &candidate)| candidate && changes(at)).collect()
             }
-            let Ok(substituted) =
-                self.render_as::<N>(frame, rows, UndefinedPolicy::Substitute(substituted), budget)
-            else {
-                return candidates;
-            };
-            let pairs = default_image
-                .image
-                .pixels()
-                .iter()
-                .zip(substituted.image.pixels());
-            for ((undefined, candidate), (usual, substituted)) in
-                undefined.iter_mut().zip(&candidates).zip(pairs)
-            {
-                *undefined |= *candidate && usual.map(f32::to_bits) != substituted.map(f32::to_bits);
-            }
+        };
+        Ok(Evaluated {
+            image: rendered.image,
+            undefined,
+            substituted,
+            observed: rendered.observations,
+        })
+    }
+
+    /// Renders some rows with each substitute for undefined results; none if a loop then does not end.
+    fn with_substitutes<N: Number>(
+        &self,
+        frame: &Frame,
+        rows: &Range<u32>,
+    ) -> Result<Option<Vec<Image>>, Failure> {
+        let images = Substitute::ALL.into_iter().map(|substitute| {
+            let policy = UndefinedPolicy::Substitute(substitute);
+            let rendered = self.render_as::<N>(frame, rows, policy, &self.substituted)?;
+            Ok(rendered.image)
+        });
+        match images.collect() {
+            Ok(images) => Ok(Some(images)),
+            Err(Failure::TooOften { .. }) => Ok(None),
+            Err(failure) => Err(failure),
         }
-        undefined
     }
 
     fn render_as<N: Number>(
@@ -220,7 +267,7 @@ impl<'a> Evaluator<'a> {
         undefined: UndefinedPolicy,
         budget: &TimeBudget,
     ) -> Result<RenderedF32, Failure> {
-        budget.spend(self.deadline, |deadline| {
+        budget.spend(Duration::ZERO, |deadline| {
             let settings = Settings::<N> {
                 undefined,
                 deadline: Some(deadline),
@@ -237,10 +284,10 @@ impl TimeBudget {
         Self(Cell::new(time))
     }
 
-    /// Runs `work` with the time left, but at most until `deadline`, and subtracts the time it took.
-    fn spend<T>(&self, deadline: Instant, work: impl FnOnce(Instant) -> T) -> T {
+    /// Runs `work` with the time left and `extra`, and subtracts the time it took.
+    fn spend<T>(&self, extra: Duration, work: impl FnOnce(Instant) -> T) -> T {
         let start = Instant::now();
-        let done = work(deadline.min(start + self.0.get()));
+        let done = work(start + self.0.get() + extra);
         self.0.set(self.0.get().saturating_sub(start.elapsed()));
         done
     }

@@ -11,7 +11,7 @@ use toyproof_scene::Sampler;
 use crate::Failure;
 use crate::alternative::Difference;
 use crate::compare::{
-    CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, Regions, ReplicateTest, SEEN,
+    CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, Region, Regions, ReplicateTest, SEEN,
 };
 use crate::growth::{GrowthCause, VisibleGrowth};
 
@@ -25,10 +25,10 @@ pub enum Verdict {
     Invalid,
     /// It never ends or takes too long; also if a driver truncated its loops.
     Timeout,
-    /// naga, the driver or toyproof failed.
-    Error,
     /// Its algorithm differs from the reference.
     Wrong,
+    /// Nothing could be evaluated, or, without a reference, naga, the driver or toyproof failed.
+    Error,
     /// Its algorithm is right, but float32 is not precise enough for it.
     Unstable,
     /// Each frame is right and precise, but feedback amplifies rounding errors until images differ.
@@ -61,8 +61,8 @@ impl fmt::Display for Verdict {
             Self::Missing => "missing",
             Self::Invalid => "invalid",
             Self::Timeout => "timeout",
-            Self::Error => "error",
             Self::Wrong => "wrong",
+            Self::Error => "error",
             Self::Unstable => "unstable",
             Self::Chaotic => "chaotic",
             Self::Inconclusive => "inconclusive",
@@ -148,7 +148,16 @@ pub struct CheckEvidence {
     pub random_numbers: Option<OtherRandomNumbers>,
     /// The pixels in which rounding decides whether a ray hits the surface that it starts from, where there
     /// are enough of them to explain the difference.
-    pub self_intersection: Option<Share>,
+    pub self_intersection: Option<SelfIntersection>,
+}
+
+/// Pixels in which rounding decides whether a ray hits the surface that it starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SelfIntersection {
+    /// The pixels.
+    pub pixels: Share,
+    /// Whether it decides in double precision too.
+    pub in_double: bool,
 }
 
 /// A shader that differs from a stochastic reference only in pixels that depend on random numbers.
@@ -242,8 +251,9 @@ pub enum Reason {
         /// Their regions.
         regions: Regions,
     },
-    /// In these pixels, rounding decides whether a ray hits the surface that it starts from: `wrong`.
-    SelfIntersection(Share),
+    /// In these pixels, rounding decides whether a ray hits the surface that it starts from: `unstable`, or
+    /// `wrong` if it does in double precision too.
+    SelfIntersection(SelfIntersection),
     /// These pixels depend on undefined behavior: `inconclusive`.
     Undefined(Share),
     /// In these pixels, rounding decides the color of the reference: `inconclusive`.
@@ -259,11 +269,18 @@ pub enum Reason {
     Agrees {
         /// The pixels that differ, which are few.
         differing: Share,
-        /// The number of pixels that are ill-conditioned or depend on undefined behavior.
-        excluded: u64,
+        /// The number of pixels that are ill-conditioned.
+        ill_conditioned: u64,
+        /// The number of pixels that depend on undefined behavior.
+        undefined: u64,
+        /// The largest compact region of these.
+        undefined_region: Option<Region>,
         /// The number of pixels in which rounding decides the color of the reference itself, such as where an
         /// edge of a scene passes through the sample.
         tied: u64,
+        /// The number of pixels in which float32 is not precise enough, neither for the shader nor for the
+        /// reference, if they are many.
+        imprecise_reference: u64,
     },
     /// Without a difference that is permitted, the shader agrees with its reference: `correct`.
     Permitted {
@@ -357,15 +374,27 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
             (verdict, reason)
         }
         Evidence::Checked(evidence) => {
-            if let Some(pixels) = evidence.self_intersection {
-                (Verdict::Wrong, Reason::SelfIntersection(pixels))
-            } else if let Some(random_numbers) = &evidence.random_numbers {
-                by_means(random_numbers, &evidence.checks)
-            } else {
-                by_checks(&evidence.checks, evidence.growth)
+            let (verdict, reason) = match &evidence.random_numbers {
+                Some(random_numbers) => by_means(random_numbers, &evidence.checks),
+                None => by_checks(&evidence.checks, evidence.growth),
+            };
+            match (evidence.self_intersection, verdict) {
+                (Some(cause), _) if cause.in_double => (Verdict::Wrong, Reason::SelfIntersection(cause)),
+                (Some(cause), Verdict::Unstable) => (verdict, Reason::SelfIntersection(cause)),
+                _ => (verdict, reason),
             }
         }
     }
+}
+
+/// Whether the driver's image visibly differs from the evaluator's, so that naga, the driver or toyproof is at
+/// fault. Not every pixel that depends on undefined behavior is detected: where most pixels do, a few others prove
+/// nothing.
+#[must_use]
+pub(crate) fn is_toolchain_fault(toolchain: &CheckSummary) -> bool {
+    toolchain.max_abs > SEEN
+        && toolchain.share(toolchain.differing) > MAX_DIFFERING
+        && toolchain.differing > toolchain.undefined
 }
 
 /// The verdict on a shader without an image.
@@ -397,19 +426,19 @@ fn without_image(failure: &Failure) -> Verdict {
 
 /// The verdict by the three checks, pixel by pixel, and by the growth of errors over frames.
 fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>) -> (Verdict, Reason) {
-    if let Some(toolchain) = &checks.toolchain {
-        let differing = Share::differing(toolchain);
-        if toolchain.max_abs > SEEN
-            && differing.ratio() > MAX_DIFFERING
-            // Not every pixel that depends on undefined behavior is detected: where most pixels do, a few
-            // others prove nothing.
-            && toolchain.differing > toolchain.undefined
-        {
-            return (Verdict::Error, Reason::ToolchainDiffers(differing));
-        }
-    }
     let Some(algorithm) = &checks.algorithm else {
-        return (Verdict::Ok, Reason::NoReference);
+        // Without a reference, the subject is the toolchain.
+        let fault = checks
+            .toolchain
+            .as_ref()
+            .filter(|check| is_toolchain_fault(check));
+        return match fault {
+            Some(toolchain) => (
+                Verdict::Error,
+                Reason::ToolchainDiffers(Share::differing(toolchain)),
+            ),
+            None => (Verdict::Ok, Reason::NoReference),
+        };
     };
     let differing = Share::differing(algorithm);
     if is_different(algorithm) {
@@ -446,11 +475,20 @@ fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>) -> (Verdict, Reason
         };
         return (verdict, Reason::Growth(growth));
     }
-    let tied = checks.precision.as_ref().map_or(0, |precision| precision.tied);
+    let tied = checks
+        .precision
+        .as_ref()
+        .map_or(Share { count: 0, of: 0 }, |precision| {
+            Share::of(precision, precision.tied)
+        });
+    let is_imprecise = tied.ratio() > MAX_UNSTABLE;
     let reason = Reason::Agrees {
         differing,
-        excluded: algorithm.ill_conditioned + algorithm.undefined,
-        tied: algorithm.tied.max(tied),
+        ill_conditioned: algorithm.ill_conditioned,
+        undefined: algorithm.undefined,
+        undefined_region: algorithm.undefined_region,
+        tied: algorithm.tied.max(if is_imprecise { 0 } else { tied.count }),
+        imprecise_reference: if is_imprecise { tied.count } else { 0 },
     };
     (Verdict::Correct, reason)
 }
@@ -599,7 +637,7 @@ mod tests {
                 _ => PixelStatus::Agrees,
             })
             .collect();
-        algorithm.regions = Regions::of(&statuses, 20);
+        algorithm.regions = Regions::of(PixelStatus::Differs, &statuses, 20);
         assert_eq!(verdict(checks), Verdict::Wrong);
     }
 
@@ -609,16 +647,26 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_toolchain_is_an_error_and_lost_bits_are_not() {
-        assert_eq!(verdict(checks([5_000, 0, 0], 0, (11, 0.1))), Verdict::Error);
-        assert_eq!(verdict(checks([0; 3], 0, (10_000, 1e-6))), Verdict::Correct);
-        assert_eq!(verdict(checks([0; 3], 0, (10, 1.0))), Verdict::Correct);
-        let [few, many] = [4_000, 6_000].map(|undefined| {
+    fn a_broken_toolchain_takes_no_verdict_away() {
+        let broken = (10_000, 1.0);
+        assert_eq!(verdict(checks([0; 3], 0, broken)), Verdict::Correct);
+        assert_eq!(verdict(checks([5_000, 0, 0], 0, broken)), Verdict::Wrong);
+        assert_eq!(verdict(checks([0; 3], 31, broken)), Verdict::Unstable);
+        assert_eq!(verdict(checks([0, 0, 501], 0, broken)), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn without_a_reference_a_broken_toolchain_is_an_error_and_lost_bits_are_not() {
+        let toolchain = |differing, undefined, max_abs| {
             verdict(Checks {
-                toolchain: Some(summary([5_000, 0, undefined], 0.1)),
+                toolchain: Some(summary([differing, 0, undefined], max_abs)),
                 ..Checks::default()
             })
-        });
+        };
+        assert_eq!(toolchain(11, 0, 0.1), Verdict::Error);
+        assert_eq!(toolchain(10_000, 0, 1e-6), Verdict::Ok);
+        assert_eq!(toolchain(10, 0, 1.0), Verdict::Ok);
+        let [few, many] = [4_000, 6_000].map(|undefined| toolchain(5_000, undefined, 0.1));
         assert_eq!((few, many), (Verdict::Error, Verdict::Ok));
     }
 
@@ -643,18 +691,29 @@ mod tests {
     }
 
     #[test]
-    fn self_intersection_takes_precedence_over_the_precision_it_resembles() {
-        let evidence = CheckEvidence {
-            checks: checks([0, 500, 0], 500, SAME),
-            self_intersection: Some(Share {
-                count: 500,
-                of: 10_000,
-            }),
-            ..CheckEvidence::default()
+    fn self_intersection_is_wrong_only_if_double_precision_shows_it() {
+        let decided = |algorithm, in_double| {
+            decided(CheckEvidence {
+                checks: checks(algorithm, 500, SAME),
+                self_intersection: Some(SelfIntersection {
+                    pixels: Share {
+                        count: 500,
+                        of: 10_000,
+                    },
+                    in_double,
+                }),
+                ..CheckEvidence::default()
+            })
         };
-        let (verdict, reason) = decided(evidence);
+        let (verdict, reason) = decided([0, 500, 0], true);
         assert_eq!(verdict, Verdict::Wrong);
         assert!(matches!(reason, Reason::SelfIntersection(_)), "{reason:?}");
+        let (verdict, reason) = decided([0; 3], false);
+        assert_eq!(verdict, Verdict::Unstable);
+        assert!(matches!(reason, Reason::SelfIntersection(_)), "{reason:?}");
+        let (verdict, reason) = decided([11, 0, 0], false);
+        assert_eq!(verdict, Verdict::Wrong);
+        assert!(matches!(reason, Reason::AlgorithmDiffers { .. }), "{reason:?}");
     }
 
     /// A shader with other random numbers than its scene, of which the other pixels are `other_pixels`.

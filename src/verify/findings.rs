@@ -126,7 +126,9 @@ impl CheckResult {
     /// The result with the regions of its differing pixels, once all bands of an image that many pixels wide
     /// were added.
     pub(super) fn with_regions(mut self, width: u32) -> Self {
-        self.summary.regions = Regions::of(&self.statuses, width);
+        let regions = |status| Regions::of(status, &self.statuses, width);
+        self.summary.regions = regions(PixelStatus::Differs);
+        self.summary.undefined_region = regions(PixelStatus::Undefined).largest_compact;
         self
     }
 }
@@ -182,8 +184,8 @@ impl Findings {
         {
             let (algorithm, precision) = (self.algorithm.as_ref(), self.precision.as_ref());
             evidence.self_intersection = acne::detect(tracer, case.frame.size, algorithm, precision);
-            if evidence.self_intersection.is_some() {
-                self.decide(evidence.clone().into());
+            self.decide(evidence.clone().into());
+            if matches!(self.reason, Reason::SelfIntersection(_)) {
                 self.mistake = Some(Diagnosis::of(acne::mistake()));
             }
         }
@@ -197,6 +199,25 @@ impl Findings {
         self.notes
             .extend(notes::unbound(case.checked, case.lints, case.frame));
         self.locate_loss_of_precision(case, program, deadline);
+    }
+
+    /// Decides from the algorithm check in float32, where double precision cannot be evaluated. What explains a
+    /// difference cannot be evaluated either.
+    pub(super) fn decide_in_single(&mut self, failure: &eval::Failure) {
+        let summary = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
+        let checks = Checks {
+            algorithm: summary(&self.algorithm),
+            precision: None,
+            toolchain: summary(&self.toolchain),
+        };
+        self.decide(
+            CheckEvidence {
+                checks,
+                ..CheckEvidence::default()
+            }
+            .into(),
+        );
+        self.notes.push(notes::only_single(failure));
     }
 
     /// Whether a wrong shader is right but for a permitted difference. Then the verdict and the algorithm
@@ -354,8 +375,14 @@ impl Findings {
     /// Searches for the line in which float32 loses precision, where it is not enough.
     fn locate_loss_of_precision(&mut self, case: &Case, program: &Program, deadline: Instant) {
         let differs_often = |check: &CheckResult| Share::differing(&check.summary).ratio() > MAX_UNSTABLE;
-        let loses_precision =
-            self.verdict == Verdict::Ok && self.precision.as_ref().is_some_and(differs_often);
+        let loses_precision = match &self.reason {
+            // The reference loses it at the same place.
+            Reason::Agrees {
+                imprecise_reference, ..
+            } => *imprecise_reference > 0,
+            Reason::NoReference => self.precision.as_ref().is_some_and(differs_often),
+            _ => false,
+        };
         if self.verdict != Verdict::Unstable && !loses_precision {
             return;
         }

@@ -153,14 +153,16 @@ use toyproof_translate::FloatMode;
 use self::cpu::Evaluator;
 pub use self::decide::{
     CheckEvidence, Checks, Evidence, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, MeanComparison, Means,
-    OtherRandomNumbers, Reason, Share, Verdict, decide, is_different,
+    OtherRandomNumbers, Reason, SelfIntersection, Share, Verdict, decide, is_different,
 };
 pub use self::expected::{
     Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, Quantization, ReferenceFindings,
     ReferenceKind, SceneReference, ShaderReference,
 };
 pub use self::findings::{CheckResult, Findings, GpuRun};
-pub use self::notes::unbound;
+pub use self::notes::{driver_failure, unbound};
+#[cfg(feature = "gpu")]
+pub use self::on_gpu::is_replaceable;
 pub use self::on_gpu::{GpuFailure, Worker};
 use crate::alternative::Alternatives;
 use crate::contain::Panic;
@@ -265,9 +267,8 @@ const EVALUATOR_TIME_FACTOR: u32 = 4;
 /// The time limit of all checks of a shader as a multiple of one image's.
 const TOTAL_TIME_FACTOR: u32 = 8;
 
-/// Runs the three checks. Without a `worker`, the evaluator renders the image, and there is no toolchain
-/// check. Everything together takes at most eight times the time limit of an image, besides what is computed
-/// once per scene.
+/// Runs the three checks. Without a `worker`, or where it renders no image of a shader that has a reference, the
+/// evaluator renders the image, and there is no toolchain check.
 ///
 /// # Errors
 /// Returns why there is no image of the shader: [`Failure::Gpu`], [`Failure::Cpu`], [`Failure::Overdue`] or
@@ -280,14 +281,14 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
     }
     let stop = AtomicBool::new(false);
     // With a GPU, the time limit applies to the GPU.
-    let longest = case.timeout * EVALUATOR_TIME_FACTOR;
-    let limit = if worker.is_some() { longest } else { case.timeout };
+    let limit = match worker {
+        Some(_) => case.timeout * EVALUATOR_TIME_FACTOR,
+        None => case.timeout,
+    };
     let (counts, iteration_counts) = mpsc::channel();
     let evaluator = match &program {
-        Ok(program) => Ok(
-            Evaluator::new(program, case.frame, [limit, longest], deadline, &stop)
-                .with_double(case.from_start.map(|from_start| from_start.double)),
-        ),
+        Ok(program) => Ok(Evaluator::new(program, case.frame, limit, &stop)
+            .with_double(case.from_start.map(|from_start| from_start.double))),
         Err(refusal) => Err((*refusal).into()),
     };
     let session = VerifySession::new(case, evaluator, deadline, counts);
@@ -295,7 +296,7 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
         None => on_cpu(case, session),
         Some(worker) => {
             let program = program.as_ref();
-            on_gpu::verify(worker, case, program, session, &iteration_counts, &stop, deadline)
+            on_gpu::verify(worker, case, program, session, &iteration_counts, &stop)
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::Receiver;
-use std::time::Instant;
 
 use thiserror::Error;
 use toyproof_diagnostic::Diagnostic;
@@ -40,7 +39,6 @@ pub(super) fn verify(
     _: VerifySession,
     _: &Receiver<IterationCount>,
     _: &AtomicBool,
-    _: Instant,
 ) -> Result<Findings, Failure> {
     match *worker {}
 }

@@ -2,18 +2,19 @@
 //! shader loses precision.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use toyproof_diagnostic::{Diagnostic, Severity, Span, grouped, plural};
-use toyproof_eval::{EventKind, Fault, MESA_CAP, Observations, Observed, Program, TraceValue};
+use toyproof_eval::{self as eval, EventKind, Fault, MESA_CAP, Observations, Observed, Program, TraceValue};
 use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
 use toyproof_glsl::{Checked, Code};
 use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
-use super::{Case, CheckResult};
-use crate::compare::PixelStatus;
+use super::{Case, CheckResult, Failure};
+use crate::compare::{CheckSummary, PixelStatus};
 use crate::debug::{Explanation, digits, explain};
+use crate::decide::is_toolchain_fault;
 
 /// Reports what was observed, except what the lints report already. `excludes_pixels` is true if pixels with
 /// undefined behavior are excluded.
@@ -73,15 +74,68 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
     unbound.filter(|note| !lints.allows(note)).collect()
 }
 
-/// Reports that the driver did not compile the shader in time.
-pub(super) fn slow_compilation(after: Duration) -> Diagnostic {
+/// Reports why a worker rendered no image, where the evaluator takes its place.
+#[must_use]
+pub fn driver_failure(failure: &Failure) -> Diagnostic {
+    #[cfg(feature = "gpu")]
+    if let Failure::Gpu(toyproof_gpu::Failure::Timeout {
+        phase: toyproof_gpu::Phase::Compiling,
+        after,
+    }) = failure
+    {
+        let message = format!(
+            "the Vulkan driver takes longer than {} s to compile this shader; it was evaluated on the CPU instead, \
+             without the toolchain check",
+            after.as_secs_f64()
+        );
+        return Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message)
+            .note("use a longer `--timeout`; shorter functions and smaller arrays compile faster");
+    }
+    // What naga rejects it states itself.
+    let stated = failure
+        .diagnostics()
+        .first()
+        .map(|one| format!(": {}", one.message));
     let message = format!(
-        "the Vulkan driver takes longer than {} s to compile this shader; it was evaluated on the CPU instead, \
-         without the toolchain check",
-        after.as_secs_f64()
+        "there is no image of the driver: {failure}{}; the shader was evaluated on the CPU instead, without the \
+         toolchain check",
+        stated.unwrap_or_default()
     );
-    Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message)
-        .note("use a longer `--timeout`; shorter functions and smaller arrays compile faster")
+    Diagnostic::warning(Code::DriverFailure.as_str(), message).note(NOT_THE_SHADER)
+}
+
+/// Whose fault a failure or a difference of the toolchain is.
+const NOT_THE_SHADER: &str = "naga, the driver or toyproof is at fault, not the shader";
+
+/// Reports that the driver's image visibly differs from the evaluator's, if it does.
+pub(super) fn toolchain_difference(toolchain: &CheckSummary) -> Option<Diagnostic> {
+    let first = toolchain
+        .first
+        .as_ref()
+        .filter(|_| is_toolchain_fault(toolchain))?;
+    let message = format!(
+        "{} of {} pixels of the driver's image differ from the same float32 arithmetic on the CPU, first at \
+         ({}, {}); the evaluator's image was judged",
+        grouped(toolchain.differing),
+        grouped(toolchain.pixels),
+        first.x,
+        first.y
+    );
+    let diagnostic = Diagnostic::warning(Code::ToolchainDifference.as_str(), message);
+    Some(diagnostic.note(NOT_THE_SHADER))
+}
+
+/// Reports that the shader could not be evaluated in double precision.
+pub(super) fn only_single(failure: &eval::Failure) -> Diagnostic {
+    let message = format!(
+        "the shader cannot be evaluated in double precision: {failure}; it was compared in float32, without the \
+         precision check"
+    );
+    let diagnostic = Diagnostic::warning(Code::OnlySingle.as_str(), message);
+    match failure {
+        eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at } => diagnostic.at(at.span),
+        _ => diagnostic,
+    }
 }
 
 fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
@@ -219,14 +273,18 @@ impl NotFinite {
 }
 
 /// Returns at most `max_count` of the differing pixels, spread over the image; of the ill-conditioned ones if
-/// none differs.
+/// none differs, and else of those in which the reference is ill-conditioned.
 pub(super) fn sample_pixels(check: &CheckResult, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
     let width = size[0] as usize;
     let of = |status| {
         let statuses = check.statuses.iter().enumerate();
         statuses.filter(move |&(_, &own)| own == status).map(|(at, _)| at)
     };
-    let statuses = [PixelStatus::Differs, PixelStatus::IllConditioned];
+    let statuses = [
+        PixelStatus::Differs,
+        PixelStatus::IllConditioned,
+        PixelStatus::Tied,
+    ];
     let status = statuses.into_iter().find(|&status| of(status).next().is_some());
     let Some(status) = status else {
         return Vec::new();

@@ -2,9 +2,8 @@
 
 use std::iter;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver};
+use std::sync::mpsc::Receiver;
 use std::thread;
-use std::time::Instant;
 
 use toyproof_diagnostic::Deadline;
 use toyproof_eval::{self as eval, Program, Refusal};
@@ -12,10 +11,9 @@ use toyproof_gpu::{DrawOutput, SAFE_ITERATIONS};
 pub use toyproof_gpu::{Failure as GpuFailure, Worker};
 use toyproof_translate::FloatMode;
 
-use crate::cpu::Evaluator;
 use crate::session::{IterationCount, VerifySession};
 use crate::spool::Spool;
-use crate::{Case, EVALUATOR_TIME_FACTOR, Failure, Findings, GpuRun, join, notes, on_cpu, within};
+use crate::{Case, Failure, Findings, GpuRun, join, notes, within};
 
 /// Maximum number of pixels of an image after which the worker waits for the next shader. Comparing a larger
 /// one takes seconds, in which the driver would hold 100 MB; starting it again takes a fraction of that time.
@@ -32,7 +30,8 @@ impl GpuRun {
     }
 }
 
-/// Verifies with a worker. `stop` ends the evaluator, whose `iteration_counts` show whether loops are short.
+/// Verifies with a worker. `stop` ends the evaluator, whose `iteration_counts` show whether loops are short. Where
+/// the driver fails, the evaluator takes its place if it can.
 pub(super) fn verify(
     worker: &mut Worker,
     case: &Case,
@@ -40,8 +39,11 @@ pub(super) fn verify(
     mut session: VerifySession,
     iteration_counts: &Receiver<IterationCount>,
     stop: &AtomicBool,
-    deadline: Instant,
 ) -> Result<Findings, Failure> {
+    let is_replaceable = |failure: &Failure| match failure {
+        Failure::Gpu(failure) => program.is_ok() && is_replaceable(failure, case.expected.is_some()),
+        _ => false,
+    };
     // They share the cores, but none waits for another's latency. The worker runs on this thread: its process
     // ends with the thread that started it.
     let (comparing_session, bands) = (&mut session, &Spool::default());
@@ -51,24 +53,31 @@ pub(super) fn verify(
             within(case.pool, move || comparing_session.bands(Some(&mut next)))
         });
         let drawn = draw(worker, case, iteration_counts, bands);
-        let is_usable = |drawn: &DrawOutput| drawn.loop_truncated.is_none_or(|pixels| pixels == 0);
-        stop.store(!drawn.as_ref().is_ok_and(is_usable), Ordering::Relaxed);
+        let is_needed = match &drawn {
+            Ok(drawn) => drawn.loop_truncated.is_none_or(|pixels| pixels == 0),
+            Err(failure) => is_replaceable(failure),
+        };
+        stop.store(!is_needed, Ordering::Relaxed);
         bands.close();
         (drawn, join(comparing))
     });
     let drawn = match drawn {
-        Err(Failure::Gpu(failure)) if failure.is_slow_compilation() => {
-            return without_compiler(failure, case, program, deadline);
+        Ok(drawn) => drawn,
+        Err(failure) if is_replaceable(&failure) => {
+            compared?;
+            let mut findings = within(case.pool, || session.findings(None));
+            findings.notes.push(notes::driver_failure(&failure));
+            return Ok(findings);
         }
-        drawn => drawn?,
+        Err(failure) => return Err(failure),
     };
     compared?;
-    // The evaluator found a loop that does not end, on a driver that may have truncated it and could not be
-    // watched.
-    if let (None, Err(failure @ (eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. }))) =
-        (drawn.loop_truncated, &session.evaluator)
-    {
-        return Err(failure.clone().into());
+    match (&session.evaluator, drawn.loop_truncated) {
+        // A loop does not end, whatever the driver made of it.
+        (Err(failure @ eval::Failure::TooOften { .. }), _)
+        // The driver may have truncated the loop, and could not be watched.
+        | (Err(failure @ eval::Failure::Timeout { .. }), None) => return Err(failure.clone().into()),
+        _ => {}
     }
     // Where the driver could not be watched in time, the evaluator has counted the iterations.
     let gpu_run = match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
@@ -78,24 +87,12 @@ pub(super) fn verify(
     Ok(within(case.pool, || session.findings(Some(gpu_run))))
 }
 
-/// Verifies with the evaluator alone because the driver's compiler exceeded the time limit: how long it takes
-/// does not show how long the shader runs. Fails if the evaluator cannot compile the shader either.
-fn without_compiler(
-    failure: GpuFailure,
-    case: &Case,
-    program: Result<&Program, &Refusal>,
-    deadline: Instant,
-) -> Result<Findings, Failure> {
-    let Ok(program) = program else {
-        return Err(failure.into());
-    };
-    let stop = AtomicBool::new(false);
-    let (counts, _) = mpsc::channel();
-    let limits = [case.timeout * EVALUATOR_TIME_FACTOR; 2];
-    let evaluator = Evaluator::new(program, case.frame, limits, deadline, &stop);
-    let mut findings = on_cpu(case, VerifySession::new(case, Ok(evaluator), deadline, counts))?;
-    findings.notes.push(notes::slow_compilation(case.timeout));
-    Ok(findings)
+/// Whether the evaluator may take the place of a worker that failed. How long the driver takes shows nothing about
+/// the shader. Without a reference, other failures are what the check is about.
+#[must_use]
+pub fn is_replaceable(failure: &GpuFailure, has_reference: bool) -> bool {
+    let is_decisive = failure.is_invalid() || failure.is_without_driver();
+    !is_decisive && (failure.is_timeout() || has_reference)
 }
 
 /// Renders on the GPU, sends the bands on, and watches the loops unless the evaluator shows that they are

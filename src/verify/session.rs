@@ -11,9 +11,9 @@ use toyproof_image::{Image, Rgb8Image};
 use toyproof_scene::Scene;
 use toyproof_translate::FloatMode;
 
-use crate::compare::{self, Comparison, DiffLevel, Mixed, Reference};
+use crate::compare::{self, Comparison, DiffLevel, Mixed, Reference, SEEN, Undefined};
 use crate::contain::{Part, contain};
-use crate::cpu::{Band, Evaluator};
+use crate::cpu::{Band, DoubleBand, Evaluator};
 use crate::decide::{Reason, Verdict};
 use crate::expected::{NumberType, ReferenceBand};
 use crate::notes::{self, NotFinite};
@@ -50,6 +50,9 @@ pub(super) struct VerifySession<'a> {
     not_finite: NotFinite,
     /// Spheres with a possibly wrong silhouette, and the image in f64, if there are any.
     silhouettes: Option<(Scene, Vec<SilhouetteBand>, Rgb8Image)>,
+    /// Why double precision could not be evaluated, from some band on; the shader is then compared with its
+    /// reference in float32.
+    double_failure: Option<eval::Failure>,
     /// What is recorded to compare means, for a reference that may be stochastic.
     stochastic: Option<Stochastic<'a>>,
     eval: Duration,
@@ -94,6 +97,7 @@ impl<'a> VerifySession<'a> {
             reference: case.expected.map(|_| empty()),
             not_finite: NotFinite::default(),
             silhouettes: silhouettes.filter(|(_, candidates, _)| !candidates.is_empty()),
+            double_failure: None,
             stochastic: case
                 .expected
                 .and_then(|expected| Stochastic::new(expected, case.frame.size)),
@@ -102,25 +106,26 @@ impl<'a> VerifySession<'a> {
         }
     }
 
-    /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, its
-    /// caller reports it.
+    /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, the evaluator
+    /// goes on alone, and there is no toolchain check.
     ///
     /// # Errors
     /// Returns why there is no image, where no GPU renders one, and the errors of `gpu`.
     pub(super) fn bands(&mut self, mut gpu: Option<&mut NextBand<'_>>) -> Result<(), Failure> {
         for rows in self.case.frame.bands() {
             let (band, reference) = self.render(&rows)?;
-            let actual = match &mut gpu {
+            let drawn = match &mut gpu {
                 None => None,
-                Some(next) => match next()? {
-                    Some(band) => Some(band),
-                    None => return Ok(()),
-                },
+                Some(next) => next()?,
             };
-            if let (None, Err(failure)) = (&gpu, &self.evaluator) {
-                return Err(failure.clone().into());
+            if drawn.is_none() {
+                gpu = None;
+                self.toolchain = None;
+                if let Err(failure) = &self.evaluator {
+                    return Err(failure.clone().into());
+                }
             }
-            self.compare(&rows, band.as_ref(), reference.as_deref(), actual.as_ref());
+            self.compare(&rows, band.as_ref(), reference.as_deref(), drawn.as_ref());
         }
         self.counts = None;
         Ok(())
@@ -173,9 +178,17 @@ impl<'a> VerifySession<'a> {
     ) {
         let offset = rows.start;
         let pixels = self.case.frame.size.map(|side| side as usize).iter().product();
-        if let Some(actual) = drawn.or(band.map(|band| &band.single)) {
+        let single = band.map(|band| &band.single);
+        // Strict runs have the evaluator's bits, unless the toolchain is at fault: then these are the shader's.
+        let judged = match self.case.float {
+            FloatMode::Strict => single.or(drawn),
+            FloatMode::Fast => drawn.or(single),
+        };
+        if let Some(judged) = judged {
+            self.not_finite.record(judged, offset);
+        }
+        if let Some(actual) = drawn.or(single) {
             self.actual.extend(actual);
-            self.not_finite.record(actual, offset);
             if let (Some(reference), Some(image)) = (reference, &mut self.reference) {
                 image.extend(&reference.image);
                 let (comparison, mut levels) = compare::compare(&reference.image, actual);
@@ -191,26 +204,28 @@ impl<'a> VerifySession<'a> {
                 }
             }
         }
-        let Some(band) = band else {
+        let (Some(band), Some(judged)) = (band, judged) else {
             return;
         };
-        let actual = drawn.unwrap_or(&band.single);
         if let Some(reference) = reference {
             self.check_algorithm(rows, band, reference);
-            if let Some(stochastic) = &mut self.stochastic {
-                stochastic.record(&band.double, &reference.image, offset);
+        }
+        match &band.double {
+            Ok(double) => {
+                if let (Some(stochastic), Some(reference)) = (&mut self.stochastic, reference) {
+                    stochastic.record(&double.image, &reference.image, offset);
+                }
+                self.check_precision(rows, double, judged, &band.undefined);
+                if let Some((_, _, image)) = &mut self.silhouettes {
+                    image.extend(&double.image);
+                }
+            }
+            Err(failure) => {
+                self.double_failure.get_or_insert_with(|| failure.clone());
+                self.stochastic = None;
+                self.silhouettes = None;
             }
         }
-        // Float32 is compared with double precision from the same buffers: what earlier frames amplify is
-        // no fault of this one.
-        let precise = band.step.as_ref().unwrap_or(&band.double);
-        let mut statuses = compare::precision(precise, actual, &band.undefined);
-        if let Some(expected) = self.case.expected {
-            compare::exclude_tied(&mut statuses, |wanted| {
-                expected.tied(rows, wanted, NumberType::Single)
-            });
-        }
-        self.precision.extend(precise, actual, &statuses, offset);
         if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
             let statuses = compare::toolchain(&band.single, drawn, &band.undefined);
             let check = self
@@ -218,31 +233,44 @@ impl<'a> VerifySession<'a> {
                 .get_or_insert_with(|| CheckResult::of_pixels(pixels));
             check.extend(&band.single, drawn, &statuses, offset);
         }
-        if let Some((_, _, double)) = &mut self.silhouettes {
-            double.extend(&band.double);
-        }
         self.excludes_pixels |= band.undefined.contains(&true);
         self.observed.merge(&band.observed);
     }
 
+    /// Compares the shader with the reference in double precision, or in float32 where only that was evaluated.
     fn check_algorithm(&mut self, rows: &Range<u32>, band: &Band, reference: &ReferenceBand) {
         let (Some(expected), Ok(evaluator)) = (self.case.expected, &self.evaluator) else {
             return;
         };
+        let (actual, substituted, number_type) = match &band.double {
+            Ok(double) => (&double.image, double.substituted.as_deref(), NumberType::Double),
+            Err(_) => (&band.single, None, NumberType::Single),
+        };
         let from_row = FromRow {
             expected,
             rows,
+            number_type,
             derives: self.case.checked.takes_derivatives(),
         };
-        let mut undefined = band.undefined.clone();
-        for (own, &reference) in undefined.iter_mut().zip(&reference.undefined) {
-            *own |= reference;
-        }
+        let undefined = Undefined {
+            pixels: &band.undefined,
+            substituted,
+            in_reference: &reference.undefined,
+        };
+        let mut failure = None;
         let (statuses, perturbing) = timed(|| {
-            let perturbed = |seed, wanted: &[bool]| evaluator.perturbed(rows, Seed::double(seed), wanted);
-            let (expected, actual) = (&reference.image, &band.double);
+            let perturbed = |seed, wanted: &[bool]| {
+                if number_type == NumberType::Single {
+                    return None;
+                }
+                let perturbed = evaluator.perturbed(rows, Seed::double(seed), wanted);
+                perturbed.unwrap_or_else(|error| {
+                    failure = Some(error);
+                    None
+                })
+            };
             compare::algorithm(
-                expected,
+                &reference.image,
                 actual,
                 &undefined,
                 &from_row,
@@ -252,7 +280,29 @@ impl<'a> VerifySession<'a> {
         });
         self.eval += perturbing;
         self.algorithm
-            .extend(&reference.image, &band.double, &statuses, rows.start);
+            .extend(&reference.image, actual, &statuses, rows.start);
+        if let Some(failure) = failure {
+            self.evaluator = Err(failure);
+        }
+    }
+
+    /// Compares the shader's image in float32 with double precision from the same buffers: what earlier frames
+    /// amplify is no fault of this one.
+    fn check_precision(
+        &mut self,
+        rows: &Range<u32>,
+        double: &DoubleBand,
+        actual: &Image,
+        undefined: &[bool],
+    ) {
+        let precise = double.step.as_ref().unwrap_or(&double.image);
+        let mut statuses = compare::precision(precise, actual, undefined);
+        if let Some(expected) = self.case.expected {
+            compare::exclude_tied(&mut statuses, |wanted| {
+                expected.tied(rows, wanted, NumberType::Single)
+            });
+        }
+        self.precision.extend(precise, actual, &statuses, rows.start);
     }
 
     /// Returns the findings; `gpu_run` is the GPU that rendered the image.
@@ -282,7 +332,7 @@ impl<'a> VerifySession<'a> {
             Ok(evaluator) => {
                 let complete = |check: CheckResult| check.with_regions(self.case.frame.size[0]);
                 findings.algorithm = self.case.expected.map(|_| complete(self.algorithm));
-                findings.precision = Some(complete(self.precision));
+                findings.precision = self.double_failure.is_none().then(|| complete(self.precision));
                 findings.toolchain = self.toolchain.map(complete);
                 let (case, program) = (self.case, evaluator.program());
                 findings.notes = notes::notes(&self.observed, self.excludes_pixels, case.lints);
@@ -306,7 +356,17 @@ impl<'a> VerifySession<'a> {
                 });
                 let notes = findings.contained(notes);
                 findings.notes.extend(notes);
-                findings.explain(case, program, self.deadline, self.stochastic.as_ref());
+                match self.double_failure {
+                    None => findings.explain(case, program, self.deadline, self.stochastic.as_ref()),
+                    Some(failure) => findings.decide_in_single(&failure),
+                }
+                if let Some(toolchain) = &findings.toolchain
+                    && findings.verdict != Verdict::Error
+                {
+                    findings
+                        .notes
+                        .extend(notes::toolchain_difference(&toolchain.summary));
+                }
                 findings.notes.retain(|note| !case.lints.allows(note));
             }
         }
@@ -318,13 +378,18 @@ impl<'a> VerifySession<'a> {
 pub(super) struct FromRow<'a> {
     pub(super) expected: &'a Expected,
     pub(super) rows: &'a Range<u32>,
+    /// The number type in which the shader was evaluated.
+    pub(super) number_type: NumberType,
     /// Whether the shader takes derivatives.
     pub(super) derives: bool,
 }
 
 impl Reference for FromRow<'_> {
     fn tolerance(&self) -> f64 {
-        self.expected.tolerance()
+        match self.number_type {
+            NumberType::Double => self.expected.tolerance(),
+            NumberType::Single => self.expected.tolerance().max(SEEN),
+        }
     }
     fn accept_epsilons(&self, band: &mut compare::Band, mixed: &mut Mixed) {
         self.expected.accept_epsilons(self.rows, band, mixed);
@@ -333,6 +398,6 @@ impl Reference for FromRow<'_> {
         self.derives && self.expected.is_across_edge(x, self.rows.start + y)
     }
     fn tied(&self, wanted: &[bool]) -> Vec<bool> {
-        self.expected.tied(self.rows, wanted, NumberType::Double)
+        self.expected.tied(self.rows, wanted, self.number_type)
     }
 }

@@ -6,14 +6,16 @@ use std::time::Duration;
 use std::{fs, thread};
 
 use serde_json::Value;
+use toyproof::diagnostic::{File, Files};
 use toyproof::eval;
 use toyproof::glsl::Checked;
 use toyproof::gpu::{AdapterSelector, Failure, Phase, Worker};
 use toyproof::image::Frame;
 use toyproof::lint::Lints;
+use toyproof::scene::{self, Scene};
 use toyproof::translate::backend::Target;
 use toyproof::translate::{FloatMode, lower};
-use toyproof::verify::{self, Case, Findings, Verdict, verify};
+use toyproof::verify::{self, Case, Expected, Findings, Verdict, verify};
 
 use crate::program::{Run, command, run};
 use crate::requirements::{require_driver, require_program, require_worker, skip};
@@ -140,14 +142,24 @@ fn driver_start_time_does_not_count_for_the_shader() {
 }
 
 fn judge(script: &str, checked: &Checked, timeout: Duration) -> Result<Findings, verify::Failure> {
+    judge_against(None, script, checked, timeout)
+}
+
+fn judge_against(
+    scene: Option<&Scene>,
+    script: &str,
+    checked: &Checked,
+    timeout: Duration,
+) -> Result<Findings, verify::Failure> {
     let frame = Frame {
         size: [16, 9],
         ..Frame::default()
     };
+    let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));
     let case = Case {
         checked,
         lints: &Lints::default(),
-        expected: None,
+        expected: expected.as_ref(),
         hypotheses: None,
         alternatives: None,
         search: None,
@@ -186,13 +198,58 @@ fn the_evaluator_checks_shaders_that_the_driver_cannot_compile_in_time() {
         verify::Failure::Cpu(eval::Failure::Timeout { .. } | eval::Failure::TooOften { .. })
     );
     assert!(is_endless, "{failure:?}");
+}
 
-    // An image that takes too long does not fall back either.
-    let failure = judge("DRAWING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap_err();
-    assert!(
-        matches!(failure, verify::Failure::Gpu(Failure::Timeout { .. })),
-        "{failure:?}"
-    );
+/// Scripts that fail after they have started, and what the warning says.
+const FAILING: [(&str, &str); 6] = [
+    (
+        "DRAWING; exec sleep 60",
+        "time limit of 0.3 s exceeded while the driver was rendering",
+    ),
+    (
+        "DRAWING; kill -STOP $$",
+        "time limit of 0.3 s exceeded while the driver was rendering",
+    ),
+    ("DRAWING; exit 3", "while the driver was rendering the frame"),
+    (
+        "COMPILING; kill -FPE $$",
+        "while the driver was compiling the shader",
+    ),
+    (
+        "COMPILING; kill -KILL $$",
+        "while the driver was compiling the shader",
+    ),
+    ("TRANSLATING; exit 3", "while naga was translating the shader"),
+];
+
+#[test]
+fn a_drivers_fault_takes_no_verdict_away() {
+    let mut files = Files::default();
+    let file = files.add(File::new("scene.toml", SPHERE.scene));
+    let scene = scene::parse(&files, file).unwrap();
+    let wrong = SPHERE.shader.replace("1.5", "1.25");
+    let unlike = [(SPHERE.shader, Verdict::Correct), (&wrong, Verdict::Wrong)];
+    for (script, wanted) in FAILING {
+        for (shader, verdict) in unlike {
+            let findings = judge_against(Some(&scene), script, &checked(shader), HANG_GUARD).unwrap();
+            assert_eq!(findings.verdict, verdict, "{script}");
+            assert!(
+                findings.toolchain.is_none() && findings.gpu_run.is_none(),
+                "{script}"
+            );
+            let note = findings.notes.iter().find(|note| note.code == "W0610").unwrap();
+            assert!(note.message.contains(wanted), "{script}: {note:?}");
+        }
+        // Without a reference, the driver is what is checked; how long it takes shows nothing.
+        let checked = checked(SPHERE.shader);
+        match judge(script, &checked, HANG_GUARD) {
+            Ok(findings) => assert_eq!((findings.verdict, wanted.contains("limit")), (Verdict::Ok, true)),
+            Err(failure) => assert!(
+                matches!(failure, verify::Failure::Gpu(_)) && !wanted.contains("limit"),
+                "{script}: {failure:?}"
+            ),
+        }
+    }
 }
 
 /// Compiles a Vulkan driver whose entry points execute `does`; needs `cc`.

@@ -29,6 +29,7 @@ mod equivalent_rewrites;
 mod estimators;
 mod evaluator;
 mod evaluator_programs;
+mod evasion;
 mod exported;
 #[cfg(unix)]
 mod fair_verdicts;

@@ -284,7 +284,7 @@ impl<'a> Checker<'a> {
         let cached = reference.map(|reference| self.cached(reference, (index, key), has_history, frame));
         let cached = cached.transpose()?;
         let from_start = match &shader.passes {
-            Some(passes) => self.bind(context, outcome, shader, passes, frame)?,
+            Some(passes) => self.bind(context, outcome, shader, passes, (frame, reference.is_some()))?,
             None => None,
         };
         let frame = &*frame;
@@ -352,15 +352,15 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Binds what the image of a project reads in a frame, and reports what its passes do in the frames up to
-    /// it.
+    /// Binds what the image of a project reads in a frame, which is compared with a reference or not, and reports
+    /// what its passes do in the frames up to it.
     fn bind(
         &self,
         context: &mut WorkerContext,
         outcome: &mut Outcome,
         shader: &Shader,
         passes: &Passes,
-        frame: &mut Frame,
+        (frame, has_reference): (&mut Frame, bool),
     ) -> Result<Option<BoundFrame>, Failure> {
         let renderers = Renderers {
             worker: context.worker.as_mut(),
@@ -368,7 +368,7 @@ impl<'a> Checker<'a> {
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),
         };
-        let Some(mut bound) = passes::bind(passes, frame, renderers)? else {
+        let Some(mut bound) = passes::bind(passes, frame, has_reference, renderers)? else {
             return Ok(None);
         };
         outcome.report(std::mem::take(&mut bound.notes), &shader.files);

@@ -5,9 +5,10 @@ use toyproof_image::{Frame, Image};
 
 use super::Alternative;
 use super::view::View;
-use crate::compare::{self, CheckSummary, EXACT_TOLERANCE, Mixed, Pixel, PixelStatus, TOLERANCE};
+use crate::compare::{self, CheckSummary, EXACT_TOLERANCE, Mixed, Pixel, PixelStatus, TOLERANCE, Undefined};
 use crate::cpu::evaluate_at;
 use crate::decide::{CheckEvidence, Checks, Verdict, decide};
+use crate::expected::NumberType;
 use crate::mistake::KnownMistake;
 use crate::session::FromRow;
 use crate::{Case, CheckResult, Expected};
@@ -130,11 +131,17 @@ impl<'a> WrongShader<'a> {
             let mut places = Places::spread(frame.size, frame.size);
             places.rows = places.rows[rows.start as usize..rows.end as usize].to_vec();
             let actual = view.image(self.program, &places)?;
-            let mut undefined = band.undefined.clone();
-            undefined.resize(actual.pixels().len(), false);
+            let mut in_reference = band.undefined.clone();
+            in_reference.resize(actual.pixels().len(), false);
+            let undefined = Undefined {
+                pixels: &vec![false; in_reference.len()],
+                substituted: Some(&[]),
+                in_reference: &in_reference,
+            };
             let from_row = FromRow {
                 expected,
                 rows: &rows,
+                number_type: NumberType::Double,
                 derives: self.case.checked.takes_derivatives(),
             };
             let statuses =

@@ -27,6 +27,35 @@ pub trait Reference: Sync {
     fn tied(&self, wanted: &[bool]) -> Vec<bool>;
 }
 
+/// The pixels of a band that depend on undefined behavior, bottom row first.
+#[derive(Debug, Clone, Copy)]
+pub struct Undefined<'a> {
+    /// Those of the shader.
+    pub pixels: &'a [bool],
+    /// The shader's images with other results of its undefined operations; none if these have no substitutes.
+    pub substituted: Option<&'a [Image]>,
+    /// Those of the reference.
+    pub in_reference: &'a [bool],
+}
+
+impl Undefined<'_> {
+    /// The status of a pixel whose color differs from the expected one if it `differs` in the shader's image. A
+    /// pixel that is wrong whatever the undefined operations return is wrong.
+    fn status(&self, at: usize, differs: impl Fn(&Image) -> bool, actual: &Image) -> PixelStatus {
+        let is_wrong = match self.substituted {
+            None => false,
+            Some(images) => differs(actual) && images.iter().all(&differs),
+        };
+        match (self.pixels[at], self.in_reference[at]) {
+            (_, true) => PixelStatus::Undefined,
+            (true, false) if is_wrong => PixelStatus::Differs,
+            (true, false) => PixelStatus::Undefined,
+            (false, false) if differs(actual) => PixelStatus::Differs,
+            (false, false) => PixelStatus::Agrees,
+        }
+    }
+}
+
 /// The colors of a reference for different ray epsilons. Coordinates are in the band.
 pub trait EpsilonColors: Sync {
     /// The accepted colors of a pixel for a few of the legal ray epsilons.
@@ -80,7 +109,8 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 /// coordinates are in the band.
 ///
 /// A pixel agrees if no component is farther than the tolerance from the reference's color, or from those that
-/// it has for other ray epsilons. A pixel outside is excluded if it lies on an
+/// it has for other ray epsilons. A pixel that depends on undefined behavior is excluded, unless it is outside
+/// whatever the undefined operations return. A pixel outside is excluded if it lies on an
 /// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is excluded, too,
 /// if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's own color
 /// changes by more than the tolerance in one of the images of `perturbed`, see `changed_by_rounding`.
@@ -90,26 +120,18 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 pub fn algorithm(
     expected: &Image,
     actual: &Image,
-    undefined: &[bool],
+    undefined: &Undefined,
     reference: &impl Reference,
     mixed: &mut Mixed,
     perturbed: impl FnMut(u64, &[bool]) -> Option<Image>,
 ) -> Vec<PixelStatus> {
     assert_eq!(expected.size(), actual.size());
     let tolerance = reference.tolerance();
-    let mut statuses: Vec<_> = undefined
-        .par_iter()
-        .enumerate()
-        .map(|(index, &undefined)| {
-            if undefined {
-                PixelStatus::Undefined
-            } else if Pixel::at(index, expected, actual).difference() <= tolerance {
-                PixelStatus::Agrees
-            } else {
-                PixelStatus::Differs
-            }
-        })
-        .collect();
+    let status = |index| {
+        let differs = |image: &Image| Pixel::at(index, expected, image).difference() > tolerance;
+        undefined.status(index, differs, actual)
+    };
+    let mut statuses: Vec<_> = (0..actual.pixels().len()).into_par_iter().map(status).collect();
     if statuses.contains(&PixelStatus::Differs) {
         let mut band = Band {
             expected,
@@ -120,7 +142,9 @@ pub fn algorithm(
     }
     for (index, status) in statuses.iter_mut().enumerate() {
         let pixel = Pixel::at(index, expected, actual);
-        if *status == PixelStatus::Differs && reference.is_across_edge(pixel.x, pixel.y) {
+        let is_accepted = *status == PixelStatus::Agrees && undefined.pixels[index];
+        let is_across_edge = || *status == PixelStatus::Differs && reference.is_across_edge(pixel.x, pixel.y);
+        if is_accepted || is_across_edge() {
             *status = PixelStatus::Undefined;
         }
     }
@@ -432,6 +456,30 @@ mod tests {
         }
     }
 
+    /// These pixels depend on undefined behavior that has no substitutes.
+    fn undefined(pixels: &[bool]) -> Undefined<'_> {
+        Undefined {
+            pixels,
+            substituted: None,
+            in_reference: &[false; 1000][..pixels.len()],
+        }
+    }
+
+    #[test]
+    fn a_pixel_is_wrong_that_differs_whatever_undefined_operations_return() {
+        let (expected, actual) = (row(&[0.0; 4]), row(&[0.3, 0.3, 0.0, 0.3]));
+        let undefined = Undefined {
+            pixels: &[true; 4],
+            substituted: Some(&[row(&[0.5; 4]), row(&[0.5, 0.0, 0.5, 0.5])]),
+            in_reference: &[false, false, false, true],
+        };
+        let reference = black(|_, _| point(0.0));
+        let mixed = &mut Mixed::of(4);
+        let statuses = algorithm(&expected, &actual, &undefined, &reference, mixed, |_, _| None);
+        let left_out = PixelStatus::Undefined;
+        assert_eq!(statuses, [PixelStatus::Differs, left_out, left_out, left_out]);
+    }
+
     #[test]
     fn a_differing_pixel_on_an_edge_is_excluded() {
         let (expected, actual) = (row(&[0.0; 3]), row(&[0.0, 0.3, 0.3]));
@@ -442,7 +490,7 @@ mod tests {
         let statuses = algorithm(
             &expected,
             &actual,
-            &[false; 3],
+            &undefined(&[false; 3]),
             &reference,
             &mut Mixed::of(3),
             |_, _| None,
@@ -461,7 +509,8 @@ mod tests {
             high: [if x == 1 { 0.29995 } else { 0.0 }, 0.0, 0.0],
             ..point(0.0)
         };
-        let undefined = [false, false, false, false, true];
+        let pixels = [false, false, false, false, true];
+        let undefined = undefined(&pixels);
         let moving =
             |seed, _: &[bool]| Some(row(&[0.0, 0.0, if seed == 1 { 0.0 } else { 0.3 }, 0.30005, 0.3]));
         let mixed = &mut Mixed::of(5);
@@ -489,7 +538,8 @@ mod tests {
                 EpsilonSet::Alike => point(0.0),
                 EpsilonSet::Mixed => point(0.3),
             };
-            let (actual, undefined) = (row(&reds), [false; 1000]);
+            let (actual, defined) = (row(&reds), [false; 1000]);
+            let undefined = undefined(&defined);
             let statuses = algorithm(&none, &actual, &undefined, &black(range), &mut mixed, |_, _| None);
             let differs = |status: &&PixelStatus| **status == PixelStatus::Differs;
             statuses.iter().filter(differs).count()
@@ -510,7 +560,7 @@ mod tests {
         };
         let mixed = &mut Mixed::of(1);
         let reference = black(|_, _| point(0.0));
-        algorithm(&none, &none, &[false], &reference, mixed, &mut count);
+        algorithm(&none, &none, &undefined(&[false]), &reference, mixed, &mut count);
         assert_eq!(evaluations, 0, "nothing differs");
         let mut evaluations = 0;
         let still = |_, wanted: &[bool]| {
@@ -518,7 +568,14 @@ mod tests {
             evaluations += 1;
             Some(row(&[1.0]))
         };
-        let statuses = algorithm(&none, &row(&[1.0]), &[false], &reference, mixed, still);
+        let statuses = algorithm(
+            &none,
+            &row(&[1.0]),
+            &undefined(&[false]),
+            &reference,
+            mixed,
+            still,
+        );
         assert_eq!((evaluations, statuses), (2, vec![PixelStatus::Differs]));
     }
 
@@ -527,7 +584,7 @@ mod tests {
         let statuses = algorithm(
             &row(&[0.0]),
             &row(&[f32::NAN]),
-            &[false],
+            &undefined(&[false]),
             &black(|_, _| point(0.0)),
             &mut Mixed::of(1),
             |_, _| None,
@@ -560,7 +617,7 @@ mod tests {
         let statuses = algorithm(
             &expected,
             &row(&reds),
-            &[false; 1000],
+            &undefined(&[false; 1000]),
             &reference,
             mixed,
             |_, _| None,
@@ -574,7 +631,7 @@ mod tests {
         let statuses = algorithm(
             &expected,
             &row(&reds),
-            &[false; 1000],
+            &undefined(&[false; 1000]),
             &reference,
             mixed,
             |_, _| None,
@@ -597,7 +654,7 @@ mod tests {
         let statuses = algorithm(
             &expected,
             &row(&reds),
-            &[false; 1000],
+            &undefined(&[false; 1000]),
             &reference,
             &mut Mixed::of(1000),
             |_, _| None,
@@ -617,7 +674,7 @@ mod tests {
         let statuses = algorithm(
             &row(&[0.0; 100]),
             &row(&reds),
-            &[false; 100],
+            &undefined(&[false; 100]),
             &reference,
             mixed,
             |_, _| None,

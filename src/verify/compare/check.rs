@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use toyproof_image::Image;
 
-use crate::compare::{DiffLevel, Pixel, Regions};
+use crate::compare::{DiffLevel, Pixel, Region, Regions};
 
 /// The largest difference of a component of two images that agree.
 ///
@@ -59,6 +59,9 @@ pub struct CheckSummary {
     /// The regions of the differing pixels; none before they were found.
     #[serde(default)]
     pub regions: Regions,
+    /// The largest compact region of the pixels that depend on undefined behavior.
+    #[serde(default)]
+    pub undefined_region: Option<Region>,
 }
 
 impl CheckSummary {
@@ -104,6 +107,7 @@ impl CheckSummary {
             first,
             worst: worst.map(|(_, pixel)| pixel),
             regions: Regions::default(),
+            undefined_region: None,
         }
     }
 

@@ -14,7 +14,9 @@ mod mean;
 mod region;
 mod replicate;
 
-pub use algorithm::{Band, EpsilonColors, Mixed, PERTURBATIONS, Reference, accept_epsilons, algorithm};
+pub use algorithm::{
+    Band, EpsilonColors, Mixed, PERTURBATIONS, Reference, Undefined, accept_epsilons, algorithm,
+};
 pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, diff_levels, precision, toolchain,

@@ -1,4 +1,5 @@
-//! Connected regions of differing pixels: an object that is missing is one, rays that graze edges are none.
+//! Connected regions of pixels, such as differing ones: an object that is missing is one, rays that graze edges
+//! are none.
 
 use std::collections::VecDeque;
 
@@ -9,7 +10,7 @@ use crate::compare::PixelStatus;
 /// The side of the smallest block of pixels that is a compact region.
 const MIN_SIDE: u32 = 3;
 
-/// The regions of an image in which pixels differ. Pixels that share an edge or a corner are connected.
+/// The regions of an image in which pixels have a status, such as differing. Pixels that share an edge or a corner are connected.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Regions {
     /// How many there are.
@@ -53,11 +54,12 @@ impl Region {
 }
 
 impl Regions {
-    /// Finds the regions of an image that many pixels wide, bottom row first.
+    /// Finds the regions of the pixels with this status in an image that many pixels wide, bottom row first.
     #[must_use]
-    pub fn of(statuses: &[PixelStatus], width: u32) -> Self {
+    pub fn of(status: PixelStatus, statuses: &[PixelStatus], width: u32) -> Self {
         let mut regions = Self::default();
         let mut search = Search {
+            status,
             statuses,
             width: i64::from(width),
             is_visited: vec![false; statuses.len()],
@@ -82,23 +84,24 @@ impl Regions {
 
 /// A search for the regions of an image.
 struct Search<'a> {
+    status: PixelStatus,
     statuses: &'a [PixelStatus],
     width: i64,
     is_visited: Vec<bool>,
 }
 
 impl Search<'_> {
-    /// The index of a pixel that differs.
-    fn differing(&self, [x, y]: [i64; 2]) -> Option<usize> {
+    /// The index of a pixel with the status.
+    fn index(&self, [x, y]: [i64; 2]) -> Option<usize> {
         let is_inside = (0..self.width).contains(&x) && y >= 0;
         let at = is_inside.then_some((y * self.width + x) as usize)?;
-        (self.statuses.get(at) == Some(&PixelStatus::Differs)).then_some(at)
+        (self.statuses.get(at) == Some(&self.status)).then_some(at)
     }
 
-    /// The region of a pixel that differs and has not been visited, and whether it contains a block of 3×3
-    /// pixels.
+    /// The region of a pixel that has the status and has not been visited, and whether it contains a block of
+    /// 3×3 pixels.
     fn region(&mut self, first: usize) -> Option<(Region, bool)> {
-        if self.is_visited[first] || self.statuses[first] != PixelStatus::Differs {
+        if self.is_visited[first] || self.statuses[first] != self.status {
             return None;
         }
         self.is_visited[first] = true;
@@ -115,7 +118,7 @@ impl Search<'_> {
             let neighbors = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
             let mut connected = 0;
             for neighbor in neighbors {
-                let Some(neighbor) = self.differing(neighbor) else {
+                let Some(neighbor) = self.index(neighbor) else {
                     continue;
                 };
                 connected += 1;
@@ -150,7 +153,7 @@ mod tests {
                 _ => PixelStatus::IllConditioned,
             })
             .collect();
-        Regions::of(&statuses, rows[0].len() as u32)
+        Regions::of(PixelStatus::Differs, &statuses, rows[0].len() as u32)
     }
 
     #[test]

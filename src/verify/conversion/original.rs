@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::Deadline;
@@ -282,9 +282,8 @@ impl Renderer for Observer<'_> {
         channels: [Channel<'_, Texture>; 4],
     ) -> Result<Texture, Failure> {
         let frame = bound(frame, channels, self.media);
-        let deadline = Instant::now() + 2 * self.limit;
         let stop = AtomicBool::new(false);
-        let evaluator = Evaluator::new(&self.programs[pass], &frame, [self.limit; 2], deadline, &stop);
+        let evaluator = Evaluator::new(&self.programs[pass], &frame, self.limit, &stop);
         let Evaluated {
             undefined, observed, ..
         } = evaluator.single(&frame.rows())?;

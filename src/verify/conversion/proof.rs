@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::{Deadline, File, Files, short};
@@ -17,7 +17,7 @@ use toyproof_translate::naga_ir::ValidModule;
 
 use crate::compare::{self, CheckSummary};
 use crate::cpu::{Evaluated, Evaluator};
-use crate::{EVALUATOR_TIME_FACTOR, Failure, TOTAL_TIME_FACTOR, join, within};
+use crate::{EVALUATOR_TIME_FACTOR, Failure, join, within};
 
 use super::prover::Unproved;
 
@@ -363,9 +363,7 @@ pub(super) fn evaluate(
 ) -> Result<Vec<Evaluated>, Failure> {
     let program = Program::within(checked, timeout * EVALUATOR_TIME_FACTOR).map_err(refused)?;
     let single = |frame: &Frame| -> Result<Evaluated, Failure> {
-        let deadline = Instant::now() + timeout * TOTAL_TIME_FACTOR;
-        let limits = [timeout * EVALUATOR_TIME_FACTOR; 2];
-        let evaluator = Evaluator::new(&program, frame, limits, deadline, stop);
+        let evaluator = Evaluator::new(&program, frame, timeout * EVALUATOR_TIME_FACTOR, stop);
         Ok(evaluator.single(&frame.rows())?)
     };
     frames.iter().map(single).collect()

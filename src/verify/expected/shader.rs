@@ -23,7 +23,7 @@ use crate::decide::Share;
 use crate::notes::{self, NotFinite};
 use crate::resampled::Estimates;
 use crate::reseed::Reseeding;
-use crate::{EVALUATOR_TIME_FACTOR, TOTAL_TIME_FACTOR, reads};
+use crate::{EVALUATOR_TIME_FACTOR, reads};
 
 /// The default tolerance of colors: half of an 8-bit level.
 pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
@@ -136,16 +136,9 @@ impl ShaderReference {
     }
 
     fn with_evaluator<T>(&self, work: impl FnOnce(&Evaluator) -> T) -> T {
-        let limits = [self.timeout * EVALUATOR_TIME_FACTOR; 2];
-        let deadline = Instant::now() + self.timeout * TOTAL_TIME_FACTOR;
+        let limit = self.timeout * EVALUATOR_TIME_FACTOR;
         let stop = AtomicBool::new(false);
-        work(&Evaluator::new(
-            &self.program,
-            &self.frame,
-            limits,
-            deadline,
-            &stop,
-        ))
+        work(&Evaluator::new(&self.program, &self.frame, limit, &stop))
     }
 
     /// The shader.
@@ -239,7 +232,8 @@ impl ShaderReference {
             .map(|(wanted, tied)| *wanted && !tied)
             .collect();
         let changed = self.with_evaluator(|evaluator| {
-            let perturbed = |number, wanted: &[bool]| evaluator.perturbed(rows, seed(number), wanted);
+            let perturbed =
+                |number, wanted: &[bool]| evaluator.perturbed(rows, seed(number), wanted).ok().flatten();
             changed_by_rounding(&band.image, &left, tolerance, perturbed)
         });
         for (tied, changed) in tied.iter_mut().zip(changed) {
