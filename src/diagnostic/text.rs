@@ -43,6 +43,40 @@ fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(escaped)
 }
 
+/// A text for a cell of a spreadsheet: without control characters, as from [`printable`], and with an apostrophe
+/// before what a spreadsheet reads as a formula.
+#[must_use]
+pub fn spreadsheet_text(text: &str) -> String {
+    let text = printable(text);
+    let start = text.trim_start_matches(is_invisible);
+    if start.starts_with(is_formula_start) {
+        format!("'{text}")
+    } else {
+        text.into_owned()
+    }
+}
+
+/// Whether a character at the start of a text cannot be seen.
+fn is_invisible(character: char) -> bool {
+    character.is_whitespace()
+        || matches!(
+            character,
+            '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}'
+                | '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200f}' | '\u{2060}'..='\u{206f}' | '\u{2800}'
+                | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{e0000}'..='\u{e0fff}'
+        )
+}
+
+/// Whether a character starts a formula: `=`, `+`, `-` or `@`, or a form of them in another width or place,
+/// which some locales read alike.
+fn is_formula_start(character: char) -> bool {
+    matches!(
+        character,
+        '=' | '+' | '-' | '@' | '\u{207a}'..='\u{207c}' | '\u{208a}'..='\u{208c}' | '\u{2212}' | '\u{fb29}'
+            | '\u{fe62}' | '\u{fe63}' | '\u{fe66}' | '\u{fe6b}' | '\u{ff0b}' | '\u{ff0d}' | '\u{ff1d}' | '\u{ff20}'
+    )
+}
+
 /// Formats a path for messages and reports.
 #[must_use]
 #[expect(
@@ -215,6 +249,25 @@ mod tests {
             assert_eq!(nearest(written, names), meant, "{written}");
         }
         assert_eq!(nearest(&"x".repeat(100_000), names), None);
+    }
+
+    #[test]
+    fn spreadsheets_read_texts_as_texts() {
+        for (text, expected) in [
+            ("Anna", "Anna"),
+            ("a=b", "a=b"),
+            ("=1", "'=1"),
+            (" \u{200b}\u{a0}＝1", "' \u{200b}\u{a0}＝1"),
+            ("－2", "'－2"),
+            ("\u{feff}@a", "'\u{feff}@a"),
+            ("\u{fe0f}+1", "'\u{fe0f}+1"),
+            ("\t=1", "\\t=1"),
+            ("\u{202e}=1", "\\u{202e}=1"),
+            ("a\r\n=1\u{1b}[2J\u{9b}", "a\\r\\n=1\\u{1b}[2J\\u{9b}"),
+            ("", ""),
+        ] {
+            assert_eq!(spreadsheet_text(text), expected, "{text:?}");
+        }
     }
 
     #[test]

@@ -2,9 +2,11 @@
 //! systems (RFC 4180).
 
 use std::collections::BTreeMap;
-use std::io;
+use std::io::{self, Write};
 
-use super::csv::{escape_formula, line};
+use toyproof_diagnostic::spreadsheet_text;
+
+use super::csv::table;
 use super::{Record, Records, Rubrics, Submitted};
 
 /// What a student has in one assignment.
@@ -77,21 +79,24 @@ impl ClassTable {
         self.students.is_empty()
     }
 
-    /// Formats the table; its first row names the columns. An assignment without a rubric has the verdict
+    /// Writes the table; its first row names the columns. An assignment without a rubric has the verdict
     /// instead of points.
-    #[must_use]
-    pub fn csv(&self) -> String {
+    ///
+    /// # Errors
+    /// The table cannot be written.
+    pub fn csv(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut columns = vec!["student".to_owned(), "id".to_owned()];
-        columns.extend(self.assignments.iter().cloned());
+        columns.extend(self.assignments.iter().map(|name| spreadsheet_text(name)));
         columns.push("total".to_owned());
         for assignment in &self.assignments {
-            columns.extend(["verdict", "late"].map(|what| format!("{assignment} {what}")));
+            columns.extend(["verdict", "late"].map(|what| spreadsheet_text(&format!("{assignment} {what}"))));
         }
-        let mut text = line(&columns);
+        let mut table = table(out);
+        table.write_record(columns)?;
         for ((name, id), cells) in &self.students {
             let mut row = vec![
-                escape_formula(name),
-                escape_formula(id.as_deref().unwrap_or_default()),
+                spreadsheet_text(name),
+                spreadsheet_text(id.as_deref().unwrap_or_default()),
             ];
             let cells: Vec<_> = (0..self.assignments.len())
                 .map(|place| cells.get(&place))
@@ -113,9 +118,9 @@ impl ClassTable {
                 row.push(verdict.unwrap_or_default());
                 row.push(cell.map(|cell| cell.late.clone()).unwrap_or_default());
             }
-            text += &line(&row);
+            table.write_record(row)?;
         }
-        text
+        table.flush()
     }
 }
 
@@ -125,7 +130,7 @@ mod tests {
 
     use super::*;
     use crate::report::record::samples::{correct, invalid, record};
-    use crate::report::{Late, Rubric};
+    use crate::report::{Late, Rubric, written};
 
     fn submitted(record: Record, assignment: &str, student: &str, late: Option<u64>) -> Record {
         Record {
@@ -153,8 +158,9 @@ mod tests {
             submitted(record(Verdict::Wrong), "two, three", "Bo", None),
             correct(),
         ];
+        let table = ClassTable::of(&records.into(), &rubrics).unwrap();
         assert_eq!(
-            ClassTable::of(&records.into(), &rubrics).unwrap().csv(),
+            written(|out| table.csv(out)),
             "student,id,one,\"two, three\",total,one verdict,one late,\"two, three verdict\",\"two, three late\"\r\n\
              '=Anna,7,10,,10,correct,late by 1 min,,\r\n\
              Bo,7,0,wrong,0,invalid,,wrong,\r\n"

@@ -2,7 +2,8 @@
 
 use std::io::{self, Write};
 
-use toyproof_diagnostic::Severity;
+use ::csv::{Terminator, Writer, WriterBuilder};
+use toyproof_diagnostic::{Severity, spreadsheet_text};
 use toyproof_verify::compare::CheckSummary;
 
 use super::{Record, Records, Repair, Rubrics};
@@ -44,26 +45,17 @@ const COLUMNS: [&str; 28] = [
 /// # Errors
 /// The system's error: a record cannot be read, or the table cannot be written.
 pub fn csv(records: &Records, rubrics: &Rubrics, out: &mut dyn Write) -> io::Result<()> {
-    out.write_all(line(&COLUMNS.map(str::to_owned)).as_bytes())?;
+    let mut table = table(out);
+    table.write_record(COLUMNS)?;
     for record in records.iter() {
-        out.write_all(line(&row(&*record?, rubrics)).as_bytes())?;
+        table.write_record(row(&*record?, rubrics))?;
     }
-    Ok(())
+    table.flush()
 }
 
-/// A row with its end.
-pub(super) fn line(cells: &[String]) -> String {
-    let cells: Vec<_> = cells.iter().map(|cell| quote(cell)).collect();
-    cells.join(",") + "\r\n"
-}
-
-/// Quotes a cell if needed.
-fn quote(cell: &str) -> String {
-    if cell.contains(['"', ',', '\r', '\n']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
-    }
+/// Starts a table in the format of RFC 4180.
+pub(super) fn table<W: Write>(out: W) -> Writer<W> {
+    WriterBuilder::new().terminator(Terminator::CRLF).from_writer(out)
 }
 
 fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
@@ -86,14 +78,14 @@ fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
     let image = record.comparison.as_ref();
     let answers = [&record.algorithm, &record.precision];
     [
-        escape_formula(&record.shader),
-        escape_formula(record.scene.as_deref().unwrap_or_default()),
-        escape_formula(record.reference.as_deref().unwrap_or_default()),
+        spreadsheet_text(&record.shader),
+        spreadsheet_text(record.scene.as_deref().unwrap_or_default()),
+        spreadsheet_text(record.reference.as_deref().unwrap_or_default()),
         record.verdict.to_string(),
-        escape_formula(&record.reason),
+        spreadsheet_text(&record.reason),
         cell(record.mistake.as_ref().map(|mistake| &mistake.id)),
         cell(record.fix.as_ref().map(|fix| fix.range.line)),
-        escape_formula(&cell(record.fix.as_ref().map(Repair::summary))),
+        spreadsheet_text(&cell(record.fix.as_ref().map(Repair::summary))),
         cell(total.map(|[points, _]| points)),
         cell(total.map(|[_, of]| of)),
         cell(answers.into_iter().flatten().map(|answer| answer.pixels).next()),
@@ -110,24 +102,15 @@ fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
         count(Severity::Error),
         count(Severity::Warning),
         format!("{:.3}", record.seconds.total()),
-        escape_formula(&cell(submitted.and_then(|one| one.assignment.as_ref()))),
-        escape_formula(&cell(submitted.map(|one| &one.student))),
-        escape_formula(&cell(submitted.and_then(|one| one.id.as_ref()))),
+        spreadsheet_text(&cell(submitted.and_then(|one| one.assignment.as_ref()))),
+        spreadsheet_text(&cell(submitted.map(|one| &one.student))),
+        spreadsheet_text(&cell(submitted.and_then(|one| one.id.as_ref()))),
         cell(late),
     ]
 }
 
 fn cell<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
-}
-
-/// Prevents a spreadsheet from reading a text as a formula, by prefixing an apostrophe.
-pub(super) fn escape_formula(text: &str) -> String {
-    if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        format!("'{text}")
-    } else {
-        text.to_owned()
-    }
 }
 
 #[cfg(test)]
@@ -154,9 +137,63 @@ mod tests {
         );
         assert_eq!(
             lines.next().unwrap(),
-            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500,,,,"
+            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500,,,,"
         );
         assert_eq!(lines.collect::<Vec<_>>(), [""]);
+    }
+
+    /// Another reader gets the cells, none of which acts on a terminal or a spreadsheet.
+    #[test]
+    fn hostile_texts_stay_in_their_cells() {
+        let texts = [
+            "a\u{1b}[31m\u{9b}2J",
+            "b\r\nforged,row",
+            "c\u{202e}\u{2066}\u{2028}",
+            "\u{200b}=1",
+            "＝1",
+            "\t=1",
+            "d\",\"e",
+        ];
+        let records = texts.map(|text| {
+            let mut record = invalid();
+            record.shader = text.to_owned();
+            record.reason = text.to_owned();
+            record
+        });
+        let text = table(records.to_vec(), &Rubrics::default());
+        let rows: Vec<Vec<String>> = rfc4180(&text);
+        assert_eq!(rows.len(), 1 + texts.len());
+        for (row, text) in rows[1..].iter().zip(texts) {
+            let expected = spreadsheet_text(text);
+            assert_eq!(
+                (row.len(), &row[0], &row[4]),
+                (COLUMNS.len(), &expected, &expected)
+            );
+        }
+        let acts = |character: char| character.is_control() && !"\r\n".contains(character);
+        assert!(!text.contains(acts) && !text.replace("\r\n", "").contains(['\r', '\n']));
+    }
+
+    /// The cells of a table, by the grammar of RFC 4180.
+    fn rfc4180(text: &str) -> Vec<Vec<String>> {
+        let (mut rows, mut row, mut cell) = (Vec::new(), Vec::new(), String::new());
+        let mut characters = text.chars().peekable();
+        let mut is_quoted = false;
+        while let Some(character) = characters.next() {
+            match character {
+                '"' if is_quoted && characters.peek() == Some(&'"') => cell.extend(characters.next()),
+                '"' => is_quoted = !is_quoted,
+                ',' if !is_quoted => row.push(std::mem::take(&mut cell)),
+                '\r' if !is_quoted => {
+                    assert_eq!(characters.next(), Some('\n'));
+                    row.push(std::mem::take(&mut cell));
+                    rows.push(std::mem::take(&mut row));
+                }
+                character => cell.push(character),
+            }
+        }
+        assert!(row.is_empty() && cell.is_empty() && !is_quoted);
+        rows
     }
 
     #[test]

@@ -35,7 +35,7 @@ fn a_scene_and_its_shader_are_measured() {
         "{head}"
     );
     assert!(
-        csv.contains("\"tracer\",f64,,,,,") && csv.contains("\"evaluator\",f32,,,,recentered,"),
+        csv.contains("\r\ntracer,f64,,,,,") && csv.contains("\r\nevaluator,f32,,,,recentered,"),
         "{csv}"
     );
     let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trade.json")).unwrap()).unwrap();

@@ -26,7 +26,7 @@ pub(super) fn rubric(path: Option<&Path>, terminal: &Terminal) -> Result<Option<
         return Ok(None);
     };
     let mut files = Files::default();
-    let rubric = match files::read_text(path) {
+    let rubric = match files::read_named(path) {
         Ok(text) => {
             let file = files.add(text);
             Rubric::parse(&files, file).map_err(|errors| Unusable::Invalid(errors.into()))
@@ -50,8 +50,8 @@ pub(super) const REPORT_NAMES: [&str; 7] = [
 ];
 
 /// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
-/// records, in the same order. `results.json` is written only with a rubric of all shaders, and `class.csv`
-/// only for a class. Students read `junit.xml` and `results.json`, which show the `hints`.
+/// records, in the same order. `results.json` is written only with a rubric of all shaders and unless they are
+/// those of several students, and `class.csv` only for a class. Students read `junit.xml` and `results.json`, which show the `hints`.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],
@@ -72,18 +72,29 @@ pub(super) fn write(
     folder.write(Path::new(table), |file| csv(records, rubrics, file));
     if submissions.iter().any(|submission| submission.is_assigned()) {
         folder.write(Path::new(class), |file| {
-            file.write_all(ClassTable::of(records, rubrics)?.csv().as_bytes())
+            ClassTable::of(records, rubrics)?.csv(file)
         });
     }
     folder.write(Path::new(tests), |file| junit(records, hints, file));
     folder.write(Path::new(log), |file| sarif(records, file));
-    if let Some(rubric) = rubrics.of_all() {
-        folder.write(Path::new(marks), |file| {
+    match rubrics.of_all() {
+        Some(rubric) if !are_of_several_students(submissions) => folder.write(Path::new(marks), |file| {
             gradescope(records, rubric, hints, &thumbnails(submissions, rubric), file)
-        });
+        }),
+        _ => folder.remove(Path::new(marks)),
     }
     folder.write(Path::new(verdicts), |file| report.json(file));
     folder.is_complete
+}
+
+/// Whether the submissions are known to be those of several students.
+fn are_of_several_students(submissions: &[&Submission]) -> bool {
+    let mut students = submissions
+        .iter()
+        .filter_map(|submission| submission.submitted.as_ref())
+        .map(|submitted| (&submitted.student, &submitted.id));
+    let first = students.next();
+    students.any(|student| Some(student) != first)
 }
 
 /// The folder of the reports.
@@ -107,6 +118,14 @@ impl Folder<'_> {
                 .error(format_args!("cannot write {}: {panic}", path_name(&path))),
         }
         self.is_complete = false;
+    }
+
+    /// Removes a file of an earlier run.
+    fn remove(&mut self, path: &Path) {
+        if let Err(error) = output::remove_inside(self.out, &self.out.join(path)) {
+            self.terminal.error(format_args!("cannot remove {error}"));
+            self.is_complete = false;
+        }
     }
 
     /// Writes the page, or the table and the pages of the parts of a large report, and removes those of an

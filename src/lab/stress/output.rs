@@ -1,13 +1,29 @@
 //! Results as CSV, JSON and heat maps.
 
 use serde::{Serialize, Serializer};
+use toyproof_diagnostic::spreadsheet_text;
 
 use super::axis::{Axis, Kind, Step, axes};
 use super::{CPU, Report, Row};
 use crate::chart::{self, Band, HeatMap, Panel};
+use crate::csv_table;
 
-const COLUMNS: &str = "formula,precision,device,axis,step,cases,failing,wrong_hits,t_error_ulp_median,t_error_ulp_p99,t_error_ulp_max,\
-     non_finite,self_intersections,missed_nearby";
+const COLUMNS: [&str; 14] = [
+    "formula",
+    "precision",
+    "device",
+    "axis",
+    "step",
+    "cases",
+    "failing",
+    "wrong_hits",
+    "t_error_ulp_median",
+    "t_error_ulp_p99",
+    "t_error_ulp_max",
+    "non_finite",
+    "self_intersections",
+    "missed_nearby",
+];
 
 pub(super) fn serialize_step<S: Serializer>(step: &Step, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(step)
@@ -17,12 +33,7 @@ impl Report {
     /// A table (RFC 4180) with a header row. Errors are empty if there was no hit.
     #[must_use]
     pub fn csv(&self) -> String {
-        let rows = self.rows.iter().map(Row::cells);
-        [COLUMNS.to_owned()]
-            .into_iter()
-            .chain(rows)
-            .map(|row| row + "\r\n")
-            .collect()
+        csv_table(COLUMNS, self.rows.iter().map(Row::cells))
     }
 
     /// All results as JSON.
@@ -54,33 +65,27 @@ impl Report {
 }
 
 impl Row {
-    fn cells(&self) -> String {
+    fn cells(&self) -> Vec<String> {
         let tally = &self.tally;
-        let errors = tally.t_error_ulp.map_or_else(
-            || ",,".to_owned(),
-            |errors| errors.map(|error| format!("{error:.3}")).join(","),
-        );
-        let quoted = |cell: &str| {
-            if cell.contains(['"', ',']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.to_owned()
-            }
-        };
-        format!(
-            "{},{},{},{},{},{},{},{},{errors},{},{},{}",
-            quoted(&self.formula),
-            self.precision,
-            quoted(&self.device),
-            self.axis,
-            self.value,
-            tally.cases,
-            tally.failing,
-            tally.wrong_hits,
-            tally.non_finite,
-            tally.self_intersections,
-            tally.missed_nearby
-        )
+        let errors = tally.t_error_ulp.map_or_else(Default::default, |errors| {
+            errors.map(|error| format!("{error:.3}"))
+        });
+        let before = [
+            spreadsheet_text(&self.formula),
+            self.precision.to_string(),
+            spreadsheet_text(&self.device),
+            self.axis.to_string(),
+            self.value.to_string(),
+        ];
+        let counts = [tally.cases, tally.failing, tally.wrong_hits].map(|count| count.to_string());
+        let after = [tally.non_finite, tally.self_intersections, tally.missed_nearby];
+        let after = after.map(|count| count.to_string());
+        before
+            .into_iter()
+            .chain(counts)
+            .chain(errors)
+            .chain(after)
+            .collect()
     }
 }
 

@@ -1,16 +1,32 @@
 //! Results of a study as CSV, JSON, a chart, and text.
 
 use serde::Serialize;
-use toyproof_diagnostic::{columns, grouped, magnitude, plural};
+use toyproof_diagnostic::{columns, grouped, magnitude, plural, spreadsheet_text};
 
 use super::{Configuration, MethodResult, Report, median};
 use crate::chart::{Point, Scatter};
+use crate::csv_table;
 use crate::stress::formula::RECENTERED;
 use crate::trade::method::Group;
 
-const COLUMNS: &str = "renderer,precision,sampler,samples_per_pixel,max_depth,sphere_formula,group,runs,outliers,\
-     seconds_per_frame,seconds_median_absolute_deviation,rmse,max_error,differing_pixels_8bit,\
-     silhouette_flips,on_pareto_front";
+const COLUMNS: [&str; 16] = [
+    "renderer",
+    "precision",
+    "sampler",
+    "samples_per_pixel",
+    "max_depth",
+    "sphere_formula",
+    "group",
+    "runs",
+    "outliers",
+    "seconds_per_frame",
+    "seconds_median_absolute_deviation",
+    "rmse",
+    "max_error",
+    "differing_pixels_8bit",
+    "silhouette_flips",
+    "on_pareto_front",
+];
 
 /// Error limits of interest to users, with their text: from the loosest to the strictest.
 const ERROR_LIMITS: [(f64, &str); 3] = [(1.0 / 255.0, "1/255"), (0.5 / 255.0, "0.5/255"), (1e-3, "1/1000")];
@@ -19,9 +35,7 @@ impl Report {
     /// A table (RFC 4180) with a header row. Settings that do not apply and unknown values are empty.
     #[must_use]
     pub fn csv(&self) -> String {
-        let rows = self.results.iter().map(MethodResult::cells);
-        let rows = [COLUMNS.to_owned()].into_iter().chain(rows);
-        rows.map(|row| row + "\r\n").collect()
+        csv_table(COLUMNS, self.results.iter().map(MethodResult::cells))
     }
 
     /// All results as JSON.
@@ -305,7 +319,7 @@ fn milliseconds(seconds: f64) -> String {
 }
 
 impl MethodResult {
-    fn cells(&self) -> String {
+    fn cells(&self) -> Vec<String> {
         let Self {
             configuration,
             group,
@@ -314,22 +328,23 @@ impl MethodResult {
             on_pareto_front,
         } = self;
         let number = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
-        format!(
-            "\"{}\",{},{},{},{},{},\"{group}\",{},{},{:e},{:e},{:e},{:e},{},{},{on_pareto_front}",
-            configuration.renderer.replace('"', "\"\""),
-            configuration.precision,
-            configuration.sampler.unwrap_or_default(),
+        vec![
+            spreadsheet_text(&configuration.renderer),
+            configuration.precision.to_owned(),
+            configuration.sampler.unwrap_or_default().to_owned(),
             number(configuration.samples_per_pixel.map(u64::from)),
             number(configuration.max_depth.map(u64::from)),
-            configuration.sphere_formula.unwrap_or_default(),
-            seconds.runs,
-            seconds.outliers,
-            seconds.median,
-            seconds.deviation,
-            error.rmse,
-            error.max,
-            error.differing_pixels_8bit,
+            configuration.sphere_formula.unwrap_or_default().to_owned(),
+            spreadsheet_text(group),
+            seconds.runs.to_string(),
+            seconds.outliers.to_string(),
+            format!("{:e}", seconds.median),
+            format!("{:e}", seconds.deviation),
+            format!("{:e}", error.rmse),
+            format!("{:e}", error.max),
+            error.differing_pixels_8bit.to_string(),
             number(error.silhouette_flips),
-        )
+            on_pareto_front.to_string(),
+        ]
     }
 }

@@ -80,7 +80,7 @@ fn report(records: Vec<Record>) {
     let report = Report::new(Some("device".to_owned()), records);
     let records = report.shaders();
     written(|out| csv(records, &rubrics, out));
-    written(|out| out.write_all(ClassTable::of(records, &rubrics)?.csv().as_bytes()));
+    written(|out| ClassTable::of(records, &rubrics)?.csv(out));
     for hints in [Hints::None, Hints::Line, Hints::Fix] {
         written(|out| junit(records, hints, out));
     }
