@@ -64,6 +64,11 @@ impl Assignment {
                 }
                 functions.push(test);
             });
+            document.reject_key(
+                "deadline",
+                "a deadline belongs to a class, not to an assignment",
+                "move it to [[assignment]] of the class (`toyproof new class`)",
+            );
             document.report_unknown_keys();
             if reference.is_none() && document.is_valid() {
                 let help = "add `scene = \"scene.toml\"` or `reference = \"solution.glsl\"`";

@@ -5,14 +5,16 @@ use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::File as OsFile;
-use std::io::{self, Read};
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostic, File, Files, Span, path_name};
+use toyproof_image::input;
 use toyproof_project::{PROJECT_FILE, PassKind, Project, Tab};
 use walkdir::{DirEntry, WalkDir};
 
 use crate::cli::scenes::builtin_name;
+use crate::cli::zip::Archive;
 
 /// The extensions of shaders, by which folders are searched.
 pub(super) const EXTENSIONS: [&str; 4] = ["glsl", "frag", "fs", "shadertoy"];
@@ -210,7 +212,7 @@ pub(crate) fn find(argument: &Path) -> Search {
     };
     if argument == Path::new("-") {
         let name = "<stdin>".to_owned();
-        let bytes = read_limited(io::stdin().lock(), &name, MAX_BYTES);
+        let bytes = read_limited(Ok(io::stdin().lock()), Path::new(&name), MAX_BYTES);
         return only(stream(bytes, name, OsStr::new("stdin")));
     }
     if !argument.is_dir() {
@@ -219,7 +221,7 @@ pub(crate) fn find(argument: &Path) -> Search {
             if argument.extension() == Some(OsStr::new("toml")) && argument.exists() {
                 Err(ReadError::Scene(argument.to_owned()))
             } else if argument.exists() && !argument.is_file() {
-                stream(read_file(argument, MAX_BYTES), path_name(argument), name)
+                stream(read_bytes(argument), path_name(argument), name)
             } else if argument.exists() {
                 Ok(named(InputSource::File(argument.to_owned()), name))
             } else {
@@ -261,6 +263,17 @@ pub(crate) fn is_json(path: &Path) -> bool {
 /// Returns whether a file is the site's JSON.
 fn is_project_json(path: &Path) -> bool {
     is_json(path) && read_text(path).is_ok_and(|file| Project::is_json(file.text()))
+}
+
+/// Returns whether a text or an archive, which is not searched, has a shader.
+pub(super) fn has_shader(path: &Path) -> bool {
+    const MAX_ENTRIES: usize = 10_000;
+    if !has_extension(path, "zip") {
+        return read_text(path).is_ok_and(|file| file.text().contains("mainImage"));
+    }
+    let archive = input::open(path).and_then(|file| Archive::open(BufReader::new(file), MAX_ENTRIES));
+    let entries = archive.map(|mut archive| archive.take_entries());
+    entries.is_ok_and(|entries| entries.iter().any(|entry| is_shader(Path::new(&entry.name))))
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {
@@ -325,25 +338,46 @@ fn read_folder(folder: &Path) -> Result<ProjectTexts, ReadError> {
 /// Those of [`ReadError`]; no more than one byte above the limit is ever read.
 pub(crate) fn read_text(path: &Path) -> Result<File, ReadError> {
     let limit = if is_json(path) { MAX_JSON_BYTES } else { MAX_BYTES };
-    decode(read_file(path, limit)?, path_name(path), limit)
+    decode(
+        read_limited(input::open(path), path, limit)?,
+        path_name(path),
+        limit,
+    )
 }
 
-fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
-    let name = path_name(path);
-    match OsFile::open(path) {
-        Ok(file) => read_limited(file, &name, limit),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),
-        Err(error) => Err(ReadError::Unreadable { name, error }),
-    }
+/// Reads the text of a file as [`read_text`] does, also of a pipe: one that the user named, as in `--scene
+/// <(…)`, and not one that was found in a folder.
+///
+/// # Errors
+/// As for [`read_text`].
+pub(crate) fn read_named(path: &Path) -> Result<File, ReadError> {
+    decode(read_bytes(path)?, path_name(path), MAX_BYTES)
 }
 
-/// Reads all bytes, but at most one more than the maximum.
-fn read_limited(input: impl Read, name: &str, limit: u64) -> Result<Vec<u8>, ReadError> {
+/// Reads a file that the user named, or a pipe of the shell, which is in `/dev` or `/proc`, but at most one byte
+/// more than the maximum. Other pipes may be among files that a pattern of the shell named.
+///
+/// # Errors
+/// Those of [`ReadError`].
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let is_of_shell = path.starts_with("/dev") || path.starts_with("/proc");
+    let opened = if is_of_shell {
+        OsFile::open(path)
+    } else {
+        input::open(path)
+    };
+    read_limited(opened, path, MAX_BYTES)
+}
+
+/// Reads all bytes of what was opened, but at most one more than the maximum.
+fn read_limited(opened: io::Result<impl Read>, path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
-    match input.take(limit + 1).read_to_end(&mut bytes) {
+    let read = opened.and_then(|input| input.take(limit + 1).read_to_end(&mut bytes));
+    match read {
         Ok(_) => Ok(bytes),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(ReadError::Missing(path.to_owned())),
         Err(error) => Err(ReadError::Unreadable {
-            name: name.to_owned(),
+            name: path_name(path),
             error,
         }),
     }
@@ -570,13 +604,18 @@ pub(super) fn is_hidden(name: &OsStr) -> bool {
 /// # Errors
 /// The same error, if not the content but the path or the operating system is at fault.
 pub(crate) fn content_diagnostic(error: ReadError, files: &mut Files) -> Result<Diagnostic, ReadError> {
-    let (file, message, bytes) = match error {
-        ReadError::TooLarge { name } => (File::new(name, ""), TOO_LARGE, 0..0),
-        ReadError::NotUtf8 { file, at } => (file, NOT_UTF8, at..at + char::REPLACEMENT_CHARACTER.len_utf8()),
-        other => return Err(other),
+    let mut of = |message, file, start: usize, end: usize| {
+        let id = files.add(file);
+        Diagnostic::error("E0500", message).at(Span::new(id, start as u32, end as u32))
     };
-    let id = files.add(file);
-    Ok(Diagnostic::error("E0500", message).at(Span::new(id, bytes.start as u32, bytes.end as u32)))
+    match error {
+        ReadError::TooLarge { name } => Ok(of(TOO_LARGE, File::new(name, ""), 0, 0)),
+        ReadError::NotUtf8 { file, at } => {
+            let end = at + char::REPLACEMENT_CHARACTER.len_utf8();
+            Ok(of(NOT_UTF8, file, at, end).help("`toyproof collect FOLDER -o NEW` saves shaders as UTF-8"))
+        }
+        other => Err(other),
+    }
 }
 
 #[cfg(test)]
@@ -619,7 +658,7 @@ mod tests {
 
     #[test]
     fn endless_files_are_too_large_and_not_read_completely() {
-        let endless = read_limited(io::repeat(b' '), "x", MAX_BYTES).unwrap();
+        let endless = read_limited(Ok(io::repeat(b' ')), Path::new("x"), MAX_BYTES).unwrap();
         assert_eq!(endless.len() as u64, MAX_BYTES + 1);
         let endless = decode(endless, "x".to_owned(), MAX_BYTES);
         assert!(matches!(endless, Err(ReadError::TooLarge { .. })));

@@ -1,11 +1,10 @@
 //! `toyproof gradescope`: an autograder for Gradescope.
 
-use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
-use toyproof_image::FrameInputs;
+use toyproof_image::{FrameInputs, input};
 use toyproof_project::{PROJECT_FILE, Tab};
 
 use super::check::read_assignment;
@@ -63,7 +62,7 @@ fn pack(args: &Args, path: &Path, assignment: &Assignment) -> Result<Vec<u8>, St
         ));
     }
     let with_path = |path: &Path, error: io::Error| format!("{}: {error}", path_name(path));
-    let read = |path: &Path| fs::read(path).map_err(|error| with_path(path, error));
+    let read = |path: &Path| input::read(path).map_err(|error| with_path(path, error));
     let program = match &args.program {
         Some(program) => program.clone(),
         None => std::env::current_exe().map_err(|error| format!("the program's own file: {error}"))?,

@@ -151,7 +151,7 @@ impl FrameArgs {
 
 /// Reads a script of the mouse and the keyboard.
 fn parse_script(path: &str) -> Result<Arc<Script>, String> {
-    let text = files::read_text(Path::new(path)).map_err(|error| error.to_string())?;
+    let text = files::read_named(Path::new(path)).map_err(|error| error.to_string())?;
     let mut files = Files::default();
     let file = files.add(text);
     project::parse_script(&files, file)

@@ -48,7 +48,7 @@ impl Names {
         let input_folder = found.path().and_then(Path::parent);
         let folder = self.folder(found.relative.parent().unwrap_or(Path::new("")));
         let name = found.relative.file_name().unwrap_or_default();
-        let stem = found.relative.file_stem().unwrap_or_default();
+        let stem = &shortened(found.relative.file_stem().unwrap_or_default());
         let is_beside = self
             .taken
             .get(&Key::of(&folder.join(stem)))
@@ -66,6 +66,7 @@ impl Names {
         let path = candidates
             .into_iter()
             .flatten()
+            .map(|name| shortened(&name))
             .chain(numbered(stem))
             .map(|name| folder.join(name))
             .find(|path| self.is_free(path))
@@ -101,6 +102,17 @@ impl Names {
     }
 }
 
+/// The first bytes of a name, so that names derived from it are not too long for a file system.
+fn shortened(name: &OsStr) -> OsString {
+    const MAX_BYTES: usize = 200;
+    if name.len() <= MAX_BYTES {
+        return name.to_owned();
+    }
+    let text = name.to_string_lossy();
+    let end = (0..=MAX_BYTES).rev().find(|&end| text.is_char_boundary(end));
+    OsString::from(&text[..end.unwrap_or_default()])
+}
+
 /// Yields `name-2`, `name-3` and so on.
 fn numbered(name: &OsStr) -> impl Iterator<Item = OsString> + use<'_> {
     (2_u64..).map(move |number| joined(&[name, format!("-{number}").as_ref()]))
@@ -130,6 +142,17 @@ mod tests {
             folder: None,
         };
         path_name(&names.assign(&found))
+    }
+
+    #[test]
+    fn outputs_of_long_names_are_short_enough() {
+        let mut names = Names::new(&["-algorithm.png"], &[]);
+        let long = ["a", "b"].map(|end| format!("{}{end}.glsl", "é".repeat(120)));
+        let outputs = long.map(|name| output(&mut names, "in", &name));
+        assert!(
+            outputs[0] != outputs[1] && outputs.iter().all(|name| name.len() <= 210),
+            "{outputs:?}"
+        );
     }
 
     #[test]

@@ -42,6 +42,10 @@ enum What {
                            toyproof check homework --assignment shadows/assignment.toml"
     )]
     Assignment(AssignmentArgs),
+    /// Create a class: its students, and the files, assignments and deadlines of its submissions, with comments
+    #[command(after_long_help = "Example:\n  toyproof new class spring\n  \
+                           toyproof check moodle.zip --class spring.toml --out marks")]
+    Class(ClassArgs),
     /// Create a project: an image whose pixels Buffer A refines from frame to frame
     #[command(
         after_long_help = "Example:\n  toyproof new project waves\n  toyproof export waves -o waves.json"
@@ -78,6 +82,16 @@ struct AssignmentArgs {
 }
 
 #[derive(Debug, clap::Args)]
+struct ClassArgs {
+    /// The name of the class, which becomes its file name
+    #[arg(value_parser = parse_name)]
+    name: String,
+    /// The file to create [default: NAME.toml]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, clap::Args)]
 struct ProjectArgs {
     /// The name of the project, which is also the name of its folder
     #[arg(value_parser = parse_name)]
@@ -107,6 +121,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             Ok(()) => Exit::Success,
             Err(()) => Exit::Error,
         },
+        What::Class(args) => new_class(args, terminal),
         What::Project(args) => new_project(args, terminal),
     }
 }
@@ -131,31 +146,59 @@ fn new_project(args: &ProjectArgs, terminal: &Terminal) -> Exit {
 }
 
 fn new_scene(args: &SceneArgs, terminal: &Terminal) -> Exit {
-    let path = match &args.output {
-        Some(path) => path.clone(),
-        None => PathBuf::from(format!("{}.toml", args.name)),
+    let text = scene::template(&args.name);
+    let Ok(created) = create_file(&args.name, args.output.as_deref(), &text, terminal) else {
+        return Exit::Error;
     };
-    let name = path_name(&path);
-    let is_stream = path == Path::new("-");
-    if !is_stream && path.exists() {
-        terminal.error(format_args!(
-            "{name} already exists; choose another name, or another file with `-o`"
-        ));
-        return Exit::Error;
-    }
-    if !terminal.write(&path, scene::template(&args.name).as_bytes()) {
-        return Exit::Error;
-    }
-    if !is_stream {
-        let (scene, stem) = (quoted(&name), path_name(&path.with_extension("")));
-        terminal.note(&format!("created {name}"));
-        terminal.note("next:");
+    if let Some(path) = created {
+        let (scene, stem) = (quoted(&path_name(&path)), path_name(&path.with_extension("")));
         let (image, shader) = (quoted(&format!("{stem}.png")), quoted(&format!("{stem}.glsl")));
         terminal.note(&format!("  toyproof render {scene} -o {image}"));
         terminal.note(&format!("  toyproof export {scene} -o {shader}"));
         terminal.note(&format!("  toyproof check {shader}"));
     }
     Exit::Success
+}
+
+fn new_class(args: &ClassArgs, terminal: &Terminal) -> Exit {
+    let text = include_str!("template/class.toml");
+    let Ok(created) = create_file(&args.name, args.output.as_deref(), text, terminal) else {
+        return Exit::Error;
+    };
+    if let Some(path) = created {
+        let class = quoted(&path_name(&path));
+        terminal.note(&format!("  edit {class}"));
+        terminal.note(&format!("  toyproof check DOWNLOAD --class {class} --out marks"));
+    }
+    Exit::Success
+}
+
+/// Creates a file from a template, `NAME.toml` unless another is given, which may be standard output; returns the
+/// path of a file.
+fn create_file(
+    name: &str,
+    output: Option<&Path>,
+    text: &str,
+    terminal: &Terminal,
+) -> Result<Option<PathBuf>, ()> {
+    let path = output.map_or_else(|| PathBuf::from(format!("{name}.toml")), Path::to_owned);
+    let is_stream = path == Path::new("-");
+    let name = path_name(&path);
+    if !is_stream && path.exists() {
+        terminal.error(format_args!(
+            "{name} already exists; choose another name, or another file with `-o`"
+        ));
+        return Err(());
+    }
+    if !terminal.write(&path, text.as_bytes()) {
+        return Err(());
+    }
+    if is_stream {
+        return Ok(None);
+    }
+    terminal.note(&format!("created {name}"));
+    terminal.note("next:");
+    Ok(Some(path))
 }
 
 /// The names of the files of an assignment.

@@ -7,7 +7,7 @@ use std::time::Duration;
 use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name};
 use toyproof_glsl::Checked;
-use toyproof_image::{self as image, Frame, Image};
+use toyproof_image::{self as image, Frame, Image, input};
 use toyproof_verify::{
     Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference,
     unbound,
@@ -316,7 +316,7 @@ fn read(
     };
     if let Some(quantization) = quantization {
         let image = image::read(path).map_err(|error| terminal.error(error))?;
-        let bytes = std::fs::read(path).map_err(|error| terminal.error(format_args!("{name}: {error}")))?;
+        let bytes = input::read(path).map_err(|error| terminal.error(format_args!("{name}: {error}")))?;
         return Ok((Content::Image(image, quantization), bytes));
     }
     let input = Input {

@@ -1,10 +1,10 @@
 //! `toyproof scenes`, and the course built into the program.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use include_dir::{Dir, include_dir};
 use toyproof_diagnostic::{File, Files, nearest, path_name};
+use toyproof_image::input;
 use toyproof_scene::{self as scene, Scene};
 
 use super::{Exit, Terminal};
@@ -34,7 +34,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     };
     let differs = |name: &str, text: &str| {
         let path = folder.join(name);
-        path.exists() && fs::read(&path).ok().as_deref() != Some(text.as_bytes())
+        path.exists() && input::read(&path).ok().as_deref() != Some(text.as_bytes())
     };
     if let Some((name, _)) = course_files().find(|(name, text)| differs(name, text)) {
         terminal.error(format_args!(
@@ -81,7 +81,7 @@ pub(super) fn builtin_scenes() -> impl Iterator<Item = (String, Scene)> {
 /// # Errors
 /// A message for the user, if the file cannot be read or there is neither.
 pub(super) fn read_scene(path: &Path) -> Result<File, String> {
-    match files::read_text(path) {
+    match files::read_named(path) {
         Err(ReadError::Missing(_)) => builtin_scene(path),
         text => text.map_err(|error| error.to_string()),
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use toyproof_diagnostic::{grouped, path_name, plural};
-use toyproof_image as image;
+use toyproof_image::{self as image, input};
 
 use super::Terminal;
 
@@ -74,9 +74,16 @@ impl Sequence {
     /// Prepares a sequence, reading the record of an interrupted run.
     pub(super) fn resume(frames: Frames, output: &Path, fingerprint: &str, terminal: &Terminal) -> Self {
         let record = output.with_extension("sequence");
-        let next = std::fs::read_to_string(&record)
+        let next = input::read(&record)
             .ok()
-            .and_then(|before| before.strip_prefix(fingerprint)?.trim().parse().ok())
+            .and_then(|before| {
+                String::from_utf8(before)
+                    .ok()?
+                    .strip_prefix(fingerprint)?
+                    .trim()
+                    .parse()
+                    .ok()
+            })
             .unwrap_or(0);
         let made = frames
             .numbered(output)

@@ -1,6 +1,6 @@
 //! Finds and reads shaders, for all commands that take them.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 
@@ -10,7 +10,7 @@ use toyproof_lint::{Lints, lint};
 
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
-use crate::cli::files::{self, Input, ReadError, Texts, content_diagnostic};
+use crate::cli::files::{self, Input, ReadError, Search, Texts, content_diagnostic};
 use crate::cli::project::{self, Passes};
 
 /// The lints may take one part in this many of a shader's time limit.
@@ -169,13 +169,28 @@ fn read(
 /// Finds all shaders that the arguments name, in their order; standard input is read once. Warns of links
 /// that are not followed, and of archives and texts.
 pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
+    find_in(arguments, terminal, |_, _| {})
+}
+
+/// Finds shaders as [`find`] does. A folder in a searched one whose only shaders are in texts and archives has an
+/// error, so that nobody is overlooked.
+pub(super) fn find_submissions(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
+    find_in(arguments, terminal, add_unread)
+}
+
+fn find_in(
+    arguments: &[PathBuf],
+    terminal: &Terminal,
+    complete: fn(&Path, &mut Search),
+) -> Vec<Result<Input, ReadError>> {
     let first = arguments.iter().position(|argument| argument == Path::new("-"));
     let mut inputs: Vec<_> = arguments
         .iter()
         .enumerate()
         .filter(|&(at, argument)| argument != Path::new("-") || Some(at) == first)
         .flat_map(|(_, argument)| {
-            let search = files::find(argument);
+            let mut search = files::find(argument);
+            complete(argument, &mut search);
             for skipped in &search.skipped {
                 terminal.warn(skipped);
             }
@@ -194,6 +209,44 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Inp
         .collect();
     keep_folders(&mut inputs);
     inputs
+}
+
+/// Adds an error for each folder in a searched one that has shaders in texts or archives, and no others.
+fn add_unread(folder: &Path, search: &mut Search) {
+    let path = |input: &Result<Input, ReadError>| match input {
+        Ok(input) => input.path().map(Path::to_owned),
+        Err(error) => Some(error.name().into()),
+    };
+    let mut folders = BTreeMap::new();
+    for unread in &search.unread {
+        let parts = unread
+            .strip_prefix(folder)
+            .map(|inside| inside.iter().collect::<Vec<_>>());
+        if let Ok(parts @ [first, _, ..]) = parts.as_deref()
+            && let own = folder.join(first)
+            && !search
+                .inputs
+                .iter()
+                .filter_map(path)
+                .any(|path| path.starts_with(&own))
+            && !folders.contains_key(&own)
+            && files::has_shader(unread)
+        {
+            let inside: PathBuf = parts[1..].iter().collect();
+            let instead = format!(" ({}: `toyproof collect` finds its shader)", path_name(&inside));
+            folders.insert(own, instead);
+        }
+    }
+    if folders.is_empty() {
+        return;
+    }
+    search
+        .inputs
+        .retain(|input| !matches!(input, Err(ReadError::NoShader(_))));
+    let missing = folders.into_iter();
+    let missing = missing.map(|(own, instead)| Err(ReadError::NotSubmitted(own, instead)));
+    search.inputs.extend(missing);
+    search.inputs.sort_by_cached_key(path);
 }
 
 /// Makes the relative paths of inputs with equal ones start at their common folder, so that their outputs

@@ -59,6 +59,9 @@ pub(super) struct Entry {
 pub(super) struct Archive<R> {
     input: R,
     entries: Vec<Entry>,
+    /// The number of files and folders that its directory names, as far as it was read.
+    count: usize,
+    is_cut: bool,
 }
 
 fn broken(problem: &str) -> io::Error {
@@ -96,11 +99,19 @@ impl<'a> Fields<'a> {
 }
 
 impl<R: Read + Seek> Archive<R> {
-    /// Reads the directory.
+    /// Reads the directory, but at most `max_entries` files and folders of it.
     ///
     /// # Errors
     /// Those of the input, or that it is not an archive.
-    pub(super) fn open(mut input: R) -> io::Result<Self> {
+    pub(super) fn open(input: R, max_entries: usize) -> io::Result<Self> {
+        Self::read_directory(input, max_entries).map_err(|error| match error.kind() {
+            // A damaged archive names places outside of it.
+            io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput => broken("it is truncated"),
+            _ => error,
+        })
+    }
+
+    fn read_directory(mut input: R, max_entries: usize) -> io::Result<Self> {
         let (offset, bytes) = find_directory(&mut input)?;
         if bytes > MAX_DIRECTORY {
             return Err(broken("its directory is too large"));
@@ -108,17 +119,37 @@ impl<R: Read + Seek> Archive<R> {
         input.seek(SeekFrom::Start(offset))?;
         let mut directory = Vec::new();
         input.by_ref().take(bytes).read_to_end(&mut directory)?;
+        if (directory.len() as u64) < bytes {
+            return Err(broken("it is truncated"));
+        }
         let mut fields = Fields(&directory);
         let mut entries = Vec::new();
-        while !fields.0.is_empty() {
+        let mut count = 0;
+        while !fields.0.is_empty() && count < max_entries {
             entries.extend(read_entry(&mut fields)?);
+            count += 1;
         }
-        Ok(Self { input, entries })
+        Ok(Self {
+            input,
+            entries,
+            count,
+            is_cut: !fields.0.is_empty(),
+        })
     }
 
-    /// The files, without folders.
-    pub(super) fn entries(&self) -> &[Entry] {
-        &self.entries
+    /// Removes and returns the files, without folders, in the order of the directory.
+    pub(super) fn take_entries(&mut self) -> Vec<Entry> {
+        std::mem::take(&mut self.entries)
+    }
+
+    /// The number of files and folders that were read from the directory.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the directory names more files and folders.
+    pub(super) fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Unpacks a file, but at most `limit` bytes and one more.
@@ -363,8 +394,9 @@ mod tests {
     fn what_is_packed_is_unpacked() {
         let bytes = files();
         assert!(bytes.len() < 1000, "{}", bytes.len());
-        let mut archive = Archive::open(Cursor::new(bytes)).unwrap();
-        let entries = archive.entries().to_vec();
+        let mut archive = Archive::open(Cursor::new(bytes), 9).unwrap();
+        assert_eq!((archive.count(), archive.is_cut()), (2, false));
+        let entries = archive.take_entries();
         let names: Vec<_> = entries.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(names, ["a.glsl", "ä/run"]);
         assert_eq!(archive.read(&entries[0], 100).unwrap(), b"void");
@@ -377,6 +409,8 @@ mod tests {
             101,
             "more is not unpacked"
         );
+        let mut cut = Archive::open(Cursor::new(files()), 1).unwrap();
+        assert_eq!((cut.take_entries().len(), cut.is_cut()), (1, true));
     }
 
     #[test]
@@ -407,8 +441,8 @@ mod tests {
     fn damaged_archives_are_errors() {
         let bytes = files();
         let unpack = |bytes: Vec<u8>| -> io::Result<()> {
-            let mut archive = Archive::open(Cursor::new(bytes))?;
-            for entry in archive.entries().to_vec() {
+            let mut archive = Archive::open(Cursor::new(bytes), 9)?;
+            for entry in archive.take_entries() {
                 archive.read(&entry, 20_000)?;
             }
             Ok(())

@@ -1,14 +1,13 @@
 //! PNG (8 bits) and EXR (32-bit floats) files.
 
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{self, BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
 use thiserror::Error;
 
-use super::{Image, MAX_SIDE, Rgb8Image, check_size, quantize};
+use super::{Image, MAX_SIDE, Rgb8Image, check_size, input, quantize};
 
 /// An error of reading or writing an image.
 #[derive(Debug, Error)]
@@ -178,8 +177,8 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
         path: path.to_owned(),
         error,
     };
-    let mut reader = ImageReader::open(path)
-        .and_then(ImageReader::with_guessed_format)
+    let mut reader = input::open(path)
+        .and_then(|file| ImageReader::new(BufReader::new(file)).with_guessed_format())
         .map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => unreadable("no such file".to_owned()),
             _ => unreadable(error.to_string()),
@@ -202,7 +201,7 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
 
 /// Rejects palettes of PNGs on which the decoder panics (png 0.18.1).
 fn check_palette(path: &Path) -> Result<(), String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
+    let file = input::open(path).map_err(|error| error.to_string())?;
     let reader = png::Decoder::new(BufReader::new(file)).read_info();
     let reader = reader.map_err(|error| error.to_string())?;
     match reader.info().palette.as_deref() {

@@ -15,6 +15,7 @@
 mod file;
 mod frame;
 mod frame_inputs;
+pub mod input;
 mod keys;
 mod noise;
 pub mod output;

@@ -495,11 +495,15 @@ impl<'r, 't> Table<'r, 't> {
     /// chosen.
     pub fn reject_keys(&mut self, keys: &[&str], what: &str, owner: &str, actual: &str) {
         for key in keys {
-            if let Some((name, _)) = self.entries.remove_entry(*key) {
-                let message = format!("`{key}` is not a key of the {what} `{actual}`");
-                let help = format!("remove it; only `{owner}` has `{key}`");
-                self.reject(self.reader.span(name.span()), message, &help);
-            }
+            let message = format!("`{key}` is not a key of the {what} `{actual}`");
+            self.reject_key(key, message, &format!("remove it; only `{owner}` has `{key}`"));
+        }
+    }
+
+    /// Rejects a key that does not belong in this table, if it is there.
+    pub fn reject_key(&mut self, key: &str, message: impl Into<String>, help: &str) {
+        if let Some((name, _)) = self.entries.remove_entry(key) {
+            self.reject(self.reader.span(name.span()), message, help);
         }
     }
 

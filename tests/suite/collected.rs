@@ -15,7 +15,7 @@ use crate::support::SPHERE;
 const NO_TIME: [u16; 2] = [0, 0x21];
 
 /// An archive of these files, uncompressed, as the simplest programs write it.
-fn zip(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
+pub(crate) fn zip(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let files: Vec<_> = files
         .iter()
         .map(|(name, bytes)| (*name, bytes.clone(), NO_TIME))
@@ -176,11 +176,11 @@ fn every_student_of_a_download_has_a_row() {
     fs::write(folder.join("moodle.zip"), zip(&borrowed)).unwrap();
     fs::write(
         folder.join("students.csv"),
-        "900,Not There\nStudent 100\n901;Nor Here\n",
+        "900,Not There\nStudent 100\n901,\"Here, Nor\"\n",
     )
     .unwrap();
     fs::write(folder.join("class.toml"), "students = \"students.csv\"\n").unwrap();
-    for absent in ["Not-There", "Nor-Here"] {
+    for absent in ["Not-There", "Here--Nor"] {
         expected.insert(absent.to_owned(), "missing".to_owned());
     }
     let run = collect(folder, &["moodle.zip", "--class", "class.toml", "-o", "hw"]);
@@ -280,7 +280,7 @@ fn assignments_of_a_class_get_folders_of_their_own() {
     assert!(run.stderr.contains(left_out), "{}", run.stderr);
     assert!(
         run.stderr
-            .contains("to check them: toyproof check hw/glass --out marks"),
+            .contains("to check them: toyproof check hw/glass --assignment FILE --out marks"),
         "{}",
         run.stderr
     );
@@ -315,10 +315,33 @@ fn archives_among_shaders_are_not_skipped_silently() {
         fs::write(folder.join("hw").join(name), text).unwrap();
     }
     fs::write(folder.join("scene.toml"), SPHERE.scene).unwrap();
-    let run = run(&mut check_homework(folder));
+    let run = crate::program::run(&mut check_homework(folder));
     let warning =
         "warning: skipped hw/b.txt and 1 more file: not a shader\nhelp: `toyproof collect` finds shaders";
     assert!(run.code == 0 && run.stderr.contains(warning), "{}", run.stderr);
+
+    // Of students who have nothing else, there is a row.
+    for (name, bytes) in [
+        ("hw/anna/shader.txt", SPHERE.shader.as_bytes().to_vec()),
+        ("hw/bo/work/a.zip", zip(&[("a.glsl", SPHERE.shader.into())])),
+        ("hw/cy/notes.txt", b"I was ill.".to_vec()),
+        ("hw/di/a.txt", SPHERE.shader.into()),
+        ("hw/di/a.glsl", SPHERE.shader.into()),
+    ] {
+        fs::create_dir_all(folder.join(name).parent().unwrap()).unwrap();
+        fs::write(folder.join(name), bytes).unwrap();
+    }
+    let verdicts = verdicts(folder);
+    let verdicts: Vec<_> = verdicts
+        .iter()
+        .map(|(name, verdict)| format!("{name} {verdict}"))
+        .collect();
+    assert_eq!(
+        verdicts,
+        ["a.glsl correct", "anna missing", "bo missing", "di correct"]
+    );
+    let reason = "no shader was submitted (work/a.zip: `toyproof collect` finds its shader)";
+    assert_eq!(records(folder)[2]["reason"], reason);
 }
 
 /// The first of March 2026 at a time of day, in the format of DOS.
@@ -443,7 +466,6 @@ fn a_class_is_checked_in_one_run() {
     let shown = "late by 2 h 5 min\n";
     assert!(run.stdout.contains(shown), "{}", run.stdout);
     assert!(folder.join("out/flat/Anna-Smith/Flat-final-actual.png").is_file());
-    assert!(!folder.join("out/results.json").exists());
 
     // Again, without what was removed from the download.
     fs::write(

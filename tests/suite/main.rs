@@ -41,6 +41,7 @@ mod glslang;
 mod growth;
 #[cfg(target_os = "linux")]
 mod hostile;
+mod hostile_class;
 mod interpreted;
 mod large_batch;
 mod limits;

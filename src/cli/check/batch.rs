@@ -14,10 +14,12 @@ use super::Args;
 use super::args::CheckFormat;
 use super::checker::{Checker, WorkerContext};
 use super::outcome::{Message, Outcome};
+use super::reference::unused_scene;
 use super::reports;
 use super::results::{Line, Results};
 use super::submission::Submission;
-use crate::cli::inputs::short_device;
+use crate::cli::files::Input;
+use crate::cli::inputs::{shell_word, short_device};
 use crate::cli::pool::{self, InOrder};
 use crate::cli::{Exit, Terminal};
 use crate::report::{self, Detail, Earlier, Layout, Record, Records, Report, Rubrics};
@@ -306,7 +308,23 @@ impl<'a> Batch<'a> {
         let reported: Vec<_> = reported.into_iter().map(|index| &submissions[index]).collect();
         let report = Report::new(device, records);
         match args.format {
-            CheckFormat::Human => print_summary(&report, hidden_warnings, start.elapsed(), terminal),
+            CheckFormat::Human => {
+                print_summary(&report, hidden_warnings, start.elapsed(), terminal);
+                if let [one] = &reported[..]
+                    && report.shaders().tally().count(Verdict::Ok) == 1
+                    && let Some(shader) = one.input.as_ref().ok().and_then(Input::path)
+                    && let Some(scene) = unused_scene(shader)
+                {
+                    let scene = path_name(&scene);
+                    terminal.warn(format_args!(
+                        "{scene} was not used: it has another name than the shader"
+                    ));
+                    terminal.help(format_args!(
+                        "compare with it with `--scene {}`",
+                        shell_word(&scene)
+                    ));
+                }
+            }
             CheckFormat::Short => {}
             CheckFormat::Json => failed |= !terminal.stream(|stdout| report.json(stdout)),
         }

@@ -1,12 +1,11 @@
 //! The images that `--out` keeps of a shader, and those that the report page shows.
 
 use std::borrow::Cow;
-use std::fs;
 use std::io;
 use std::path::Path;
 
 use toyproof_diagnostic::path_name;
-use toyproof_image::{self as image, ImageError, Rgb8Image, output};
+use toyproof_image::{self as image, ImageError, Rgb8Image, input, output};
 use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::{CheckResult, Findings};
@@ -159,7 +158,7 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     };
     let mut add = |path: &Path| {
         let png = match size {
-            None => fs::read(path).ok(),
+            None => input::read(path).ok(),
             Some(size) => subsampled_png(path, step, size).ok(),
         };
         png.map(|png| gallery.add_image(png))

@@ -2,13 +2,12 @@
 
 use std::collections::HashMap;
 use std::ffi::OsString;
-use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::{fs, io, iter};
+use std::{io, iter};
 
 use clap::Parser;
 use toyproof_diagnostic::{grouped, path_name, plural};
-use toyproof_image::output;
+use toyproof_image::{input, output};
 
 use super::images::IMAGES;
 use super::results::{self, RESULTS_NAME, Results, Span};
@@ -216,7 +215,7 @@ fn lines<'a>(
     submissions.iter().zip(found).filter_map(|(submission, found)| {
         let ((folder, span), key) = found.zip(submission.key.clone())?;
         let path = folder.join(RESULTS_NAME);
-        let line = File::open(&path).and_then(|mut file| results::read_span(&mut file, span));
+        let line = input::open(&path).and_then(|mut file| results::read_span(&mut file, span));
         let line =
             line.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path_name(&path))));
         Some(line.map(|line| (line, key)))
@@ -284,7 +283,7 @@ fn copy_images(submission: &Submission, shard: &Path, out: &Path) -> io::Result<
     let relative = stem.strip_prefix(out).unwrap_or(stem);
     for kind in &IMAGES {
         let path = with_suffix(stem, kind.suffix);
-        match fs::read(with_suffix(&shard.join(relative), kind.suffix)) {
+        match input::read(&with_suffix(&shard.join(relative), kind.suffix)) {
             Ok(bytes) => output::write_inside(out, &path, &bytes)?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => output::remove_inside(out, &path)?,
             Err(error) => return Err(error),

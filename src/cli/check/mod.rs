@@ -18,6 +18,7 @@ mod work;
 use std::path::Path;
 
 use toyproof_diagnostic::{grouped, path_name, plural};
+use toyproof_image::input;
 
 pub(super) use self::args::Args;
 pub(super) use self::merge::{MergeArgs, merge};
@@ -25,6 +26,7 @@ pub(super) use self::plan::read_assignment;
 pub(super) use self::reference::Scenes;
 use self::results::Results;
 use self::work::Work;
+use super::files::NOT_UTF8;
 use super::{Exit, Terminal};
 use crate::report::Earlier;
 
@@ -94,7 +96,8 @@ fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, 
         path.to_owned()
     };
     let name = path_name(&file);
-    let text = std::fs::read_to_string(&file).map_err(|error| error.to_string());
+    let bytes = input::read(&file).map_err(|error| error.to_string());
+    let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| NOT_UTF8.to_owned()));
     let earlier = text.and_then(|text| Earlier::parse(name.clone(), &text));
     earlier
         .map(Some)

@@ -153,7 +153,7 @@ fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, String> {
 /// Reads an assignment, and its text.
 fn read(path: &Path, terminal: &Terminal) -> Result<(Assignment, String), ()> {
     let mut files = Files::default();
-    let unusable = match files::read_text(path) {
+    let unusable = match files::read_named(path) {
         Ok(text) => {
             let content = text.text().to_owned();
             let file = files.add(text);

@@ -227,6 +227,30 @@ pub(super) fn other_scenes(named: Option<&Path>) -> OtherScenes {
     }))
 }
 
+/// The only scene in the folder of a shader, which is not used because of its name.
+pub(super) fn unused_scene(shader: &Path) -> Option<PathBuf> {
+    let folder = match shader.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let paths = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|entry| Some(entry.ok()?.path()));
+    let is_scene = |path: &PathBuf| {
+        let mut files = Files::default();
+        let is_toml = path.extension().is_some_and(|extension| extension == "toml");
+        is_toml
+            && files::read_text(path).is_ok_and(|text| {
+                let file = files.add(text);
+                scene::parse(&files, file).is_ok()
+            })
+    };
+    let mut scenes = paths.filter(is_scene);
+    let only = scenes.next()?;
+    let name = only.file_name()?;
+    (scenes.next().is_none()).then(|| shader.with_file_name(name))
+}
+
 /// Checks whether the scene beside a shader is a link that leads out of the searched folder, or else of the
 /// shader's own folder.
 fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> {

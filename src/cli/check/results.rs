@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::path_name;
-use toyproof_image::output;
+use toyproof_image::{input, output};
 
 use crate::report::Record;
 
@@ -39,7 +39,7 @@ pub(super) fn for_each_line(
     path: &Path,
     mut on_line: impl FnMut(Span, &[u8], Option<Line>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut file = match File::open(path) {
+    let mut file = match input::open(path) {
         Ok(file) => BufReader::new(file),
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(with_path(path, &error)),

@@ -2,7 +2,7 @@
 //! the parts of one batch.
 
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::Path;
 use std::str::FromStr;
 use std::{fmt, io};
@@ -10,7 +10,7 @@ use std::{fmt, io};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toyproof_diagnostic::path_name;
-use toyproof_image::output;
+use toyproof_image::{input, output};
 
 use super::submission::Submission;
 
@@ -172,7 +172,7 @@ impl Manifest {
     pub(super) fn read(folder: &Path) -> io::Result<Option<Self>> {
         let path = folder.join(MANIFEST_NAME);
         let with_path = |error: String| io::Error::other(format!("{}: {error}", path_name(&path)));
-        match fs::read(&path) {
+        match input::read(&path) {
             Ok(bytes) => serde_json::from_slice(&bytes).map_err(|error| with_path(error.to_string())),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(with_path(error.to_string())),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
-use toyproof_image::FrameInputs;
+use toyproof_image::{FrameInputs, input};
 
 use super::Args;
 use super::plan::Plan;
@@ -115,7 +115,7 @@ fn identity(
         add(&content.ok()?);
     }
     for path in inputs.into_iter().flat_map(FrameInputs::files) {
-        add(&std::fs::read(path).ok()?);
+        add(&input::read(path).ok()?);
     }
     let hash: [u8; 32] = hash.finalize().into();
     let half = hash.first_chunk().copied().map(u128::from_be_bytes);

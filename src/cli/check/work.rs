@@ -14,7 +14,7 @@ use super::submission::Submission;
 use super::{Args, earlier};
 use crate::cli::collect::{ClassPart, Owners, class_parts};
 use crate::cli::names::Names;
-use crate::cli::shader::find;
+use crate::cli::shader::find_submissions;
 use crate::cli::{Exit, Terminal};
 use crate::report::{Earlier, Rubrics};
 
@@ -95,8 +95,8 @@ impl Work {
         for part in parts {
             let mut plan = Plan::new(args, &part, terminal)?;
             let references = References::new(args, &mut plan, terminal)?;
-            let mut inputs = find(&part.shaders, terminal);
-            let owners = Owners::read(&part.shaders, &mut inputs).map_err(|error| terminal.error(error))?;
+            let mut inputs = find_submissions(&part.shaders, terminal);
+            let owners = Owners::read(&part.shaders, &mut inputs, terminal);
             match (&part.name, plan.rubric.take()) {
                 (None, rubric) => work.rubrics = rubric.into(),
                 (Some(name), Some(rubric)) => work.rubrics.add(name.clone(), rubric),

@@ -1,12 +1,12 @@
 //! `class.toml`: the students of a class, and the files of its assignments.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, FileId, Files};
 use toyproof_toml::{Format, Located, Moment, Table};
 
-use super::naming::{Student, file_name};
+use super::naming::file_name;
+use super::students::Students;
 
 static FORMAT: Format = Format {
     form_code: "E0505",
@@ -184,62 +184,6 @@ fn path(table: &mut Table, key: &'static str, folder: &Path) -> Option<PathBuf> 
     Some(path)
 }
 
-/// The listed students of a class.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Students {
-    listed: Vec<Student>,
-    /// The places of the students in the list, by their names and numbers in lower case.
-    places: HashMap<String, usize>,
-}
-
-impl Students {
-    /// Reads a list: a line for each student, with the name or number that the download has, and then, after
-    /// a `,`, `;` or tab, the name to show.
-    pub(super) fn parse(text: &str) -> Self {
-        let lines = text.lines().map(|line| {
-            let mut fields = line
-                .split([',', ';', '\t'])
-                .map(|field| field.trim().trim_matches('"').trim().to_owned());
-            let key = fields.next().unwrap_or_default();
-            (key, fields.next().unwrap_or_default())
-        });
-        Self::new(lines.filter(|(key, _)| !key.is_empty()).collect())
-    }
-
-    /// The students with these names or numbers in the download, each with the name to show, which may be
-    /// empty.
-    fn new(list: Vec<(String, String)>) -> Self {
-        let mut students = Self::default();
-        for (key, name) in list {
-            let place = students.listed.len();
-            for known in [&key, &name] {
-                if !known.is_empty() {
-                    students.places.entry(known.to_lowercase()).or_insert(place);
-                }
-            }
-            students.listed.push(match name.as_str() {
-                "" => Student { name: key, id: None },
-                _ => Student { name, id: Some(key) },
-            });
-        }
-        students
-    }
-
-    /// The listed students.
-    pub(super) fn all(&self) -> &[Student] {
-        &self.listed
-    }
-
-    /// The listed student that a download names, by number or name; the given one if none is.
-    pub(super) fn find(&self, student: Student) -> Student {
-        let keys = student.id.iter().chain([&student.name]);
-        let place = keys
-            .into_iter()
-            .find_map(|key| self.places.get(&key.to_lowercase()));
-        place.map_or(student, |&place| self.listed[place].clone())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -259,22 +203,5 @@ mod tests {
         ] {
             assert_eq!(matches(pattern, text), expected, "{pattern} {text}");
         }
-    }
-
-    #[test]
-    fn students_are_found_by_number_or_name() {
-        let students = Students::parse("12, Anna Smith\n\n\"13\";\"Bo\"\nmai\n");
-        let find = |name: &str, id: Option<&str>| {
-            let student = Student {
-                name: name.to_owned(),
-                id: id.map(str::to_owned),
-            };
-            students.find(student).name
-        };
-        assert_eq!(find("smithanna", Some("12")), "Anna Smith");
-        assert_eq!(find("BO", None), "Bo");
-        assert_eq!(find("Mai", Some("99")), "mai");
-        assert_eq!(find("other", None), "other");
-        assert_eq!(students.all().len(), 3);
     }
 }

@@ -1,15 +1,18 @@
 //! The submissions of all students in downloads, and how late they are.
 
 use std::collections::{BTreeMap, HashSet};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
 use toyproof_toml::Moment;
 
-use super::class::{Class, ClassAssignment, StudentList, Students};
+use super::class::{Class, ClassAssignment, StudentList};
 use super::download::{self, Found};
-use super::naming::{Student, Submitted, file_name, is_of_system, submitted};
-use super::text::Content;
+use super::naming::{Paths, Student, Submitted, is_archive, submitted};
+use super::roster::FILE_NAME;
+use super::students::Students;
+use super::text::{self, Content};
 use crate::cli::files;
 use crate::cli::zip::FileTime;
 use crate::report::Late;
@@ -108,27 +111,34 @@ impl Collection {
             StudentList::None => Students::default(),
             StudentList::Table(students) => students.clone(),
             StudentList::File(path) => {
-                let text = files::read_text(path).map_err(|error| error.to_string())?;
-                Students::parse(text.text())
+                let bytes = files::read_bytes(path).map_err(|error| error.to_string())?;
+                let (text, _) =
+                    text::decode(&bytes).ok_or_else(|| format!("{}: this is not a text", path_name(path)))?;
+                Students::parse(&text)
             }
         };
-        let mut submissions: BTreeMap<Student, Submission> = students
-            .all()
-            .iter()
-            .map(|student| (student.clone(), Submission::default()))
-            .collect();
+        let mut submissions = BTreeMap::new();
         let mut copies = Vec::new();
+        let mut found = HashSet::new();
         for download in downloads {
-            if add(download, &students, &mut submissions)? {
+            if add(download, &students, &mut submissions, &mut found)? {
                 copies.push(download.clone());
             }
+        }
+        let absent = students
+            .all()
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| !found.contains(place));
+        for (_, student) in absent {
+            submissions.entry(student.clone()).or_default();
         }
         if submissions.is_empty() {
             return Err("there is no file to collect".to_owned());
         }
-        let mut names = Taken::default();
+        let mut names = Paths::with_reserved(&[FILE_NAME]);
         let named = submissions.into_iter().map(|(student, submission)| {
-            let folder = names.folder(&student);
+            let folder = names.student(&student);
             (folder, student, submission)
         });
         Ok(Self {
@@ -138,15 +148,17 @@ impl Collection {
     }
 }
 
-/// Adds the files of a download; returns whether their times are those of a copy.
+/// Adds the files of a download, and the places of its students in the list; returns whether the times of the
+/// files are those of a copy.
 fn add(
     download: &Path,
     students: &Students,
     submissions: &mut BTreeMap<Student, Submission>,
+    places: &mut HashSet<usize>,
 ) -> Result<bool, String> {
-    let found = download::read(download).map_err(|error| format!("{}: {error}", path_name(download)))?;
+    let found = download::read(download).map_err(|error| unreadable(download, &error))?;
     let mut handed = Vec::new();
-    for Found { path, content, time } in download::without_common_folder(found, is_of_system) {
+    for Found { path, content, time } in found {
         let Submitted {
             student,
             path,
@@ -158,11 +170,17 @@ fn add(
             time,
             is_late,
         };
-        handed.push((students.find(student), file));
+        handed.push((student, file));
     }
     let is_copy = is_copy(&handed);
-    for (student, mut file) in handed {
-        let submission = submissions.entry(student).or_default();
+    let (listed, found) = students.find(handed.iter().map(|(student, _)| student));
+    places.extend(found);
+    let listed: Vec<_> = handed
+        .iter()
+        .map(|(student, _)| listed.get(student).cloned())
+        .collect();
+    for ((student, mut file), listed) in handed.into_iter().zip(listed) {
+        let submission = submissions.entry(listed.unwrap_or(student)).or_default();
         file.time = file.time.filter(|_| !is_copy);
         // The folder of a student may be empty.
         if file.path.iter().all(|part| !part.is_empty()) {
@@ -170,6 +188,21 @@ fn add(
         }
     }
     Ok(is_copy)
+}
+
+/// Why a download cannot be read, and what to do instead.
+fn unreadable(download: &Path, error: &io::Error) -> String {
+    let name = path_name(download);
+    let is_named_archive = download.to_str().is_some_and(is_archive);
+    if error.kind() != io::ErrorKind::InvalidData || is_named_archive {
+        return format!("{name}: {error}");
+    }
+    let help = if files::is_shader(download) {
+        "\nhelp: `toyproof check` takes shaders as they are"
+    } else {
+        ""
+    };
+    format!("{name} is neither an archive (.zip) nor a folder{help}")
 }
 
 /// Whether the files of several students have about the same time.
@@ -185,36 +218,4 @@ fn is_copy(handed: &[(Student, Handed)]) -> bool {
     }
     let range = times.iter().max().zip(times.iter().min());
     students.len() > 1 && range.is_some_and(|(last, first)| last - first <= COPY_SECONDS)
-}
-
-/// Names in use, without case: some file systems store names that differ only in case in one file.
-#[derive(Debug, Default)]
-pub(super) struct Taken(HashSet<String>);
-
-impl Taken {
-    /// A name that is not in use: the given one, or one with a number before the extension.
-    pub(super) fn free(&mut self, name: &str) -> String {
-        let (stem, extension) = match name.rsplit_once('.') {
-            Some((stem, extension)) if !extension.contains('/') => (stem, format!(".{extension}")),
-            _ => (name, String::new()),
-        };
-        let numbered = (2_u64..).map(|number| format!("{stem}-{number}{extension}"));
-        let free = std::iter::once(name.to_owned())
-            .chain(numbered)
-            .find(|name| !self.0.contains(&name.to_lowercase()));
-        let free = free.expect("one of endlessly many names is free");
-        self.0.insert(free.to_lowercase());
-        free
-    }
-
-    /// The folder of a student: the name, with the number if another has the same name.
-    fn folder(&mut self, student: &Student) -> String {
-        let name = file_name(&student.name);
-        match &student.id {
-            Some(id) if self.0.contains(&name.to_lowercase()) => {
-                self.free(&file_name(&format!("{name}-{id}")))
-            }
-            _ => self.free(&name),
-        }
-    }
 }

@@ -5,6 +5,7 @@ mod collection;
 mod download;
 mod naming;
 mod roster;
+mod students;
 mod text;
 mod writer;
 
@@ -66,7 +67,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 
 fn read_class(path: &Path, purpose: Purpose, terminal: &Terminal) -> Result<Class, ()> {
     let mut files = Files::default();
-    let unusable = match files::read_text(path) {
+    let unusable = match files::read_named(path) {
         Ok(text) => {
             let file = files.add(text);
             let folder = path.parent().unwrap_or(Path::new(""));
@@ -184,7 +185,7 @@ fn find_parts(
     terminal: &Terminal,
 ) -> Result<Vec<ClassPart>, String> {
     let collected = match downloads {
-        [folder] if is_collected(folder, class)? => folder.clone(),
+        [folder] if is_collected(folder, class) => folder.clone(),
         _ => {
             let Some(to) = to else {
                 return Err("a shard needs collected submissions, not a download\n\
@@ -208,21 +209,20 @@ fn find_parts(
 }
 
 /// Whether a folder has the collected submissions of all assignments.
-fn is_collected(folder: &Path, class: &Class) -> Result<bool, String> {
-    for assignment in &class.assignments {
-        if Roster::read(&folder.join(&assignment.name))?.is_none() {
-            return Ok(false);
-        }
-    }
-    Ok(true)
+fn is_collected(folder: &Path, class: &Class) -> bool {
+    let has_roster = |name: &str| matches!(Roster::read(&folder.join(name)), Ok(Some(_)));
+    class
+        .assignments
+        .iter()
+        .all(|assignment| has_roster(&assignment.name))
 }
 
-/// Prints the command that checks what was collected.
+/// Prints the command that checks what was collected, against something.
 fn next(folder: &Path, assignment: Option<&Path>, terminal: &Terminal) {
-    let assignment = assignment.map(|path| format!(" --assignment {}", shell_word(&path_name(path))));
+    let assignment = assignment.map(|path| shell_word(&path_name(path)));
     terminal.note(&format!(
-        "to check them: toyproof check {}{} --out marks",
+        "to check them: toyproof check {} --assignment {} --out marks",
         shell_word(&path_name(folder)),
-        assignment.unwrap_or_default()
+        assignment.as_deref().unwrap_or("FILE")
     ));
 }

@@ -1,6 +1,11 @@
 //! Whose a file of a download is: the names that Moodle and Canvas give to submissions.
 
-use super::download::is_archive;
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use unicode_normalization::UnicodeNormalization;
+
+use crate::cli::files::is_hidden;
 
 /// A file of a download.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,6 +37,11 @@ pub(super) fn submitted(path: &[String]) -> Submitted {
         file,
         is_late,
     } = named.unwrap_or_else(|| by_place(first, is_file));
+    // macOS writes names in decomposed form.
+    let student = Student {
+        name: student.name.nfc().collect(),
+        ..student
+    };
     Submitted {
         student,
         path: file.into_iter().chain(rest.iter().cloned()).collect(),
@@ -53,6 +63,12 @@ fn by_place(first: &str, is_file: bool) -> Named {
         file: is_file.then(|| first.to_owned()),
         is_late: None,
     }
+}
+
+/// Whether a name is that of an archive.
+pub(super) fn is_archive(name: &str) -> bool {
+    let extension = Path::new(name).extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
 }
 
 /// Whether a name is one that Moodle or Canvas gives.
@@ -110,18 +126,137 @@ fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
+/// The longest name of a collected file or folder, in bytes: names that `check` derives from it, such as
+/// `NAME-algorithm.png`, stay below the limits of all file systems.
+const MAX_NAME_BYTES: usize = 120;
+
 /// A name as a component of a path on any system, without spaces: letters, digits, `-`, `_` and `.`, but no
-/// hidden file.
+/// hidden file, no device of Windows, and of limited length.
 pub(super) fn file_name(name: &str) -> String {
-    let plain = name.chars().map(|character| match character {
+    let plain = name.nfc().map(|character| match character {
         _ if character.is_alphanumeric() || "-_.".contains(character) => character,
         _ => '-',
     });
     let plain: String = plain.collect();
-    match plain.trim_matches(['-', '.']) {
+    let plain = shortened(plain.trim_matches(['-', '.']))
+        .trim_matches(['-', '.'])
+        .to_owned();
+    match plain.as_str() {
         "" => "unnamed".to_owned(),
-        name => name.to_owned(),
+        name if is_device(name) || is_hidden(name.as_ref()) => format!("_{name}"),
+        _ => plain,
     }
+}
+
+/// A name without what exceeds [`MAX_NAME_BYTES`] before its extension.
+fn shortened(name: &str) -> String {
+    const MAX_EXTENSION_BYTES: usize = 16;
+    if name.len() <= MAX_NAME_BYTES {
+        return name.to_owned();
+    }
+    let extension = name.rfind('.').map_or("", |at| &name[at..]);
+    let extension = if extension.len() <= MAX_EXTENSION_BYTES {
+        extension
+    } else {
+        ""
+    };
+    let end = (0..=MAX_NAME_BYTES - extension.len())
+        .rev()
+        .find(|&end| name.is_char_boundary(end));
+    format!("{}{extension}", &name[..end.unwrap_or_default()])
+}
+
+/// Whether Windows takes a name for a device, whatever its extension.
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().to_uppercase();
+    let is_numbered = |kind: &str| {
+        let number = stem.strip_prefix(kind).unwrap_or_default();
+        let mut number = number.chars();
+        number.next().is_some_and(|digit| "0123456789¹²³".contains(digit)) && number.next().is_none()
+    };
+    matches!(stem.as_str(), "CON" | "PRN" | "AUX" | "NUL") || is_numbered("COM") || is_numbered("LPT")
+}
+
+/// Unique paths of files below a folder, of which none is the folder of another. Case does not distinguish
+/// them: some file systems store names that differ only in case in one file.
+#[derive(Debug, Default)]
+pub(super) struct Paths {
+    /// The paths in use, in one case.
+    used: HashSet<String>,
+    /// The next number for a path that was already in use.
+    numbers: HashMap<String, u64>,
+    /// The paths of folders, by their original ones.
+    folders: HashMap<Vec<String>, String>,
+}
+
+impl Paths {
+    /// Starts with names that are in use.
+    pub(super) fn with_reserved(names: &[&str]) -> Self {
+        Self {
+            used: names.iter().map(|name| without_case(name)).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// The path of a file with this name in a folder: the given one, or one with a number before the extension.
+    pub(super) fn file(&mut self, folder: &[String], name: &str) -> String {
+        let folder = self.folder(folder);
+        self.free(&folder, name)
+    }
+
+    fn folder(&mut self, original: &[String]) -> String {
+        let Some((name, parents)) = original.split_last() else {
+            return String::new();
+        };
+        if let Some(known) = self.folders.get(original) {
+            return known.clone();
+        }
+        let name = match is_archive(name) {
+            true => file_name(&name[..name.len() - ".zip".len()]),
+            false => file_name(name),
+        };
+        let parent = self.folder(parents);
+        let path = self.free(&parent, &name);
+        self.folders.insert(original.to_vec(), path.clone());
+        path
+    }
+
+    /// A path that is not in use.
+    fn free(&mut self, folder: &str, name: &str) -> String {
+        let path = match folder {
+            "" => name.to_owned(),
+            folder => format!("{folder}/{name}"),
+        };
+        if self.used.insert(without_case(&path)) {
+            return path;
+        }
+        let at = path.len() - name.len() + name.rfind('.').unwrap_or(name.len());
+        let (stem, extension) = path.split_at(at);
+        let number = self.numbers.entry(without_case(&path)).or_insert(2);
+        loop {
+            let numbered = format!("{stem}-{number}{extension}");
+            *number += 1;
+            if self.used.insert(without_case(&numbered)) {
+                return numbered;
+            }
+        }
+    }
+
+    /// The folder of a student: the name, with the number if another has the same name.
+    pub(super) fn student(&mut self, student: &Student) -> String {
+        let name = file_name(&student.name);
+        match &student.id {
+            Some(id) if self.used.contains(&without_case(&name)) => {
+                self.free("", &file_name(&format!("{name}-{id}")))
+            }
+            _ => self.free("", &name),
+        }
+    }
+}
+
+/// A name in one case: Windows compares upper case, and macOS folds case.
+fn without_case(name: &str) -> String {
+    name.to_uppercase().to_lowercase()
 }
 
 #[cfg(test)]
@@ -187,8 +322,68 @@ mod tests {
             ("..", "unnamed"),
             (".git", "git"),
             ("a\u{1b}[31m/b\\c:d", "a--31m-b-c-d"),
+            ("Mu\u{308}ller. ", "Müller"),
+            ("-__MACOSX", "___MACOSX"),
+            ("con", "_con"),
+            ("LPT1.glsl", "_LPT1.glsl"),
+            ("com¹", "_com¹"),
+            ("console.glsl", "console.glsl"),
         ] {
             assert_eq!(file_name(name), expected);
+        }
+        for name in [
+            "ä".repeat(300) + ".glsl",
+            "a".repeat(300),
+            format!("a.{}", "b".repeat(300)),
+        ] {
+            let short = file_name(&name);
+            assert!((118..=MAX_NAME_BYTES).contains(&short.len()), "{short}");
+            assert_eq!(short.ends_with(".glsl"), name.ends_with(".glsl"));
+        }
+    }
+
+    /// Pairs of names that are one on some file system, and a file that is the folder of another.
+    #[test]
+    fn paths_are_unique_on_every_file_system() {
+        let place = |paths: &mut Paths, path: &str| {
+            let mut folder: Vec<_> = path.split('/').map(str::to_owned).collect();
+            let name = file_name(&folder.pop().unwrap());
+            paths.file(&folder, &name)
+        };
+        for (one, other, expected) in [
+            ("a.glsl", "A.GLSL", "A-2.GLSL"),
+            (
+                "\u{1112}\u{1161}\u{11ab}.glsl",
+                "\u{d55c}.glsl",
+                "\u{d55c}-2.glsl",
+            ),
+            ("\u{f900}.glsl", "\u{8c48}.glsl", "\u{8c48}-2.glsl"),
+            ("straße.glsl", "STRASSE.glsl", "STRASSE-2.glsl"),
+            ("ſ.glsl", "s.glsl", "s-2.glsl"),
+            ("a.glsl", "a.glsl. ", "a-2.glsl"),
+            ("a b.glsl", "a-b.glsl", "a-b-2.glsl"),
+            ("a.glsl", "a.glsl/b.glsl", "a-2.glsl/b.glsl"),
+            ("a.glsl/b.glsl", "a.glsl", "a-2.glsl"),
+            ("a.zip/x.glsl", "a/x.glsl", "a-2/x.glsl"),
+            ("a/b/x.glsl", "a/b", "a/b-2"),
+            ("a/x.glsl", "a/y.glsl", "a/y.glsl"),
+        ] {
+            let mut paths = Paths::default();
+            place(&mut paths, one);
+            assert_eq!(place(&mut paths, other), expected, "{one} {other}");
+        }
+        let mut paths = Paths::with_reserved(&["submissions.json"]);
+        let student = |name: &str, id: &str| Student {
+            name: name.to_owned(),
+            id: Some(id.to_owned()),
+        };
+        for (name, id, expected) in [
+            ("Submissions.JSON", "7", "Submissions.JSON-7"),
+            ("Anna", "7", "Anna"),
+            ("anna", "8", "anna-8"),
+            ("Anna", "8", "Anna-8-2"),
+        ] {
+            assert_eq!(paths.student(&student(name, id)), expected);
         }
     }
 }

@@ -1,18 +1,22 @@
 //! `submissions.json`: the students whose submissions a folder has, so that `check` has a row for each.
 
 use std::collections::{HashMap, HashSet};
-use std::fs;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{path_name, printable};
+use toyproof_image::input;
 
+use crate::cli::Terminal;
 use crate::cli::files::{Input, ReadError};
 use crate::report::{Late, Submitted};
 
 /// The name of the file.
 pub(super) const FILE_NAME: &str = "submissions.json";
+
+/// The maximum size of the file, in bytes: a million students.
+const MAX_BYTES: u64 = 256 << 20;
 
 /// The students of a folder of submissions.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -60,26 +64,22 @@ impl Entry {
 }
 
 impl Roster {
-    /// Reads the roster of a folder; none if it has none.
+    /// Reads the roster of a folder; none if it has none. In a folder that nobody collected, a student may have
+    /// a file or a folder of this name.
     ///
     /// # Errors
-    /// The roster cannot be read.
+    /// The file is not a roster, and is ignored.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>, String> {
         let path = folder.join(FILE_NAME);
-        match fs::read(&path) {
-            Ok(text) => serde_json::from_slice(&text)
-                .map(Some)
-                .map_err(|error| format!("{}: {error}", path_name(&path))),
-            Err(error)
-                if matches!(
-                    error.kind(),
-                    io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
-                ) =>
-            {
-                Ok(None)
-            }
-            Err(error) => Err(format!("{}: {error}", path_name(&path))),
+        if matches!(path.metadata(), Err(error) if error.kind() != io::ErrorKind::PermissionDenied) {
+            return Ok(None);
         }
+        let mut text = Vec::new();
+        let read = input::open(&path).and_then(|file| file.take(MAX_BYTES).read_to_end(&mut text));
+        let parsed = read.and_then(|_| Ok(serde_json::from_slice(&text)?));
+        parsed
+            .map(Some)
+            .map_err(|error| format!("{} is not a list of students: {error}", path_name(&path)))
     }
 }
 
@@ -91,17 +91,19 @@ pub(in crate::cli) struct Owners {
 
 impl Owners {
     /// Reads the rosters of folders, and adds an error for each student who has no shader, in the order of
-    /// the paths. Other folders have no roster.
-    ///
-    /// # Errors
-    /// A roster cannot be read.
+    /// the paths. Other folders have no roster; a file that is not one is ignored with a warning.
     pub(in crate::cli) fn read(
         folders: &[PathBuf],
         inputs: &mut Vec<Result<Input, ReadError>>,
-    ) -> Result<Self, String> {
+        terminal: &Terminal,
+    ) -> Self {
         let mut owners = Self::default();
         for folder in folders {
-            let Some(roster) = Roster::read(folder)? else {
+            let roster = Roster::read(folder).unwrap_or_else(|error| {
+                terminal.warn(error);
+                None
+            });
+            let Some(roster) = roster else {
                 continue;
             };
             add_missing(folder, &roster, inputs);
@@ -116,7 +118,7 @@ impl Owners {
             });
             owners.students.extend(students);
         }
-        Ok(owners)
+        owners
     }
 
     /// Whose an input is; none if it is nobody's.

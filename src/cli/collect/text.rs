@@ -29,7 +29,8 @@ pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
     if bytes.len() as u64 > MAX_BYTES {
         return Content::Other("it is larger than 1 MiB");
     }
-    let Some((text, encoding)) = decode(bytes) else {
+    // A PDF may have printable characters only.
+    let Some((text, encoding)) = decode(bytes).filter(|_| !bytes.starts_with(b"%PDF-")) else {
         return Content::Other("it is not text");
     };
     let is_project = || is_json(path) && Project::is_json(&text);
@@ -55,7 +56,7 @@ pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
 
 /// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns none
 /// for what has control characters, and the name of the encoding unless it is UTF-8.
-fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
+pub(super) fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
     let units = |from: fn([u8; 2]) -> u16| -> String {
         let units = bytes[2..].chunks_exact(2).map(|pair| from([pair[0], pair[1]]));
         char::decode_utf16(units)
@@ -137,6 +138,7 @@ mod tests {
             ),
             ("a.png", b"\x89PNG\r\n\x1a\n\0", "it is not text"),
             ("a.pdf", b"%PDF-1.5 mainImage\n\x01", "it is not text"),
+            ("a.pdf", b"%PDF-1.5 plain", "it is not text"),
             (
                 "a.rtf",
                 b"{\\rtf1 mainImage}",

@@ -1,19 +1,22 @@
 //! Writes collected submissions: a folder for each student, and the list of all.
 
-use std::fs;
 use std::path::{Component, Path};
+use std::{fs, io};
 
 use anstyle::{AnsiColor, Style};
 use toyproof_diagnostic::{grouped, path_name, plural, printable};
+use toyproof_image::output;
 
 use super::class::ClassAssignment;
-use super::collection::{Collection, Lateness, Submission, Taken};
-use super::download::is_archive;
-use super::naming::{Student, file_name};
+use super::collection::{Collection, Lateness, Submission};
+use super::naming::{Paths, Student, file_name};
 use super::roster::{Entry, FILE_NAME, Roster, Skipped};
 use super::text::Content;
 use crate::cli::Terminal;
 use crate::report::{Detail, Layout};
+
+/// The largest number of skipped files of a student that are printed.
+const MAX_NOTES: usize = 10;
 
 /// What is printed of each student.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,7 +104,7 @@ impl Writer<'_> {
             skipped: Vec::new(),
         };
         let mut notes = Vec::new();
-        let mut taken = Taken::default();
+        let mut paths = Paths::default();
         for handed in &submission.files {
             let original = handed.original_path();
             let mut skip = |reason: &str| {
@@ -118,10 +121,21 @@ impl Writer<'_> {
                     encoding,
                     is_renamed,
                 }) => {
-                    let file = taken.free(&output_name(&handed.path, *is_renamed));
+                    let (last, parents) = handed.path.split_last().expect("a file has a name");
+                    let file = paths.file(parents, &output_name(last, *is_renamed));
                     let path = self.folder.join(folder).join(&file);
-                    if !self.terminal.write_output(self.folder, &path, text.as_bytes()) {
-                        return Err("not all submissions were written".to_owned());
+                    match output::write_inside(self.folder, &path, text.as_bytes()) {
+                        Ok(()) => {}
+                        // What a path does wrong, another path may do right.
+                        Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
+                            skip("its path is too long for this file system");
+                            continue;
+                        }
+                        Err(error) => {
+                            return Err(format!(
+                                "cannot write {error}\nhelp: not all submissions were written; collect them again"
+                            ));
+                        }
                     }
                     notes.extend(
                         encoding.map(|encoding| format!("{file} was saved as {encoding}, now as UTF-8")),
@@ -137,7 +151,14 @@ impl Writer<'_> {
             let (file, reason) = (printable(&skipped.file), printable(&skipped.reason));
             format!("skipped {file}: {reason}")
         });
-        notes.extend(skipped);
+        notes.extend(skipped.take(MAX_NOTES));
+        if let Some(more @ 1..) = entry.skipped.len().checked_sub(MAX_NOTES) {
+            let files = plural(more as u64, "file", "files");
+            notes.push(format!(
+                "skipped {} more {files}: see {FILE_NAME}",
+                grouped(more as u64)
+            ));
+        }
         Ok((entry, notes))
     }
 
@@ -166,22 +187,16 @@ impl Writer<'_> {
     }
 }
 
-/// The path of a collected file: harmless on any system, with a shader's extension in lower case.
-fn output_name(path: &[String], is_renamed: bool) -> String {
-    let (last, folders) = path.split_last().expect("a file has a name");
-    let folders = folders.iter().map(|part| match part {
-        part if is_archive(part) => file_name(&part[..part.len() - ".zip".len()]),
-        part => file_name(part),
-    });
-    let name = file_name(last);
+/// The name of a collected file: harmless on any system, with a shader's extension in lower case.
+fn output_name(name: &str, is_renamed: bool) -> String {
+    let name = file_name(name);
     let (stem, extension) = name.rsplit_once('.').unwrap_or((&name, ""));
-    let file = match is_renamed {
+    match is_renamed {
         false => format!("{stem}.{}", extension.to_lowercase()),
         true if stem.to_lowercase().ends_with(".glsl") => stem.to_lowercase(),
         true if stem.is_empty() => format!("{name}.glsl"),
         true => format!("{stem}.glsl"),
-    };
-    folders.chain([file]).collect::<Vec<_>>().join("/")
+    }
 }
 
 /// Removes what an earlier run collected into the folders of assignments in a folder; other files stay.
@@ -199,21 +214,19 @@ pub(super) fn remove_earlier(folder: &Path) -> Result<(), String> {
     for entry in entries {
         is_empty = false;
         let assignment = entry.map_err(with_path)?.path();
-        let Some(roster) = Roster::read(&assignment)? else {
+        let Ok(Some(roster)) = Roster::read(&assignment) else {
             continue;
         };
         is_collected = true;
         for student in roster.students {
             let own = assignment.join(&student.folder);
-            for file in &student.files {
-                let is_inside = Path::new(&student.folder)
-                    .join(file)
-                    .components()
-                    .all(|part| matches!(part, Component::Normal(_)));
-                if is_inside {
-                    // What cannot be removed is written again, or reported as a shader of nobody.
-                    let _ = fs::remove_file(own.join(file));
-                }
+            let is_inside = |path: &Path| path.components().all(|part| matches!(part, Component::Normal(_)));
+            if !is_inside(student.folder.as_ref()) {
+                continue;
+            }
+            for file in student.files.iter().filter(|file| is_inside(file.as_ref())) {
+                // What cannot be removed is written again, or reported as a shader of nobody.
+                let _ = fs::remove_file(own.join(file));
             }
             let _ = fs::remove_dir(own);
         }

@@ -10,7 +10,7 @@ use toyproof_diagnostic::path_name;
 use toyproof_eval::{self as eval, PassFailure};
 use toyproof_glsl::{self as glsl, Filter};
 use toyproof_gpu::{Failure, Worker};
-use toyproof_image::{Image, Texture, output};
+use toyproof_image::{Image, Texture, input, output};
 use toyproof_player::{Clock, Graph, State, Target};
 use toyproof_project::{PassKind, Rendering, Tab};
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
@@ -129,7 +129,7 @@ const STATE_FORMAT: &str = "toyproof state 1";
 /// Why it cannot be used.
 fn read_state(path: &Path, graph: &Graph, size: [u32; 2]) -> Result<Option<State>, String> {
     let name = path_name(path);
-    let bytes = match std::fs::read(path) {
+    let bytes = match input::read(path) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(format!("cannot read {name}: {error}")),
