@@ -11,8 +11,12 @@ use toyproof_glsl::tree::{
     Condition, ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
 };
 
+use super::tokens::tokens;
+
 /// The number of nodes that a fingerprint covers: fewer match by chance.
 const NODES: usize = 14;
+/// The number of tokens that a fingerprint covers: about as much of a text.
+const TOKENS: usize = 24;
 /// One of this many consecutive fingerprints is kept: equal parts of `NODES + WINDOW - 1` nodes share one.
 const WINDOW: usize = 6;
 
@@ -35,20 +39,21 @@ impl Fingerprints {
                 nodes: Vec::new(),
             };
             flat.block(function.body.as_deref().unwrap_or_default());
-            let grams: Vec<u64> = flat
-                .nodes
-                .windows(NODES)
-                .map(|nodes| hash(&nodes.iter().map(|node| node.kind).collect::<Vec<_>>()))
-                .collect();
-            for at in winnow(&grams) {
-                let lines = flat.nodes[at..at + NODES]
-                    .iter()
-                    .map(|node| files.position(node.span).line);
-                let first = lines.clone().min().unwrap_or_default();
-                let last = lines.max().unwrap_or_default();
-                kept.insert(grams[at], [first, last]);
-            }
+            let kinds: Vec<u64> = flat.nodes.iter().map(|node| node.kind).collect();
+            keep(&mut kept, &kinds, NODES, |at| {
+                files.position(flat.nodes[at].span).line
+            });
         }
+        Self(kept)
+    }
+
+    /// The fingerprints of a text's tokens, which also a shader has that does not compile. They are comparable
+    /// with each other only.
+    pub(super) fn of_text(text: &str) -> Self {
+        let tokens = tokens(text);
+        let kinds: Vec<u64> = tokens.iter().map(|&(kind, _)| kind).collect();
+        let mut kept = HashMap::new();
+        keep(&mut kept, &kinds, TOKENS, |at| tokens[at].1);
         Self(kept)
     }
 
@@ -83,6 +88,17 @@ impl Fingerprints {
             touches
         });
         ranges
+    }
+}
+
+/// Keeps the fingerprints of consecutive kinds, each of which covers a number of them; `line` is the line of one.
+fn keep(kept: &mut HashMap<u64, [usize; 2]>, kinds: &[u64], covered: usize, line: impl Fn(usize) -> usize) {
+    let grams: Vec<u64> = kinds.windows(covered).map(|kinds| hash(&kinds)).collect();
+    for at in winnow(&grams) {
+        let lines = (at..at + covered).map(&line);
+        let first = lines.clone().min().unwrap_or_default();
+        let last = lines.max().unwrap_or_default();
+        kept.insert(grams[at], [first, last]);
     }
 }
 
@@ -327,6 +343,25 @@ mod tests {
         }
         let named = format!("const float STEP = 0.001;\n{}", ORIGINAL.replace("0.001", "STEP"));
         assert_eq!(original.shared(&of(&named)), original.len());
+    }
+
+    #[test]
+    fn texts_that_do_not_compile_are_compared_by_tokens() {
+        let original = Fingerprints::of_text(ORIGINAL);
+        let copy = ORIGINAL
+            .replace("march", "go")
+            .replace("vec3 p ", "vec3  point ")
+            .replace("p.", "point.")
+            .replace("0.001", "1e-3 /* small */")
+            .replace("t += h;", "t += h; // step\n");
+        let broken = Fingerprints::of_text(&copy.replace("return t;", "return t"));
+        let share = original.shared(&broken) as f64 / original.len() as f64;
+        assert!(
+            original.len() > 10 && share > 0.7,
+            "{share} of {}",
+            original.len()
+        );
+        assert_eq!(original.shared(&Fingerprints::of_text(&copy)), original.len());
     }
 
     #[test]

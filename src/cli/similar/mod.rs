@@ -1,6 +1,7 @@
 //! `toyproof similar`: shaders that are near-identical.
 
 mod fingerprint;
+mod tokens;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 use toyproof_diagnostic::{Deadline, grouped, plural};
 
 use self::fingerprint::Fingerprints;
+use super::files;
 use super::inputs::LanguageArgs;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
@@ -44,31 +46,53 @@ const MIN_FINGERPRINTS: usize = 8;
 /// The time limit for reading a shader.
 const TIME_LIMIT: std::time::Duration = std::time::Duration::from_secs(10);
 
+/// A shader to compare.
+struct Subject {
+    name: String,
+    /// The fingerprints of its tree; none if it does not compile.
+    tree: Option<Fingerprints>,
+    /// Those of its text.
+    text: Fingerprints,
+}
+
+impl Subject {
+    /// The fingerprints with which it is compared, unless the other shader does not compile.
+    fn own(&self) -> &Fingerprints {
+        self.tree.as_ref().unwrap_or(&self.text)
+    }
+
+    /// What both have: trees, or else texts.
+    fn comparable<'a>(&'a self, other: &'a Self) -> [&'a Fingerprints; 2] {
+        match (&self.tree, &other.tree) {
+            (Some(one), Some(other)) => [one, other],
+            _ => [&self.text, &other.text],
+        }
+    }
+}
+
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut shaders = read(&args.shaders, &args.language, terminal);
-    let count = shaders.len();
-    let mut left_out: HashSet<u64> = read(&args.except, &args.language, terminal)
-        .iter()
-        .flat_map(|(_, excepted)| excepted.hashes().collect::<Vec<_>>())
-        .collect();
-    left_out.extend(common(&shaders));
-    for (_, fingerprints) in &mut shaders {
-        fingerprints.remove(&left_out);
-    }
-    shaders.retain(|(_, fingerprints)| fingerprints.len() >= MIN_FINGERPRINTS);
-    let small = (count - shaders.len()) as u64;
+    let mut excepted = read(&args.except, &args.language, terminal);
+    leave_out(&mut shaders, &mut excepted, |shader| shader.tree.as_mut());
+    leave_out(&mut shaders, &mut excepted, |shader| Some(&mut shader.text));
+    let (shaders, small): (Vec<_>, Vec<_>) = shaders
+        .into_iter()
+        .partition(|shader| shader.own().len() >= MIN_FINGERPRINTS);
     let pairs = pairs(&shaders, f64::from(args.threshold) / 100.0);
     for &(a, b, share) in &pairs {
-        let ((name, one), (other_name, other)) = (&shaders[a], &shaders[b]);
-        let lines = [one.shared_lines(other), other.shared_lines(one)].map(|ranges| list(&ranges));
-        let [lines, other_lines] = lines;
+        let (one, other) = (&shaders[a], &shaders[b]);
+        let [of_one, of_other] = one.comparable(other);
+        let [lines, other_lines] =
+            [of_one.shared_lines(of_other), of_other.shared_lines(of_one)].map(|ranges| list(&ranges));
         terminal.result(&format!(
-            "{:>3.0} %  {name}:{lines}\n       {other_name}:{other_lines}",
-            100.0 * share
+            "{:>3.0} %  {}:{lines}\n       {}:{other_lines}",
+            100.0 * share,
+            one.name,
+            other.name
         ));
     }
     for group in groups(&pairs).iter().filter(|group| group.len() > 2) {
-        let names: Vec<_> = group.iter().map(|&at| shaders[at].0.as_str()).collect();
+        let names: Vec<_> = group.iter().map(|&at| shaders[at].name.as_str()).collect();
         terminal.result(&format!(
             "group of {}: {}",
             grouped(group.len() as u64),
@@ -76,68 +100,108 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
     }
     let found = pairs.len() as u64;
+    let count = shaders.len() as u64;
     terminal.note(&format!(
-        "\n{} {} of {} shaders {} at least {} % of the smaller one",
+        "\n{} {} of {} {} {} at least {} % of the smaller one{}",
         grouped(found),
         plural(found, "pair", "pairs"),
-        grouped(shaders.len() as u64),
+        grouped(count),
+        plural(count, "shader", "shaders"),
         plural(found, "shares", "share"),
-        args.threshold
+        args.threshold,
+        names(&shaders)
     ));
-    if small > 0 {
+    if !small.is_empty() {
+        let count = small.len() as u64;
         terminal.note(&format!(
-            "{} {} too little of its own to compare",
-            grouped(small),
-            plural(small, "shader has", "shaders have")
+            "{} {} to compare{}",
+            grouped(count),
+            plural(
+                count,
+                "shader has too little of its own",
+                "shaders have too little of their own"
+            ),
+            names(&small)
         ));
     }
     Exit::Success
 }
 
-/// Reads shaders; those that do not compile are reported and left out.
-fn read(paths: &[PathBuf], language: &LanguageArgs, terminal: &Terminal) -> Vec<(String, Fingerprints)> {
+/// The names of a few shaders, after a colon.
+fn names(shaders: &[Subject]) -> String {
+    const MAX_NAMES: usize = 5;
+    if shaders.is_empty() || shaders.len() > MAX_NAMES {
+        return String::new();
+    }
+    let names: Vec<_> = shaders.iter().map(|shader| shader.name.as_str()).collect();
+    format!(": {}", names.join(", "))
+}
+
+/// Reads shaders; what cannot be compared is reported and left out.
+fn read(paths: &[PathBuf], language: &LanguageArgs, terminal: &Terminal) -> Vec<Subject> {
     let mut shaders = Vec::new();
     for input in find(paths, terminal) {
         let shader = Shader::load(&input, language, Deadline::after(TIME_LIMIT));
-        match &shader.checked {
-            Ok(checked) => {
-                let fingerprints = Fingerprints::of(checked, &shader.files);
-                shaders.push((shader.name, fingerprints));
+        let text = input.as_ref().ok().and_then(|input| files::read(input).ok());
+        let text = text.map(|texts| {
+            let texts: Vec<_> = texts.files().iter().map(|file| file.text()).collect();
+            Fingerprints::of_text(&texts.join("\n"))
+        });
+        let (tree, reason) = match &shader.checked {
+            Ok(checked) => (Some(Fingerprints::of(checked, &shader.files)), ""),
+            Err(Unusable::Invalid(_)) => (None, "it does not compile"),
+            Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => (None, error.reason.as_str()),
+        };
+        match text {
+            Some(text) if tree.is_some() || matches!(shader.checked, Err(Unusable::Invalid(_))) => {
+                if tree.is_none() {
+                    terminal.warn(format_args!("{} is compared by its text: {reason}", shader.name));
+                }
+                shaders.push(Subject {
+                    name: shader.name,
+                    tree,
+                    text,
+                });
             }
-            Err(unusable) => {
-                let reason = match unusable {
-                    Unusable::Unrendered(error) => &error.reason,
-                    _ => "it does not compile",
-                };
-                terminal.warn(format_args!("{} is not compared: {reason}", shader.name));
-            }
+            _ => terminal.warn(format_args!("{} is not compared: {reason}", shader.name)),
         }
     }
     shaders
 }
 
-/// The fingerprints that more than half of the shaders have, if there are enough to say so.
-fn common(shaders: &[(String, Fingerprints)]) -> HashSet<u64> {
+/// Removes one kind of fingerprints: those that everyone may have, and those that more than half of the shaders
+/// have, if there are enough to say so.
+fn leave_out(
+    shaders: &mut [Subject],
+    excepted: &mut [Subject],
+    kind: fn(&mut Subject) -> Option<&mut Fingerprints>,
+) {
     const ENOUGH: usize = 6;
+    let mut all: Vec<_> = shaders.iter_mut().filter_map(kind).collect();
     let mut counts: HashMap<u64, usize> = HashMap::new();
-    for hash in shaders.iter().flat_map(|(_, fingerprints)| fingerprints.hashes()) {
+    for hash in all.iter().flat_map(|fingerprints| fingerprints.hashes()) {
         *counts.entry(hash).or_default() += 1;
     }
-    let is_common = |&(_, count): &(u64, usize)| shaders.len() >= ENOUGH && 2 * count > shaders.len();
-    counts
-        .into_iter()
-        .filter(is_common)
-        .map(|(hash, _)| hash)
-        .collect()
+    let is_common = |&(_, count): &(u64, usize)| all.len() >= ENOUGH && 2 * count > all.len();
+    let common = counts.into_iter().filter(is_common).map(|(hash, _)| hash);
+    let excepted = excepted.iter_mut().filter_map(kind);
+    let left_out: HashSet<u64> = common
+        .chain(excepted.flat_map(|fingerprints| fingerprints.hashes().collect::<Vec<_>>()))
+        .collect();
+    for fingerprints in &mut all {
+        fingerprints.remove(&left_out);
+    }
 }
 
 /// The pairs that share at least a part of the smaller shader, the most similar first.
-fn pairs(shaders: &[(String, Fingerprints)], threshold: f64) -> Vec<(usize, usize, f64)> {
+fn pairs(shaders: &[Subject], threshold: f64) -> Vec<(usize, usize, f64)> {
     let mut pairs = Vec::new();
-    for (b, (_, other)) in shaders.iter().enumerate() {
-        for (a, (_, one)) in shaders[..b].iter().enumerate() {
-            let share = one.shared(other) as f64 / one.len().min(other.len()) as f64;
-            if share >= threshold {
+    for (b, other) in shaders.iter().enumerate() {
+        for (a, one) in shaders[..b].iter().enumerate() {
+            let [of_one, of_other] = one.comparable(other);
+            let smaller = of_one.len().min(of_other.len());
+            let share = of_one.shared(of_other) as f64 / smaller as f64;
+            if smaller >= MIN_FINGERPRINTS && share >= threshold {
                 pairs.push((a, b, share));
             }
         }
