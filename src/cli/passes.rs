@@ -114,10 +114,10 @@ pub(super) fn bind(
         pool,
     };
     let history = follow(&frames, |inputs, playback| {
-        let Some(playback) = device.as_mut().filter(|_| difference.is_none()) else {
+        let Some(driver) = device.as_mut().filter(|_| difference.is_none()) else {
             return Ok(());
         };
-        let images = match playback.render(inputs, &targets) {
+        let images = match driver.render(inputs, &targets) {
             Ok(images) => images,
             Err(failure) => {
                 device = None;
