@@ -76,7 +76,7 @@ pub fn encode_shown(image_rgb8: &Rgb8Image, path: &Path) -> Result<Vec<u8>, Imag
     }
 }
 
-/// Writes an image as a PNG, row by row: neither the file nor a copy of the image is in memory.
+/// Writes an image as a PNG. Of the file, at most the size of the image is in memory.
 ///
 /// # Errors
 /// Those of `out`.
@@ -100,8 +100,37 @@ impl Format {
     }
 }
 
-/// Writes a PNG from rows in top-down order.
+/// Writes a PNG from rows in top-down order. The fast compression makes noise a third larger, so that an image
+/// which it does not make smaller is stored as it is.
 fn png<'a>(
+    size: [u32; 2],
+    rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>> + Clone,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let mut compressed = Limited {
+        bytes: Vec::new(),
+        limit: stored_size(size),
+        is_exceeded: false,
+    };
+    let written = png_with(png::Compression::Fast, size, rows.clone(), &mut compressed);
+    if compressed.is_exceeded {
+        drop(compressed);
+        return png_with(png::Compression::NoCompression, size, rows, out);
+    }
+    written?;
+    out.write_all(&compressed.bytes)
+}
+
+/// The size of the PNG of an image that is stored in one chunk, in bytes.
+fn stored_size([width, height]: [u32; 2]) -> usize {
+    /// The signature, the chunks of the size and of the end, and what encloses the pixels.
+    const AROUND: usize = 68;
+    // Each row begins with the number of its filter.
+    AROUND + (3 * width as usize + 1) * height as usize
+}
+
+fn png_with<'a>(
+    compression: png::Compression,
     [width, height]: [u32; 2],
     rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>>,
     out: &mut dyn Write,
@@ -109,8 +138,8 @@ fn png<'a>(
     let mut encoder = png::Encoder::new(out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
-    encoder.set_filter(png::Filter::Adaptive);
+    // Filters are those of the compression: adaptive ones, or none.
+    encoder.set_compression(compression);
     let mut encoder = encoder.write_header()?;
     let mut image = encoder.stream_writer()?;
     for row in rows {
@@ -118,6 +147,27 @@ fn png<'a>(
     }
     image.finish()?;
     Ok(())
+}
+
+/// A file in memory that cannot become larger than a limit, in bytes.
+struct Limited {
+    bytes: Vec<u8>,
+    limit: usize,
+    is_exceeded: bool,
+}
+
+impl Write for Limited {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.is_exceeded |= self.bytes.len() + bytes.len() > self.limit;
+        if self.is_exceeded {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        self.bytes.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// Collects what `write` writes for the file at `path`.
@@ -245,6 +295,30 @@ mod tests {
         assert_eq!(raw.get_pixel(0, 0).0, [0, 255, 0], "top left");
         assert_eq!(raw.get_pixel(0, 1).0, [0, 64, 128], "bottom left");
         assert_eq!(read(&path).unwrap().get(0, 0)[1], 64.0 / 255.0);
+    }
+
+    #[test]
+    fn no_png_is_larger_than_its_pixels() {
+        let noise = |at: u32| {
+            let hash = (at + 1).wrapping_mul(2_654_435_761);
+            (hash ^ hash >> 15).wrapping_mul(0x85eb_ca6b).to_be_bytes()
+        };
+        // From headers that outweigh the pixels to several chunks.
+        for size in [1, 2, 9, 120, 400] {
+            let pixels: Vec<_> = (0..size * size).map(|at| noise(at)).collect();
+            let pixels = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+            let image = Rgb8Image::new(size, size, pixels);
+            let bytes = encode_shown(&image, Path::new("a.png")).unwrap();
+            // What encloses the parts of a stored image: 17 bytes for each 32 KB, and 22 at the end.
+            let most = stored_size(image.size()) * 1_001 / 1_000 + 22;
+            assert!(bytes.len() <= most, "{size}: {} above {most}", bytes.len());
+            let read = image::load_from_memory(&bytes).unwrap().into_rgb8();
+            let rows = image.rows().rev().flatten().copied();
+            assert!(rows.eq(read.pixels().map(|pixel| pixel.0)), "{size}");
+        }
+        let plain = Rgb8Image::new(400, 400, vec![[7; 3]; 160_000]);
+        let bytes = encode_shown(&plain, Path::new("a.png")).unwrap();
+        assert!(bytes.len() < 10_000, "{}", bytes.len());
     }
 
     #[test]

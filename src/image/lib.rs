@@ -120,7 +120,7 @@ impl Image {
 
     /// The rows, from the bottom up.
     #[must_use]
-    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 4]]> {
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 4]]> + Clone {
         self.pixels.chunks(self.width as usize)
     }
 }

@@ -75,7 +75,7 @@ impl Rgb8Image {
 
     /// The rows, from the bottom up.
     #[must_use]
-    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[u8; 3]]> {
+    pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[u8; 3]]> + Clone {
         self.pixels.chunks(self.width as usize)
     }
 }
