@@ -1,6 +1,7 @@
 #!/bin/sh
-# Checks what the build needs (Rust, make, a C linker) and installs a Vulkan driver that runs on the CPU.
-# Never asks for a password: if installing needs one, the command is printed instead. Can be run repeatedly.
+# Checks what the build needs (Rust, make, a C linker) and installs a Vulkan driver that runs on the CPU; with `--tests`,
+# also the programs that tests use. Never asks for a password: if installing needs one, the command is printed instead.
+# Can be run repeatedly.
 set -eu
 cd "$(dirname "$0")"
 
@@ -12,14 +13,17 @@ packages_for() {
         manager="apt-get install -y"
         build="make gcc libc6-dev"
         driver="mesa-vulkan-drivers libvulkan1"
+        glslang=glslang-tools
     elif has dnf; then
         manager="dnf install -y"
         build="make gcc"
         driver="mesa-vulkan-drivers vulkan-loader"
+        glslang=glslang
     elif has pacman; then
         manager="pacman -S --needed --noconfirm"
         build="make gcc"
         driver="vulkan-swrast vulkan-icd-loader"
+        glslang=glslang
     else
         manager=
     fi
@@ -47,7 +51,8 @@ install() {
         return 1
     fi
     log "$1 is missing; running: $as_root$manager $2"
-    if has apt-get; then
+    if has apt-get && [ -z "${updated:-}" ]; then
+        updated=yes
         DEBIAN_FRONTEND=noninteractive
         export DEBIAN_FRONTEND
         ${as_root}apt-get update -q >/dev/null 2>&1 || log "cannot update the list of packages; continuing with the old one"
@@ -116,4 +121,20 @@ elif ! has_driver; then
     install "the optional Vulkan driver lavapipe" "${driver:-}" ||
         log "without a Vulkan driver, shaders run on toyproof's CPU evaluator and the toolchain check is skipped"
 fi
+
+# What tests use; naga and tint have no package.
+install_programs() {
+    missing=
+    { has chromium || has chromium-browser || has google-chrome; } || missing="$missing chromium"
+    has glslangValidator || missing="$missing ${glslang:-glslang}"
+    has spirv-val || missing="$missing spirv-tools"
+    if [ -n "$missing" ]; then
+        install "what tests use" "${missing# }" || return 1
+    fi
+    has povray || install "the optional POV-Ray" povray || log "tests of POV-Ray are skipped"
+}
+
+case "${1:-}" in
+--tests) install_programs || ready=no ;;
+esac
 [ "$ready" = yes ] || { log "install what is missing, then run ./setup.sh again"; exit 1; }

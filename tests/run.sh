@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs all tests, in the profile of `make demo`, whose dependencies it reuses; then prints how many were skipped, by
-# what was missing. Run by `make test`.
+# Runs all tests, also after a failure, in the profile of `make demo`, whose dependencies it reuses; then prints how many
+# were skipped, by what was missing. Run by `make test`. If `CI` is set, only tests of optional programs are skipped.
 set -eu
 cd "$(dirname "$0")/.."
 TOYPROOF_SKIPPED=$(mktemp)
@@ -8,7 +8,7 @@ export TOYPROOF_SKIPPED
 trap 'rm -f "$TOYPROOF_SKIPPED"' EXIT
 
 code=0
-cargo test --release --workspace "$@" || code=$?
+cargo test --release --workspace --no-fail-fast "$@" || code=$?
 # A line is `skipped: TEST: REASON`; a test that lacks several things is counted under each.
 tests=$(cut -d ' ' -f 2 "$TOYPROOF_SKIPPED" | sort -u | wc -l)
 echo "tests skipped, in whole or in part: $((tests))"

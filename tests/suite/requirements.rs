@@ -1,7 +1,8 @@
 //! What tests need that not every machine has: a Vulkan driver, programs, folders of shaders.
 //!
 //! A test that lacks something is skipped with one line on standard error. `make test` counts these lines in the
-//! file that `TOYPROOF_SKIPPED` names.
+//! file that `TOYPROOF_SKIPPED` names. If `CI` is set, only what is [optional](OPTIONAL) may be missing: a test
+//! that lacks anything else fails.
 
 use std::collections::BTreeSet;
 use std::fs::OpenOptions;
@@ -16,6 +17,9 @@ use std::{env, thread};
 use toyproof::gpu::browser::find;
 use toyproof::gpu::{AdapterSelector, Failure, Worker};
 
+/// Programs that may be missing if `CI` is set: no package contains naga and tint, and POV-Ray is large.
+const OPTIONAL: [&str; 3] = ["naga", "tint", "povray"];
+
 /// Returns whether there is a Vulkan driver.
 ///
 /// # Panics
@@ -26,7 +30,7 @@ pub(crate) fn require_driver() -> bool {
         LazyLock::new(|| new_worker(AdapterSelector::Auto).probe().map(drop));
     match &*PROBE {
         Ok(()) => true,
-        Err(Failure::NoDriver(_)) if env::var_os("CI").is_none() => {
+        Err(Failure::NoDriver(_)) => {
             skip("no Vulkan driver (`make setup` installs one)");
             false
         }
@@ -66,6 +70,9 @@ pub(crate) fn require_chromium() -> Option<PathBuf> {
 }
 
 /// Returns whether a program is installed.
+///
+/// # Panics
+/// If it is not, although `CI` is set, unless it is optional.
 #[track_caller]
 pub(crate) fn require_program(name: &str) -> bool {
     let mut program = Command::new(name);
@@ -74,7 +81,13 @@ pub(crate) fn require_program(name: &str) -> bool {
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null());
-    found(program.status().ok(), &format!("no {name}")).is_some()
+    let is_installed = program.status().is_ok();
+    match format!("no {name}") {
+        _ if is_installed => {}
+        missing if OPTIONAL.contains(&name) => report(&missing),
+        missing => skip(&missing),
+    }
+    is_installed
 }
 
 /// The folder that an environment variable names.
@@ -103,8 +116,17 @@ fn new_worker(on: AdapterSelector) -> Worker {
 }
 
 /// Reports, once for each reason, that the test of this thread is skipped, or a part of it.
+///
+/// # Panics
+/// If `CI` is set.
 #[track_caller]
 pub(crate) fn skip(why: &str) {
+    assert!(env::var_os("CI").is_none(), "skipped although CI is set: {why}");
+    report(why);
+}
+
+#[track_caller]
+fn report(why: &str) {
     static REPORTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
     // libtest names the threads of tests, unless they all run on the main thread.
     let thread = thread::current();
@@ -122,30 +144,57 @@ pub(crate) fn skip(why: &str) {
     }
 }
 
-/// Runs a test of this binary that needs a driver, on a machine without one.
-fn without_a_driver(variables: &[(&str, &str)]) -> (bool, String) {
+/// Runs a test of this binary with these variables; returns whether it passed, and its standard error.
+fn run_test(name: &str, variables: &[(&str, &str)]) -> (bool, String) {
     let output = Command::new(env::current_exe().unwrap())
-        .args(["--exact", "strict::strict_shaders_compute_the_same_bits_as_rust"])
+        .args(["--exact", name])
         .env_remove("CI")
-        .envs([("VK_DRIVER_FILES", "/none"), ("VK_ICD_FILENAMES", "/none")])
         .envs(variables.iter().copied())
         .output()
         .unwrap();
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    assert!(stdout.contains("running 1 test\n"), "{name}: {stdout}");
     (output.status.success(), String::from_utf8(output.stderr).unwrap())
 }
 
+/// Tests that need something each, variables without which it is missing, and what is reported then.
+const LACKING: [(&str, &[(&str, &str)], &str); 3] = [
+    (
+        "strict::strict_shaders_compute_the_same_bits_as_rust",
+        &[("VK_DRIVER_FILES", "/none"), ("VK_ICD_FILENAMES", "/none")],
+        "no Vulkan driver (`make setup` installs one)",
+    ),
+    (
+        "generated::glslang_and_the_evaluator_agree_with_ours",
+        &[("PATH", "/none")],
+        "no glslangValidator",
+    ),
+    (
+        "povray::povray_renders_the_same",
+        &[("PATH", "/none")],
+        "no povray",
+    ),
+];
+
 #[test]
-fn tests_without_a_driver_are_reported_and_counted() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("skipped");
-    let (passed, stderr) = without_a_driver(&[("TOYPROOF_SKIPPED", file.to_str().unwrap())]);
-    let line = "skipped: strict::strict_shaders_compute_the_same_bits_as_rust: no Vulkan driver (`make setup` installs one)\n";
-    assert!(passed && stderr.contains(line), "{stderr}");
-    assert_eq!(std::fs::read_to_string(file).unwrap(), line);
+fn tests_that_lack_something_are_reported_and_counted() {
+    for (test, variables, reason) in LACKING {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("skipped");
+        let counted = [("TOYPROOF_SKIPPED", file.to_str().unwrap())];
+        let (passed, stderr) = run_test(test, &[variables, &counted].concat());
+        let line = format!("skipped: {test}: {reason}\n");
+        assert!(passed && stderr.contains(&line), "{stderr}");
+        assert_eq!(std::fs::read_to_string(file).unwrap(), line);
+    }
 }
 
 #[test]
-fn tests_without_a_driver_fail_on_ci() {
-    let (passed, stderr) = without_a_driver(&[("CI", "1")]);
-    assert!(!passed && !stderr.contains("skipped"), "{stderr}");
+fn tests_that_lack_something_fail_on_ci_unless_it_is_optional() {
+    for (test, variables, reason) in LACKING {
+        let (passed, stderr) = run_test(test, &[variables, &[("CI", "1")]].concat());
+        let is_optional = OPTIONAL.iter().any(|name| reason == format!("no {name}"));
+        assert_eq!(passed, is_optional, "{test}: {stderr}");
+        assert_eq!(stderr.contains("skipped: "), is_optional, "{stderr}");
+    }
 }
