@@ -6,7 +6,10 @@ use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
 use toyproof_verify::alternative::Difference;
 use toyproof_verify::compare::Region;
-use toyproof_verify::{Failure, Findings, MAX_DIFFERING, Means, Reason, ReferenceKind, Share, Verdict};
+use toyproof_verify::{
+    Failure, Findings, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Means, Reason, ReferenceKind, Share,
+    Verdict,
+};
 
 use super::Mistake;
 
@@ -428,12 +431,40 @@ fn pixels(share: Share) -> String {
     format!("{} of {} pixels", grouped(share.count), grouped(share.of))
 }
 
-/// Formats a share in parentheses, with one decimal.
+/// The shares that decide a verdict.
+const LIMITS: [f64; 3] = [MAX_DIFFERING, MAX_UNSTABLE, MAX_UNDEFINED];
+
+/// Formats a share in parentheses, with one decimal, and more if it would look like a limit that it is not.
 fn percentage(share: Share) -> String {
-    let percent = 100.0 * share.ratio();
-    if percent < 0.1 && share.count > 0 {
-        "(under 0.1 %)".to_owned()
-    } else {
-        format!("({percent:.1} %)")
+    let ratio = share.ratio();
+    if ratio < 0.001 && share.count > 0 {
+        return "(under 0.1 %)".to_owned();
+    }
+    let text = |ratio: f64, decimals: usize| format!("({:.decimals$} %)", 100.0 * ratio);
+    let is_clear = |&decimals: &usize| {
+        let mut limits = LIMITS.iter();
+        limits.all(|&limit| ratio == limit || text(ratio, decimals) != text(limit, decimals))
+    };
+    text(ratio, (1..6).find(is_clear).unwrap_or(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_beside_a_limit_does_not_look_like_the_limit() {
+        for (count, of, text) in [
+            (0, 57_600, "(0.0 %)"),
+            (57, 57_600, "(under 0.1 %)"),
+            (70, 57_600, "(0.12 %)"),
+            (1, 1_000, "(0.1 %)"),
+            (1_001, 1_000_000, "(0.1001 %)"),
+            (31, 10_000, "(0.31 %)"),
+            (49_999, 1_000_000, "(5.0 %)"),
+            (1, 2, "(50.0 %)"),
+        ] {
+            assert_eq!(percentage(Share { count, of }), text, "{count} of {of}");
+        }
     }
 }
