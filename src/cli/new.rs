@@ -249,6 +249,11 @@ fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, (
     let text = shader.text(checked).as_bytes().to_vec();
     let frames = load(&model, terminal)?;
     let expected = given.expected(frames.iter(), args.timeout, terminal)?;
+    let dependences = expected.iter().filter_map(Expected::march_dependence);
+    let largest = dependences.max_by_key(|dependence| dependence.pixels.count);
+    if let Some(warning) = largest.and_then(|largest| given.march_warning(largest)) {
+        terminal.warn(warning);
+    }
     let mut files = vec![(SOLUTION.to_owned(), text)];
     for (index, (expected, frame)) in expected.iter().zip(&frames).enumerate() {
         files.push(thumbnail(index, expected, frame, terminal)?);

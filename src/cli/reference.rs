@@ -1,16 +1,17 @@
 //! The reference that `--reference` names: a shader or an image, the same for all shaders of a command.
 
+use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sha2::{Digest, Sha256};
-use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name};
+use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name, plural};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image, input};
 use toyproof_verify::{
-    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, Quantization, ShaderReference,
-    unbound,
+    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, MarchDependence, Quantization,
+    ShaderReference, Share, unbound,
 };
 
 use super::Terminal;
@@ -193,6 +194,44 @@ impl GivenReference {
             Content::Shader(shader, checked) => evaluation.run(shader, checked, frame, terminal),
         });
         expected.collect()
+    }
+}
+
+impl GivenReference {
+    /// Describes how far the image depends on the way in which a shader marches along its rays.
+    pub(super) fn march_warning(&self, dependence: &MarchDependence) -> Option<String> {
+        let (shader, _) = self.shader()?;
+        let mut limits: Vec<&str> = dependence
+            .limits
+            .iter()
+            .map(|&at| shader.files.text(at))
+            .collect();
+        let mut seen = HashSet::new();
+        limits.retain(|limit| seen.insert(*limit));
+        let limits: Vec<String> = limits.iter().map(|limit| format!("`{limit}`")).collect();
+        let (on, help) = match &limits[..] {
+            [] => (
+                "the length of the steps".to_owned(),
+                "give students the length of the steps",
+            ),
+            [limit] => (
+                format!("{limit} and the length of the steps"),
+                "give students this number",
+            ),
+            [limits @ .., last] => (
+                format!("{}, {last} and the length of the steps", limits.join(", ")),
+                "give students these numbers",
+            ),
+        };
+        let Share { count, of } = dependence.pixels;
+        Some(format!(
+            "the march along the rays of {} decides the color of {} of {} {}: they depend on {on}; colors for other \
+             numbers are accepted there\nhelp: {help}",
+            self.name,
+            grouped(count),
+            grouped(of),
+            plural(of, "pixel", "pixels"),
+        ))
     }
 }
 

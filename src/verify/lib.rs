@@ -156,8 +156,8 @@ pub use self::decide::{
     OtherRandomNumbers, Reason, SelfIntersection, Share, Verdict, decide, is_different,
 };
 pub use self::expected::{
-    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, Quantization, ReferenceFindings,
-    ReferenceKind, SceneReference, ShaderReference,
+    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MarchDependence, Quantization,
+    ReferenceFindings, ReferenceKind, SceneReference, ShaderReference,
 };
 pub use self::findings::{CheckResult, Findings, GpuRun};
 pub use self::notes::{driver_failure, unbound};

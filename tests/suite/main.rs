@@ -48,6 +48,7 @@ mod limits;
 mod literals;
 mod lookups;
 mod machine_code;
+mod marches;
 mod math;
 mod miscompiles;
 mod nesting;

@@ -340,6 +340,11 @@ impl<'a> Checker<'a> {
             verified = verify(None, &case);
         }
         let mut findings = verified?;
+        if let (Some(Reference::Given(prepared)), Some(cached)) = (reference, &cached)
+            && let Some(warning) = prepared.march_warning(&cached.expected)
+        {
+            outcome.messages.push(Message::Warning(warning));
+        }
         for panic in findings.panics.drain(..) {
             outcome.fail(format!("{}: {panic}", outcome.record.shader));
         }

@@ -47,17 +47,28 @@ impl Reference<'_> {
     pub(super) fn record(&self, record: &mut Record) {
         match self {
             Self::Scene(scene) => record.scene = Some(scene.name.clone()),
-            Self::Given(given) => record.reference = Some(given.name.clone()),
+            Self::Given(prepared) => record.reference = Some(prepared.given.name.clone()),
         }
     }
 }
 
 /// A reference shader or image, rendered in the frames of all shaders.
 pub(super) struct PreparedReference {
-    name: String,
-    hash: [u8; 32],
+    given: GivenReference,
+    /// Whether a warning has told how far the image depends on the way in which the shader marches.
+    is_march_told: AtomicBool,
     /// One for each frame.
     pub(super) cached: Vec<Arc<CachedReference>>,
+}
+
+impl PreparedReference {
+    /// A warning about pixels that depend on how the shader marches, once a comparison has needed it; none if it
+    /// has been given before.
+    pub(super) fn march_warning(&self, expected: &Expected) -> Option<String> {
+        let dependence = expected.used_march_dependence()?;
+        let is_first = !self.is_march_told.swap(true, Relaxed);
+        is_first.then(|| self.given.march_warning(dependence))?
+    }
 }
 
 /// Finds what shaders are compared with.
@@ -94,9 +105,9 @@ impl References {
             .into_iter()
             .map(|expected| Arc::new(CachedReference::new(expected)));
         Ok(Self::Given(PreparedReference {
-            name: given.name,
-            hash: given.hash,
             cached: cached.collect(),
+            given,
+            is_march_told: AtomicBool::new(false),
         }))
     }
 
@@ -115,7 +126,7 @@ impl References {
                 let (_, text) = scenes.text(found)?;
                 Some(text.map(|text| text.text().as_bytes().to_vec()))
             }
-            Self::Given(given) => Some(Ok(given.hash.to_vec())),
+            Self::Given(prepared) => Some(Ok(prepared.given.hash.to_vec())),
         }
     }
 }

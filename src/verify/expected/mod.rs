@@ -1,10 +1,12 @@
 //! What shaders are compared with in one frame: a scene, another shader or an image. Its results are cached
 //! from one shader to the next.
 
+mod accepted;
 mod bands;
 mod conditioning;
 mod epsilons;
 mod image;
+mod march;
 mod reseeded;
 mod scene;
 mod shader;
@@ -18,6 +20,7 @@ use toyproof_image::{Frame, Image};
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
+pub use self::accepted::MarchDependence;
 pub(crate) use self::bands::ReferenceBand;
 pub use self::conditioning::Conditioning;
 pub use self::image::{ImageReference, Quantization};
@@ -256,7 +259,26 @@ impl Expected {
         }
     }
 
-    /// Accepts the colors of a band that the reference has for other ray epsilons.
+    /// The pixels whose color depends on how a reference shader marches along its rays; none of an image that
+    /// is too large to be rendered again and again.
+    #[must_use]
+    pub fn march_dependence(&self) -> Option<&MarchDependence> {
+        match self {
+            Self::Shader(shader) => shader.accepted()?.march(),
+            Self::Scene(_) | Self::Image(_) => None,
+        }
+    }
+
+    /// As [`march_dependence`](Self::march_dependence), if a comparison has needed it.
+    #[must_use]
+    pub fn used_march_dependence(&self) -> Option<&MarchDependence> {
+        match self {
+            Self::Shader(shader) => shader.used()?.march(),
+            Self::Scene(_) | Self::Image(_) => None,
+        }
+    }
+
+    /// Accepts the colors of a band that the reference has for other ray epsilons, or if it marches otherwise.
     pub(crate) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band, mixed: &mut Mixed) {
         match self {
             Self::Scene(scene) => accept_epsilons(band, &scene.band(rows), mixed),

@@ -15,8 +15,8 @@ use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
 use super::NumberType;
+use super::accepted::AcceptedColors;
 use super::bands::{Bands, ReferenceBand};
-use super::epsilons::AcceptedColors;
 use crate::compare::{Band, Pixel, changed_by_rounding};
 use crate::cpu::Evaluator;
 use crate::decide::Share;
@@ -28,7 +28,7 @@ use crate::{EVALUATOR_TIME_FACTOR, reads};
 /// The default tolerance of colors: half of an 8-bit level.
 pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
 
-/// The largest share of a band's pixels that may be accepted because of ray epsilons.
+/// The largest share of a band's pixels that may be accepted because of numbers that are a matter of style.
 const MAX_ACCEPTED_SHARE: f64 = 0.05;
 
 /// A shader that others are compared with, in one frame.
@@ -39,7 +39,7 @@ pub struct ShaderReference {
     tolerance: f64,
     pub(super) timeout: Duration,
     bands: Bands,
-    /// The colors for other ray epsilons.
+    /// The colors for other ray epsilons and marches.
     accepted: OnceLock<Option<AcceptedColors>>,
     /// How its random numbers can be changed, if it has any that can.
     pub(super) reseeding: OnceLock<Option<Reseeding>>,
@@ -188,13 +188,23 @@ impl ShaderReference {
         })
     }
 
-    /// Accepts the colors that the shader has for the usual ray epsilons, where few pixels differ; where many
-    /// do, epsilons are not the cause.
+    /// The colors for other ray epsilons and marches.
+    pub(super) fn accepted(&self) -> Option<&AcceptedColors> {
+        self.accepted.get_or_init(|| AcceptedColors::of(self)).as_ref()
+    }
+
+    /// Those colors, if they have been computed.
+    pub(super) fn used(&self) -> Option<&AcceptedColors> {
+        self.accepted.get()?.as_ref()
+    }
+
+    /// Accepts the colors that the shader has for other ray epsilons and marches, where few pixels differ; where
+    /// many do, these are not the cause.
     pub(super) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band) {
         if band.differing_share() > MAX_ACCEPTED_SHARE {
             return;
         }
-        let Some(accepted) = self.accepted.get_or_init(|| AcceptedColors::of(self)) else {
+        let Some(accepted) = self.accepted() else {
             return;
         };
         let width = self.frame.size[0];

@@ -1,0 +1,205 @@
+//! The colors of a reference shader for other numbers that are a matter of style: where its rays start off a
+//! surface, how near a march comes to one, how far it goes, and in how many steps.
+
+use std::time::Instant;
+
+use toyproof_diagnostic::Span;
+use toyproof_eval::{Program, Settings, UndefinedPolicy};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{BinaryOp, Expr, ExprId, ExprKind, Literal, Type, Value, VariableKind};
+use toyproof_image::Image;
+use toyproof_tracer::ColorRange;
+
+use super::bands::is_cached;
+use super::shader::ShaderReference;
+use super::{epsilons, march};
+use crate::TOTAL_TIME_FACTOR;
+use crate::compare::Pixel;
+use crate::decide::Share;
+
+/// The largest share of pixels that may change with a variation. A number on which more of the image depends
+/// is no matter of style.
+const MAX_CHANGED_SHARE: f64 = 0.05;
+
+/// A reference with other numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Variation {
+    pub(super) edits: Vec<Edit>,
+    pub(super) subject: Subject,
+}
+
+/// What a variation changes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Subject {
+    /// Ray epsilons.
+    Epsilons,
+    /// Marches, with those of their limits that change, by the places where loops compare with them.
+    March(Vec<Span>),
+}
+
+/// A change of one expression.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Edit {
+    /// Another number in place of a literal.
+    Number(ExprId, Value),
+    /// A multiple of an expression.
+    Scale(ExprId, f64),
+}
+
+/// The range of the colors of each pixel, bottom row first.
+#[derive(Debug)]
+pub(super) struct AcceptedColors {
+    ranges: Vec<ColorRange>,
+    march: Option<MarchDependence>,
+}
+
+/// The pixels of a reference whose color depends on how it marches along its rays.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MarchDependence {
+    /// Those that change with the number of steps, the largest distance or the length of the steps.
+    pub pixels: Share,
+    /// The limits of marches on which some of them depend, alone or together, by the places where loops compare
+    /// with them, in the order of the text.
+    pub limits: Vec<Span>,
+}
+
+impl AcceptedColors {
+    /// The colors of a reference for the usual ray epsilons and for other marches; none for a large image, and
+    /// where no color depends on them.
+    pub(super) fn of(reference: &ShaderReference) -> Option<Self> {
+        if !is_cached(reference.frame.size) {
+            return None;
+        }
+        let checked = reference.checked();
+        let variations = [epsilons::variations(checked), march::variations(&checked.tree)].concat();
+        if variations.is_empty() {
+            return None;
+        }
+        let bands = reference.frame.bands().map(|rows| reference.rows(&rows));
+        let bands = bands.map(|band| band.ok().map(|band| band.image.clone()));
+        let own = Image::of_bands(bands.collect::<Option<_>>()?);
+        let mut ranges: Vec<ColorRange> = own.pixels().iter().map(|&color| point(color)).collect();
+        let mut is_varied = false;
+        let mut marched = vec![false; ranges.len()];
+        let mut limits: Vec<Span> = Vec::new();
+        for variation in &variations {
+            let Some(image) = evaluated(reference, &variation.of(checked)) else {
+                continue;
+            };
+            let differs = |at: usize| Pixel::at(at, &own, &image).difference() > reference.tolerance();
+            let changed: Vec<usize> = (0..ranges.len()).filter(|&at| differs(at)).collect();
+            if changed.is_empty() || changed.len() as f64 > MAX_CHANGED_SHARE * ranges.len() as f64 {
+                continue;
+            }
+            is_varied = true;
+            for (range, &color) in ranges.iter_mut().zip(image.pixels()) {
+                extend(range, color);
+            }
+            if let Subject::March(varied) = &variation.subject {
+                // What the limits change together, beyond what each of them does.
+                if changed.iter().any(|&at| !marched[at]) {
+                    limits.extend(varied);
+                }
+                changed.iter().for_each(|&at| marched[at] = true);
+            }
+        }
+        limits.sort_unstable_by_key(|span| span.start);
+        limits.dedup();
+        let pixels = Share {
+            count: marched.iter().filter(|&&marched| marched).count() as u64,
+            of: marched.len() as u64,
+        };
+        let march = (pixels.count > 0).then_some(MarchDependence { pixels, limits });
+        is_varied.then_some(Self { ranges, march })
+    }
+
+    pub(super) fn range(&self, at: usize) -> &ColorRange {
+        &self.ranges[at]
+    }
+
+    pub(super) fn march(&self) -> Option<&MarchDependence> {
+        self.march.as_ref()
+    }
+}
+
+fn point([r, g, b, _]: [f32; 4]) -> ColorRange {
+    let color = [r, g, b].map(f64::from);
+    ColorRange {
+        low: color,
+        high: color,
+    }
+}
+
+fn extend(range: &mut ColorRange, color: [f32; 4]) {
+    // Neither the least nor the greatest of a number and NaN is NaN.
+    for ((low, high), part) in range.low.iter_mut().zip(&mut range.high).zip(color) {
+        *low = low.min(f64::from(part));
+        *high = high.max(f64::from(part));
+    }
+}
+
+impl Variation {
+    /// The shader with this variation.
+    fn of(&self, checked: &Checked) -> Checked {
+        let mut checked = checked.clone();
+        let tree = &mut checked.tree;
+        for edit in &self.edits {
+            match *edit {
+                Edit::Number(id, value) => tree[id].kind = ExprKind::Literal(literal(value)),
+                Edit::Scale(id, factor) => {
+                    let whole = tree[id].clone();
+                    let right = tree.exprs.push(Expr {
+                        kind: ExprKind::Literal(literal(Value::Float(factor))),
+                        ty: Type::FLOAT,
+                        constant: true,
+                        at: whole.at,
+                    });
+                    let left = tree.exprs.push(whole);
+                    tree[id].kind = ExprKind::Binary {
+                        op: BinaryOp::Multiply,
+                        left,
+                        right,
+                    };
+                }
+            }
+        }
+        tree.clear_cached_values();
+        // A constant precedes those that depend on it.
+        for id in tree.variables.ids() {
+            if tree[id].kind == VariableKind::Const
+                && let Some(value) = tree[id]
+                    .initializer
+                    .and_then(|initializer| tree.value(initializer))
+            {
+                tree[id].value = Some(value);
+            }
+        }
+        checked
+    }
+}
+
+fn literal(value: Value) -> Literal {
+    let text = match value {
+        Value::Bool(value) => value.to_string(),
+        Value::Int(value) => value.to_string(),
+        Value::Uint(value) => format!("{value}u"),
+        Value::Float(value) => format!("{value:?}"),
+    };
+    Literal {
+        text: text.into(),
+        value,
+    }
+}
+
+/// The image of a variant of the reference; none if a limit is exceeded.
+fn evaluated(reference: &ShaderReference, varied: &Checked) -> Option<Image> {
+    let settings = Settings::<f64> {
+        undefined: UndefinedPolicy::Plain,
+        deadline: Some(Instant::now() + reference.timeout * TOTAL_TIME_FACTOR),
+        ..Settings::default()
+    };
+    let program = Program::prepared(varied, UndefinedPolicy::Plain).ok()?;
+    let frame = &reference.frame;
+    let rendered = program.render_rows(frame, frame.rows(), &settings);
+    rendered.ok().map(|rendered| rendered.image)
+}
