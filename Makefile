@@ -21,9 +21,10 @@ check:
 msrv:
 	CARGO_TARGET_DIR=$${CARGO_TARGET_DIR:-target}/msrv cargo +1.89 check --workspace --all-targets --locked
 
+# In the profile of the tests, whose build scripts and macros it reuses.
 lint:
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --release --workspace --all-targets -- -D warnings
 
 # Checks the build's requirements and installs Mesa's lavapipe, on which shaders run; see `toyproof doctor`.
 setup:
