@@ -13,7 +13,7 @@ use wgpu::{BindGroup, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::Device;
 use super::pipeline::Layout;
-use super::quirks::{OPAQUE_NUMBERS, mesa_barriers};
+use super::quirks::{LOOP_EXITS, OPAQUE_NUMBERS, loop_exits, mesa_barriers};
 use super::readback::RowBuffer;
 use super::texture::flat;
 use super::{AdapterSelector, Failure};
@@ -140,15 +140,17 @@ impl Device {
         })
     }
 
-    /// Returns the words for this driver: Mesa's compiler must not recognize that strict, expanded operations
-    /// are computed from uniforms.
+    /// Returns the words for this driver: Mesa's loops need early exits, and its compiler must not recognize
+    /// that strict, expanded operations are computed from uniforms and constants.
     fn driver_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
-        match program.float {
-            FloatMode::Strict if self.has(&OPAQUE_NUMBERS) => {
-                mesa_barriers::with_opaque_numbers(&program.words).into()
-            }
-            _ => (&program.words).into(),
+        let mut words = Cow::from(&program.words);
+        if self.has(&LOOP_EXITS) {
+            words = loop_exits::with_early_exits(&words).into();
         }
+        if program.float == FloatMode::Strict && self.has(&OPAQUE_NUMBERS) {
+            words = mesa_barriers::with_opaque_numbers(&words).into();
+        }
+        words
     }
 
     /// Prepares the bindings and the target of a frame, with a draw that covers no pixel.

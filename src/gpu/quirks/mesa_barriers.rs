@@ -2,9 +2,12 @@
 
 use std::collections::HashMap;
 
-use spirv::{BuiltIn, Decoration, Op, StorageClass};
+use spirv::{GlslStd450Op, Op, StorageClass};
 
-use toyproof_translate::backend::spirv::{BOUND, has_type, instructions, is_product, opcode};
+use toyproof_translate::backend::spirv::{has_type, instructions, is_product, opcode};
+
+use super::foldable::{Foldable, Known, Operands};
+use super::opaque::{Opaque, push};
 
 /// Combines some numbers by exclusive or with the bits of `gl_FragCoord.z`, which are 0 if an image is
 /// rendered with triangles at depth 0. Their values do not change, nor does a module without `gl_FragCoord`.
@@ -14,13 +17,21 @@ use toyproof_translate::backend::spirv::{BOUND, has_type, instructions, is_produ
 ///   whether it is computed from uniforms and constants only, and traverses the expression as a tree although
 ///   it is a graph: the expanded `sin(iTime)` has some hundred operations and more paths than can be
 ///   traversed. The traversal ends at the first operand that depends on the pixel.
-/// - Zeros that are multiplied, divided or passed to where they may be. Mesa's llvmpipe takes the product of
-///   a constant zero and any value, and its quotient, for zero even if it is NaN, regardless of decorations.
+/// - Zeros that are multiplied, divided or stored, and other operands of products that Mesa may find to be
+///   zero by folding constants. Mesa's llvmpipe takes the product of a constant zero and any value, and its
+///   quotient, for zero even if it is NaN, and a quotient by it for anything, regardless of decorations.
+/// - Constants whose operations Mesa folds otherwise than the processor computes them: it does not flush
+///   denormal products and bit patterns, and it takes all derivatives of constants for 0.
+/// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs
+///   through by its step, and −2³¹ / −1 terminates the process.
 #[must_use]
 pub(crate) fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
     let Some(mut rewriter) = Rewriter::of(words) else {
         return words.to_vec();
     };
+    let foldable = Foldable::of(words, |instruction, known| {
+        rewriter.hidden_operands(instruction, known)
+    });
     let mut code = Vec::new();
     let mut first_function = words.len();
     for (at, instruction) in instructions(words) {
@@ -35,37 +46,27 @@ pub(crate) fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
             (Some(Op::Load), &[_, ty, result, pointer, ..]) if rewriter.is_in_block(pointer) => {
                 match rewriter.shapes.get(&ty).copied() {
                     Some(shape) => {
-                        let loaded = rewriter.value(&mut code, Op::Load, ty, &instruction[3..]);
+                        let loaded = rewriter.opaque.value(&mut code, Op::Load, ty, &instruction[3..]);
                         rewriter.hide(&mut code, shape, result, loaded);
                     }
                     None => code.extend(instruction),
                 }
             }
-            (Some(op), _) => {
-                let mut instruction = instruction.to_vec();
-                for operand in instruction.iter_mut().skip(first_hidden_operand(op)) {
-                    *operand = rewriter.hide_zero(&mut code, *operand);
+            _ => {
+                let mut changed = instruction.to_vec();
+                for operand in rewriter.hidden_operands(instruction, &|id| foldable.known(id)) {
+                    changed[operand] = rewriter.hide_operand(&mut code, instruction[operand]);
                 }
-                code.extend(instruction);
+                code.extend(changed);
             }
-            _ => code.extend(instruction),
         }
     }
-    let mut whole = [&words[..first_function], &rewriter.declared, &code].concat();
-    whole[BOUND] = rewriter.bound;
-    whole
+    rewriter.opaque.finish(&words[..first_function], &code)
 }
 
-/// The index of an instruction's first operand that is multiplied, divided or passed on; all operands from
-/// there are values. Beyond the end for other instructions.
-fn first_hidden_operand(op: Op) -> usize {
-    match op {
-        Op::FDiv | Op::CompositeConstruct => 3,
-        op if is_product(op) => 3,
-        Op::FunctionCall => 4,
-        Op::ReturnValue => 1,
-        _ => usize::MAX,
-    }
+/// Whether an instruction compares integers.
+fn is_comparison(op: Op) -> bool {
+    (Op::IEqual as u32..=Op::SLessThanEqual as u32).contains(&(op as u32))
 }
 
 /// The type of a number or a vector.
@@ -76,126 +77,70 @@ struct Shape {
     components: u32,
 }
 
-#[derive(Clone)]
-enum Zero {
-    Number(Shape),
-    /// The type and the columns of a matrix.
-    Matrix(u32, Vec<u32>),
-}
-
 struct Rewriter {
-    /// `gl_FragCoord` and its type.
-    coordinate: (u32, u32),
-    float: u32,
+    opaque: Opaque,
     /// The types of 32-bit numbers and vectors that can be hidden, of either sign.
     shapes: HashMap<u32, Shape>,
-    /// An integer type for each number of components.
-    int_types: HashMap<u32, u32>,
     /// The pointer types into uniform blocks.
     into_blocks: Vec<u32>,
     /// The type of each value.
     types: HashMap<u32, u32>,
-    /// Constants that contain a zero.
-    zeros: HashMap<u32, Zero>,
-    bound: u32,
-    /// Types to add to the module.
-    declared: Vec<u32>,
+    /// The constants −2³¹.
+    least: Vec<u32>,
+    /// The type of the columns and their number, for each type of matrices.
+    matrices: HashMap<u32, (u32, u32)>,
 }
 
 impl Rewriter {
     /// Collects the facts about a module; `None` if it has no `gl_FragCoord`.
     fn of(words: &[u32]) -> Option<Self> {
-        let mut coordinates = Vec::new();
-        let mut found = None;
-        let mut pointees = HashMap::new();
-        let mut matrices = Vec::new();
         let mut rewriter = Self {
-            coordinate: (0, 0),
-            float: 0,
+            opaque: Opaque::of(words)?,
             shapes: HashMap::new(),
-            int_types: HashMap::new(),
             into_blocks: Vec::new(),
             types: HashMap::new(),
-            zeros: HashMap::new(),
-            bound: *words.get(BOUND)?,
-            declared: Vec::new(),
+            least: Vec::new(),
+            matrices: HashMap::new(),
         };
         for (_, instruction) in instructions(words) {
             let Some(op) = opcode(instruction) else { continue };
-            match (op, &instruction[1..]) {
-                (Op::Decorate, &[variable, decoration, built_in])
-                    if decoration == Decoration::BuiltIn as u32 && built_in == BuiltIn::FragCoord as u32 =>
-                {
-                    coordinates.push(variable);
-                }
-                (Op::TypeFloat, &[id, 32]) => {
-                    rewriter.float = id;
-                    let shape = Shape {
-                        ty: id,
-                        is_float: true,
-                        components: 1,
-                    };
-                    rewriter.shapes.insert(id, shape);
-                }
-                (Op::TypeInt, &[id, 32, _]) => {
-                    rewriter.int_types.entry(1).or_insert(id);
-                    let shape = Shape {
-                        ty: id,
-                        is_float: false,
-                        components: 1,
-                    };
-                    rewriter.shapes.insert(id, shape);
-                }
+            let shape = match (op, &instruction[1..]) {
+                (Op::TypeFloat, &[id, 32]) => Some((id, true, 1)),
+                (Op::TypeInt, &[id, 32, _]) => Some((id, false, 1)),
                 (Op::TypeVector, &[id, of, components]) => {
-                    if let Some(&Shape { is_float, .. }) = rewriter.shapes.get(&of) {
-                        if rewriter.int_types.get(&1) == Some(&of) {
-                            rewriter.int_types.insert(components, id);
-                        }
-                        rewriter.shapes.insert(
-                            id,
-                            Shape {
-                                ty: id,
-                                is_float,
-                                components,
-                            },
-                        );
-                    }
+                    let of = rewriter.shapes.get(&of);
+                    of.map(|of| (id, of.is_float, components))
                 }
-                (Op::TypePointer, &[id, class, pointee]) => {
-                    pointees.insert(id, pointee);
+                (Op::TypePointer, &[id, class, _]) => {
                     if class == StorageClass::Uniform as u32 {
                         rewriter.into_blocks.push(id);
                     }
+                    None
                 }
-                (Op::Variable, &[ty, id, ..]) if coordinates.contains(&id) => {
-                    found = Some((id, *pointees.get(&ty)?));
-                }
-                (Op::TypeMatrix, &[id, ..]) => matrices.push(id),
-                (Op::Constant, &[ty, id, bits]) if bits << 1 == 0 => rewriter.record_zero(id, ty),
-                (Op::ConstantNull, &[ty, id]) => rewriter.record_zero(id, ty),
-                (Op::ConstantComposite, [ty, id, parts @ ..])
-                    if parts.iter().any(|part| rewriter.zeros.contains_key(part)) =>
-                {
-                    rewriter.record_zero(*id, *ty);
-                    if matrices.contains(ty) {
-                        rewriter.zeros.insert(*id, Zero::Matrix(*ty, parts.to_vec()));
-                    }
+                (Op::TypeMatrix, &[id, column, columns]) => {
+                    rewriter.matrices.insert(id, (column, columns));
+                    None
                 }
                 (_, &[ty, id, ..]) if has_type(op) => {
                     rewriter.types.insert(id, ty);
+                    let is_int = rewriter.shapes.get(&ty).is_some_and(|shape| !shape.is_float);
+                    if op == Op::Constant && is_int && instruction[3..] == [1 << 31] {
+                        rewriter.least.push(id);
+                    }
+                    None
                 }
-                _ => {}
+                _ => None,
+            };
+            if let Some((ty, is_float, components)) = shape {
+                let shape = Shape {
+                    ty,
+                    is_float,
+                    components,
+                };
+                rewriter.shapes.insert(ty, shape);
             }
         }
-        rewriter.coordinate = found?;
         Some(rewriter)
-    }
-
-    /// Records a constant that contains a zero, if its type is of floats.
-    fn record_zero(&mut self, constant: u32, ty: u32) {
-        if let Some(&shape) = self.shapes.get(&ty).filter(|shape| shape.is_float) {
-            self.zeros.insert(constant, Zero::Number(shape));
-        }
     }
 
     /// Whether a pointer points into a uniform block.
@@ -204,21 +149,90 @@ impl Rewriter {
         ty.is_some_and(|ty| self.into_blocks.contains(ty))
     }
 
-    /// Hides an operand that is a known zero.
-    fn hide_zero(&mut self, code: &mut Vec<u32>, operand: u32) -> u32 {
-        match self.zeros.get(&operand).cloned() {
-            None => operand,
-            Some(Zero::Number(shape)) => {
-                let hidden = self.fresh();
-                self.hide(code, shape, hidden, operand);
-                hidden
+    /// Whether a value consists of floats and can be hidden.
+    fn is_float(&self, value: u32) -> bool {
+        self.types.get(&value).is_some_and(|ty| {
+            self.matrices.contains_key(ty) || self.shapes.get(ty).is_some_and(|shape| shape.is_float)
+        })
+    }
+
+    /// The indices of an instruction's operands that are hidden, by what is known of their values.
+    fn hidden_operands(&self, instruction: &[u32], known: &Operands) -> Vec<usize> {
+        use GlslStd450Op as G;
+        let Some(op) = opcode(instruction) else {
+            return Vec::new();
+        };
+        let from = |first: usize, is_hidden: &dyn Fn(Known) -> bool| -> Vec<usize> {
+            let operands = first..instruction.len();
+            operands
+                .filter(|&at| known(instruction[at]).is_some_and(is_hidden))
+                .filter(|&at| self.is_float(instruction[at]))
+                .collect()
+        };
+        let any = |_| true;
+        let zero = |known| known != Known::NonZero;
+        let literal_zero = |known| known == Known::Zero;
+        match op {
+            _ if is_product(op) || matches!(op, Op::FDiv | Op::FRem | Op::FMod) => {
+                let all = from(3, &any);
+                // The result may be denormal.
+                let is_constant = all.len() == instruction.len() - 3;
+                if is_constant { all } else { from(3, &zero) }
             }
-            Some(Zero::Matrix(ty, columns)) => {
-                let columns = columns.iter().map(|&column| self.hide_zero(code, column));
-                let columns: Vec<u32> = columns.collect();
-                self.value(code, Op::CompositeConstruct, ty, &columns)
+            Op::CompositeConstruct => from(3, &zero),
+            Op::Store if self.least.contains(&instruction[2]) => vec![2],
+            Op::Store => from(2, &literal_zero),
+            _ if is_comparison(op) => {
+                let is_least = |at: &usize| self.least.contains(&instruction[*at]);
+                [3, 4].into_iter().filter(is_least).collect()
             }
+            Op::ReturnValue => from(1, &literal_zero),
+            // Otherwise, operations of the function would have to be hidden for one of its calls.
+            Op::FunctionCall => from(4, &any),
+            Op::DPdx | Op::DPdy | Op::Fwidth | Op::DPdxFine | Op::DPdyFine | Op::FwidthFine => from(3, &any),
+            Op::ExtInst => match G::from_u32(instruction[4]) {
+                Some(G::FMix | G::Fma) => from(5, &any),
+                Some(G::UnpackHalf2x16) if known(instruction[5]).is_some() => vec![5],
+                _ => Vec::new(),
+            },
+            Op::Bitcast => {
+                let is_float = self
+                    .shapes
+                    .get(&instruction[1])
+                    .is_some_and(|shape| shape.is_float);
+                if is_float && known(instruction[3]).is_some() {
+                    vec![3]
+                } else {
+                    Vec::new()
+                }
+            }
+            _ => Vec::new(),
         }
+    }
+
+    /// Hides a number, a vector or a matrix.
+    fn hide_operand(&mut self, code: &mut Vec<u32>, operand: u32) -> u32 {
+        let Some(&ty) = self.types.get(&operand) else {
+            return operand;
+        };
+        if let Some(&(column_type, columns)) = self.matrices.get(&ty) {
+            let columns: Vec<u32> = (0..columns)
+                .map(|at| {
+                    let column = self
+                        .opaque
+                        .value(code, Op::CompositeExtract, column_type, &[operand, at]);
+                    self.types.insert(column, column_type);
+                    self.hide_operand(code, column)
+                })
+                .collect();
+            return self.opaque.value(code, Op::CompositeConstruct, ty, &columns);
+        }
+        let Some(&shape) = self.shapes.get(&ty) else {
+            return operand;
+        };
+        let hidden = self.opaque.fresh();
+        self.hide(code, shape, hidden, operand);
+        hidden
     }
 
     /// Appends instructions that compute the id `hidden` with the value of `known`.
@@ -228,85 +242,31 @@ impl Rewriter {
             is_float,
             components,
         } = shape;
-        let one = self.int_type(1);
-        let whole = self.int_type(components);
-        let (coordinate, at) = self.coordinate;
-        let at = self.value(code, Op::Load, at, &[coordinate]);
-        let depth = self.value(code, Op::CompositeExtract, self.float, &[at, 2]);
-        let mut zero = self.value(code, Op::Bitcast, one, &[depth]);
+        let whole = self.opaque.int_type(components);
+        let mut zero = self.opaque.zero(code);
         if components > 1 {
-            zero = self.value(
-                code,
-                Op::CompositeConstruct,
-                whole,
-                &vec![zero; components as usize],
-            );
+            let zeros = vec![zero; components as usize];
+            zero = self.opaque.value(code, Op::CompositeConstruct, whole, &zeros);
         }
         if is_float {
-            let bits = self.value(code, Op::Bitcast, whole, &[known]);
-            let bits = self.value(code, Op::BitwiseXor, whole, &[bits, zero]);
+            let bits = self.opaque.value(code, Op::Bitcast, whole, &[known]);
+            let bits = self.opaque.value(code, Op::BitwiseXor, whole, &[bits, zero]);
             push(code, Op::Bitcast, &[ty, hidden, bits]);
         } else {
             push(code, Op::BitwiseXor, &[ty, hidden, known, zero]);
         }
     }
-
-    /// Appends an operation with a new result id.
-    fn value(&mut self, code: &mut Vec<u32>, op: Op, ty: u32, operands: &[u32]) -> u32 {
-        let id = self.fresh();
-        push(code, op, &[&[ty, id], operands].concat());
-        id
-    }
-
-    /// The integer type with a number of components.
-    fn int_type(&mut self, components: u32) -> u32 {
-        if let Some(&id) = self.int_types.get(&components) {
-            return id;
-        }
-        let operands = match components {
-            1 => vec![32, 0],
-            _ => vec![self.int_type(1), components],
-        };
-        let op = if components == 1 {
-            Op::TypeInt
-        } else {
-            Op::TypeVector
-        };
-        let id = self.fresh();
-        push(&mut self.declared, op, &[&[id], &operands[..]].concat());
-        self.int_types.insert(components, id);
-        id
-    }
-
-    fn fresh(&mut self) -> u32 {
-        self.bound += 1;
-        self.bound - 1
-    }
-}
-
-fn push(code: &mut Vec<u32>, op: Op, operands: &[u32]) {
-    code.push((operands.len() as u32 + 1) << 16 | op as u32);
-    code.extend(operands);
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
 
-    use toyproof_diagnostic::{File, Files};
-    use toyproof_glsl::{Options, check};
-    use toyproof_translate::backend::spirv::words;
-    use toyproof_translate::naga_ir::ValidModule;
+    use spirv::{BuiltIn, Decoration};
+    use toyproof_translate::backend::spirv::BOUND;
 
+    use super::super::opaque::words_of;
     use super::*;
-
-    /// The words of a valid shader.
-    fn words_of(shader: &str) -> Vec<u32> {
-        let mut files = Files::default();
-        let file = files.add(File::new("s", shader));
-        let checked = check(&files, file, &Options::default()).unwrap();
-        words(&ValidModule::parse(&toyproof_translate::lower(&checked)).unwrap()).unwrap()
-    }
 
     fn all(words: &[u32], op: Op) -> Vec<&[u32]> {
         let found = instructions(words).filter(|(_, instruction)| opcode(instruction) == Some(op));
@@ -363,7 +323,20 @@ mod tests {
         ] {
             assert_eq!(hidden(body), 1, "{body}");
         }
-        assert_eq!(hidden("c.xy = mat2(1, 0, 2, 3) * c.xy;"), 1, "one of the columns");
+        assert_eq!(hidden("c.xy = mat2(1, 0, 2, 3) * c.xy;"), 2, "both columns");
+        for body in [
+            "float z = 0.0; c.x *= z;",
+            "float z = 1.0; z -= 1.0; c.x *= z;",
+            "bool b = false; c.x *= float(b);",
+            "c.x *= float(iFrame > 3) * p.x; float z = floor(0.5); c.x /= z;",
+            "vec2 d = vec2(0.0, 1.0); c.xy = d * c.x;",
+            "c.x = dFdx(1.0);",
+            "uint u = 5u; c.x = uintBitsToFloat(u);",
+            "int k = int(p.x); if (-2147483647 - 1 == k--) c.x = float(k);",
+        ] {
+            let uniforms = usize::from(body.contains("iFrame"));
+            assert_eq!(hidden(body), 1 + uniforms, "{body}");
+        }
     }
 
     #[test]

@@ -1,10 +1,13 @@
 //! Workarounds for drivers: [`QUIRKS`] lists all of them, and the files of this folder are those that the
 //! worker applies. Those that change the text or the words of every shader are applied by other crates.
 
+mod foldable;
 pub(crate) mod loop_cap;
+pub(crate) mod loop_exits;
 pub(crate) mod loop_probe;
 pub(crate) mod loop_steps;
 pub(crate) mod mesa_barriers;
+mod opaque;
 
 use std::process::Command;
 
@@ -92,15 +95,33 @@ pub const LOOP_CAP: Quirk = Quirk {
 pub const OPAQUE_NUMBERS: Quirk = Quirk {
     name: "opaque-numbers",
     driver: DriverKind::Lavapipe,
-    versions: "Mesa 22.3.6; other versions were not measured",
+    versions: "Mesa 22.3.6; the second and the third symptom also 25.0.7",
     symptom: "to see whether a condition is uniform, the compiler walks expressions of uniforms as trees and \
-              does not finish for an expanded `sin(cos(iTime))`; it also folds the product or quotient of \
-              a constant zero to zero, even if it is NaN",
-    workaround: "in strict runs, numbers of the uniform block and zeros that are multiplied or divided are \
-                 combined by exclusive or with bits of `gl_FragCoord.z` that are 0",
+              does not finish for an expanded `sin(cos(iTime))`; it folds the product and quotient of a \
+              constant zero to zero, even if it is NaN, and a quotient by zero to anything, also if the zero \
+              only results from folding (`mix(x, y, 1.0)`); it folds constants without flushing denormal \
+              results, and derivatives of constants to 0, even of NaN; and it dies of −2³¹ / −1 while it counts \
+              the iterations of `while (k-- != -2147483647 - 1)`",
+    workaround: "in strict runs, numbers of the uniform block and operands of these operations that may be \
+                 found to be constant are combined by exclusive or with bits of `gl_FragCoord.z` that are 0",
     source: "src/gpu/quirks/mesa_barriers.rs",
     removal: "when `tests/suite/evaluator.rs` and `tests/suite/generated.rs` pass without it on the supported \
               versions of Mesa",
+    scope: Scope::Affected,
+};
+
+/// Variables overwritten after a pixel has left a loop.
+pub const LOOP_EXITS: Quirk = Quirk {
+    name: "loop-exits",
+    driver: DriverKind::Lavapipe,
+    versions: "Mesa 22.3.6; 25.0.7 is right",
+    symptom: "a pixel that leaves a loop earlier than its neighbors gets their last values of variables that \
+              are assigned before the first exit of the loop: in `do … while (…)`, and in \
+              `for (;;) { x = f(x); if (x > 1.0) break; }`. `for (…; i < n; …)` is right, since it has an exit \
+              before all assignments",
+    workaround: "such loops get an exit at their head that is never taken",
+    source: "src/gpu/quirks/loop_exits.rs",
+    removal: AFTER_MESA_22,
     scope: Scope::Affected,
 };
 
@@ -118,8 +139,9 @@ pub const TWO_VARIANTS: Quirk = Quirk {
 };
 
 /// All known quirks.
-pub const QUIRKS: [Quirk; 12] = [
+pub const QUIRKS: [Quirk; 13] = [
     LOOP_CAP,
+    LOOP_EXITS,
     OPAQUE_NUMBERS,
     TWO_VARIANTS,
     Quirk {

@@ -1,6 +1,6 @@
 //! Constant expressions that naga cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), overflowing
 //! shifts (`1 << 31`), shifts by 32 bits or more, undefined integer quotients, `clamp` with crossed bounds,
-//! `smoothstep` with equal edges.
+//! `smoothstep` with equal edges; and denormal results, which it does not flush to zero.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand
 //! passed through a helper function that returns it unchanged is evaluated at run time instead. naga also
@@ -105,12 +105,14 @@ fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
             BinaryOp::ShiftLeft | BinaryOp::ShiftRight if shift_exceeds_width(tree, right) => {
                 Some(Rewrite::MakeOpaque(right))
             }
-            BinaryOp::ShiftLeft if tree[id].constant => tree.value(id).map(Rewrite::Fold),
+            BinaryOp::ShiftLeft if tree[id].constant => {
+                Some(tree.value(id).map_or(Rewrite::MakeOpaque(left), Rewrite::Fold))
+            }
             BinaryOp::Divide | BinaryOp::Remainder if has_no_quotient(tree, left, right) => {
                 Some(Rewrite::MakeOpaque(right))
             }
-            BinaryOp::Divide => overflows(tree, id).then_some(Rewrite::MakeOpaque(right)),
-            _ => overflows(tree, id).then_some(Rewrite::MakeOpaque(left)),
+            BinaryOp::Divide => leaves_range(tree, id).then_some(Rewrite::MakeOpaque(right)),
+            _ => leaves_range(tree, id).then_some(Rewrite::MakeOpaque(left)),
         },
         ExprKind::Assign {
             op: Some(BinaryOp::ShiftLeft | BinaryOp::ShiftRight),
@@ -134,6 +136,12 @@ fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
         }
         _ => None,
     }
+}
+
+/// Whether the value overflows, or is denormal: processors flush it to zero, naga does not.
+fn leaves_range(tree: &Tree, id: ExprId) -> bool {
+    let is_denormal = |value: Value| matches!(value, Value::Float(value) if (value as f32).is_subnormal());
+    overflows(tree, id) || any_scalar(tree, id, is_denormal)
 }
 
 /// Whether the value is not a finite 32-bit float while those of all operands are.
@@ -163,10 +171,13 @@ fn has_no_quotient(tree: &Tree, dividend: ExprId, divisor: ExprId) -> bool {
         && any_scalar(tree, divisor, |value| matches!(value, Value::Int(-1)))
 }
 
+/// Whether a constant number of bits is 32 or more, or unknown: a converted float beyond all integers.
 fn shift_exceeds_width(tree: &Tree, amount: ExprId) -> bool {
-    any_scalar(tree, amount, |value| {
-        !matches!(value, Value::Int(0..32) | Value::Uint(0..32))
-    })
+    let is_unknown = tree[amount].constant && tree.value(amount).is_none();
+    is_unknown
+        || any_scalar(tree, amount, |value| {
+            !matches!(value, Value::Int(0..32) | Value::Uint(0..32))
+        })
 }
 
 /// Whether an expression is constant and any of its components satisfies a predicate.

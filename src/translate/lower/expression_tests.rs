@@ -326,6 +326,7 @@ fn constants_that_naga_cannot_evaluate() {
         "int i; o.x = float(1 << (i = 31));",
         "o.x = 1e38 * (o.y, 100.0);",
         "o.x = float(((o.y, uvec2(15) << 16).yx << 27).x);",
+        "o = vec4(uvec4(2147483648u) << uvec4(vec4(-7.5, 0.5, 1.0, 8388608.5)));",
     ] {
         fixes_rejection(Pass::Constants, &main_image("", body));
     }

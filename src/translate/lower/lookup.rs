@@ -29,10 +29,19 @@ pub(super) fn expand_lookups(cx: &mut LoweringContext) {
         let (function, arguments) = (*function, arguments.clone());
         if let Some(lookup) = Lookup::of(cx, function, &arguments) {
             lookup.expand(cx, id, arguments[1..].to_vec());
-        } else if function.is_texture() {
+        } else if matches!(function, BuiltIn::TexelFetch | BuiltIn::TexelFetchOffset)
+            && is_channel(cx, arguments[0])
+        {
+            // Of a volume. A fetch from a sampler parameter is in a function that is no longer called.
             cx.checks_fetches = false;
         }
     });
+}
+
+/// Whether a texture is one of the four channels, rather than a parameter.
+fn is_channel(cx: &LoweringContext, texture: ExprId) -> bool {
+    matches!(cx.tree[texture].kind, ExprKind::Variable(variable)
+        if matches!(cx.tree[variable].kind, VariableKind::Input(Input::Channel(_))))
 }
 
 /// A filtered lookup of a channel.

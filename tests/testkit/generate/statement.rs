@@ -364,7 +364,8 @@ impl Generator<'_> {
         self.scopes.pop();
     }
 
-    /// `while`, `do` and a `for` without a condition, each with its own counter.
+    /// `while`, `do` and a `for` without a condition, each with its own counter. Some end after statements, and
+    /// earlier for some pixels than for others.
     fn repeated(&mut self) {
         let count = 1 + self.choices.below(4) as u32;
         if self.runs * (count + 1) > MAX_WORK {
@@ -377,7 +378,7 @@ impl Generator<'_> {
         self.line(&format!("int {name} = {count};"));
         self.variable(name.clone(), INT, false);
         let condition = self.expr(BOOL);
-        self.times(count + 1, |this| match this.choices.below(4) {
+        self.times(count + 1, |this| match this.choices.below(6) {
             0 => {
                 let more = condition.at(Level::Equality);
                 this.block(&format!("while ({name}-- > 0 && {more}) "), "", false);
@@ -389,12 +390,28 @@ impl Generator<'_> {
                 this.block(&format!("while (bool more = {name}-- > 0) "), "", true);
                 this.scopes.pop();
             }
-            _ => {
+            3 => {
+                let more = condition.at(Level::Equality);
+                this.block("do ", &format!(" while (--{name} > 0 && {more});"), false);
+            }
+            form => {
                 this.line("for (;;) {");
                 this.indent += 1;
                 this.scopes.push(Vec::new());
-                this.line(&format!("if ({name}-- <= 0) break;"));
-                this.statements(4);
+                let exit = format!("if ({name}-- <= 0) break;");
+                if form == 4 {
+                    this.line(&exit);
+                    this.statements(4);
+                } else {
+                    // A `continue` would skip the exit.
+                    this.around = Around {
+                        in_loop: false,
+                        in_switch: true,
+                    };
+                    this.block("", "", false);
+                    this.line(&format!("if ({}) break;", condition.text));
+                    this.line(&exit);
+                }
                 this.scopes.pop();
                 this.indent -= 1;
                 this.line("}");
