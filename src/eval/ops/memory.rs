@@ -2,6 +2,8 @@
 
 use std::marker::PhantomData;
 
+use toyproof_image::Texture;
+
 use super::{
     Component, Handler, Instruction, Level, One, Operand, Row, Run, Source, for_each_chunk, handler,
 };
@@ -237,24 +239,37 @@ struct Fetched;
 impl<N: Number> Run<N> for Fetched {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let [x, y, level] = instruction.operands.map(|row| batch.word_row(row));
         let [channel, component] = [instruction.to / 4 % 4, instruction.to % 4].map(|part| part as usize);
-        let texture = batch.textures[channel].as_ref();
-        let out = batch.float_row(instruction.out);
-        for_each_chunk!(batch, instruction.mask, chunk => {
-            let [x, y, level] = [x, y, level].map(|row| row[chunk].get());
-            let mut result = [N::default(); LANES];
-            for lane in 0..LANES {
-                let at = [x[lane], y[lane]];
-                result[lane] = match texture {
-                    Some(texture) => fetch(texture, at, level[lane], component),
-                    None => unbound(at, level[lane], component),
-                };
-            }
-            out[chunk].set(result);
-        });
+        match batch.textures[channel].as_ref() {
+            Some(Texture::Single(levels)) => fetch_lanes(batch, instruction, |at, level| {
+                fetch(levels, at, level, component).map_or(N::default(), N::from_f32)
+            }),
+            Some(Texture::Double(levels)) => fetch_lanes(batch, instruction, |at, level| {
+                fetch(levels, at, level, component).map_or(N::default(), N::from_f64)
+            }),
+            None => fetch_lanes(batch, instruction, |at, level| unbound(at, level, component)),
+        }
         at + 1
     }
+}
+
+/// Looks up a component of a texel for each pixel: `texel` takes the coordinates and the level.
+#[inline(always)]
+fn fetch_lanes<N: Number>(
+    batch: &Batch<'_, N>,
+    instruction: &Instruction<N>,
+    texel: impl Fn([u32; 2], u32) -> N,
+) {
+    let [x, y, level] = instruction.operands.map(|row| batch.word_row(row));
+    let out = batch.float_row(instruction.out);
+    for_each_chunk!(batch, instruction.mask, chunk => {
+        let [x, y, level] = [x, y, level].map(|row| row[chunk].get());
+        let mut result = [N::default(); LANES];
+        for lane in 0..LANES {
+            result[lane] = texel([x[lane], y[lane]], level[lane]);
+        }
+        out[chunk].set(result);
+    });
 }
 
 /// Returns the handler of a lookup with coordinates in rows.
