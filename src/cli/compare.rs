@@ -4,12 +4,16 @@ use std::path::PathBuf;
 
 use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
 use toyproof_image::{self as image};
-use toyproof_verify::compare::{Legend, TOLERANCE, compare};
+use toyproof_verify::compare::{Legend, TOLERANCE, compare, compare_in_8_bits};
 
-use super::inputs::may_write;
+use super::files;
+use super::inputs::{may_write, shell_word};
 use super::{Exit, Terminal};
 
 /// Compare two images: exit code 0 if they agree, 1 if they differ
+///
+/// Pixels differ if a component differs by more than 0.001, or, if an image is a PNG, by more than one of its 256
+/// levels: that is rounding.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Example:
@@ -30,6 +34,25 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     {
         return Exit::Error;
     }
+    let shaders = [&args.a, &args.b].map(|path| files::is_shader(path) || files::is_project(path));
+    if shaders.contains(&true) {
+        let [a, b] = [&args.a, &args.b].map(|path| path_name(path));
+        let shader = if shaders[0] { &a } else { &b };
+        terminal.error(format_args!("{shader} is a shader, but `compare` takes images"));
+        terminal.help(match shaders {
+            [true, true] => format!(
+                "to compare a shader with another: toyproof check {} --reference {}",
+                shell_word(&b),
+                shell_word(&a)
+            ),
+            _ => format!(
+                "to compare a shader with an image: toyproof check {} --reference {}",
+                shell_word(shader),
+                shell_word(if shaders[0] { &b } else { &a })
+            ),
+        });
+        return Exit::Error;
+    }
     let (a, b) = match (image::read(&args.a), image::read(&args.b)) {
         (Ok(a), Ok(b)) => (a, b),
         (a, b) => {
@@ -48,7 +71,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         ));
         return Exit::Error;
     }
-    let (comparison, levels) = compare(&a, &b);
+    let has_8_bits = [&args.a, &args.b].iter().any(|path| {
+        path.extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+    });
+    let ((comparison, levels), tolerance) = if has_8_bits {
+        (compare_in_8_bits(&a, &b), "one level of 255".to_owned())
+    } else {
+        (compare(&a, &b), TOLERANCE.to_string())
+    };
     if let Some(path) = &args.diff {
         let difference_image = toyproof_verify::compare::difference(
             a.size(),
@@ -69,12 +100,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let pixels = grouped(comparison.pixels);
     match comparison.differing {
         0 if comparison.max_abs == 0.0 => terminal.result(&format!("all {pixels} pixels are equal")),
+        0 if has_8_bits => terminal.result(&format!("all {pixels} pixels agree to within {tolerance}")),
         0 => terminal.result(&format!(
             "all {pixels} pixels agree to within {}",
             magnitude(comparison.max_abs)
         )),
         differing => terminal.result(&format!(
-            "{} of {pixels} pixels {} by more than {TOLERANCE}; the largest difference is {:.4} ({} of 255)",
+            "{} of {pixels} pixels {} by more than {tolerance}; the largest difference is {:.4} ({} of 255)",
             grouped(differing),
             plural(differing, "differs", "differ"),
             comparison.max_abs,

@@ -11,7 +11,8 @@ use crate::compare::{DiffLevel, TOLERANCE};
 pub struct Comparison {
     /// Pixels in the image.
     pub pixels: u64,
-    /// Pixels in which some component differs by more than [`TOLERANCE`].
+    /// Pixels in which some component differs by more than [`TOLERANCE`], or by more than one level in a
+    /// comparison in 8 bits.
     pub differing: u64,
     /// Pixels that differ when both are rounded to 8 bits.
     pub differing_8bit: u64,
@@ -121,6 +122,24 @@ impl Comparison {
 /// If the sizes differ.
 #[must_use]
 pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>) {
+    compare_by(reference, actual, |pixel| pixel.difference() > TOLERANCE)
+}
+
+/// Like [`compare`] for images of which one has 8 bits only: pixels differ if they do by more than one level,
+/// which is rounding.
+///
+/// # Panics
+/// If the sizes differ.
+#[must_use]
+pub fn compare_in_8_bits(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>) {
+    compare_by(reference, actual, |pixel| pixel.levels() > 1)
+}
+
+fn compare_by(
+    reference: &Image,
+    actual: &Image,
+    differs: impl Fn(&Pixel) -> bool,
+) -> (Comparison, Vec<DiffLevel>) {
     assert_eq!(reference.size(), actual.size());
     let pixels = reference.pixels().len();
     let mut comparison = Comparison {
@@ -141,7 +160,7 @@ pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>
         sum += pixel.components().sum::<f64>();
         comparison.differing_8bit += u64::from(levels > 0);
         comparison.max_8bit = comparison.max_8bit.max(levels);
-        if difference > TOLERANCE {
+        if differs(&pixel) {
             comparison.differing += 1;
             comparison.first.get_or_insert(pixel);
             if difference > comparison.max_abs {

@@ -21,7 +21,7 @@ pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, TOLERANCE, diff_levels, precision, toolchain,
 };
-pub use images::{Comparison, Pixel, compare};
+pub use images::{Comparison, Pixel, compare, compare_in_8_bits};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
 pub(crate) use mean::{MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION};
 pub use mean::{MeanTest, RandomPixel, means, uses_scene_numbers};
