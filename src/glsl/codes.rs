@@ -110,6 +110,8 @@ codes! {
     MissingPass "W0018" "An input that reads a pass that does not exist",
     SamplerConflict "W0019" "Different samplers of one buffer",
     BufferOrder "W0020" "Buffers that do not run in the order of their names",
+    // Another finding of a lint.
+    UnsetUniform "W0030" "A uniform that nothing sets",
     // Findings while a shader runs.
     UndefinedOperation "W0600" "An operation with an undefined result",
     LongRun "W0601" "Loops that exceed the iteration limit of older drivers",

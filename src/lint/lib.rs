@@ -25,6 +25,7 @@ mod quadratic;
 mod randomness;
 mod uniformity;
 mod uninit;
+mod unset;
 mod unused;
 
 use std::collections::HashSet;
@@ -80,6 +81,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     uniformity::run(&program, &mut findings);
     unused::run(&program, &mut findings);
     uninit::run(&program, &mut findings);
+    unset::run(&program, &mut findings);
     for quadratic in &quadratics {
         findings.add(Code::NearTangent, tree[quadratic.expr].at, "", |diagnostic| {
             diagnostic

@@ -48,6 +48,26 @@ fn unused_results() {
 }
 
 #[test]
+fn uniforms_that_nothing_sets() {
+    cases(
+        "
+        W0030 uniform float speed; | c.x = speed;
+        W0030 uniform vec2 offsets[3]; | c.xy = offsets[1];
+        W0030 uniform sampler2D noise; | c = texture(noise, f);
+        W0030 in vec2 at; | c.xy = at;
+        -     uniform float speed; | c.x = iTime;
+        -     uniform float speed; float unreached() { return speed; } | c.x = iTime;
+        -     float speed; | c.x = speed;
+        ",
+    );
+    assert_eq!(
+        warned("uniform float a; void mainImage(out vec4 c, in vec2 f) { c = vec4(a, a, 0.0, 1.0); }").len(),
+        1,
+        "once for each declaration"
+    );
+}
+
+#[test]
 fn equality_of_floats() {
     cases(
         "

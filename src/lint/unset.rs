@@ -1,0 +1,36 @@
+//! Uniforms and varyings that the shader declares. ShaderToy sets only its own, so these are zero.
+
+use toyproof_glsl::Code;
+use toyproof_glsl::tree::{ExprKind, Type, VariableKind};
+
+use super::Findings;
+use super::program::Program;
+
+pub(super) fn run(program: &Program, findings: &mut Findings) {
+    let tree = program.tree;
+    for expr in program.all_exprs() {
+        let ExprKind::Variable(variable) = tree[expr].kind else {
+            continue;
+        };
+        let variable = &tree[variable];
+        let kind = match variable.kind {
+            VariableKind::Uniform => "uniform",
+            VariableKind::Varying => "input",
+            _ => continue,
+        };
+        let Some(at) = variable.at else {
+            continue;
+        };
+        let value = if matches!(variable.ty, Type::Sampler(_)) {
+            "black"
+        } else {
+            "0"
+        };
+        let message = format!("nothing sets the {kind} `{}`, so it is {value}", variable.name);
+        findings.add(Code::UnsetUniform, at, message, |diagnostic| {
+            diagnostic
+                .note("ShaderToy sets only its own inputs, such as `iTime`")
+                .help("use one of ShaderToy's inputs, or a constant")
+        });
+    }
+}
