@@ -14,6 +14,7 @@ use toyproof_project::{PROJECT_FILE, PassKind, Project, Tab};
 use walkdir::{DirEntry, WalkDir};
 
 use crate::cli::scenes::builtin_name;
+use crate::cli::terminal::without_error_numbers;
 use crate::cli::zip::Archive;
 
 /// The extensions of shaders, by which folders are searched.
@@ -59,6 +60,8 @@ pub(crate) enum ProjectTexts {
         toml: Option<File>,
         /// The tabs.
         tabs: Vec<(Tab, File)>,
+        /// The folder; none for a shader that is read as a project.
+        folder: Option<PathBuf>,
     },
 }
 
@@ -67,7 +70,7 @@ impl Texts {
     pub(crate) fn files(&self) -> Vec<&File> {
         match self {
             Self::Shader(file) | Self::Project(ProjectTexts::Json(file)) => vec![file],
-            Self::Project(ProjectTexts::Folder { toml, tabs }) => {
+            Self::Project(ProjectTexts::Folder { toml, tabs, .. }) => {
                 toml.iter().chain(tabs.iter().map(|(_, file)| file)).collect()
             }
         }
@@ -169,7 +172,7 @@ impl ReadError {
                     .to_owned()
             }
             Self::NotSubmitted(_, instead) => format!("no shader was submitted{instead}"),
-            Self::Unreadable { error, .. } => format!("cannot be read: {error}"),
+            Self::Unreadable { error, .. } => without_error_numbers(&format!("cannot be read: {error}")),
             Self::TooLarge { .. } => TOO_LARGE.to_owned(),
             Self::NotUtf8 { .. } => NOT_UTF8.to_owned(),
         }
@@ -329,7 +332,32 @@ fn read_folder(folder: &Path) -> Result<ProjectTexts, ReadError> {
         }
     }
     let toml = read(PROJECT_FILE).transpose()?;
-    Ok(ProjectTexts::Folder { toml, tabs })
+    Ok(ProjectTexts::Folder {
+        toml,
+        tabs,
+        folder: Some(folder.to_owned()),
+    })
+}
+
+/// The image of a project in its folder: a regular file, to which no link leads out of the folder.
+///
+/// # Errors
+/// Why it cannot be read.
+pub(super) fn project_image(folder: &Path, name: &str) -> Result<PathBuf, String> {
+    let path = folder.join(name);
+    let shown = path_name(Path::new(name));
+    match path.metadata() {
+        Ok(found) if !found.is_file() => return Err(format!("{shown} is not a regular file")),
+        Ok(_) => {}
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(format!("there is no file {shown} in the folder of the project"));
+        }
+        Err(error) => return Err(format!("{shown} cannot be read: {error}")),
+    }
+    match Skipped::of(&path, folder) {
+        Some(skipped) => Err(skipped.to_string()),
+        None => Ok(path),
+    }
 }
 
 /// Reads the text of a file, without a byte order mark.

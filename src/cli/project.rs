@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, Files, path_name};
 use toyproof_glsl::{self as glsl, Checked};
+use toyproof_image as image;
 use toyproof_lint::Lints;
 use toyproof_project::{self as project, NotRendered, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_toml::list_of;
@@ -21,7 +22,7 @@ fn parse(texts: ProjectTexts, files: &mut Files) -> Result<Project, Diagnostics>
             let file = files.add(file);
             Project::from_json(files, file)
         }
-        ProjectTexts::Folder { toml, tabs } => {
+        ProjectTexts::Folder { toml, tabs, .. } => {
             let toml = toml.map(|file| files.add(file));
             let tabs: Vec<_> = tabs
                 .into_iter()
@@ -75,6 +76,20 @@ impl Passes {
     }
 }
 
+/// The files of the images that a project reads from its folder.
+pub(super) fn image_files(input: &Input) -> Vec<PathBuf> {
+    let Ok(Texts::Project(texts @ ProjectTexts::Folder { .. })) = files::read(input) else {
+        return Vec::new();
+    };
+    let (Some(folder), Ok(project)) = (input.path(), parse(texts, &mut Files::default())) else {
+        return Vec::new();
+    };
+    let names = project.image_inputs().map(|(_, name)| name);
+    names
+        .filter_map(|name| files::project_image(folder, name).ok())
+        .collect()
+}
+
 /// Whether the image of an input reads other passes: not of one that cannot be read.
 pub(super) fn has_passes(input: &Input) -> bool {
     let Ok(Texts::Project(texts)) = files::read(input) else {
@@ -92,7 +107,18 @@ pub(super) fn check(
     options: &glsl::Options,
 ) -> Result<Passes, Unusable> {
     let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());
-    let project = parse(texts, files).map_err(invalid)?;
+    let folder = match &texts {
+        ProjectTexts::Folder { folder, .. } => folder.clone(),
+        ProjectTexts::Json(_) => None,
+    };
+    let mut project = parse(texts, files).map_err(invalid)?;
+    if let Some(folder) = folder {
+        let added = project.add_images(|name| {
+            let path = files::project_image(&folder, name)?;
+            image::read(&path).map_err(|error| error.to_string())
+        });
+        added.map_err(|errors| invalid(Diagnostics::new(errors, files)))?;
+    }
     let passes = project::check(&project, files, options).map_err(invalid)?;
     let mut checked = Vec::with_capacity(passes.passes.len());
     for pass in passes.passes {
@@ -193,6 +219,7 @@ fn read(input: &Input) -> Result<ProjectTexts, ReadError> {
         Texts::Project(texts) => texts,
         Texts::Shader(file) => ProjectTexts::Folder {
             toml: None,
+            folder: None,
             tabs: vec![(Tab::Pass(PassKind::Image), file)],
         },
     })

@@ -1,6 +1,8 @@
 //! The folder of a project: a file for each tab, and `project.toml`, which holds the rest of the site's JSON, key by
 //! key in the same order. What an input reads is written by name: `source = "buffer-a"`.
 
+use std::collections::HashMap;
+
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, Span, nearest};
@@ -406,6 +408,7 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
         knows_inputs,
         common,
         passes,
+        images: HashMap::new(),
         document: Document {
             root,
             format,
@@ -573,10 +576,24 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
     if let Some(at) = members.iter().position(|member| member.key == "source") {
         let node = &members[at].node;
         let wanted = node.as_str().unwrap_or_default();
-        let Some(name) = media::names().find(|name| name.source.eq_ignore_ascii_case(wanted)) else {
+        let built_in = media::names().find(|name| name.source.eq_ignore_ascii_case(wanted));
+        let name = match built_in.map(Ok).or_else(|| media::file_name(wanted)) {
+            Some(Err(reason)) => {
+                errors.push(
+                    node.error(reason)
+                        .help("name a file in the folder, or in one below it"),
+                );
+                members.clear();
+                return;
+            }
+            found => found.and_then(Result::ok),
+        };
+        let Some(name) = name else {
             let near = nearest(wanted, media::names().map(|name| name.source));
             let help = near.map_or_else(
-                || "expected buffer-a to buffer-d, cube-a, keyboard, webcam, mic, or the name of a medium of ShaderToy".to_owned(),
+                || "expected buffer-a to buffer-d, cube-a, keyboard, webcam, mic, an image of the folder (.png, .exr), or \
+                     the name of a medium of ShaderToy"
+                        .to_owned(),
                 |near| format!("did you mean `{near}`?"),
             );
             errors.push(node.error(format!("unknown source `{wanted}`")).help(help));

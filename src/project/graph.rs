@@ -1,8 +1,10 @@
 //! What is rendered of a project: its passes in the site's order, the textures that they read, and how they
 //! sample them.
 
+use std::collections::HashMap;
+
 use toyproof_glsl::{Sampling, Wrap};
-use toyproof_image::{Noise, Texture};
+use toyproof_image::{Image, Noise, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 
 use crate::{Buffer, Filter, Input, Pass, PassKind, Project, Source, SourceType};
@@ -27,6 +29,8 @@ pub struct Replaced {
     pub source: Source,
     /// Whether a texture with the same properties takes its place; otherwise the channel is black.
     pub has_stand_in: bool,
+    /// The passes that read it, each with the number of its channel.
+    pub readers: Vec<(PassKind, usize)>,
 }
 
 /// Why the image of a project cannot be rendered: a part of a sentence, after the name of the image.
@@ -50,7 +54,12 @@ impl Project {
         let mut passes: Vec<usize> = passes.collect();
         // Buffers keep the order of the file.
         passes.sort_by_key(|&at| self.passes[at].kind == PassKind::Image);
-        let mut media = Media::default();
+        let mut media = Media {
+            images: &self.images,
+            textures: Vec::new(),
+            known: Vec::new(),
+            replaced: Vec::new(),
+        };
         let nodes = passes
             .iter()
             .map(|&at| &self.passes[at])
@@ -59,7 +68,8 @@ impl Project {
                     PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
                     _ => Target::Image,
                 },
-                inputs: pass.inputs.each_ref().map(|input| media.source(input.as_ref()?)),
+                inputs: [0, 1, 2, 3]
+                    .map(|channel| media.source(pass.inputs[channel].as_ref()?, (pass.kind, channel))),
             });
         let nodes = nodes.collect();
         let mut mipmaps = [false; BUFFERS];
@@ -117,37 +127,44 @@ impl Project {
 }
 
 /// The textures that do not change, as they are found.
-#[derive(Default)]
-struct Media {
+struct Media<'a> {
+    /// The images of the project's folder.
+    images: &'a HashMap<String, Image>,
     textures: Vec<Texture>,
     /// The sources of the textures, and whether they have mipmaps and are flipped.
     known: Vec<(Source, bool, bool)>,
     replaced: Vec<Replaced>,
 }
 
-impl Media {
+impl Media<'_> {
     /// What an input reads in the graph; none for black.
-    fn source(&mut self, input: &Input) -> Option<player::Source> {
+    fn source(&mut self, input: &Input, reader: (PassKind, usize)) -> Option<player::Source> {
         match input.source {
             Source::Buffer(buffer) => return Some(player::Source::Buffer(buffer as usize)),
             Source::Keyboard => return Some(player::Source::Keyboard),
             _ => {}
+        }
+        let images = self.images;
+        let own = input.source.file().and_then(|path| images.get(path));
+        let noise = noise(&input.source);
+        if own.is_none() {
+            let mut replaced = self.replaced.iter_mut();
+            match replaced.find(|replaced| replaced.source == input.source) {
+                Some(replaced) => replaced.readers.push(reader),
+                None => self.replaced.push(Replaced {
+                    source: input.source.clone(),
+                    has_stand_in: noise.is_some(),
+                    readers: vec![reader],
+                }),
+            }
         }
         let has_mipmaps = input.sampler.filter == Filter::Mipmap;
         let key = (input.source.clone(), has_mipmaps, input.sampler.vflip);
         if let Some(known) = self.known.iter().position(|known| *known == key) {
             return Some(player::Source::Medium(known));
         }
-        let noise = noise(&input.source);
-        let replaced = Replaced {
-            source: input.source.clone(),
-            has_stand_in: noise.is_some(),
-        };
-        if !self.replaced.contains(&replaced) {
-            self.replaced.push(replaced);
-        }
         // An image stands upright if it is flipped on its way to the texture.
-        let upright = noise.map(Noise::image);
+        let upright = own.cloned().or_else(|| noise.map(Noise::image));
         let image = upright.map(|image| {
             if input.sampler.vflip {
                 image

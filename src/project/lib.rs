@@ -32,10 +32,12 @@ mod node;
 mod read;
 mod script;
 
+use std::collections::HashMap;
 use std::fmt;
 
-use toyproof_diagnostic::{FileId, Span};
+use toyproof_diagnostic::{Diagnostic, FileId, Span};
 pub use toyproof_glsl::{Filter, Wrap};
+use toyproof_image::Image;
 
 pub use self::check::{CheckedPass, CheckedProject, check};
 use self::folder::Format;
@@ -64,6 +66,8 @@ pub struct Project {
     /// Whether the inputs are given. Otherwise channel *n* of every pass but Sound is assumed to read the
     /// *n*th buffer, if there is one.
     pub knows_inputs: bool,
+    /// The images of the project's folder that were added, by their paths.
+    images: HashMap<String, Image>,
     document: Document,
 }
 
@@ -310,6 +314,44 @@ impl Project {
     #[must_use]
     pub fn pass(&self, kind: PassKind) -> Option<&Pass> {
         self.passes.iter().find(|pass| pass.kind == kind)
+    }
+
+    /// The inputs that read an image of the project's folder, each with the path of its file.
+    pub fn image_inputs(&self) -> impl Iterator<Item = (&Input, &str)> {
+        let inputs = self.passes.iter().flat_map(|pass| pass.inputs.iter().flatten());
+        inputs.filter_map(|input| Some((input, input.source.file()?)))
+    }
+
+    /// Adds the images of the project's folder, which `read` reads by their paths. The image of an input that
+    /// has none is black.
+    ///
+    /// # Errors
+    /// Why images cannot be read, each at its input.
+    pub fn add_images(
+        &mut self,
+        mut read: impl FnMut(&str) -> Result<Image, String>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let mut images = HashMap::new();
+        let mut errors = Vec::new();
+        for (input, path) in self.image_inputs() {
+            if images.contains_key(path) {
+                continue;
+            }
+            match read(path) {
+                Ok(image) => {
+                    images.insert(path.to_owned(), image);
+                }
+                Err(reason) => {
+                    let error = Diagnostic::error(INVALID_VALUE, reason);
+                    errors.push(match input.span {
+                        Some(span) => error.at(span),
+                        None => error,
+                    });
+                }
+            }
+        }
+        self.images = images;
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
 
     /// All tabs with their texts, in the order of the file.

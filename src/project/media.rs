@@ -216,6 +216,42 @@ pub(crate) fn names() -> impl Iterator<Item = Name> {
     fixed.chain(media)
 }
 
+/// The name of an image file in the project's folder, if a source names one.
+///
+/// # Errors
+/// If the path leads out of the folder.
+pub(crate) fn file_name(source: &str) -> Option<Result<Name, &'static str>> {
+    if !is_image_file(source) {
+        return None;
+    }
+    if !is_inside(source) {
+        return Some(Err("this path leads out of the project's folder"));
+    }
+    Some(Ok(Name {
+        source: "",
+        source_type: SourceType::Texture,
+        id: "",
+        path: source.to_owned(),
+        preview: source.to_owned(),
+    }))
+}
+
+/// Whether a path is that of an image in a format that is read.
+fn is_image_file(path: &str) -> bool {
+    let extension = path.rsplit_once('.').map(|(_, extension)| extension);
+    extension.is_some_and(|extension| {
+        ["png", "exr"]
+            .iter()
+            .any(|known| extension.eq_ignore_ascii_case(known))
+    })
+}
+
+/// Whether a path stays inside the folder that it starts from, on every system.
+fn is_inside(path: &str) -> bool {
+    let is_plain = |part: &str| !part.is_empty() && part != "." && part != "..";
+    path.split('/').all(is_plain) && !path.contains(['\\', ':'])
+}
+
 /// The buffer with this id, a string or a number, or with this path.
 pub(crate) fn buffer(id: &str, path: &str) -> Option<Buffer> {
     // The numbers of the API: 257 to 260.
@@ -246,6 +282,19 @@ impl Source {
             _ => None,
         }
     }
+
+    /// The path of the image that is read, if it is a file in the folder of the project.
+    #[must_use]
+    pub fn file(&self) -> Option<&str> {
+        match self {
+            Self::Medium {
+                source_type: SourceType::Texture,
+                id,
+                path,
+            } if id.is_empty() && is_image_file(path) && is_inside(path) => Some(path),
+            _ => None,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -264,6 +313,29 @@ mod tests {
             all.len()
         );
         assert_eq!(distinct(|name| name.path.clone()), all.len());
+    }
+
+    #[test]
+    fn files_stay_inside_of_the_folder() {
+        let is_file = |path: &str| file_name(path).map(|name| name.is_ok());
+        for inside in ["p.png", "textures/wood.PNG", "a b.exr", "..p.png"] {
+            assert_eq!(is_file(inside), Some(true), "{inside}");
+        }
+        for outside in [
+            "../p.png",
+            "/p.png",
+            "a/../../p.png",
+            "a//p.png",
+            "c:p.png",
+            "a\\p.png",
+            "./p.png",
+        ] {
+            assert_eq!(is_file(outside), Some(false), "{outside}");
+        }
+        assert_eq!(
+            [is_file("buffer-a"), is_file("wood.jpg"), is_file("png")],
+            [None; 3]
+        );
     }
 
     #[test]

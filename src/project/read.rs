@@ -1,5 +1,7 @@
 //! Reads a project from a tree of values, and reports what is wrong in it.
 
+use std::collections::HashMap;
+
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest};
 use toyproof_toml::list_of;
 
@@ -41,6 +43,7 @@ impl Project {
             common,
             passes,
             knows_inputs: true,
+            images: HashMap::new(),
             document: Document {
                 root,
                 format,

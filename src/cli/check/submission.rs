@@ -11,6 +11,7 @@ use super::plan::Plan;
 use super::reference::References;
 use crate::cli::files::{self, Input, ReadError};
 use crate::cli::names::Names;
+use crate::cli::project::image_files;
 use crate::report::Submitted;
 
 /// A shader to check.
@@ -110,6 +111,9 @@ fn identity(
         add(file.name().as_bytes());
         add(file.text().as_bytes());
         bytes += file.text().len() as u64;
+    }
+    for path in image_files(found) {
+        add(&std::fs::read(path).ok()?);
     }
     if let Some(content) = references.content(found) {
         add(&content.ok()?);
