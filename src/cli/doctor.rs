@@ -252,6 +252,9 @@ impl Report {
         if let Some(error) = &self.error {
             terminal.result("");
             terminal.error(error);
+            if lavapipe_manifest().is_none() || self.is_pinned {
+                terminal.help(INSTALL_HINT);
+            }
             if !self.tests.is_empty() {
                 terminal.help(
                     "remove or update the driver that does not start, or name another: \

@@ -37,12 +37,27 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
         if let Some(explanation) = report::explain(code) {
             print(&explanation, terminal);
-        } else {
+        } else if !print_found(code, terminal) {
             report_unknown(code, terminal);
             exit = Exit::Error;
         }
     }
     exit
+}
+
+/// Lists the explanations in which a word occurs; returns whether there are any.
+fn print_found(word: &str, terminal: &Terminal) -> bool {
+    let found = search(word);
+    for Explanation { code, title, .. } in &found {
+        terminal.result(&format!("{code}  {title}"));
+    }
+    if let Some(first) = found.first() {
+        terminal.note(&format!(
+            "`{word}` is not a code: it occurs in these; to read one: toyproof explain {}",
+            first.code
+        ));
+    }
+    !found.is_empty()
 }
 
 fn print(explanation: &Explanation, terminal: &Terminal) {
@@ -64,6 +79,30 @@ fn report_unknown(code: &str, terminal: &Terminal) {
             .help("`explain` takes codes; to trace one pixel of a shader: toyproof debug SHADER --pixel X,Y"),
         None => terminal.help("`toyproof explain --list` lists all codes and mistakes"),
     }
+}
+
+/// The maximum number of explanations that a search finds.
+const MAX_FOUND: usize = 10;
+
+/// The explanations in whose code, title or text a word occurs: those of codes and titles first.
+fn search(word: &str) -> Vec<Explanation> {
+    let word = word.to_lowercase();
+    if word.trim().len() < 3 || word.contains(['/', '\\']) {
+        return Vec::new();
+    }
+    let mut found: Vec<_> = report::explanations()
+        .filter_map(|explanation| {
+            let contains = |text: &str| text.to_lowercase().contains(&word);
+            let is_named = contains(explanation.code) || contains(explanation.title);
+            (is_named || contains(&explanation.text)).then_some((!is_named, explanation))
+        })
+        .collect();
+    found.sort_by_key(|(is_only_in_text, _)| *is_only_in_text);
+    found
+        .into_iter()
+        .take(MAX_FOUND)
+        .map(|(_, explanation)| explanation)
+        .collect()
 }
 
 /// Converts Markdown for a terminal: paragraphs are wrapped, and fenced code is indented.
@@ -99,6 +138,20 @@ fn plain(text: &str, width: Option<usize>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_and_parts_of_codes_are_found() {
+        let codes = |word: &str| {
+            search(word)
+                .into_iter()
+                .map(|found| found.code.to_owned())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(codes("602"), ["W0602"]);
+        assert!(!codes("acne").is_empty());
+        assert!(codes("PRECISION").contains(&"W0602".to_owned()) || codes("precision").len() == MAX_FOUND);
+        assert!(codes("zzz").is_empty() && codes("a/b.glsl").is_empty() && codes("a").is_empty());
+    }
 
     #[test]
     fn paragraphs_wrap_and_code_is_indented() {

@@ -10,6 +10,7 @@ mod doctor;
 mod explain;
 mod files;
 mod gradescope;
+mod help;
 mod inputs;
 mod names;
 mod new;
@@ -132,10 +133,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     if arguments.get(1).is_some_and(|argument| argument == WORKER) {
         return serve_worker();
     }
-    let parsed = Cli::command()
-        .color(requested_color(&arguments))
+    let command = help::with_groups(Cli::command()).color(requested_color(&arguments));
+    let parsed = command
+        .clone()
         .try_get_matches_from(&arguments)
-        .and_then(|matches| Cli::from_arg_matches(&matches));
+        .and_then(|matches| Cli::from_arg_matches(&matches))
+        .map_err(|error| help::with_nearest(error, &command));
     match parsed {
         Ok(cli) => cli.run(),
         Err(error) => {

@@ -104,6 +104,9 @@ struct ProjectArgs {
 /// Parses a name that is also the name of a file.
 fn parse_name(text: &str) -> Result<String, String> {
     let name = text.strip_suffix(".toml").unwrap_or(text);
+    if files::is_shader(Path::new(name)) || files::is_json(Path::new(name)) {
+        return Err("this is the name of a shader; leave out its extension".to_owned());
+    }
     let is_allowed = |c: char| c.is_alphanumeric() || " -_.".contains(c);
     if name.starts_with(char::is_alphanumeric) && name.chars().all(is_allowed) {
         Ok(name.to_owned())

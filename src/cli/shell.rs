@@ -4,11 +4,13 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::CommandFactory;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap_complete::Shell;
 use clap_mangen::Man;
 use toyproof_diagnostic::path_name;
 
 use super::{Cli, Exit, Terminal};
+use crate::report;
 
 /// Print a completion script for a shell
 #[derive(Debug, clap::Args)]
@@ -25,7 +27,13 @@ pub(super) struct CompletionsArgs {
 
 pub(super) fn completions(args: &CompletionsArgs, terminal: &Terminal) -> Exit {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "toyproof", &mut script);
+    // The codes complete words; an unknown one is searched for, so it is not an error of the arguments.
+    let codes = report::explanations().map(|explanation| PossibleValue::new(explanation.code));
+    let codes = PossibleValuesParser::new(codes);
+    let mut command = Cli::command().mut_subcommand("explain", |explain| {
+        explain.mut_arg("codes", |argument| argument.value_parser(codes))
+    });
+    clap_complete::generate(args.shell, &mut command, "toyproof", &mut script);
     exit(terminal.bytes(&script))
 }
 

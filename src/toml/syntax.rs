@@ -157,7 +157,7 @@ impl<'t> Site<'t> {
         } else if self.line().starts_with('[') {
             (
                 format!("[{name}] is given twice"),
-                "merge the two tables".to_owned(),
+                format!("for a list of tables, write `[[{name}]]` each time; otherwise merge the two"),
             )
         } else {
             (
