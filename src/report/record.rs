@@ -207,6 +207,14 @@ impl Record {
         }
     }
 
+    /// States that media are missing, if the shader is compared with nothing: that it renders means little then.
+    pub fn set_missing_media(&mut self, missing: String) {
+        if self.verdict == Verdict::Ok {
+            self.verdict = Verdict::Inconclusive;
+            self.reason = missing;
+        }
+    }
+
     /// Adds what the search for a fix found. The fix names the mistake, unless a known one alone explains the
     /// image.
     pub fn set_search(&mut self, search: &SearchResult, files: &Files) {

@@ -160,7 +160,7 @@ pub use self::expected::{
     ReferenceFindings, ReferenceKind, SceneReference, ShaderReference,
 };
 pub use self::findings::{CheckResult, Findings, GpuRun};
-pub use self::notes::{driver_failure, unbound};
+pub use self::notes::{driver_failure, unbound, unbound_channels};
 #[cfg(feature = "gpu")]
 pub use self::on_gpu::is_replaceable;
 pub use self::on_gpu::{GpuFailure, Worker};

@@ -46,6 +46,25 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
 /// Reports the channels that a shader reads but the frame has no image for, each at its first use.
 #[must_use]
 pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnostic> {
+    let unbound = unbound_channels(checked, frame).into_iter().map(|(channel, span)| {
+        let note = match checked.channels[channel] {
+            SamplerShape::D2 => {
+                format!(
+                    "bind an image with `--channel{channel} FILE`, or noise with `--channel{channel} noise`"
+                )
+            }
+            _ => "cube maps, volumes and arrays cannot be bound".to_owned(),
+        };
+        let message = format!("`iChannel{channel}` is black: no image is bound to it");
+        let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
+        diagnostic.at(span).note(note)
+    });
+    unbound.filter(|note| !lints.allows(note)).collect()
+}
+
+/// The channels that a shader reads but the frame has no image for, each with its first use.
+#[must_use]
+pub fn unbound_channels(checked: &Checked, frame: &Frame) -> Vec<(usize, Span)> {
     let mut first_uses = [None; 4];
     for (_, expr) in checked.tree.exprs.iter() {
         if let ExprKind::Variable(variable) = expr.kind
@@ -57,21 +76,9 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
     let first_uses = (0..)
         .zip(first_uses)
         .filter_map(|(channel, span)| Some((channel, span?)));
-    let unbound = first_uses.filter_map(|(channel, span): (usize, _)| {
-        let note = match checked.channels[channel] {
-            SamplerShape::D2 if frame.channels[channel].is_some() => return None,
-            SamplerShape::D2 => {
-                format!(
-                    "bind an image with `--channel{channel} FILE`, or noise with `--channel{channel} noise`"
-                )
-            }
-            _ => "cube maps, volumes and arrays cannot be bound".to_owned(),
-        };
-        let message = format!("`iChannel{channel}` is black: no image is bound to it");
-        let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
-        Some(diagnostic.at(span).note(note))
-    });
-    unbound.filter(|note| !lints.allows(note)).collect()
+    let is_black =
+        |channel: usize| checked.channels[channel] != SamplerShape::D2 || frame.channels[channel].is_none();
+    first_uses.filter(|&(channel, _)| is_black(channel)).collect()
 }
 
 /// Reports why a worker rendered no image, where the evaluator takes its place.

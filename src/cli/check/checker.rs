@@ -5,15 +5,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use rayon::ThreadPool;
-use toyproof_diagnostic::{Deadline, Files, Severity};
+use toyproof_diagnostic::{Deadline, Files, Severity, Span, plural};
 use toyproof_glsl::Checked;
+use toyproof_glsl::tree::SamplerShape;
 use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame};
 use toyproof_scene::Scene;
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
-use toyproof_verify::{Case, Failure, Findings, FromStart, Verdict, verify};
+use toyproof_verify::{Case, Failure, Findings, FromStart, Verdict, unbound, unbound_channels, verify};
 
 use super::Args;
 use super::images::{FIXED, IMAGES, keep};
@@ -171,6 +172,9 @@ impl<'a> Checker<'a> {
             let findings = match (findings, reference) {
                 (Ok(findings), _) => {
                     outcome.set_findings(&findings, &shader.files);
+                    if let Some(missing) = missing_media(shader, &frame) {
+                        outcome.record.set_missing_media(missing);
+                    }
                     Some(findings)
                 }
                 (Err(failure @ Failure::InvalidScene(_)), Some(Reference::Scene(scene))) => {
@@ -500,4 +504,27 @@ fn image(shader: &Shader) -> Result<&Checked, Failure> {
         }
         (Err(Unusable::Invalid(diagnostics)), _) => Err(Failure::Invalid(diagnostics.clone())),
     }
+}
+
+/// The media that a shader reads and that toyproof does not have: a sentence; none if it has all. An image that
+/// the user can bind does not count, nor what the author allows to be missing.
+fn missing_media(shader: &Shader, frame: &Frame) -> Option<String> {
+    let checked = shader.checked.as_ref().ok()?;
+    let warned = unbound(checked, &shader.lints, frame);
+    let is_warned = |span: Span| warned.iter().any(|warning| warning.span == Some(span));
+    let missing = unbound_channels(checked, frame)
+        .into_iter()
+        .filter_map(|(channel, span)| {
+            let kind = match checked.channels[channel] {
+                SamplerShape::D2 if shader.passes.is_none() => return None,
+                SamplerShape::D2 => "texture",
+                SamplerShape::Cube => "cube map",
+                SamplerShape::D3 => "volume",
+                SamplerShape::D2Array => "array of textures",
+            };
+            is_warned(span).then(|| format!("the {kind} of `iChannel{channel}`"))
+        });
+    let missing: Vec<_> = missing.collect();
+    let verb = plural(missing.len() as u64, "is", "are");
+    (!missing.is_empty()).then(|| format!("{} {verb} not available, and black instead", missing.join(", ")))
 }
