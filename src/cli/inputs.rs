@@ -8,13 +8,16 @@ use std::time::Duration;
 use clap::ValueEnum;
 use toyproof_diagnostic::{Deadline, Files, human, path_name};
 use toyproof_glsl as glsl;
-use toyproof_gpu::{AdapterSelector, Worker};
+use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
 use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
 use toyproof_project as project;
 use toyproof_translate::FloatMode;
 
 use super::{Terminal, WORKER, files};
+
+/// The time limit for one shader, unless the user gives another.
+const DEFAULT_TIME_LIMIT: Duration = Duration::from_secs(10);
 
 /// The longest time limit.
 const MAX_TIME_LIMIT: Duration = Duration::from_secs(24 * 60 * 60);
@@ -225,9 +228,9 @@ pub(super) struct DriverArgs {
     /// same bits on every device. fast: native functions, and the driver may rearrange arithmetic.
     #[arg(long, value_enum, value_name = "MODE", hide_possible_values = true)]
     float: Option<Float>,
-    /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m)
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = parse_time_limit)]
-    timeout: Duration,
+    /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m) [default: 10s; for `run`: none]
+    #[arg(long, value_name = "TIME", value_parser = parse_time_limit)]
+    timeout: Option<Duration>,
 }
 
 /// What runs a shader.
@@ -312,8 +315,14 @@ impl DriverArgs {
         self.float.map(FloatMode::from)
     }
 
+    /// The time limit for one shader.
     pub(super) fn timeout(&self) -> Duration {
-        self.timeout
+        self.timeout.unwrap_or(DEFAULT_TIME_LIMIT)
+    }
+
+    /// The time limit of a command that has none by default.
+    pub(super) fn explicit_timeout(&self) -> Duration {
+        self.timeout.unwrap_or(MAX_TIME_LIMIT)
     }
 
     /// Creates the worker that runs shaders on a GPU; none for `--device cpu`.
@@ -325,22 +334,36 @@ impl DriverArgs {
     pub(super) fn worker_for(&self, images: u32) -> Result<Option<Worker>, String> {
         match &self.device {
             DeviceSelector::Cpu => Ok(None),
-            DeviceSelector::Gpu(on) => worker(on.clone(), self.timeout * images).map(Some),
+            DeviceSelector::Gpu(on) => worker(on.clone(), self.timeout() * images).map(Some),
+        }
+    }
+
+    /// Like [`Self::worker`], for a command that has no time limit by default.
+    pub(super) fn patient_worker(&self) -> Result<Option<Worker>, String> {
+        match &self.device {
+            DeviceSelector::Cpu => Ok(None),
+            DeviceSelector::Gpu(on) => worker(on.clone(), self.explicit_timeout()).map(Some),
         }
     }
 
     /// Creates a worker that only translates shaders, without a driver.
     pub(super) fn translator(&self) -> Result<Worker, String> {
-        worker(AdapterSelector::Auto, self.timeout).map(Worker::without_driver)
+        worker(AdapterSelector::Auto, self.timeout()).map(Worker::without_driver)
     }
 
     /// Returns whether the evaluator may replace a missing driver.
     pub(super) fn may_fall_back(&self) -> bool {
         self.device == DeviceSelector::Gpu(AdapterSelector::Auto)
     }
+
+    /// Returns whether the evaluator renders the same bits as the driver that would be selected, on the same
+    /// processor.
+    pub(super) fn is_evaluator_equal(&self) -> bool {
+        self.may_fall_back() && self.float() == FloatMode::Strict && gpu::is_automatic_driver_software()
+    }
 }
 
-/// Creates a worker that runs this program as `toyproof worker`.
+/// Creates a worker that runs this program with the argument [`WORKER`].
 pub(super) fn worker(on: AdapterSelector, timeout: Duration) -> Result<Worker, String> {
     let program = std::env::current_exe()
         .map_err(|error| format!("cannot find the program itself to run it as a worker: {error}"))?;

@@ -16,7 +16,7 @@ use super::inputs::may_write;
 use super::reference::ill_conditioned;
 use super::run::{Precision, default_image, encode, has_image_extension};
 use super::scenes::read_scene;
-use super::sequence::{self, Frames, Sequence};
+use super::sequence::{self, FrameEnd, Frames, Sequence};
 use super::terminal::file_size;
 use super::{Exit, Terminal, inputs, project};
 use crate::cli::files;
@@ -137,12 +137,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             // Identifies what is rendered: a record of a different scene or settings is ignored.
             let fingerprint = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
             let sequence = Sequence::resume(frames, &output, &fingerprint, terminal);
-            sequence.render(terminal, |one| {
+            sequence.render(terminal, |one, _| {
                 let frame_time = FrameTime {
                     frame: one.frame,
                     time: f64::from(one.frame) / f64::from(FRAME_RATE),
                 };
-                render_frame(&scene, frame_time, &mut previous, (args, &one.path), terminal)
+                let frame = (args, &*one.path);
+                FrameEnd::of(render_frame(&scene, frame_time, &mut previous, frame, terminal))
             })
         }
     };

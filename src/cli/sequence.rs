@@ -1,7 +1,7 @@
 //! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use toyproof_diagnostic::{grouped, path_name, plural};
@@ -56,6 +56,24 @@ impl Frames {
     }
 }
 
+/// How the rendering of a frame ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FrameEnd {
+    /// Its image is written.
+    Written,
+    /// It cannot be rendered or written, which has been reported.
+    Failed,
+    /// The user interrupted it.
+    Interrupted,
+}
+
+impl FrameEnd {
+    /// The end of a frame that is written, or has failed.
+    pub(super) fn of(is_written: bool) -> Self {
+        if is_written { Self::Written } else { Self::Failed }
+    }
+}
+
 /// A sequence in progress. A record beside the images holds the next frame, as long as frames are missing.
 #[derive(Debug)]
 pub(super) struct Sequence {
@@ -71,6 +89,17 @@ pub(super) struct Sequence {
 }
 
 impl Sequence {
+    /// The first frame to render; none if the files of all exist.
+    pub(super) fn first_missing(&self) -> Option<i32> {
+        let mut missing = self.missing();
+        missing.next().map(|one| one.frame)
+    }
+
+    fn missing(&self) -> impl Iterator<Item = SequenceFrame> {
+        let numbered = self.frames.numbered(&self.output);
+        numbered.filter(|one| i64::from(one.frame) >= self.next || !one.path.is_file())
+    }
+
     /// Prepares a sequence, reading the record of an interrupted run.
     pub(super) fn resume(frames: Frames, output: &Path, fingerprint: &str, terminal: &Terminal) -> Self {
         let record = output.with_extension("sequence");
@@ -104,16 +133,25 @@ impl Sequence {
     }
 
     /// Renders the missing frames in order until one fails or the user interrupts; returns whether all
-    /// succeeded.
-    pub(super) fn render(self, terminal: &Terminal, mut frame: impl FnMut(&SequenceFrame) -> bool) -> bool {
+    /// succeeded. A frame may end early when the user interrupts: it is then among those that are missing.
+    pub(super) fn render(
+        self,
+        terminal: &Terminal,
+        mut frame: impl FnMut(&SequenceFrame, &AtomicBool) -> FrameEnd,
+    ) -> bool {
         let start = Instant::now();
-        let interrupted = terminal.watch_interrupts("the frame in progress is finished first");
+        let interrupted = terminal.watch_interrupts("the sequence ends with the frame in progress");
         let bar = terminal.bar(self.frames.count(), "frames");
         bar.set_position(self.existing);
         bar.reset_eta();
-        let is_missing = |one: &SequenceFrame| i64::from(one.frame) >= self.next || !one.path.is_file();
-        for one in self.frames.numbered(&self.output).filter(is_missing) {
-            if interrupted.load(Ordering::Relaxed) {
+        for one in self.missing() {
+            let end = if interrupted.load(Ordering::Relaxed) {
+                FrameEnd::Interrupted
+            } else {
+                frame(&one, &interrupted)
+            };
+            if end == FrameEnd::Interrupted {
+                bar.finish_and_clear();
                 terminal.error(format_args!(
                     "interrupted after {} of {} frames",
                     grouped(bar.position()),
@@ -122,11 +160,13 @@ impl Sequence {
                 terminal.help("run the same command again to render the others");
                 return false;
             }
-            if !frame(&one) {
+            if end == FrameEnd::Failed {
+                bar.finish_and_clear();
                 return false;
             }
             let record = format!("{}\n{}\n", self.fingerprint, i64::from(one.frame) + 1);
             if !terminal.write(&self.record, record.as_bytes()) {
+                bar.finish_and_clear();
                 return false;
             }
             bar.inc(1);
@@ -231,18 +271,18 @@ mod tests {
         // Too many to be collected in memory.
         let far = Sequence::resume(parse_frames("0..2147483647").unwrap(), &output, "far", &terminal);
         let mut first = Vec::new();
-        far.render(&terminal, |one| {
+        far.render(&terminal, |one, _| {
             first.push(one.frame);
-            first.len() < 3
+            FrameEnd::of(first.len() < 3)
         });
         assert_eq!(first, [0, 1, 2]);
         let render = |fingerprint: &str, most: usize| {
             let mut made = Vec::new();
             let sequence = Sequence::resume(parse_frames("0..3").unwrap(), &output, fingerprint, &terminal);
-            let whole = sequence.render(&terminal, |one| {
+            let whole = sequence.render(&terminal, |one, _| {
                 made.push(one.frame);
                 std::fs::write(&one.path, "").unwrap();
-                made.len() <= most
+                FrameEnd::of(made.len() <= most)
             });
             (made, whole)
         };
@@ -258,5 +298,24 @@ mod tests {
         );
         assert!(!folder.path().join("x.sequence").exists());
         assert_eq!(render("a", 9).0, [0, 1, 2, 3], "what is whole is made anew");
+    }
+
+    #[test]
+    fn an_interrupt_reaches_the_frame_in_progress_which_then_is_missing() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = folder.path().join("x.png");
+        let terminal = Terminal::new(true, false);
+        let sequence = || Sequence::resume(parse_frames("5..8").unwrap(), &output, "a", &terminal);
+        assert_eq!(sequence().first_missing(), Some(5));
+        let whole = sequence().render(&terminal, |one, interrupted| {
+            if one.frame == 7 {
+                interrupted.store(true, Ordering::Relaxed);
+                return FrameEnd::Interrupted;
+            }
+            std::fs::write(&one.path, "").unwrap();
+            FrameEnd::Written
+        });
+        assert!(!whole);
+        assert_eq!(sequence().first_missing(), Some(7));
     }
 }

@@ -140,7 +140,8 @@ impl Terminal {
     fn labeled(&self, label: &str, color: AnsiColor, text: impl Display) {
         let style = Style::new().fg_color(Some(color.into())).bold();
         let prefix = format!("{style}{label}{style:#}: ");
-        self.message(&wrap(&prefix, label.len() + 2, &text.to_string(), stderr_width()));
+        let text = without_error_numbers(&text.to_string());
+        self.message(&wrap(&prefix, label.len() + 2, &text, stderr_width()));
     }
 
     /// Prints a note on standard error, except with `--quiet`.
@@ -307,6 +308,11 @@ impl Terminal {
         Arc::clone(&self.interrupts.flag)
     }
 
+    /// Whether the user has interrupted the command, where it watches for this.
+    pub(super) fn interrupt_flag(&self) -> &AtomicBool {
+        &self.interrupts.flag
+    }
+
     /// Handles interrupts, so that no progress bar is left behind on the terminal.
     fn handle_interrupts(&self) {
         let bars = self.bars.clone();
@@ -345,6 +351,19 @@ struct Interrupts {
     is_handled: OnceLock<()>,
 }
 
+/// A message without the numbers that the system gives its errors: "File exists (os error 17)".
+pub(super) fn without_error_numbers(text: &str) -> String {
+    let mut parts = text.split(" (os error ");
+    let mut short = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once(')') {
+            Some((number, rest)) if number.parse::<i32>().is_ok() => short.push_str(rest),
+            _ => short.extend([" (os error ", part]),
+        }
+    }
+    short
+}
+
 /// The width of standard error in columns, at most [`MAX_WIDTH`]; none if it is not a terminal.
 fn stderr_width() -> Option<usize> {
     let (width, _) = terminal_size_of(io::stderr())?;
@@ -357,5 +376,23 @@ pub(super) fn file_size(bytes: usize) -> String {
         0..1_000 => format!("{bytes} bytes"),
         1_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),
         _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_the_system_have_no_numbers() {
+        let short = without_error_numbers;
+        assert_eq!(
+            short("cannot write a: File exists (os error 17)"),
+            "cannot write a: File exists"
+        );
+        assert_eq!(short("a (os error 2), b (os error -3)!"), "a, b!");
+        for same in ["", "no error", "a (os error x)", "a (os error 2"] {
+            assert_eq!(short(same), same);
+        }
     }
 }

@@ -56,9 +56,10 @@ fn adapters() -> Vec<Adapter> {
 /// Moves the selected adapter to the front. The others stay in the loader's order.
 fn choose(mut adapters: Vec<Adapter>, selector: &AdapterSelector) -> Result<Vec<Adapter>, Failure> {
     if adapters.is_empty() {
-        return Err(Failure::NoDriver(format!(
-            "no Vulkan driver found; {INSTALL_HINT}"
-        )));
+        return Err(Failure::NoDriver(match selector {
+            AdapterSelector::Auto => "no Vulkan driver found".to_owned(),
+            _ => format!("no Vulkan driver found; {INSTALL_HINT}"),
+        }));
     }
     let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
     let find_by_name = |substring: &str| {
@@ -275,6 +276,26 @@ pub fn lavapipe_manifest() -> Option<PathBuf> {
     choose_lavapipe(manifests())
 }
 
+/// Returns whether [`AdapterSelector::Auto`] selects a driver that runs on the CPU, by the names of the
+/// manifests, without loading a driver.
+#[must_use]
+pub fn is_automatic_driver_software() -> bool {
+    is_software_selected(&pinned().unwrap_or_else(manifests))
+}
+
+fn is_software_selected(manifests: &[PathBuf]) -> bool {
+    let begins = |path: &PathBuf, prefix: &str| {
+        let name = path.file_name().unwrap_or_default();
+        name.to_string_lossy().starts_with(prefix)
+    };
+    let has_lavapipe = manifests.iter().any(|path| begins(path, LAVAPIPE_MANIFEST));
+    let is_swiftshader = |path| begins(path, "vk_swiftshader_icd.");
+    has_lavapipe || !manifests.is_empty() && manifests.iter().all(is_swiftshader)
+}
+
+/// What the name of lavapipe's manifest begins with.
+const LAVAPIPE_MANIFEST: &str = "lvp_icd.";
+
 fn choose_lavapipe(manifests: Vec<PathBuf>) -> Option<PathBuf> {
     let name = |path: &Path| {
         path.file_name()
@@ -284,7 +305,7 @@ fn choose_lavapipe(manifests: Vec<PathBuf>) -> Option<PathBuf> {
     };
     let mut lavapipe: Vec<_> = manifests
         .into_iter()
-        .filter(|path| name(path).starts_with("lvp_icd."))
+        .filter(|path| name(path).starts_with(LAVAPIPE_MANIFEST))
         .collect();
     lavapipe.sort_by_key(|path| !name(path).contains(env::consts::ARCH));
     lavapipe.into_iter().next()
@@ -303,5 +324,15 @@ mod tests {
         let one = paths(&["/b/lvp_icd.json"]);
         assert_eq!(choose_lavapipe(one.clone()), Some(one[0].clone()));
         assert_eq!(choose_lavapipe(paths(&["/a/intel_icd.json"])), None);
+    }
+
+    #[test]
+    fn lavapipe_is_selected_beside_other_drivers_and_swiftshader_only_alone() {
+        let selected =
+            |names: &[&str]| is_software_selected(&names.iter().map(PathBuf::from).collect::<Vec<_>>());
+        assert!(selected(&["/a/nvidia_icd.json", "/b/lvp_icd.x86_64.json"]));
+        assert!(selected(&["/c/vk_swiftshader_icd.json"]));
+        assert!(!selected(&["/a/nvidia_icd.json", "/c/vk_swiftshader_icd.json"]));
+        assert!(!selected(&[]), "a loader may find drivers elsewhere");
     }
 }

@@ -42,7 +42,10 @@ mod worker;
 use std::fmt;
 use std::time::Duration;
 
-pub use device::{Driver, INSTALL_HINT, is_pinned_by_user, lavapipe_manifest, manifests, pinned};
+pub use device::{
+    Driver, INSTALL_HINT, is_automatic_driver_software, is_pinned_by_user, lavapipe_manifest, manifests,
+    pinned,
+};
 pub use draw::{DrawOutput, LocalRenderer};
 pub use protocol::{ChannelSampling, PlayedPasses, Readback, ShaderArtifact};
 pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};

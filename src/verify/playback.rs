@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use toyproof_eval::{Number, PassFailure, PassRenderer, Program, Refusal, Settings, UndefinedPolicy};
 use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{BuiltIn, ExprKind};
 use toyproof_image::{Frame, Texture};
 use toyproof_player::{Graph, Player, State, Target};
 #[cfg(feature = "gpu")]
@@ -30,6 +31,21 @@ pub struct PassShader<'a> {
 }
 
 impl PassShader<'_> {
+    /// Whether a pass looks up texels with a filter: in strict arithmetic many operations, which drivers
+    /// compile better than the evaluator.
+    #[must_use]
+    pub fn is_filtering(&self) -> bool {
+        use BuiltIn::{TexelFetch, TexelFetchOffset, TextureSize};
+        let is_filter = |expr: &ExprKind| match expr {
+            ExprKind::BuiltIn { function, .. } => {
+                function.is_texture() && !matches!(function, TextureSize | TexelFetch | TexelFetchOffset)
+            }
+            _ => false,
+        };
+        let mut trees = self.checked.iter().map(|checked| &checked.tree);
+        trees.any(|tree| tree.exprs.iter().any(|(_, expr)| is_filter(&expr.kind)))
+    }
+
     /// Compiles all passes for the evaluator, each in so much time at most.
     ///
     /// # Errors

@@ -1,27 +1,31 @@
 //! `toyproof run`
 
 mod project;
+mod state;
 
 pub(in crate::cli) use project::parse_pass;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::ValueEnum;
+use indicatif::ProgressBar;
 use serde::Serialize;
-use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_diagnostic::{Deadline, grouped, path_name, plural};
 use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::{self as glsl, Checked, Code};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_player::Clock;
 use toyproof_project::PassKind;
+use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
-use crate::cli::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write, short_device};
+use crate::cli::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write, shell_word, short_device};
 use crate::cli::names::{Names, with_suffix};
-use crate::cli::sequence::{self, Frames, Sequence};
+use crate::cli::sequence::{self, FrameEnd, Frames, Sequence};
 use crate::cli::shader::{Shader, Unusable, find};
 use crate::cli::terminal::file_size;
 use crate::cli::{Exit, Terminal, files};
@@ -41,6 +45,8 @@ pub(in crate::cli) struct Args {
     shaders: Vec<PathBuf>,
     /// The image (.png or .exr), a folder, or - for PNG on standard output [default: NAME.png in the current
     /// folder]
+    ///
+    /// A name without an extension is that of a folder.
     #[arg(short, long, value_name = "IMAGE|DIR")]
     output: Option<PathBuf>,
     /// The number type of floats; f64 runs on the CPU
@@ -49,10 +55,11 @@ pub(in crate::cli) struct Args {
     /// The format of the results; `json` needs an output other than standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
-    /// Render frames A to B, at 60 frames per second, into numbered files
+    /// Render frames A to B into numbered files, at the rate of `--fps`
     ///
-    /// The number is inserted before the extension. The same command resumes an interrupted sequence.
-    #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
+    /// The number is inserted before the extension. `--time` is then the time of frame 0. The same command
+    /// resumes an interrupted sequence.
+    #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with = "frame")]
     frames: Option<Frames>,
     /// The frames in a second: they determine the times of frames, `iTimeDelta` and `iFrameRate`
     #[arg(long, value_name = "N", default_value_t = 60.0, value_parser = parse_rate, hide_short_help = true)]
@@ -79,6 +86,9 @@ pub(in crate::cli) struct Args {
     driver: DriverArgs,
 }
 
+/// The rows of an image, for each thread, between two steps of its progress bar: a multiple of a tile's height.
+const ROWS_PER_THREAD: u32 = 64;
+
 /// The number type of floats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum Precision {
@@ -98,7 +108,11 @@ impl Precision {
 pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let inputs_of_frame = args.frame.inputs();
     let load = || inputs_of_frame.load().map_err(|error| error.to_string());
-    let (worker, frame) = match args.driver.worker().and_then(|worker| Ok((worker, load()?))) {
+    let (worker, frame) = match args
+        .driver
+        .patient_worker()
+        .and_then(|worker| Ok((worker, load()?)))
+    {
         Ok(found) => found,
         Err(error) => {
             terminal.error(error);
@@ -113,7 +127,8 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
         (None, _) => PathBuf::from("."),
     };
     let standard = output == Path::new("-");
-    if several && (standard || output.extension().is_some()) {
+    let is_folder = !standard && names_folder(&output);
+    if several && !is_folder {
         let output = path_name(&output);
         terminal.error(format_args!("several images cannot be written to {output}"));
         terminal.help("name a folder with -o");
@@ -124,7 +139,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
         terminal.help("name a file with -o");
         return Exit::Error;
     }
-    let one = standard || (!several && !output.is_dir());
+    let one = !several && !is_folder;
     let mut names = Names::new(&[".png"], &[]);
     let mut exit = Exit::Success;
     let channels = inputs_of_frame.files().collect();
@@ -136,16 +151,21 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
         terminal,
         output: &output,
         worker: worker.filter(|_| args.precision == Precision::F32),
+        prefers_evaluator: args.driver.is_evaluator_equal(),
         frame,
         images: Vec::new(),
     };
     for input in &inputs {
+        if terminal.interrupt_flag().load(Ordering::Relaxed) {
+            exit = Exit::Error;
+            break;
+        }
         let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
+        runner.report_warnings(&shader);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => output.clone(),
             (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), ".png"),
         };
-        terminal.diagnostics(&shader.lints.warnings, &shader.files);
         if let Some(passes) = &shader.passes
             && !matches!(shader.checked, Err(Unusable::Invalid(_)))
         {
@@ -156,15 +176,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
             terminal.diagnostics(&unbound(checked, &shader.lints, &runner.frame), &shader.files);
         }
         exit = exit.max(match args.frames {
-            None => {
-                let spinner = terminal.spinner(&shader.name);
-                let rendered = runner.render(&shader);
-                spinner.finish_and_clear();
-                rendered.map_or_else(
-                    |exit| exit,
-                    |rendered| runner.write(&rendered, &shader.name, &path, true),
-                )
-            }
+            None => runner.one_image(&shader, &path),
             Some(frames) => runner.sequence(&shader, frames, &path),
         });
     }
@@ -180,6 +192,12 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
 fn parse_rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().ok().filter(|rate| (0.001..=1e6).contains(rate));
     rate.ok_or_else(|| "expected a number from 0.001 to 1000000".to_owned())
+}
+
+/// Returns whether a path names a folder, which may not exist yet.
+fn names_folder(path: &Path) -> bool {
+    let text = path.as_os_str().to_string_lossy();
+    path.is_dir() || text.ends_with(std::path::is_separator) || path.extension().is_none()
 }
 
 /// The default name of an image, in the current folder.
@@ -246,14 +264,58 @@ struct Runner<'a> {
     terminal: &'a Terminal,
     /// The file, or the folder.
     output: &'a Path,
-    /// None where the evaluator renders.
+    /// None where there is no driver, or the evaluator is to render.
     worker: Option<Worker>,
+    /// Whether the evaluator renders what it is not slower at than the driver.
+    prefers_evaluator: bool,
     frame: Frame,
     /// The written images.
     images: Vec<WrittenImage>,
 }
 
+/// Why there is no image.
+enum NotRendered {
+    /// An error, which has been reported.
+    Failed(Exit),
+    /// The user interrupted the rendering.
+    Interrupted,
+}
+
+impl From<Exit> for NotRendered {
+    fn from(exit: Exit) -> Self {
+        Self::Failed(exit)
+    }
+}
+
 impl Runner<'_> {
+    /// Reports how many warnings there are: those about the image in full, the others by their number.
+    fn report_warnings(&self, shader: &Shader) {
+        let warnings = shader.lints.warnings.iter().cloned();
+        let (shown, counted): (Vec<_>, Vec<_>) = warnings
+            .partition(|warning| self.terminal.is_verbose() || warning.code == Code::UnsetUniform.as_str());
+        if !self.terminal.is_quiet() {
+            self.terminal.diagnostics(&shown, &shader.files);
+        }
+        if let count @ 1.. = counted.len() as u64 {
+            let warnings = plural(count, "warning", "warnings");
+            let name = shell_word(&shader.name);
+            self.terminal.note(&format!(
+                "{}: {} {warnings}, which `toyproof check {name}` shows",
+                shader.name,
+                grouped(count)
+            ));
+        }
+    }
+
+    /// Renders an image into its file.
+    fn one_image(&mut self, shader: &Shader, path: &Path) -> Exit {
+        match self.render(shader, None) {
+            Ok(rendered) => self.write(&rendered, &shader.name, path, true),
+            Err(NotRendered::Failed(exit)) => exit,
+            Err(NotRendered::Interrupted) => Exit::Error,
+        }
+    }
+
     /// Renders the frames of a shader, each into its file; stops at the first failure.
     fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Exit {
         let mut hasher = DefaultHasher::new();
@@ -262,25 +324,26 @@ impl Runner<'_> {
         }
         let fingerprint = self.fingerprint(hasher);
         let sequence = Sequence::resume(frames, output, &fingerprint, self.terminal);
+        let clock = self.clock(0);
         let mut exit = Exit::Success;
-        let whole = sequence.render(self.terminal, |one| {
-            self.frame = Clock {
-                inputs: self.frame.clone(),
-                rate: self.args.fps,
-                start: 0.0,
-            }
-            .frame(one.frame);
-            exit = match self.render(shader) {
+        let whole = sequence.render(self.terminal, |one, interrupted| {
+            self.frame = clock.frame(one.frame);
+            exit = match self.render(shader, Some(interrupted)) {
                 Ok(rendered) => self.write(&rendered, &shader.name, &one.path, false),
-                Err(exit) => exit,
+                Err(NotRendered::Failed(exit)) => exit,
+                Err(NotRendered::Interrupted) => return FrameEnd::Interrupted,
             };
-            exit == Exit::Success
+            FrameEnd::of(exit == Exit::Success)
         });
-        // Otherwise the record could not be written, which has been reported.
-        if whole || exit != Exit::Success {
-            exit
-        } else {
-            Exit::Error
+        of_sequence(whole, exit)
+    }
+
+    /// The inputs of all frames; the one with this number has the time that the user gives.
+    fn clock(&self, number: i32) -> Clock {
+        Clock {
+            inputs: self.frame.clone(),
+            rate: self.args.fps,
+            start: self.args.frame.start(number, self.args.fps),
         }
     }
 
@@ -294,49 +357,92 @@ impl Runner<'_> {
         };
         postcard::to_stdvec(&any).unwrap_or_default().hash(&mut hasher);
         format!(
-            "{:?} {:?} {:?}",
-            self.args.precision, self.args.driver, self.frame.script
+            "{:?} {:?} {:?} {} {}",
+            self.args.precision,
+            self.args.driver,
+            self.frame.script,
+            self.args.fps,
+            self.args.frame.start(0, self.args.fps)
         )
         .hash(&mut hasher);
         format!("{:016x}", hasher.finish())
     }
 
-    /// Renders the shader; prints the error on failure.
-    fn render(&mut self, shader: &Shader) -> Result<Rendered, Exit> {
+    /// Renders the shader; prints the error on failure. The evaluator shows its progress, and ends early if
+    /// the user interrupts it, unless the image is one of a sequence, whose flag is given.
+    fn render(&mut self, shader: &Shader, interrupted: Option<&AtomicBool>) -> Result<Rendered, NotRendered> {
         let checked = match &shader.checked {
             Ok(checked) => checked,
             Err(Unusable::Invalid(diagnostics)) => {
                 self.terminal.diagnostics(diagnostics, &shader.files);
-                return Err(Exit::ShaderFault);
+                return Err(Exit::ShaderFault.into());
             }
             Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
                 self.terminal.error(error);
-                return Err(Exit::Error);
+                return Err(Exit::Error.into());
             }
         };
+        if self.prefers_evaluator {
+            match self.evaluate::<f32>(checked, interrupted) {
+                Err(failure) if self.worker.is_some() && is_too_large(&failure) => {
+                    self.terminal.detail(&format!(
+                        "{}: {failure}; the Vulkan driver renders it",
+                        shader.name
+                    ));
+                }
+                result => return result.map_err(|failure| self.not_rendered(&failure, shader)),
+            }
+        }
         if let Some(worker) = &mut self.worker {
             let float = self.args.driver.float();
-            let deadline = Deadline::after(self.args.driver.timeout());
+            let deadline = Deadline::after(self.args.driver.explicit_timeout());
+            // A driver shows no progress.
+            let spinner = match interrupted {
+                None => self.terminal.spinner(&shader.name),
+                Some(_) => ProgressBar::hidden(),
+            };
             let lowered = match float.lower_within(checked, &deadline) {
                 Ok(lowered) => lowered,
                 Err(overdue) => {
                     let overdue = [glsl::overdue(overdue)];
                     self.terminal.diagnostics(&overdue, &shader.files);
-                    return Err(Exit::ShaderFault);
+                    return Err(Exit::ShaderFault.into());
                 }
             };
-            match worker.draw(lowered, self.frame.clone(), float) {
+            let drawn = worker.draw(lowered, self.frame.clone(), float);
+            spinner.finish_and_clear();
+            match drawn {
                 Err(failure) if failure.is_without_driver() && self.args.driver.may_fall_back() => {
-                    self.terminal
-                        .warn(format_args!("{failure}; shaders are evaluated on the CPU"));
+                    self.report_no_driver(&failure);
                     self.worker = None;
                 }
-                result => return self.draw_result(result, shader),
+                result => return Ok(self.draw_result(result, shader)?),
             }
         }
-        match self.args.precision {
-            Precision::F32 => self.evaluate::<f32>(checked, shader),
-            Precision::F64 => self.evaluate::<f64>(checked, shader),
+        let evaluated = match self.args.precision {
+            Precision::F32 => self.evaluate::<f32>(checked, interrupted),
+            Precision::F64 => self.evaluate::<f64>(checked, interrupted),
+        };
+        evaluated.map_err(|failure| self.not_rendered(&failure, shader))
+    }
+
+    /// Reports that the evaluator takes the place of a driver. Strict runs have the same bits on both.
+    fn report_no_driver(&self, failure: &Failure) {
+        if self.args.driver.float() == FloatMode::Strict {
+            self.terminal
+                .detail(&format!("{failure}; shaders are evaluated on the CPU"));
+        } else {
+            self.terminal.warn(
+                "no Vulkan driver: shaders are evaluated on the CPU, strictly (`toyproof doctor` has details)",
+            );
+        }
+    }
+
+    /// Reports why the evaluator failed.
+    fn not_rendered(&self, failure: &eval::Failure, shader: &Shader) -> NotRendered {
+        match failure {
+            eval::Failure::Interrupted => NotRendered::Interrupted,
+            failure => NotRendered::Failed(not_evaluated(failure, shader, self.terminal)),
         }
     }
 
@@ -375,6 +481,10 @@ impl Runner<'_> {
             }
             failure => {
                 self.terminal.error(format_args!("{}: {failure}", shader.name));
+                if failure.is_timeout() {
+                    self.terminal
+                        .help("allow more time with --timeout, or render on the CPU with --device cpu");
+                }
                 let shaders_fault = failure.is_invalid() || matches!(failure, Failure::Timeout { .. });
                 if shaders_fault {
                     Exit::ShaderFault
@@ -385,24 +495,45 @@ impl Runner<'_> {
         }
     }
 
-    fn evaluate<N: Number>(&self, checked: &Checked, shader: &Shader) -> Result<Rendered, Exit> {
+    fn evaluate<N: Number>(
+        &self,
+        checked: &Checked,
+        interrupted: Option<&AtomicBool>,
+    ) -> Result<Rendered, eval::Failure> {
         let start = Instant::now();
+        let limit = self.args.driver.explicit_timeout();
         let settings = Settings::<N> {
             undefined: UndefinedPolicy::Plain,
-            deadline: Some(start + self.args.driver.timeout()),
+            deadline: Some(start + limit),
+            interrupt: Some(interrupted.unwrap_or(self.terminal.interrupt_flag())),
             ..Settings::default()
         };
-        let rendered = Program::within(checked, self.args.driver.timeout())
-            .map_err(eval::Failure::from)
-            .and_then(|program| program.render_rows(&self.frame, self.frame.rows(), &settings));
-        match rendered {
-            Ok(rendered) => Ok(Rendered {
-                image: rendered.image,
-                device: "CPU".to_owned(),
-                seconds: start.elapsed().as_secs_f64(),
-            }),
-            Err(failure) => Err(not_evaluated(&failure, shader, self.terminal)),
-        }
+        let height = self.frame.size[1];
+        let bar = match interrupted {
+            None => self.terminal.bar(u64::from(height), "rows"),
+            // The sequence has its own progress bar.
+            Some(_) => ProgressBar::hidden(),
+        };
+        let rows_per_band = if bar.is_hidden() {
+            height
+        } else {
+            ROWS_PER_THREAD * rayon::current_num_threads() as u32
+        };
+        let program = Program::prepared_within(checked, UndefinedPolicy::Plain, Some(limit))?;
+        let bands = (0..height).step_by(rows_per_band as usize);
+        let bands = bands.map(|first| -> Result<Image, eval::Failure> {
+            let rows = first..first.saturating_add(rows_per_band).min(height);
+            let rendered = program.render_rows(&self.frame, rows.clone(), &settings)?;
+            bar.inc(rows.len() as u64);
+            Ok(rendered.image)
+        });
+        let bands = bands.collect::<Result<Vec<_>, _>>();
+        bar.finish_and_clear();
+        Ok(Rendered {
+            image: Image::of_bands(bands?),
+            device: "CPU".to_owned(),
+            seconds: start.elapsed().as_secs_f64(),
+        })
     }
 
     /// Writes an image, and confirms it unless it is one of a sequence.
@@ -436,6 +567,22 @@ impl Runner<'_> {
     }
 }
 
+/// Whether a shader is too large for the evaluator, so that a driver may be able to render it.
+fn is_too_large(failure: &eval::Failure) -> bool {
+    use eval::Refusal::{NoMemory, TooDeep, TooLong};
+    matches!(failure, eval::Failure::Refused(TooLong | TooDeep | NoMemory))
+}
+
+/// The result of a sequence: `exit` is that of its last frame.
+fn of_sequence(is_whole: bool, exit: Exit) -> Exit {
+    // Otherwise it was interrupted, or its record could not be written, which has been reported.
+    if is_whole || exit != Exit::Success {
+        exit
+    } else {
+        Exit::Error
+    }
+}
+
 /// Prints why the evaluator failed.
 pub(in crate::cli) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: &Terminal) -> Exit {
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
@@ -444,6 +591,9 @@ pub(in crate::cli) fn not_evaluated(failure: &eval::Failure, shader: &Shader, te
     }
     let position = report::failure_position(failure, &shader.files);
     terminal.error(format_args!("{}: {failure}{position}", shader.name));
+    if matches!(failure, eval::Failure::Timeout { .. } | eval::Failure::TimeUp) {
+        terminal.help("allow more time with --timeout");
+    }
     let ours = matches!(failure, eval::Failure::Refused(_));
     if ours { Exit::Error } else { Exit::ShaderFault }
 }

@@ -5,20 +5,22 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::path_name;
-use toyproof_eval::{self as eval, PassFailure};
+use indicatif::ProgressBar;
+use toyproof_diagnostic::{grouped, path_name};
+use toyproof_eval::{self as eval, PassFailure, Program};
 use toyproof_glsl::{self as glsl, Filter};
 use toyproof_gpu::{Failure, Worker};
-use toyproof_image::{Image, Texture, input, output};
-use toyproof_player::{Clock, Graph, State, Target};
+use toyproof_image::{Frame, Image, Texture};
+use toyproof_player::{Channel, Clock, Source, State, Target};
 use toyproof_project::{PassKind, Rendering, Tab};
 use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
-use super::{Precision, Rendered, Runner, not_evaluated};
+use super::state::{self, Owner};
+use super::{Precision, Rendered, Runner, is_too_large, not_evaluated, of_sequence};
+use crate::cli::inputs::short_device;
 use crate::cli::passes::target;
 use crate::cli::project::Passes;
-use crate::cli::sequence::{Frames, Sequence};
+use crate::cli::sequence::{FrameEnd, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{Exit, Terminal};
 
@@ -36,9 +38,12 @@ pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     })
 }
 
-/// Reports the inputs whose media are replaced or black.
-fn report_replaced(rendering: &Rendering, name: &str, terminal: &Terminal) {
-    for replaced in &rendering.replaced {
+/// Reports the inputs whose media are replaced or black. `bound` are the channels of the image that the user
+/// gives a texture.
+fn report_replaced(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
+    let is_bound = |&(pass, channel): &(PassKind, usize)| pass == PassKind::Image && bound[channel].is_some();
+    let replaced = rendering.replaced.iter();
+    for replaced in replaced.filter(|replaced| !replaced.readers.iter().all(is_bound)) {
         let medium = replaced.source.medium();
         let source = medium.map_or_else(
             || format!("a {}", replaced.source.source_type().name()),
@@ -51,6 +56,9 @@ fn report_replaced(rendering: &Rendering, name: &str, terminal: &Terminal) {
         });
     }
 }
+
+/// The number of frames before the first one that is shown from which on they are reported.
+const MANY_FRAMES: u64 = 60;
 
 /// Frames in progress.
 enum Playback<'a> {
@@ -112,64 +120,6 @@ impl Playback<'_> {
     }
 }
 
-/// A state in its file.
-#[derive(Debug, Serialize, Deserialize)]
-struct SavedState {
-    /// Identifies the format.
-    format: String,
-    graph: Graph,
-    state: State,
-}
-
-const STATE_FORMAT: &str = "toyproof state 1";
-
-/// Reads a state; none if there is no such file.
-///
-/// # Errors
-/// Why it cannot be used.
-fn read_state(path: &Path, graph: &Graph, size: [u32; 2]) -> Result<Option<State>, String> {
-    let name = path_name(path);
-    let bytes = match input::read(path) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(format!("cannot read {name}: {error}")),
-    };
-    let saved: SavedState = postcard::from_bytes(&bytes)
-        .map_err(|_| format!("{name} is not a state of `toyproof run --state`"))?;
-    if saved.format != STATE_FORMAT {
-        return Err(format!("{name} was written by another version of toyproof"));
-    }
-    if saved.graph != *graph {
-        return Err(format!(
-            "{name} is the state of a project with other passes or inputs"
-        ));
-    }
-    if !saved.state.fits(graph) {
-        return Err(format!("{name} is damaged"));
-    }
-    if saved.state.size != size {
-        let [width, height] = saved.state.size;
-        return Err(format!(
-            "{name} is the state of frames of {width}×{height} pixels"
-        ));
-    }
-    Ok(Some(saved.state))
-}
-
-/// Writes a state as a whole.
-///
-/// # Errors
-/// Why it cannot be written.
-fn write_state(path: &Path, graph: &Graph, state: State) -> Result<(), String> {
-    let saved = SavedState {
-        format: STATE_FORMAT.to_owned(),
-        graph: graph.clone(),
-        state,
-    };
-    let bytes = postcard::to_stdvec(&saved).map_err(|error| error.to_string())?;
-    output::write(path, &bytes).map_err(|error| format!("cannot write {error}"))
-}
-
 /// The frames of a project in progress.
 struct Run<'a> {
     playback: Playback<'a>,
@@ -177,18 +127,9 @@ struct Run<'a> {
     target: Target,
     /// The next frame to render.
     next: i32,
+    /// Whether a frame depends on those before it.
+    has_history: bool,
     terminal: &'a Terminal,
-}
-
-/// The frames to render.
-struct Schedule {
-    /// The frame to show, unless a sequence is.
-    number: i32,
-    /// The next frame to render.
-    next: i32,
-    clock: Clock,
-    /// The state before that frame.
-    state: Option<State>,
 }
 
 /// Why there is no image.
@@ -202,29 +143,62 @@ impl Run<'_> {
     /// Renders the frames up to this one, and returns what the shown pass renders in it.
     fn show(&mut self, number: i32, interrupted: &AtomicBool) -> Result<Rendered, Unshown> {
         let start = Instant::now();
+        if !self.has_history {
+            self.next = number;
+        }
         let bar = self
             .terminal
             .bar((number - self.next).max(0) as u64 + 1, "frames");
-        while self.next < number {
-            if interrupted.load(Ordering::Relaxed) {
-                return Err(Unshown::Interrupted(self.next));
-            }
-            self.playback
-                .render(&self.clock, self.next, None)
-                .map_err(Unshown::Stopped)?;
-            self.next += 1;
-            bar.inc(1);
-        }
-        let image = self.playback.render(&self.clock, number, Some(self.target));
-        let image = image.map_err(Unshown::Stopped)?;
-        self.next = number + 1;
+        let played = self.play_to(number, interrupted, &bar);
         bar.finish_and_clear();
+        let image = played?;
         Ok(Rendered {
             image: image.expect("the shown pass is rendered"),
             device: self.playback.device(),
             seconds: start.elapsed().as_secs_f64(),
         })
     }
+
+    fn play_to(
+        &mut self,
+        number: i32,
+        interrupted: &AtomicBool,
+        bar: &ProgressBar,
+    ) -> Result<Option<Image>, Unshown> {
+        loop {
+            if interrupted.load(Ordering::Relaxed) {
+                return Err(Unshown::Interrupted(self.next));
+            }
+            let wanted = (self.next == number).then_some(self.target);
+            let image = match self.playback.render(&self.clock, self.next, wanted) {
+                Ok(image) => image,
+                Err(Stopped::Evaluator(PassFailure {
+                    failure: eval::Failure::Interrupted,
+                    ..
+                })) => return Err(Unshown::Interrupted(self.next)),
+                Err(stopped) => return Err(Unshown::Stopped(stopped)),
+            };
+            self.next += 1;
+            bar.inc(1);
+            if wanted.is_some() {
+                return Ok(image);
+            }
+        }
+    }
+}
+
+/// The frame of a project whose image reads no other pass, with what its channels read; none if it depends on
+/// earlier frames.
+fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
+    let [image] = rendering.graph.passes() else {
+        return None;
+    };
+    let channels = image.inputs.map(|input| match input {
+        None | Some(Source::Buffer(_)) => Channel::Unbound,
+        Some(Source::Medium(number)) => Channel::Medium(number),
+        Some(Source::Keyboard) => Channel::Keyboard,
+    });
+    Some(eval::bound(frame, channels, &rendering.media))
 }
 
 impl Runner<'_> {
@@ -251,47 +225,101 @@ impl Runner<'_> {
             graph: &rendering.graph,
             media: &rendering.media,
         };
-        let schedule = self.schedule(shader, &rendering.graph)?;
-        let state = schedule.state.as_ref();
-        let timeout = self.args.driver.timeout();
-        let opened = match worker {
-            Some(worker) => self.open(worker, &scheduled, state, shader)?,
-            None => None,
+        if self.args.frames.is_none()
+            && self.args.state.is_none()
+            && let Some(frame) = bound(&rendering, &self.clock(self.frame.frame).frame(self.frame.frame))
+        {
+            (self.worker, self.frame) = (worker.take(), frame);
+            let exit = self.one_image(shader, path);
+            *worker = self.worker.take();
+            return Ok(exit);
+        }
+        let sequence = self.args.frames.map(|frames| {
+            let fingerprint = self.fingerprint_of_project(shader, passes);
+            Sequence::resume(frames, path, &fingerprint, self.terminal)
+        });
+        let has_history = rendering.graph.passes().len() > 1;
+        let first = match (&sequence, self.args.frames) {
+            (Some(sequence), Some(frames)) => sequence.first_missing().unwrap_or(frames.first()),
+            _ => self.args.frame.number(has_history, self.args.fps),
         };
-        let falls_back = opened.is_none();
-        let programs;
+        let clock = self.clock(if sequence.is_some() { 0 } else { first });
+        let owner = Owner::new(passes, &rendering, &shader.files, &clock);
+        let state = self.state(shader, &scheduled, &owner, first)?;
+        let next = self.next(state.as_ref(), first, has_history);
+        self.report_history(shader, next, first);
+        // With a state, the frame in progress is finished, so that it can be written.
+        let interrupted = self.terminal.watch_interrupts(match self.args.state {
+            Some(_) => "the frame in progress is finished first, and the state written",
+            None => "the run ends with the frame in progress",
+        });
+        let interrupt = self.args.state.is_none().then_some(&*interrupted);
+        let limit = self.args.driver.explicit_timeout();
+        let evaluates = worker.is_none()
+            || self.args.precision == Precision::F64
+            || self.prefers_evaluator && !(has_history && scheduled.is_filtering());
+        let mut programs = None;
+        if evaluates {
+            match scheduled.programs(limit) {
+                Err((_, refusal)) if worker.is_some() && is_too_large(&refusal.into()) => {}
+                result => programs = Some(self.programs(result, shader)?),
+            }
+        }
+        let opened = match worker {
+            Some(worker) if programs.is_none() => self.open(worker, &scheduled, state.as_ref(), shader)?,
+            _ => None,
+        };
+        let has_no_driver = opened.is_none() && programs.is_none();
+        let compiled;
         let playback = if let Some(playback) = opened {
             Playback::Device(playback)
         } else {
-            programs = scheduled.programs(timeout).map_err(|(_, refusal)| {
-                not_evaluated(&eval::Failure::Refused(refusal), shader, self.terminal)
-            })?;
+            compiled = match programs {
+                Some(programs) => programs,
+                None => self.programs(scheduled.programs(limit), shader)?,
+            };
+            let state = state.as_ref();
             match self.args.precision {
                 Precision::F32 => {
-                    Playback::Single(CpuPlayback::new(&scheduled, &programs, state, timeout, None))
+                    Playback::Single(CpuPlayback::new(&scheduled, &compiled, state, limit, interrupt))
                 }
                 Precision::F64 => {
-                    Playback::Double(CpuPlayback::new(&scheduled, &programs, state, timeout, None))
+                    Playback::Double(CpuPlayback::new(&scheduled, &compiled, state, limit, interrupt))
                 }
             }
         };
+        self.terminal.detail(&format!(
+            "{}: {} renders the passes",
+            shader.name,
+            short_device(&playback.device())
+        ));
         let mut run = Run {
             playback,
-            clock: schedule.clock,
+            clock,
             target: target(kind),
-            next: schedule.next,
+            next,
+            has_history,
             terminal: self.terminal,
         };
-        let exit = match self.args.frames {
-            None => self.one_frame(&mut run, schedule.number, shader, path),
-            Some(frames) => self.all_frames(&mut run, frames, shader, passes, path),
+        let exit = match sequence {
+            None => self.one_frame(&mut run, first, shader, path, &interrupted),
+            Some(sequence) => self.all_frames(&mut run, sequence, shader),
         };
-        let saved = self.save_state(&mut run, schedule.next, &rendering);
+        let saved = self.save_state(&mut run, next, &owner);
         drop(run);
-        if falls_back {
+        if has_no_driver {
             *worker = None;
         }
         Ok(exit.max(saved))
+    }
+
+    /// Unwraps the programs of the passes; prints why there are none.
+    fn programs(
+        &self,
+        result: Result<Vec<Program>, (usize, eval::Refusal)>,
+        shader: &Shader,
+    ) -> Result<Vec<Program>, Exit> {
+        result.map_err(|(_, refusal)| not_evaluated(&refusal.into(), shader, self.terminal))
     }
 
     /// What renders a pass, with the textures that the user binds to the channels of the image.
@@ -303,7 +331,7 @@ impl Runner<'_> {
         let rendering = passes.rendering(kind);
         let mut rendering = rendering
             .map_err(|error| self.refuse(shader, &error, "`toyproof check` compiles all its tabs"))?;
-        report_replaced(&rendering, &shader.name, self.terminal);
+        report_replaced(&rendering, &self.frame.channels, &shader.name, self.terminal);
         for (channel, texture) in self.frame.channels.iter().enumerate() {
             if let Some(texture) = texture {
                 let has_mipmaps = passes.image().sampling[channel].filter == Filter::Mipmap;
@@ -319,47 +347,62 @@ impl Runner<'_> {
         Ok(rendering)
     }
 
-    /// The frames to render, and the state to start from.
-    fn schedule(&self, shader: &Shader, graph: &Graph) -> Result<Schedule, Exit> {
-        // A frame depends on earlier ones if there is a pass besides the image.
-        let has_history = graph.passes().len() > 1;
-        let arguments = &self.args.frame;
-        let number = arguments.number(has_history, self.args.fps);
-        let clock = Clock {
-            inputs: self.frame.clone(),
-            rate: self.args.fps,
-            start: match self.args.frames {
-                Some(_) => 0.0,
-                None => arguments.start(number, self.args.fps),
-            },
+    /// The state to start from, if there is one, before a frame is shown.
+    fn state(
+        &self,
+        shader: &Shader,
+        passes: &PassShader<'_>,
+        owner: &Owner,
+        first: i32,
+    ) -> Result<Option<State>, Exit> {
+        let Some(file) = &self.args.state else {
+            return Ok(None);
         };
         let refuse = |error: &str| self.refuse(shader, &error, "name another file with --state");
-        let state = match &self.args.state {
-            None => None,
-            Some(file) => read_state(file, graph, clock.inputs.size).map_err(|error| refuse(&error))?,
+        let Some(state) = state::read(file, owner).map_err(|error| refuse(&error))? else {
+            return Ok(None);
         };
-        let first = self.args.frames.map_or(number, Frames::first);
-        let next = match &state {
-            Some(state) if state.frame >= first => {
-                let last = state.frame;
-                return Err(refuse(&format!(
-                    "the state is that of frame {last}, and frame {first} is earlier"
-                )));
-            }
-            Some(state) => state.frame + 1,
-            None if has_history => self.args.warm_up.map_or(0, |frames| {
-                first
-                    .saturating_sub(i32::try_from(frames).unwrap_or(i32::MAX))
-                    .max(0)
-            }),
-            None => first,
-        };
-        Ok(Schedule {
-            number,
-            next,
-            clock,
-            state,
-        })
+        if !state.fits(passes.graph) {
+            return Err(refuse(&format!("{} is damaged", path_name(file))));
+        }
+        if state.frame >= first {
+            let last = state.frame;
+            return Err(refuse(&format!(
+                "the state is that of frame {last}, and frame {first} is earlier"
+            )));
+        }
+        Ok(Some(state))
+    }
+
+    /// The first frame to render, so that frame `first` can be shown.
+    fn next(&self, state: Option<&State>, first: i32, has_history: bool) -> i32 {
+        match (state, self.args.warm_up) {
+            (Some(state), _) => state.frame + 1,
+            (None, _) if !has_history => first,
+            (None, None) => 0,
+            (None, Some(frames)) => first
+                .saturating_sub(i32::try_from(frames).unwrap_or(i32::MAX))
+                .max(0),
+        }
+    }
+
+    /// Reports how many frames are rendered before the first one that is shown.
+    fn report_history(&self, shader: &Shader, next: i32, first: i32) {
+        let count = u64::from(first.abs_diff(next));
+        if next < first && count >= MANY_FRAMES {
+            let help = match (self.args.warm_up, &self.args.state) {
+                (None, None) => {
+                    "; `--warm-up N` renders only the last N of them, which suffices if buffers forget"
+                }
+                _ => "",
+            };
+            self.terminal.note(&format!(
+                "{}: frame {} depends on earlier ones: {} frames are rendered first{help}",
+                shader.name,
+                grouped(u64::from(first.unsigned_abs())),
+                grouped(count)
+            ));
+        }
     }
 
     /// Prints why a project is not rendered.
@@ -378,11 +421,10 @@ impl Runner<'_> {
         named: &Shader,
     ) -> Result<Option<DevicePlayback<'w>>, Exit> {
         let driver = &self.args.driver;
-        match DevicePlayback::open(worker, shader, state, driver.float(), driver.timeout()) {
+        match DevicePlayback::open(worker, shader, state, driver.float(), driver.explicit_timeout()) {
             Ok(playback) => Ok(Some(playback)),
             Err(PlaybackFailure::Gpu(failure)) if failure.is_without_driver() && driver.may_fall_back() => {
-                self.terminal
-                    .warn(format_args!("{failure}; shaders are evaluated on the CPU"));
+                self.report_no_driver(&failure);
                 Ok(None)
             }
             Err(PlaybackFailure::Gpu(failure)) => Err(self.draw_failed(failure, named)),
@@ -393,11 +435,15 @@ impl Runner<'_> {
         }
     }
 
-    fn one_frame(&mut self, run: &mut Run<'_>, number: i32, shader: &Shader, path: &Path) -> Exit {
-        let interrupted = self
-            .terminal
-            .watch_interrupts("the frame in progress is finished first");
-        match run.show(number, &interrupted) {
+    fn one_frame(
+        &mut self,
+        run: &mut Run<'_>,
+        number: i32,
+        shader: &Shader,
+        path: &Path,
+        interrupted: &AtomicBool,
+    ) -> Exit {
+        match run.show(number, interrupted) {
             Ok(rendered) => {
                 self.frame = run.clock.frame(number);
                 self.write(&rendered, &shader.name, path, true)
@@ -406,45 +452,36 @@ impl Runner<'_> {
         }
     }
 
-    fn all_frames(
-        &mut self,
-        run: &mut Run<'_>,
-        frames: Frames,
-        shader: &Shader,
-        passes: &Passes,
-        path: &Path,
-    ) -> Exit {
+    fn all_frames(&mut self, run: &mut Run<'_>, sequence: Sequence, shader: &Shader) -> Exit {
+        let mut exit = Exit::Success;
+        let whole = sequence.render(self.terminal, |one, interrupted| {
+            exit = match run.show(one.frame, interrupted) {
+                Ok(rendered) => {
+                    self.frame = run.clock.frame(one.frame);
+                    self.write(&rendered, &shader.name, &one.path, false)
+                }
+                Err(Unshown::Interrupted(_)) => return FrameEnd::Interrupted,
+                Err(unshown) => self.unshown(unshown, one.frame, shader),
+            };
+            FrameEnd::of(exit == Exit::Success)
+        });
+        of_sequence(whole, exit)
+    }
+
+    /// A digest of everything that the frames of a sequence depend on.
+    fn fingerprint_of_project(&self, shader: &Shader, passes: &Passes) -> String {
         let mut hasher = DefaultHasher::new();
         for checked in &passes.checked {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
         }
         format!(
-            "{:?} {:?} {} {:?}",
+            "{:?} {:?} {:?}",
             passes.project.to_json(&shader.files),
             self.args.pass,
-            self.args.fps,
             self.args.warm_up
         )
         .hash(&mut hasher);
-        let fingerprint = self.fingerprint(hasher);
-        let sequence = Sequence::resume(frames, path, &fingerprint, self.terminal);
-        let never = AtomicBool::new(false);
-        let mut exit = Exit::Success;
-        let whole = sequence.render(self.terminal, |one| {
-            exit = match run.show(one.frame, &never) {
-                Ok(rendered) => {
-                    self.frame = run.clock.frame(one.frame);
-                    self.write(&rendered, &shader.name, &one.path, false)
-                }
-                Err(unshown) => self.unshown(unshown, one.frame, shader),
-            };
-            exit == Exit::Success
-        });
-        if whole || exit != Exit::Success {
-            exit
-        } else {
-            Exit::Error
-        }
+        self.fingerprint(hasher)
     }
 
     /// Prints why a frame is not shown.
@@ -468,12 +505,12 @@ impl Runner<'_> {
     }
 
     /// Writes the state after the last frame, if there is one and the user wants it.
-    fn save_state(&self, run: &mut Run<'_>, first: i32, rendering: &Rendering) -> Exit {
+    fn save_state(&self, run: &mut Run<'_>, first: i32, owner: &Owner) -> Exit {
         let Some(file) = self.args.state.as_ref().filter(|_| run.next > first) else {
             return Exit::Success;
         };
         let saved = match run.playback.state(&run.clock, run.next - 1) {
-            Ok(state) => write_state(file, &rendering.graph, state),
+            Ok(saved) => state::write(file, owner, &saved),
             // The failure of the frame has been reported.
             Err(_) => return Exit::Success,
         };
