@@ -60,6 +60,7 @@ mod program;
 mod projects;
 mod random_draws;
 mod references;
+mod rendering;
 mod repairs;
 mod reports;
 mod requirements;

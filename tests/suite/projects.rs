@@ -260,7 +260,7 @@ fn states_that_do_not_fit_are_refused() {
     refused("8x8", "3", "the state is that of frame 3, and frame 3 is earlier");
     let whole = fs::read(folder.join("s")).unwrap();
     fs::write(folder.join("s"), &whole[..whole.len() / 2]).unwrap();
-    refused("8x8", "5", "s is not a state of");
+    refused("8x8", "5", "s is damaged");
     fs::write(folder.join("s"), "text").unwrap();
     refused("8x8", "5", "s is not a state of");
     // A texture with too few texels: the count stands before them, as the size does.

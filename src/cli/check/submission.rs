@@ -113,7 +113,7 @@ fn identity(
         bytes += file.text().len() as u64;
     }
     for path in image_files(found) {
-        add(&std::fs::read(path).ok()?);
+        add(&input::read(&path).ok()?);
     }
     if let Some(content) = references.content(found) {
         add(&content.ok()?);
