@@ -361,12 +361,17 @@ fn derivatives_point_upward() {
     let folder = tempfile::tempdir().unwrap();
     let shader = "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdx(p.x), dFdy(p.y), 0.0, 1.0); }";
     fs::write(folder.path().join("s.glsl"), shader).unwrap();
-    assert_eq!(
-        toyproof(folder.path(), &["run", "s.glsl", "-o", "s.exr", "--size", "4x4"]).code,
-        0
-    );
-    let image = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
-    assert!(image.pixels().iter().all(|pixel| *pixel == [1.0, 1.0, 0.0, 1.0]));
+    for device in ["lavapipe", "cpu"] {
+        let fixed = [
+            "run", "s.glsl", "-o", "s.exr", "--size", "4x4", "--device", device,
+        ];
+        assert_eq!(toyproof(folder.path(), &fixed).code, 0);
+        let image = toyproof::image::read(&folder.path().join("s.exr")).unwrap();
+        assert!(
+            image.pixels().iter().all(|pixel| *pixel == [1.0, 1.0, 0.0, 1.0]),
+            "{device}"
+        );
+    }
 }
 
 #[test]

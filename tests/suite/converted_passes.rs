@@ -375,6 +375,8 @@ fn the_rust_host_renders_what_run_renders() {
             "9",
             "-o",
             png,
+            "--device",
+            "lavapipe",
         ];
         let run = toyproof(root(), &arguments);
         assert_eq!(run.code, 0, "{name}: {}", run.stderr);
