@@ -65,8 +65,10 @@ mod stage;
 mod token;
 pub mod tree;
 
+use std::collections::HashSet;
+
 pub use codes::{Code, IN_MACRO, MAX_REPORTED, overdue};
-pub use preprocess::ControlComment;
+pub use preprocess::{ControlComment, Expansions};
 pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
 pub use stage::Stage;
@@ -117,6 +119,11 @@ pub struct Checked {
     pub warnings: Vec<Diagnostic>,
     /// The `// toyproof:` comments, which control lints.
     pub control_comments: Vec<ControlComment>,
+    /// The macros, which diagnostics name.
+    pub expansions: Expansions,
+    /// Names in branches of `#if` that are not compiled, and in the replacements of macros: with other macros,
+    /// or a use of them, the shader may use what these names declare.
+    pub unexpanded_names: HashSet<String>,
 }
 
 impl Checked {
@@ -163,6 +170,8 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         stage: options.stage,
         warnings: text.warnings,
         control_comments: text.control_comments,
+        expansions: text.expansions,
+        unexpanded_names: text.unexpanded_names,
     })
 }
 
@@ -176,7 +185,12 @@ pub fn check_declarations(
     file: FileId,
     options: &Options,
 ) -> Result<Vec<Diagnostic>, Diagnostics> {
-    parse(files, file, options).map(|text| text.warnings)
+    parse(files, file, options).map(|text| {
+        let warnings = text.warnings.into_iter();
+        warnings
+            .map(|warning| text.expansions.named(warning, files))
+            .collect()
+    })
 }
 
 /// A text without errors.
@@ -187,6 +201,8 @@ struct Text {
     channels: [SamplerShape; 4],
     warnings: Vec<Diagnostic>,
     control_comments: Vec<ControlComment>,
+    expansions: Expansions,
+    unexpanded_names: HashSet<String>,
 }
 
 fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnostics> {
@@ -195,7 +211,11 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
     let mut text = preprocess::preprocess(files, file, options.stage, deadline);
     deadline.check().map_err(too_slow)?;
     if text.incomplete {
-        return Err(Diagnostics::new(text.diagnostics, files));
+        let named = text.diagnostics.into_iter();
+        let named = named
+            .map(|diagnostic| text.expansions.named(diagnostic, files))
+            .collect();
+        return Err(Diagnostics::new(named, files));
     }
     let source = files.get(file);
     parse::balance(&mut text, source);
@@ -218,17 +238,30 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
         all.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
         if (entry.is_some() || options.stage.entry().is_none()) && !all.iter().any(is_error) {
+            let names = text.unexpanded_names.iter();
             return Ok(Text {
                 tree: checker.tree,
                 entry,
                 channels: channels.shapes,
                 warnings: all,
                 control_comments: text.control_comments,
+                unexpanded_names: names.map(|&name| text.interner.text(name).to_owned()).collect(),
+                expansions: text.expansions,
             });
         }
         let mut reported = Vec::new();
         for diagnostic in all {
-            codes::push_limited(&mut reported, diagnostic);
+            let notes = diagnostic.notes.len();
+            let diagnostic = text.expansions.named(diagnostic, files);
+            let is_in_macro = diagnostic.notes.len() > notes;
+            // An error in a macro is reported at its first use only.
+            let again = |other: &Diagnostic| {
+                (&other.message, &other.notes, &other.related)
+                    == (&diagnostic.message, &diagnostic.notes, &diagnostic.related)
+            };
+            if !(is_in_macro && reported.iter().any(again)) {
+                codes::push_limited(&mut reported, diagnostic);
+            }
         }
         return Err(Diagnostics::new(reported, files));
     }

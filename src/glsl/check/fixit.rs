@@ -8,17 +8,29 @@ use crate::tree::{BinaryOp, ExprId, ExprKind, Scalar, Type, UnaryOp};
 impl Checker<'_> {
     /// Adds to the diagnostic how to convert the expression to the type, if one fix is likely.
     pub(super) fn with_fixit(&self, diagnostic: Diagnostic, expr: ExprId, to: Type) -> Diagnostic {
-        let diagnostic = match self.fixit(expr, to) {
-            Some((advice, replacement)) => match self.replaced(expr, to, replacement) {
-                Some((span, replacement)) => diagnostic.fix(Fix::new(advice, span, replacement)),
-                None => diagnostic.label(advice),
-            },
+        let diagnostic = match self.fix(expr, to) {
+            Some(Ok(fix)) => diagnostic.fix(fix),
+            Some(Err(advice)) => diagnostic.label(advice),
             None => diagnostic,
         };
         match self.conversion_note(self.ty(expr), to) {
             Some(note) => diagnostic.note(note),
             None => diagnostic,
         }
+    }
+
+    /// The fix that converts the expression to the type, or only advice where the edit is not known.
+    fn fix(&self, expr: ExprId, to: Type) -> Option<Result<Fix, String>> {
+        if to == Type::FLOAT
+            && let Some(quotient) = self.float_quotient(expr)
+        {
+            return Some(quotient);
+        }
+        let (advice, replacement) = self.fixit(expr, to)?;
+        Some(match self.replaced(expr, to, replacement) {
+            Some((span, replacement)) => Ok(Fix::new(advice, span, replacement)),
+            None => Err(advice),
+        })
     }
 
     /// A note that explains why an implicit conversion known from desktop GLSL does not happen.
@@ -174,14 +186,13 @@ impl Checker<'_> {
     pub(super) fn with_related_fixit(&self, diagnostic: Diagnostic, operand: ExprId, to: Type) -> Diagnostic {
         let from = self.ty(operand);
         let place = self.tree[operand].at.spelling;
-        let diagnostic = if let Some((advice, replacement)) = self.fixit(operand, to) {
-            match self.replaced(operand, to, replacement) {
-                Some((span, replacement)) => diagnostic.fix(Fix::new(advice, span, replacement)),
-                None => diagnostic.related(place, advice),
+        let diagnostic = match self.fix(operand, to) {
+            Some(Ok(fix)) => diagnostic.fix(fix),
+            Some(Err(advice)) => diagnostic.related(place, advice),
+            None => {
+                let (to, from) = (self.quoted_type(to), self.quoted_type(from));
+                diagnostic.related(place, format!("expected {to}, found {from}"))
             }
-        } else {
-            let (to, from) = (self.quoted_type(to), self.quoted_type(from));
-            diagnostic.related(place, format!("expected {to}, found {from}"))
         };
         match self.conversion_note(from, to) {
             Some(note) if !diagnostic.notes.contains(&note) => diagnostic.note(note),

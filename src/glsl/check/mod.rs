@@ -11,6 +11,7 @@ mod fixit;
 mod function;
 mod operator;
 mod prelude;
+mod quotient;
 mod scope;
 mod signature;
 mod statement;

@@ -52,7 +52,7 @@ impl Preprocessor<'_> {
                 return token;
             }
             let function = found.parameters.as_ref().map(Vec::len);
-            let body = found.body.clone();
+            let (body, definition) = (found.body.clone(), found.definition);
             let mut used = token.at;
             let mut arguments = Vec::new();
             if let Some(count) = function {
@@ -69,6 +69,9 @@ impl Preprocessor<'_> {
                 if !self.check_argument_count(name, used, &mut arguments, count) {
                     return token;
                 }
+            }
+            if let Some(definition) = definition {
+                self.expansions.add_use(definition, used.span);
             }
             let tokens = self.substitute(body, used, arguments);
             if tokens.len() > self.budget {

@@ -1,6 +1,7 @@
 //! Macros: definitions, `#define`, `#undef`, and predefined macros.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::rc::Rc;
 
 use toyproof_diagnostic::{Diagnostic, FileId, Span};
@@ -23,6 +24,8 @@ pub(super) struct Macro {
     /// The number of its active expansions; while there is one, the name is not expanded.
     pub(super) active_expansions: usize,
     pub(super) predefined: bool,
+    /// Its index in [`Expansions`](super::Expansions); none for a predefined macro.
+    pub(super) definition: Option<usize>,
 }
 
 /// The replacement of a macro.
@@ -48,6 +51,7 @@ impl Macro {
             at,
             active_expansions: 0,
             predefined: false,
+            definition: None,
         }
     }
 
@@ -124,9 +128,16 @@ impl Preprocessor<'_> {
             ));
         }
         // Redefining a macro identically changes nothing, even during its expansion.
-        self.macros
-            .entry(name)
-            .or_insert_with(|| Macro::new(parameters, new, name_at));
+        if let Entry::Vacant(entry) = self.macros.entry(name) {
+            let definition = self
+                .expansions
+                .define(self.interner.text(name), name_at.span, rest);
+            entry.insert(Macro {
+                definition: Some(definition),
+                ..Macro::new(parameters, new, name_at)
+            });
+            self.note_unexpanded(rest);
+        }
         Ok(())
     }
 

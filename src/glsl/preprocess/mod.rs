@@ -7,16 +7,18 @@
 mod condition;
 mod directive;
 mod expand;
+mod expansions;
 mod lexer;
 mod macros;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files, Fix, grouped};
 
 use self::condition::Group;
 pub(crate) use self::directive::DIRECTIVES;
 use self::expand::Stream;
+pub use self::expansions::Expansions;
 pub use self::lexer::ControlComment;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
@@ -36,6 +38,10 @@ pub(crate) struct Preprocessed {
     pub(crate) interner: Interner,
     /// The `// toyproof:` comments.
     pub(crate) control_comments: Vec<ControlComment>,
+    /// The macros and their uses.
+    pub(crate) expansions: Expansions,
+    /// The names in branches that are not compiled, and in the replacements of macros.
+    pub(crate) unexpanded_names: HashSet<Symbol>,
     /// Errors and warnings.
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether errors made so much of the text unusable that the rest must not be parsed.
@@ -129,6 +135,8 @@ pub(crate) fn preprocess(files: &Files, file: FileId, stage: Stage, deadline: &D
         tokens,
         interner: preprocessor.interner,
         control_comments: preprocessor.lexer.control_comments,
+        expansions: preprocessor.expansions,
+        unexpanded_names: preprocessor.unexpanded_names,
         incomplete: preprocessor.gave_up || any_of(&LOSES_TEXT),
         lacks_names: any_of(&LOSES_NAMES),
         diagnostics,
@@ -188,6 +196,8 @@ struct Preprocessor<'a> {
     lexer: Lexer<'a>,
     interner: Interner,
     macros: HashMap<Symbol, Macro>,
+    expansions: Expansions,
+    unexpanded_names: HashSet<Symbol>,
     /// The macro bodies being expanded, innermost last; below them the lexer.
     stream: Stream,
     /// The open `#if` groups.
@@ -221,6 +231,8 @@ impl<'a> Preprocessor<'a> {
             lexer: Lexer::new(file, text),
             interner,
             macros,
+            expansions: Expansions::default(),
+            unexpanded_names: HashSet::new(),
             stream: Stream::Text(Vec::new()),
             groups: Vec::new(),
             line_start: true,
@@ -237,6 +249,15 @@ impl<'a> Preprocessor<'a> {
 
     fn report(&mut self, diagnostic: Diagnostic) {
         push_limited(&mut self.diagnostics, diagnostic);
+    }
+
+    /// Records the names among tokens that are not compiled where they are written.
+    fn note_unexpanded(&mut self, tokens: &[PpToken]) {
+        let names = tokens.iter().filter_map(|token| match token.kind {
+            TokenKind::Word(name) => Some(name),
+            _ => None,
+        });
+        self.unexpanded_names.extend(names);
     }
 
     fn lex(&mut self) -> PpToken {
@@ -270,6 +291,7 @@ impl<'a> Preprocessor<'a> {
                     if self.is_active() {
                         return token;
                     }
+                    self.note_unexpanded(&[token]);
                 }
             }
         }

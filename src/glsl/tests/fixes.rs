@@ -80,6 +80,22 @@ fn no_fix_is_offered_where_the_edit_is_not_known() {
             Some("clamp(x, 0.0, 1.0"),
         ),
         ("float f(float x) { return saturat(x); }", None),
+        // A division of integers is converted at its operands: its result has lost the fraction.
+        ("float f(float x) { return pow(x, 1 / 3); }", Some("1.0 / 3.0")),
+        ("float f(float x) { return 1 / 3 * x; }", Some("1.0 / 3.0")),
+        ("float f(float x) { return x - (1/2); }", Some("1.0/2.0")),
+        (
+            "float f() { float x = -1 / (2 * 3); return x; }",
+            Some("1.0 / (2.0 * 3.0"),
+        ),
+        (
+            "const int N = 3;\nfloat f() { float x = 1 / N; return x; }",
+            Some("1.0 / float(N)"),
+        ),
+        ("#define N 3\nfloat f() { float x = 1 / N; return x; }", None),
+        ("float f(int i) { float x = i / 3; return x; }", None),
+        ("float f() { float x = 010 / 3; return x; }", None),
+        ("float f() { float x = 7 % 3 / 2; return x; }", None),
     ];
     for (text, wanted) in cases {
         let first = errors(&format!("{text}\n{MAIN}")).swap_remove(0);

@@ -471,3 +471,54 @@ fn lenient_conversions_and_initializers_are_explicit_in_the_tree() {
     let scalar = Constructor::Scalar;
     assert!(matches!(tree[left].kind, ExprKind::Construct { constructor, .. } if constructor == scalar));
 }
+
+/// The notes of the errors of two tabs, Common first.
+fn notes_of_tabs(common: &str, image: &str) -> Vec<Vec<String>> {
+    let mut files = Files::default();
+    let common = files.add(File::new("p/common.glsl", common));
+    let image = files.add(File::new("p/image.glsl", image));
+    let joined = files.join("image.glsl", &[common, image]);
+    let errors = check(&files, joined, &Options::default()).unwrap_err();
+    errors.iter().map(|error| error.notes.clone()).collect()
+}
+
+#[test]
+fn an_error_in_a_macro_names_the_macro_and_its_definition() {
+    let main = |statement: &str| format!("void mainImage(out vec4 c, in vec2 p) {{ {statement} }}");
+    let in_common = |definition: &str, statement: &str| {
+        notes_of_tabs(&format!("// library\n\n{definition}\n"), &main(statement))
+    };
+    let note = |name: &str, line: u32| {
+        format!("in the expansion of the macro `{name}`, defined at p/common.glsl:{line}")
+    };
+    for (definition, statement) in [
+        // In the text of the macro.
+        ("#define F(v) bad(v)", "c = vec4(F(p.x));"),
+        ("#define F vec3(1.0, 2.0)", "c = vec4(F, 1.0);"),
+        // An operator of the macro joins an argument with its text.
+        ("#define F(v) (v + vec3(1.0))", "c = vec4(F(p), 1.0);"),
+        ("#define F(v) v.xyz", "c = vec4(F(p), 1.0);"),
+        // The grammar.
+        ("#define F(v) (v * )", "c = vec4(F(p.x));"),
+    ] {
+        let notes = in_common(definition, statement);
+        assert!(notes[0].contains(&note("F", 3)), "{definition}: {notes:?}");
+    }
+    // The macro that contains the error, not the one that is used.
+    let notes = in_common("#define G bad\n#define F(v) (v * G)", "c = vec4(F(p.x));");
+    assert_eq!(notes[0].first(), Some(&note("G", 3)));
+    // The definition in force.
+    let notes = in_common("#define F 1.0\n#undef F\n#define F bad", "c = vec4(F);");
+    assert_eq!(notes[0].first(), Some(&note("F", 5)));
+    // One error for all uses.
+    let twice = in_common("#define F(v) (v + vec3(1.0))", "c = vec4(F(p), F(p));");
+    assert_eq!(twice.len(), 1, "{twice:?}");
+    // An error outside of macros, and in an argument.
+    for statement in ["c = vec4(bad);", "c = vec4(F(bad));", "c = vec4(bad * F(p.x));"] {
+        let notes = in_common("#define F(v) (v)", statement);
+        assert!(
+            !notes.concat().concat().contains("the macro"),
+            "{statement}: {notes:?}"
+        );
+    }
+}
