@@ -13,16 +13,19 @@
 //! ```
 //!
 //! False warnings teach users to ignore all warnings, so each analysis reports only what it is sure of. Only
-//! code reachable from `mainImage` is analyzed. Time is linear in the size of the shader; blocks, whose
+//! code reachable from `mainImage` is analyzed, except for functions that are never called. Time is linear in the size of the shader; blocks, whose
 //! nesting is bounded, are walked recursively, everything else iteratively.
 
 mod allow;
 mod direction;
+mod edges;
 mod equality;
+mod fraction;
 mod iteration;
 mod program;
 mod quadratic;
 mod randomness;
+mod uncalled;
 mod uniformity;
 mod uninit;
 mod unset;
@@ -75,9 +78,12 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let mut findings = Findings::default();
     let quadratics = quadratic::quadratics(&program);
     direction::run(&program, &quadratics, &mut findings);
+    edges::run(&program, files, &mut findings);
     equality::run(&program, &mut findings);
+    fraction::run(&program, &mut findings);
     iteration::run(&program, &mut findings);
     randomness::run(&program, &mut findings);
+    uncalled::run(&program, files, checked, &mut findings);
     uniformity::run(&program, &mut findings);
     unused::run(&program, &mut findings);
     uninit::run(&program, &mut findings);
@@ -108,10 +114,14 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
         .into_iter()
         .partition(|diagnostic| diagnostic.code == Code::NearTangent.as_str());
     warnings.truncate(MAX_REPORTED);
+    let named = |found: Vec<Diagnostic>| {
+        let found = found.into_iter();
+        found.map(|one| checked.expansions.named(one, files)).collect()
+    };
     Lints {
-        warnings,
+        warnings: named(warnings),
         discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
-        maybe_uninitialized: findings.maybe_uninitialized,
+        maybe_uninitialized: named(findings.maybe_uninitialized),
         allowed: allows.runtime_allows(),
     }
 }

@@ -15,12 +15,142 @@ fn randomness() {
         W0005 c.x = mod(cos(f.x) * 1e5, 1.0);
         W0005 const float K = 43758.5; | c.x = fract(sin(f.x) * K);
         W0005 float h(float x) { return fract(sin(x) * 43758.5); } | c.x = h(f.x);
-        -     float h(float x) { return fract(sin(x) * 43758.5); } |
+        W0022 float h(float x) { return fract(sin(x) * 43758.5); } |
         -     c.x = fract(sin(f.x) * 3.0);
         -     c.x = fract(f.x * 43758.5);
         -     c.x = mod(sin(f.x) * 1e5, 3.0);
         -     c.x = sin(f.x) * 43758.5;
         ",
+    );
+}
+
+#[test]
+fn reversed_edges() {
+    cases(
+        "
+        W0021 c.x = smoothstep(1.0, 0.0, f.x);
+        W0021 c.x = smoothstep(0.5, 0.5, f.x);
+        W0021 c.x = smoothstep(-0.2, -0.3, f.x);
+        W0021 c.x = smoothstep(0.5 + 0.01, 0.5 - 0.01, f.x);
+        W0021 const float R = 0.3, W = 0.02; | c.x = smoothstep(R + W, R - W, f.x);
+        W0021 float r = 0.3, w = 0.02; c.x = smoothstep(r + w, r, f.x);
+        W0021 c.xy = smoothstep(vec2(0.0, 1.0), vec2(1.0, 0.5), f);
+        W0021 c.xy = smoothstep(1.0, 0.0, f);
+        W0021 float r = length(f); c.x = smoothstep(r, r - 0.01, f.x);
+        W0021 float r = length(f); c.x = smoothstep(r + 0.02, r - 0.01, f.x);
+        W0021 float r = length(f), px = 2.0 / iResolution.y; c.x = smoothstep(r + px, r - px, f.x);
+        W0021 float px = 1.5 / min(iResolution.x, iResolution.y); c.x = smoothstep(px, 0.0, f.x);
+        W0021 float px = 2.0 / iResolution.y; c.x = smoothstep(px, -px, f.x);
+        W0021 float w = fwidth(f.x); c.x = smoothstep(0.5 + w, 0.5 - w, f.x);
+        W0021 float band(float x, float low, float high) { return smoothstep(low, high, x); } | c.x = band(f.x, 0.4, 0.1);
+        -     c.x = smoothstep(0.0, 1.0, f.x);
+        -     c.x = 1.0 - smoothstep(0.2, 0.5, f.x);
+        -     c.x = smoothstep(f.x, f.y, 0.5);
+        -     c.x = smoothstep(iTime, 0.0, f.x);
+        -     float w = 0.1; if (iTime > 1.0) w = -w; c.x = smoothstep(w, -w, f.x);
+        -     float r = length(f); c.x = smoothstep(r, r + 0.01, f.x);
+        -     float r = length(f); c.x = smoothstep(r, 0.5, f.x);
+        -     float px = 2.0 / iResolution.y; c.x = smoothstep(-px, px, f.x);
+        -     float d = f.x; d -= 1.0; c.x = smoothstep(d, 0.0, f.x);
+        -     float band(float x, float low, float high) { return smoothstep(low, high, x); } | c.x = band(f.x, 0.4, 0.1) + band(f.y, 0.1, 0.4);
+        -     c.xy = smoothstep(vec2(0.0, 0.5), vec2(1.0, 0.6), f);
+        ",
+    );
+    let fix = |call: &str| {
+        let (found, files) = diagnostics(&shader("", &format!("c.x = 2.0 * {call};")));
+        toyproof_diagnostic::json(&found[0], &files)
+            .fix
+            .map(|fix| fix.replacement)
+    };
+    // The edited text is a factor of a product, and keeps the author's text.
+    assert_eq!(
+        fix("smoothstep(0.5, (0.2 + 0.1), length(f))").as_deref(),
+        Some("(1.0 - smoothstep((0.2 + 0.1), 0.5, length(f)))")
+    );
+    assert_eq!(fix("smoothstep(0.5, 0.5, f.x)"), None);
+    let macros = "#define EDGE smoothstep(0.5, 0.2, f.x)\nvoid mainImage(out vec4 c, in vec2 f) { c = vec4(EDGE, EDGE, 0, 1); }";
+    let (found, files) = diagnostics(macros);
+    assert_eq!(found.len(), 1);
+    assert_eq!(toyproof_diagnostic::json(&found[0], &files).fix, None);
+    assert!(
+        found[0]
+            .notes
+            .contains(&"in the expansion of the macro `EDGE`, defined at a:1".to_owned()),
+        "{found:#?}"
+    );
+}
+
+#[test]
+fn functions_that_are_never_called() {
+    cases(
+        "
+        W0022 float shade(float x) { return x; } | c.x = f.x;
+        W0022 float shade(float x) { return x; } float lit(float x) { return shade(x); } | c.x = f.x;
+        -     float shade(float x) { return x; } | c.x = shade(f.x);
+        -     float shade(float x) { return x; } float lit(float x) { return shade(x); } | c.x = lit(f.x);
+        -     float shade(float x) { return x; } float shade(vec2 x) { return x.y; } | c.x = shade(f);
+        -     float shade(float x); | c.x = f.x;
+        -     float one() { return 1.0; } const float K = 1.0; | c.x = one() * K;
+        -     void mainVR(out vec4 c, in vec2 f, in vec3 o, in vec3 d) { c = vec4(d, 1.0); } | c.x = f.x;
+        -     vec2 mainSound(float time) { return vec2(time); } | c.x = f.x;
+        ",
+    );
+    let main = "void mainImage(out vec4 c, in vec2 f) { c = vec4(f, 0.0, 1.0); }";
+    for other in [
+        // Another value of the macro calls it.
+        "#define QUALITY 0\nfloat shade(float x) { return x; }\n#if QUALITY\nfloat used() { return shade(1.0); }\n#endif\n",
+        "float shade(float x) { return x; }\n#define SHADE shade(f.x)\n",
+        "#define DEFINE(name) float name(float x) { return x; }\nDEFINE(shade)\n",
+    ] {
+        assert!(warned(&format!("{other}{main}")).is_empty(), "{other}");
+    }
+    // A call in a comment does not count.
+    let text = format!("float shade(float x) {{ return x; }} // c *= shade(f.x);\n{main}");
+    assert_eq!(warned(&text), ["W0022:1"]);
+    // Of a library, one warning is enough.
+    let library: String = (0..9)
+        .map(|i| format!("float f{i}(float x) {{ return x; }}\n"))
+        .collect();
+    let (found, _) = diagnostics(&format!("{library}{main}"));
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].message, "`f0` and 8 other functions are never called");
+    // Functions of Common are for all tabs.
+    let mut files = Files::default();
+    let common = files.add(File::new("common.glsl", "float shade(float x) { return x; }"));
+    let image = files.add(File::new(
+        "image.glsl",
+        format!("float own(float x) {{ return x; }} {main}"),
+    ));
+    let joined = files.join("image.glsl", &[common, image]);
+    let checked = check(&files, joined, &Options::default()).unwrap();
+    let warnings = lint(&files, &checked, &Deadline::default()).warnings;
+    let messages: Vec<_> = warnings.iter().map(|warning| &*warning.message).collect();
+    assert_eq!(messages, ["the function `own` is never called"]);
+}
+
+#[test]
+fn lost_fractions() {
+    cases(
+        "
+        W0023 c.x = float(1 / 3);
+        W0023 c.xyz = vec3(1 / 2, 0, 0);
+        W0023 c.xyz = vec3(7 / 2);
+        W0023 c.x = pow(f.x, float(1 / 3));
+        -     c.x = float(6 / 3);
+        -     const int N = 7; | c.x = float(N / 2);
+        -     c.x = float(int(f.x) / 3);
+        -     c.x = 1.0 / 3.0;
+        -     int i = 7 / 2; c.x = float(i);
+        -     int a[7 / 2]; a[0] = 1; c.x = float(a[0]);
+        ",
+    );
+    let (found, files) = diagnostics(&shader("", "c.x = float(1 / 3);"));
+    assert_eq!(
+        toyproof_diagnostic::json(&found[0], &files)
+            .fix
+            .unwrap()
+            .replacement,
+        "1.0 / 3.0"
     );
 }
 

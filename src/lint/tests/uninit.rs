@@ -18,7 +18,7 @@ fn uninitialized_reads() {
         W0003 void add(inout float x) { x += 1.0; } | float a; add(a); c.x = a;
         W0003 float a; if (a > 0.0) c.x = 1.0;
         W0003 struct S { float a; }; S s[2]; | c.x = s[0].a;
-        W0003 float g; void set() { g = 1.0; } | c.x = g;
+        W0022,W0003 float g; void set() { g = 1.0; } | c.x = g;
         W0003 struct S { float a, b; }; S s; | s.a = 1.0; c.x = s.b;
         W0003 float a; for (int i = 0; i < 3; i++) { a += f.x; } a = 2.0; c.x = a;
         W0003 float a; if (f.x > 0.0) c.x = a; else a = 1.0;
@@ -71,7 +71,7 @@ fn uninitialized_reads() {
 fn reads_that_flags_and_calls_guard() {
     cases(
         "
-        -     float never() { float a; return a; } |
+        W0022 float never() { float a; return a; } |
         W0004 float a, least = 8.0; for (int i = 0; i < 3; i++) { float d = f.x * float(i); if (d < least) { least = d; a = 1.0; } } c.x = a;
         W0004 float a; int i = int(f.x); if (i == 0) a = 1.0; else if (i == 1) a = 2.0; c.x = a;
         W0004 float a, far = f.y, t = far, s = f.x; if (f.y > 0.0) { a = 1.0; t = 9.0; } if (min(t, s) < far) { if (t < s) c.x = a; }
@@ -151,7 +151,7 @@ fn functions_without_final_return() {
         -     float march(float x) { while (true) { if (x > 9.0) return x; x += 1.0; } } | c.x = march(f.x);
         -     float march(float x) { for (;;) { if (x > 9.0) return x; x += 1.0; } } | c.x = march(f.x);
         -     float pick(float x) { if (x > 1.0) return 2.0; discard; } | c.x = pick(f.x);
-        -     float pick(float x) { if (x > 1.0) return 2.0; } |
+        W0022 float pick(float x) { if (x > 1.0) return 2.0; } |
         ",
     );
     assert_eq!(
