@@ -120,6 +120,14 @@ impl Shader {
         }
     }
 
+    /// The trees of all passes; none of a shader that cannot be used.
+    pub(super) fn trees(&self) -> Vec<&Checked> {
+        match &self.passes {
+            Some(passes) => passes.checked.iter().collect(),
+            None => self.checked.iter().collect(),
+        }
+    }
+
     /// The shader's source text.
     pub(super) fn text(&self, checked: &Checked) -> &str {
         let at = checked.tree[checked.main_image].at;

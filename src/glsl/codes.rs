@@ -110,15 +110,11 @@ codes! {
     MissingPass "W0018" "An input that reads a pass that does not exist",
     SamplerConflict "W0019" "Different samplers of one buffer",
     BufferOrder "W0020" "Buffers that do not run in the order of their names",
-<<<<<<< HEAD
-    // Another finding of a lint.
-    UnsetUniform "W0030" "A uniform that nothing sets",
-=======
     // Further findings of lints.
     ReversedEdges "W0021" "A `smoothstep` whose first edge is not less than the second",
     Uncalled "W0022" "A function that is never called",
     IntegerDivision "W0023" "A division of integers whose fraction is lost",
->>>>>>> 72f21ba (Lints: reversed edges of smoothstep, functions that are never called, divisions of integers whose fraction is lost)
+    UnsetUniform "W0030" "A uniform that nothing sets",
     // Findings while a shader runs.
     UndefinedOperation "W0600" "An operation with an undefined result",
     LongRun "W0601" "Loops that exceed the iteration limit of older drivers",

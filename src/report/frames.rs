@@ -211,10 +211,29 @@ impl Record {
             self.details
                 .push(format!("and in {} more {frames}", grouped(more)));
         }
-        let right = frames.iter().filter(|frame| frame.verdict.is_good()).count() as u64;
+        let numbered = (1_u64..).zip(frames);
+        let not_right: Vec<_> = numbered.filter(|(_, frame)| !frame.verdict.is_good()).collect();
+        let right = (frames.len() - not_right.len()) as u64;
         if right > 0 {
-            self.details
-                .push(format!("right in {} of {count} frames", grouped(right)));
+            let others = match &not_right[..] {
+                [(number, frame)] => format!("frame {} ({})", grouped(*number), frame.label()),
+                several => {
+                    let numbers = several.iter().map(|(number, _)| grouped(*number));
+                    let (mut numbers, more): (Vec<_>, _) = (
+                        numbers.take(MAX_NAMED).collect(),
+                        several.len().saturating_sub(MAX_NAMED),
+                    );
+                    let last = match more {
+                        0 => numbers.pop().unwrap_or_default(),
+                        more => format!("{} more", grouped(more as u64)),
+                    };
+                    format!("frames {} and {last}", numbers.join(", "))
+                }
+            };
+            self.details.push(format!(
+                "right in {} of {count} frames, not in {others}",
+                grouped(right)
+            ));
         }
         let unchecked = (planned - frames.len()) as u64;
         if unchecked > 0 && self.verdict.is_compiled() {
@@ -276,7 +295,7 @@ mod tests {
         let details = [
             "also unstable at 64x36, time 1: it is unstable",
             "also wrong at 64x36, time 3: it is wrong",
-            "right in 1 of 4 frames",
+            "right in 1 of 4 frames, not in frames 2, 3 and 4",
         ];
         assert_eq!(record.details, details);
         assert_eq!(record.seconds.total(), 6.0);
@@ -294,6 +313,29 @@ mod tests {
         let record = in_frames([Verdict::Wrong; 9]);
         assert_eq!(record.details.len(), MAX_NAMED + 1);
         assert_eq!(record.details[MAX_NAMED], "and in 3 more frames");
+    }
+
+    #[test]
+    fn the_frames_that_are_not_right_are_named() {
+        use Verdict::{Correct, Wrong};
+        let last = |verdicts: &[Verdict]| {
+            let record = match *verdicts {
+                [a, b] => in_frames([a, b]),
+                [a, b, c, d, e, f, g, h] => in_frames([a, b, c, d, e, f, g, h]),
+                _ => unreachable!(),
+            };
+            record.details.last().cloned().unwrap_or_default()
+        };
+        assert_eq!(
+            last(&[Correct, Wrong]),
+            "right in 1 of 2 frames, not in frame 2 (64x36, time 1)"
+        );
+        let mut eight = [Wrong; 8];
+        eight[2] = Correct;
+        assert_eq!(
+            last(&eight),
+            "right in 1 of 8 frames, not in frames 1, 2, 4, 5, 6 and 2 more"
+        );
     }
 
     #[test]

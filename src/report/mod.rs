@@ -21,6 +21,7 @@ mod sarif;
 mod submitted;
 mod terminal;
 mod trace;
+mod unused;
 
 pub use assigned::{FunctionRecord, RulesRecord, Violation};
 pub use class::ClassTable;

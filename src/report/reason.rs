@@ -44,6 +44,13 @@ impl Statement {
 #[must_use]
 pub fn state(findings: &Findings, files: &Files) -> Statement {
     let mut statement = state_reason(&findings.reason, files);
+    if let (Reason::NoReference, Some(imprecise)) = (&findings.reason, imprecise(findings)) {
+        statement.reason = format!(
+            "the shader renders, but {} visibly between float32 and double precision {}; there is no reference",
+            of_all(imprecise, ["differs", "differ"]),
+            percentage(imprecise)
+        );
+    }
     if let Some(mistake) = &findings.tolerated_mistake {
         statement.details.push(format!(
             "a known mistake explains these pixels: {}",
@@ -89,6 +96,12 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
     statement
 }
 
+/// The visible difference of float32 from double precision, if it is large enough for a warning.
+fn imprecise(findings: &Findings) -> Option<Share> {
+    let share = Share::differing(&findings.precision.as_ref()?.summary);
+    (share.ratio() > MAX_UNSTABLE).then_some(share)
+}
+
 /// The longest quoted piece of source text, in characters.
 const MAX_EXCERPT: usize = 60;
 
@@ -104,7 +117,9 @@ pub(super) fn excerpt(text: &str) -> String {
 /// States the reason alone.
 pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
     match reason {
-        Reason::NoImage(failure) => Statement::new(without_image(failure, files)),
+        Reason::NoImage(failure) => {
+            Statement::new(without_image(failure, files)).details(loop_text(failure, files))
+        }
         Reason::NotEvaluated { failure, .. } => Statement::new(format!(
             "the shader renders, but cannot be evaluated on the CPU: {failure}"
         ))
@@ -351,6 +366,20 @@ fn without_image(failure: &Failure, files: &Files) -> String {
         | Failure::Gpu(_)
         | Failure::Panic(_) => failure.to_string(),
     }
+}
+
+/// The loop in which the evaluator stopped: the rest of the line on which it begins.
+fn loop_text(failure: &Failure, files: &Files) -> Option<String> {
+    let Failure::Cpu(eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at }) = failure else {
+        return None;
+    };
+    let span = files.origin(at.span);
+    let text = files.get(span.file).text().get(span.start as usize..)?;
+    let line = text.lines().next()?;
+    Some(format!(
+        "the loop does not end, or takes too long: {}",
+        excerpt(line)
+    ))
 }
 
 /// The only error with its position, or the number of errors.

@@ -134,6 +134,7 @@ mod silhouette_precision;
 mod spool;
 mod stochastic;
 pub mod trail;
+pub mod unused;
 
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc;

@@ -216,7 +216,7 @@ pub(super) fn is_deterministic(checked: &Checked) -> bool {
 }
 
 /// All expressions that `main` evaluates, and the initializers of the variables that they name.
-fn reachable_expressions(tree: &Tree, main: FunctionId) -> Vec<ExprId> {
+pub(crate) fn reachable_expressions(tree: &Tree, main: FunctionId) -> Vec<ExprId> {
     let (mut functions, mut variables) = (HashSet::new(), HashSet::new());
     let roots_of = |function: FunctionId| {
         let body = tree[function].body.as_ref();

@@ -14,6 +14,7 @@ use toyproof_scene::Scene;
 use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::repair::{Donors, SearchOptions};
+use toyproof_verify::unused::Unused;
 use toyproof_verify::{Case, Failure, Findings, FromStart, Verdict, unbound, unbound_channels, verify};
 
 use super::Args;
@@ -174,6 +175,12 @@ impl<'a> Checker<'a> {
                     outcome.set_findings(&findings, &shader.files);
                     if let Some(missing) = missing_media(shader, &frame) {
                         outcome.record.set_missing_media(missing);
+                    }
+                    if let Some(Reference::Given(given)) = reference
+                        && let Some(solution) = given.shader()
+                    {
+                        let unused = Unused::new(&shader.trees(), &solution.trees());
+                        outcome.record.add_unused(&unused, &solution.files);
                     }
                     Some(findings)
                 }

@@ -18,6 +18,7 @@ use crate::cli::Terminal;
 use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
 use crate::cli::reference::GivenReference;
 use crate::cli::scenes::{builtin_scenes, read_scene};
+use crate::cli::shader::Shader;
 use crate::report::Record;
 
 /// The scene of a shader.
@@ -62,6 +63,11 @@ pub(super) struct PreparedReference {
 }
 
 impl PreparedReference {
+    /// The shader, if it is one.
+    pub(super) fn shader(&self) -> Option<&Shader> {
+        self.given.shader().map(|(shader, _)| shader)
+    }
+
     /// A warning about pixels that depend on how the shader marches, once a comparison has needed it; none if it
     /// has been given before.
     pub(super) fn march_warning(&self, expected: &Expected) -> Option<String> {

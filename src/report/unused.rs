@@ -1,0 +1,60 @@
+//! What the reference of a wrong shader uses, and the shader does not.
+
+use toyproof_diagnostic::Files;
+use toyproof_verify::Verdict;
+use toyproof_verify::unused::Unused;
+
+use super::Record;
+
+impl Record {
+    /// States what only the reference uses, if the shader is wrong. `files` are those of the reference.
+    pub fn add_unused(&mut self, unused: &Unused, files: &Files) {
+        if self.verdict == Verdict::Wrong {
+            self.details.extend(sentences(unused, files));
+        }
+    }
+}
+
+fn sentences(unused: &Unused, files: &Files) -> Vec<String> {
+    let names: Vec<_> = unused.inputs.iter().map(|name| format!("`{name}`")).collect();
+    let inputs = match &names[..] {
+        [] => None,
+        [only] => Some(only.clone()),
+        [head @ .., last] => Some(format!("{} and {last}", head.join(", "))),
+    };
+    let inputs = inputs.map(|names| format!("the reference reads {names}, the shader does not"));
+    let functions = unused.functions.iter().map(|(name, call)| {
+        let line = files.position(*call).line;
+        format!("`{name}` is never called; the reference calls it at line {line}")
+    });
+    inputs.into_iter().chain(functions).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Span};
+
+    use super::*;
+    use crate::report::record::samples::{correct, record};
+
+    #[test]
+    fn only_a_wrong_shader_gets_the_sentences() {
+        let mut files = Files::default();
+        let file = files.add(File::new("solution.glsl", "a\nb\nshadow()\n"));
+        let unused = Unused {
+            inputs: vec!["iMouse".to_owned(), "iTime".to_owned()],
+            functions: vec![("shadow".to_owned(), Span::new(file, 4, 12))],
+        };
+        let details = |mut record: Record| {
+            record.details.clear();
+            record.add_unused(&unused, &files);
+            record.details
+        };
+        let expected = [
+            "the reference reads `iMouse` and `iTime`, the shader does not",
+            "`shadow` is never called; the reference calls it at line 3",
+        ];
+        assert_eq!(details(record(Verdict::Wrong)), expected);
+        assert!(details(correct()).is_empty());
+    }
+}
