@@ -263,7 +263,7 @@ fn is_number(literal: &Literal) -> bool {
 }
 
 /// A value as the assignment has it.
-fn text(literal: &Literal) -> String {
+pub(super) fn text(literal: &Literal) -> String {
     match literal {
         Literal::Number {
             value,
@@ -291,7 +291,7 @@ fn prototype(tree: &Tree, function: &Function) -> String {
 }
 
 /// A function that can be called in all cases, and how.
-struct Call {
+pub(super) struct Call {
     /// Statements that set the arguments of each case, call the function, and write the compared components into
     /// the color: those of case x in column x, three for each row.
     text: String,
@@ -301,7 +301,7 @@ struct Call {
 
 impl Call {
     /// None if the function's parameters and results do not fit the values of every case.
-    fn new(tree: &Tree, function: &Function, cases: &[FunctionCase]) -> Option<Self> {
+    pub(super) fn new(tree: &Tree, function: &Function, cases: &[FunctionCase]) -> Option<Self> {
         let mut text = String::from("    ivec2 tpAt = ivec2(tpPlace);\n");
         let names: Vec<_> = (0..function.parameters.len())
             .map(|index| format!("tp{index}"))
@@ -345,7 +345,11 @@ impl Call {
     }
 
     /// The components of all results.
-    fn evaluate(&self, cases: &[FunctionCase], subject: &Subject) -> Result<Vec<Vec<f64>>, String> {
+    pub(super) fn evaluate(
+        &self,
+        cases: &[FunctionCase],
+        subject: &Subject,
+    ) -> Result<Vec<Vec<f64>>, String> {
         let main = format!(
             "void mainImage(out vec4 tpColor, in vec2 tpPlace) {{\n{}}}\n",
             self.text
@@ -476,7 +480,7 @@ fn expression(tree: &Tree, ty: Type, literal: &Literal) -> Option<String> {
 
 /// The parts of a type that is composed of others, each with the end of its path; none for scalars, and for types
 /// without values.
-fn parts(tree: &Tree, ty: Type) -> Option<Vec<(String, Type)>> {
+pub(super) fn parts(tree: &Tree, ty: Type) -> Option<Vec<(String, Type)>> {
     let indexed = |count: u32, part: Type| (0..count).map(|index| (format!("[{index}]"), part)).collect();
     match ty {
         Type::Vector(scalar, size) => Some(indexed(u32::from(size), Type::Scalar(scalar))),

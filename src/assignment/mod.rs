@@ -17,6 +17,7 @@
 mod file;
 mod function;
 mod rules;
+mod sample;
 mod template;
 
 use std::path::PathBuf;

@@ -2,9 +2,11 @@
 
 use std::fmt::Write as _;
 
-use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
 use toyproof_image::FrameInputs;
+
+use super::function::Subject;
+use super::sample::sample;
 
 /// The size of the frames of an assignment from a shader, in pixels.
 const SIZE: [u32; 2] = [320, 180];
@@ -12,11 +14,21 @@ const SIZE: [u32; 2] = [320, 180];
 /// The time of the frame that shows motion, in seconds: not a period of common animations.
 const TIME: f32 = 2.3;
 
+/// The example of a test of a function, where the model solution has none: a function that exported scenes have.
+const SAMPLE: &str = "# [[function]]
+# name = \"intersectSphere\"
+# points = 2
+#
+# [[function.case]]
+# arguments = [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, -6.0], 1.5]
+# result = 4.5
+";
+
 /// What a new assignment is made from.
 #[derive(Debug, Clone, Copy)]
 pub enum Model<'a> {
     /// A model solution.
-    Shader(&'a Checked),
+    Shader(&'a Subject<'a>),
     /// A scene.
     Scene {
         /// Whether something in it moves.
@@ -62,10 +74,10 @@ impl Model<'_> {
     }
 
     fn reads(&self, input: Input) -> bool {
-        let Self::Shader(checked) = self else {
+        let Self::Shader(subject) = self else {
             return false;
         };
-        let tree = &checked.tree;
+        let tree = &subject.checked.tree;
         tree.exprs.iter().any(|(_, expr)| match expr.kind {
             ExprKind::Variable(variable) => tree[variable].kind == VariableKind::Input(input),
             _ => false,
@@ -74,16 +86,29 @@ impl Model<'_> {
 
     /// The functions that the model solution defines, apart from `mainImage`.
     fn functions(&self) -> Vec<&str> {
-        let Self::Shader(checked) = self else {
+        let Self::Shader(subject) = self else {
             return Vec::new();
         };
-        let functions = checked.tree.functions.iter().map(|(_, function)| function);
+        let functions = subject
+            .checked
+            .tree
+            .functions
+            .iter()
+            .map(|(_, function)| function);
         let defined = functions.filter(|function| function.body.is_some() && function.name != "mainImage");
         let mut names: Vec<_> = defined.map(|function| function.name.as_str()).collect();
         // Overloads follow each other or not.
         names.sort_unstable();
         names.dedup();
         names
+    }
+
+    /// A test of one of the model solution's functions, as comments.
+    fn sample(&self) -> Option<String> {
+        match self {
+            Self::Shader(subject) => sample(subject),
+            Self::Scene { .. } => None,
+        }
     }
 
     /// The text of an assignment for this model, whose file is named, with comments on all keys.
@@ -108,6 +133,10 @@ impl Model<'_> {
             .replace("{reference}\n", &format!("{reference}\n{tolerance}"))
             .replace("{frames}\n", &frames)
             .replace("{functions}", &names)
+            .replace(
+                "{function}\n",
+                &self.sample().unwrap_or_else(|| SAMPLE.to_owned()),
+            )
     }
 }
 

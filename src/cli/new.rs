@@ -12,7 +12,7 @@ use super::inputs::{LanguageArgs, parse_time_limit};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::scenes::read_scene;
 use super::{Exit, Terminal, project};
-use crate::assignment::{FILE_NAME, Model};
+use crate::assignment::{FILE_NAME, Model, Subject};
 use crate::cli::files;
 
 /// Create a new file from a template
@@ -248,8 +248,15 @@ fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, (
     let reference = ReferenceArgs::given(args.from.clone(), None);
     let given = GivenReference::read(&reference, &args.language, args.timeout, terminal)?.ok_or(())?;
     let (shader, checked) = given.shader().ok_or(())?;
-    let model = Model::Shader(checked);
-    let text = shader.text(checked).as_bytes().to_vec();
+    let subject = Subject {
+        checked,
+        files: &shader.files,
+        text: shader.text(checked),
+        lenient: args.language.is_lenient(),
+        timeout: args.timeout,
+    };
+    let model = Model::Shader(&subject);
+    let text = subject.text.as_bytes().to_vec();
     let frames = load(&model, terminal)?;
     let expected = given.expected(frames.iter(), args.timeout, terminal)?;
     let dependences = expected.iter().filter_map(Expected::march_dependence);
