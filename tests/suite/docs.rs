@@ -112,6 +112,32 @@ fn class_files(folder: &Path) {
     }
 }
 
+/// What the tutorials assume: a student's shader and the scene of its last part, the lines that a lecturer adds to an
+/// assignment, and submissions.
+fn tutorial_files(folder: &Path) {
+    let (student, lecturer) = (
+        "docs/guide/tutorial-student.md",
+        "docs/guide/tutorial-lecturer.md",
+    );
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let [half, large] = ["half", "large"].map(|name| read(&format!("torus/{name}.glsl")));
+    for (path, text) in [
+        ("mine.glsl", block(student, "float intersect(")),
+        ("far.toml", block(student, "screen_distance")),
+        ("additions.toml", block(lecturer, "[rules]")),
+        ("download/Anna Smith_1_assignsubmission_file/torus.glsl", half),
+        ("download/Bo Lee_2_assignsubmission_file/my torus.glsl", large),
+        (
+            "download/Max Weber_3_assignsubmission_file/notes.txt",
+            "I was ill.\n".to_owned(),
+        ),
+    ] {
+        let path = folder.join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+}
+
 /// A folder with the files that the pages assume: the course, submissions of two assignments, one of which
 /// has a file, a rubric, and a class.
 fn assumed_files() -> tempfile::TempDir {
@@ -159,6 +185,7 @@ fn assumed_files() -> tempfile::TempDir {
     ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
+    tutorial_files(folder.path());
     let rubric = block("docs/guide/checking.md", "[compiles]");
     fs::write(folder.path().join("rubric.toml"), rubric).unwrap();
     let scene = block("docs/guide/scenes.md", "[film]");
