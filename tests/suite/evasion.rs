@@ -62,12 +62,15 @@ fn a_pixel_is_wrong_that_differs_whatever_undefined_operations_return() {
 
 #[test]
 fn pixels_that_are_right_for_one_result_are_left_out_and_reported() {
-    let open = UNDEFINED.map(|undefined| {
+    // A remainder is zero in either case.
+    let operations = UNDEFINED.into_iter().filter(|operation| !operation.contains('%'));
+    let operations: Vec<_> = operations.collect();
+    let open = operations.iter().map(|undefined| {
         shader(&format!(
-            "if (p.x < 3.0) {{ {undefined} color += u == 0.5 ? 0.0 : 0.3; }}"
+            "if (p.x < 3.0) {{ {undefined} color += u == 0.5 || u == 0.25 || u == 0.0 ? 0.0 : 0.3; }}"
         ))
     });
-    for (record, undefined) in check(&open).iter().zip(UNDEFINED) {
+    for (record, undefined) in check(&open.collect::<Vec<_>>()).iter().zip(operations) {
         assert_eq!(record["verdict"], "correct", "{undefined}: {record}");
         let reason = record["reason"].as_str().unwrap();
         let words =

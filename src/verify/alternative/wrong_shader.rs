@@ -131,12 +131,10 @@ impl<'a> WrongShader<'a> {
             let mut places = Places::spread(frame.size, frame.size);
             places.rows = places.rows[rows.start as usize..rows.end as usize].to_vec();
             let actual = view.image(self.program, &places)?;
-            let mut in_reference = band.undefined.clone();
-            in_reference.resize(actual.pixels().len(), false);
             let undefined = Undefined {
-                pixels: &vec![false; in_reference.len()],
+                pixels: &vec![false; actual.pixels().len()],
                 substituted: Some(&[]),
-                in_reference: &in_reference,
+                in_reference: &band.undefined,
             };
             let from_row = FromRow {
                 expected,

@@ -34,7 +34,7 @@ pub struct Undefined<'a> {
     pub pixels: &'a [bool],
     /// The shader's images with other results of its undefined operations; none if these have no substitutes.
     pub substituted: Option<&'a [Image]>,
-    /// Those of the reference.
+    /// Those of the reference; empty if none is.
     pub in_reference: &'a [bool],
 }
 
@@ -46,7 +46,7 @@ impl Undefined<'_> {
             None => false,
             Some(images) => differs(actual) && images.iter().all(&differs),
         };
-        match (self.pixels[at], self.in_reference[at]) {
+        match (self.pixels[at], self.in_reference.get(at) == Some(&true)) {
             (_, true) => PixelStatus::Undefined,
             (true, false) if is_wrong => PixelStatus::Differs,
             (true, false) => PixelStatus::Undefined,
