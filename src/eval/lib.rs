@@ -78,7 +78,7 @@ mod texture;
 mod tile;
 mod trace;
 
-pub use build::Refusal;
+pub use build::{MAX_VALUES, Refusal};
 pub use frame::Framebuffer;
 pub use number::{Number, RandomRounding, Seed};
 pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};

@@ -30,15 +30,21 @@ impl ParametricProgram {
     /// The result of an undefined operation is that of a strict GPU run.
     ///
     /// # Errors
-    /// If the shader is too large once its calls are inlined, or takes longer than `limit` to compile.
+    /// If the shader has more than `max_values` values once its calls are inlined, or takes longer than `limit` to
+    /// compile.
     pub fn new(
         checked: &Checked,
         parameters: &[VariableId],
         frame: &Frame,
+        max_values: usize,
         limit: Duration,
     ) -> Result<Self, Refusal> {
         let deadline = Deadline::after(limit);
-        let compiled = Compiled::new(checked, parameters, BuildOptions::default(), &deadline)?;
+        let options = BuildOptions {
+            max_values,
+            ..BuildOptions::default()
+        };
+        let compiled = Compiled::new(checked, parameters, options, &deadline)?;
         let prepared = f64::prepare(&compiled, frame);
         Ok(Self { compiled, prepared })
     }
@@ -234,7 +240,7 @@ mod tests {
     use toyproof_glsl::tree::{Type, Variable, VariableKind};
 
     use super::*;
-    use crate::Program;
+    use crate::{MAX_VALUES, Program};
 
     fn checked(text: &str) -> Checked {
         let mut files = Files::default();
@@ -248,6 +254,11 @@ mod tests {
             for (int i = 0; i < int(p.y); i++) { x += 0.125; }
             c = vec4(flip ? scale * x : x, fract(p.y * 0.1), 0, 1);
         }";
+
+    fn program(checked: &Checked, frame: &Frame) -> ParametricProgram {
+        let limit = Duration::from_secs(9);
+        ParametricProgram::new(checked, &parameters(checked), frame, MAX_VALUES, limit).unwrap()
+    }
 
     fn parameters(checked: &Checked) -> Vec<VariableId> {
         let variables = checked.tree.variables.iter();
@@ -263,17 +274,17 @@ mod tests {
     #[test]
     fn parameters_change_the_colors_and_points_have_those_of_a_whole_image() {
         let checked = checked(TEXT);
+        // Large enough for machine code, if all of it were rendered.
         let frame = Frame {
-            size: [48, 32],
+            size: [96, 64],
             ..Frame::default()
         };
-        let program =
-            ParametricProgram::new(&checked, &parameters(&checked), &frame, Duration::from_secs(9)).unwrap();
+        let program = program(&checked, &frame);
         let image = Program::new(&checked).unwrap();
         let image = image.render(&frame, &Settings::<f64>::default()).unwrap();
         let image = image.framebuffer.image();
         // More points than one batch holds, in an order of their own.
-        let pixels: Vec<[u32; 2]> = (0..1000).map(|at| [at * 7 % 48, at * 5 % 32]).collect();
+        let pixels: Vec<[u32; 2]> = (0..1000).map(|at| [at * 7 % 96, at * 5 % 64]).collect();
         let points: Vec<[f64; 2]> = pixels
             .iter()
             .map(|&[x, y]| [f64::from(x) + 0.5, f64::from(y) + 0.5])
@@ -302,16 +313,16 @@ mod tests {
                 };
                 assert_eq!(color[0], scale * plain[0], "point {at}");
             }
-            assert_eq!(evaluator.iterations(), 32);
+            assert_eq!(evaluator.iterations(), 64);
         });
+        assert!(program.compiled.native.is_empty(), "handlers evaluate points");
     }
 
     #[test]
     fn points_beyond_the_limit_of_iterations_have_no_color() {
         let checked = checked(TEXT);
         let frame = Frame::default();
-        let program =
-            ParametricProgram::new(&checked, &parameters(&checked), &frame, Duration::from_secs(9)).unwrap();
+        let program = program(&checked, &frame);
         let settings = Settings::<f64> {
             max_iterations: 10,
             ..Settings::default()

@@ -38,7 +38,8 @@ pub struct Program {
     plain: OnceLock<Result<Compiled, Refusal>>,
     /// The variant that records traces; compiled on first use.
     traced: OnceLock<Result<Compiled, Refusal>>,
-    /// The time limit for compiling each variant.
+    /// The time limit for compiling the first variant. The others are about as large, and what they are compiled
+    /// for must not depend on the load of the machine.
     limit: Option<Duration>,
 }
 
@@ -51,7 +52,7 @@ impl Program {
         Self::prepared(checked, UndefinedPolicy::Observed)
     }
 
-    /// Compiles a shader with a time limit for each of its variants.
+    /// Compiles a shader with a time limit.
     ///
     /// # Errors
     /// If it is too large once its calls are inlined, or takes longer.
@@ -67,7 +68,7 @@ impl Program {
         Self::prepared_within(checked, variant, None)
     }
 
-    /// Compiles one variant of a shader, with an optional time limit for each variant.
+    /// Compiles one variant of a shader, with an optional time limit; the others are compiled on first use.
     ///
     /// # Errors
     /// If it is too large once its calls are inlined, or takes longer.
@@ -76,7 +77,7 @@ impl Program {
         variant: UndefinedPolicy,
         limit: Option<Duration>,
     ) -> Result<Self, Refusal> {
-        let program = Self {
+        let mut program = Self {
             checked: Arc::new(checked.clone()),
             observing: OnceLock::new(),
             substituted: Default::default(),
@@ -85,6 +86,7 @@ impl Program {
             limit,
         };
         program.code(variant)?;
+        program.limit = None;
         Ok(program)
     }
 

@@ -4,6 +4,7 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::iter::repeat_with;
+use std::sync::OnceLock;
 
 use toyproof_image::Texture;
 
@@ -55,13 +56,16 @@ const MIN_NATIVE_PIXELS: u64 = 4096;
 
 /// A frame that is being rendered.
 pub(crate) struct FrameJob<'a, N: Number> {
+    compiled: &'a Compiled,
     prepared: &'a Prepared<N>,
     textures: &'a [Option<Texture>; 4],
     limits: &'a Limits<'a>,
     settings: &'a Settings<'a, N>,
     floats: Vec<N>,
     words: Vec<u32>,
-    native: Option<Native<'a>>,
+    /// Machine code, made for the first tile that is rendered: points and traces need none. None where it does
+    /// not pay.
+    native: OnceLock<Option<Native<'a>>>,
     underflows: Underflows,
     sites: &'a [Site],
     size: [u32; 2],
@@ -79,10 +83,9 @@ impl<'a, N: Number> FrameJob<'a, N> {
         size: [u32; 2],
     ) -> Self {
         let (floats, words) = prologue(prepared, settings, textures, limits);
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let pays = settings.engine != Engine::Fastest || pixels >= MIN_NATIVE_PIXELS;
         Self {
-            native: pays.then(|| compiled.native(prepared, settings.engine)).flatten(),
+            compiled,
+            native: OnceLock::new(),
             underflows: Underflows::default(),
             prepared,
             textures,
@@ -94,6 +97,17 @@ impl<'a, N: Number> FrameJob<'a, N> {
             size,
             places: None,
         }
+    }
+
+    /// The machine code; none where making it does not pay.
+    fn native(&self) -> Option<Native<'a>> {
+        *self.native.get_or_init(|| {
+            let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
+            let engine = self.settings.engine;
+            let pays = engine != Engine::Fastest || pixels >= MIN_NATIVE_PIXELS;
+            pays.then(|| self.compiled.native(self.prepared, engine))
+                .flatten()
+        })
     }
 
     /// Evaluates the frame at these positions instead of all its pixels.
@@ -158,7 +172,7 @@ impl<'a, N: Number> FrameJob<'a, N> {
                 continue;
             }
             let corner = [left, first];
-            if let Some(native) = self.native {
+            if let Some(native) = self.native() {
                 native.run(batch, self.prepared, &self.underflows, |batch| {
                     self.begin_tile(batch, corner);
                 });

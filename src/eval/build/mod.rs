@@ -29,7 +29,7 @@ use crate::render::Substitute;
 use crate::trace::{CallId, EventId, TraceSchema};
 
 /// The maximum number of values of a program; larger programs are refused before memory runs out.
-const MAX_VALUES: usize = 2_000_000;
+pub const MAX_VALUES: usize = 2_000_000;
 
 /// The maximum number of cells; each rendering thread holds up to 256 bytes for each cell.
 const MAX_CELLS: usize = 1 << 17;
@@ -70,12 +70,24 @@ pub(crate) enum UndefinedMode {
 }
 
 /// The instrumentation that is compiled into a program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BuildOptions {
     /// The treatment of operations that GLSL leaves undefined.
     pub(crate) undefined: UndefinedMode,
     /// Whether traces are recorded.
     pub(crate) trace: bool,
+    /// The maximum number of values.
+    pub(crate) max_values: usize,
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            undefined: UndefinedMode::default(),
+            trace: false,
+            max_values: MAX_VALUES,
+        }
+    }
 }
 
 /// Runs work that may recurse deeply on a thread with a large stack.
@@ -394,7 +406,7 @@ impl Builder<'_> {
         if self.deadline.is_over() {
             self.deadline.check()?;
         }
-        if self.writer.borrow().defs.len().max(self.schema.events.len()) > MAX_VALUES {
+        if self.writer.borrow().defs.len().max(self.schema.events.len()) > self.options.max_values {
             return Err(Refusal::TooLong);
         }
         Ok(())

@@ -51,6 +51,14 @@ use crate::render::Engine;
 #[derive(Debug, Default)]
 pub(crate) struct Cache([[OnceLock<Option<Executable>>; 3]; 2]);
 
+#[cfg(test)]
+impl Cache {
+    /// Whether no machine code was made.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.iter().flatten().all(|code| code.get().is_none())
+    }
+}
+
 /// The machine code of a program for a number type.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Native<'a> {
