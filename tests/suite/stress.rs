@@ -123,6 +123,58 @@ fn planted_mistakes_are_named() {
     assert!(right >= 15, "{right} of 16 are named: {reported:#?}");
 }
 
+/// The convention of a nearest hit: a function replaces `t` by a smaller one.
+const NEAREST: &str = "bool hit(vec3 p, vec3 v, vec4 ball, inout float t) {
+    vec3 f = p - ball.xyz;
+    float b = dot(f, v), c = dot(f, f) - ball.w * ball.w;
+    float root = b * b - c * dot(v, v);
+    if (root < 0.0) { return false; }
+    root = sqrt(root);
+    float near = (-b - root) / dot(v, v);
+    if (near < 0.0001) { near = (-b + root) / dot(v, v); }
+    if (near < 0.0001 || near > t) { return false; }
+    t = near;
+    return true;
+}
+void mainImage(out vec4 c, in vec2 p) { float t = 1e9; c = vec4(hit(vec3(p, 0), vec3(0, 0, 1), vec4(1), t)); }";
+
+#[test]
+fn a_function_that_replaces_t_starts_with_the_largest() {
+    let only_t: RoleMap = [("t".to_owned(), Role::TMax)].into();
+    for map in [RoleMap::new(), only_t] {
+        let findings = examine(NEAREST, "hit", &map);
+        assert_eq!(findings.mistake, None);
+        let example = findings.example.unwrap();
+        assert!(
+            example.assignments.contains(&"t = 3.0e38;".to_owned()),
+            "{example:?}"
+        );
+    }
+    // In a structure, too.
+    let hit = NEAREST
+        .replace("inout float t", "inout Hit h")
+        .replace("near > t", "near > h.t")
+        .replace("    t = near", "    h.t = near")
+        .replace("float t = 1e9", "Hit t = Hit(1e9)");
+    assert_eq!(
+        examine(
+            &format!("struct Hit {{ float t; }};\n{hit}"),
+            "hit",
+            &RoleMap::new()
+        )
+        .mistake,
+        None
+    );
+}
+
+#[test]
+fn a_function_that_never_hits_adds_the_squared_radius_only_if_its_text_does() {
+    let never = NEAREST.replace("near > t", "near < 1e9");
+    assert_eq!(mistake(&never, "hit"), None);
+    let adds = NEAREST.replace("- ball.w * ball.w", "+ ball.w * ball.w");
+    assert_eq!(mistake(&adds, "hit"), Some("radius-added"));
+}
+
 #[test]
 fn correct_functions_are_not_blamed_and_their_limits_are_reported() {
     let findings = examine(TEXTBOOK, "hitSphere", &RoleMap::new());

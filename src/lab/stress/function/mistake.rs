@@ -82,7 +82,7 @@ const CORRECT: Model = Model {
 };
 
 macro_rules! mistakes {
-    ($($name:literal: $description:literal, { $($field:ident: $value:expr),* };)*) => {
+    ($($name:tt: $description:literal, { $($field:ident: $value:expr),* };)*) => {
         /// The mistakes that show with unit directions; the first that fits is reported.
         const MISTAKES: &[(Mistake, Model)] = &[$((
             Mistake { name: $name, description: $description, recoverable: false },
@@ -100,7 +100,7 @@ mistakes! {
     "not-from-inside": "ignores the second root: a ray that starts inside hits nothing", { choice: Choice::NearerAlone };
     "closest-point": "returns the t of the point nearest to the center, not that of the hit", { choice: Choice::Middle };
     "radius-not-squared": "does not square the radius", { square: |r| r };
-    "radius-added": "adds r² instead of subtracting it", { square: |r| -r * r };
+    RADIUS_ADDED: "adds r² instead of subtracting it", { square: |r| -r * r };
     "diameter": "uses the diameter instead of the radius", { square: |r| 4.0 * r * r };
     "sign-of-b": "uses b with the wrong sign", { b: -1.0 };
     "discriminant-without-4": "omits the factor 4 in b² − 4ac", { four: 1.0 };
@@ -110,6 +110,9 @@ mistakes! {
     "discriminant-not-tested": "does not check for a negative discriminant", { tests_discriminant: false };
     "center-ignored": "does not subtract the center from the origin", { subtracts_center: false };
 }
+
+/// The name of the mistake whose formula never hits anything from outside.
+const RADIUS_ADDED: &str = "radius-added";
 
 /// Reported for mistakes that show only with directions that are not unit vectors.
 const UNIT: Mistake = Mistake {
@@ -177,11 +180,13 @@ impl Model {
 }
 
 /// Recognizes the mistake that explains a function's outcomes for unit directions (`unit`) and for directions
-/// of other lengths (`other`).
+/// of other lengths (`other`). A function that never hits anything for another reason has the outcomes of one that
+/// adds the squared radius, so that its text decides (`adds_squared_radius`).
 pub(super) fn recognize(
     unit: &[(RaySphere, Outcome)],
     other: &[(RaySphere, Outcome)],
     behind_is_miss: bool,
+    adds_squared_radius: bool,
 ) -> Option<Mistake> {
     let fits = |model: &Model, outcomes| model.fits(outcomes, behind_is_miss);
     if fits(&CORRECT, unit) {
@@ -221,6 +226,8 @@ pub(super) fn recognize(
             .find(|(_, model)| fits(model, other))
             .map(|(mistake, _)| mistake);
     }
-    let found = MISTAKES.iter().find(|(_, model)| fits(model, unit));
+    let is_written = |mistake: &Mistake| adds_squared_radius || mistake.name != RADIUS_ADDED;
+    let mut found = MISTAKES.iter().filter(|(mistake, _)| is_written(mistake));
+    let found = found.find(|(_, model)| fits(model, unit));
     found.map(|&(mistake, _)| mistake)
 }

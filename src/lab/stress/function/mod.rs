@@ -138,7 +138,12 @@ pub fn examine(
         let outcomes = runner.outcomes::<f64>(&ray_spheres, &convention_f64)?;
         Ok::<_, Failure>(ray_spheres.into_iter().zip(outcomes).collect::<Vec<_>>())
     });
-    let mistake = mistake::recognize(&unit?, &other?, convention_f64.behind_is_miss());
+    let mistake = mistake::recognize(
+        &unit?,
+        &other?,
+        convention_f64.behind_is_miss(),
+        signature.adds_squared_radius,
+    );
     Ok(Findings {
         example: runner.example(settings, &convention_f32, interrupt)?,
         report,
@@ -186,7 +191,12 @@ pub fn test_typical(
     Ok(TypicalResults {
         cases: outcomes.len() as u64,
         right: right as u64,
-        mistake: mistake::recognize(&outcomes, &[], convention.behind_is_miss()),
+        mistake: mistake::recognize(
+            &outcomes,
+            &[],
+            convention.behind_is_miss(),
+            signature.adds_squared_radius,
+        ),
     })
 }
 

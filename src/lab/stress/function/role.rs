@@ -374,7 +374,8 @@ pub(super) fn assign_output_roles(output_leaves: &[Leaf], map: &RoleMap) -> Vec<
         }
     };
     for leaf in output_leaves {
-        if let Some(&role) = map.get(&leaf.path) {
+        // An `inout` parameter may also be an input.
+        if let Some(&role) = map.get(&leaf.path).filter(|role| role.input().is_none()) {
             give(leaf, role);
         }
     }

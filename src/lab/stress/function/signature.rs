@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use thiserror::Error;
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{Direction, Function, Tree, Type, VariableKind};
+use toyproof_glsl::tree::{BinaryOp, Direction, ExprId, ExprKind, Function, Tree, Type, VariableKind};
 
 use super::role::{Role, assign_input_roles, assign_output_roles, check_map, is_sphere, leaves};
 use crate::stress::axis::RaySphere;
@@ -28,6 +28,8 @@ pub struct Signature {
     pub(super) inputs: Vec<(String, Role)>,
     /// The outputs: paths, roles and types.
     pub(super) outputs: Vec<(String, Role, Type)>,
+    /// Whether the shader adds the square of a radius to anything.
+    pub(super) adds_squared_radius: bool,
 }
 
 /// Why no function is recognized, in a sentence.
@@ -153,6 +155,14 @@ impl Signature {
             ));
         }
         let outputs = assign_output_roles(&output_leaves, map);
+        // An `inout` t is compared with the t of nearer hits: it starts as the largest that is accepted.
+        let limits = outputs.iter().filter(|(path, role, ty)| {
+            let is_input = input_leaves.iter().any(|leaf| leaf.path == *path);
+            let has_role = inputs.iter().any(|(input, _)| input == path);
+            *role == Role::T && *ty == Type::FLOAT && is_input && !has_role
+        });
+        let limits: Vec<_> = limits.map(|(path, ..)| (path.clone(), Role::TMax)).collect();
+        inputs.extend(limits);
         if !outputs.iter().any(|(_, role, _)| *role == Role::T) {
             return Err(format!(
                 "no output of {name} is recognized as t; name it with --map, such as --map return.depth=t"
@@ -162,6 +172,7 @@ impl Signature {
             name: name.clone(),
             parameters,
             returns,
+            adds_squared_radius: adds_squared_radius(tree, &inputs),
             inputs,
             outputs,
         })
@@ -237,12 +248,72 @@ impl Signature {
             Role::Center => Some(vector(c)),
             Role::Radius => Some(number(r)),
             Role::Sphere => Some(format!("vec4({}, {})", c.map(number).join(", "), number(r))),
+            Role::TMin | Role::TMax => role.input().map(str::to_owned),
             _ => None,
         };
         let inputs = self.inputs.iter();
         inputs
             .filter_map(|(path, role)| Some(format!("{path} = {};", value(*role)?)))
             .collect()
+    }
+}
+
+/// Whether an expression of the shader adds the square of a radius.
+fn adds_squared_radius(tree: &Tree, inputs: &[(String, Role)]) -> bool {
+    let is_radius = |name: &str| {
+        let normalized_name = name.to_lowercase().replace('_', "");
+        let mut radii = inputs.iter().filter(|(_, role)| *role == Role::Radius);
+        Role::Radius.has_name(&normalized_name)
+            || radii.any(|(path, _)| path.rsplit('.').next() == Some(name))
+    };
+    let is_square = |id: ExprId| match tree[id].kind {
+        ExprKind::Binary {
+            op: BinaryOp::Multiply,
+            left,
+            right,
+        } => place_name(tree, left).is_some_and(|(name, path)| {
+            is_radius(&name) && place_name(tree, right).is_some_and(|(_, other)| other == path)
+        }),
+        _ => false,
+    };
+    tree.exprs.iter().any(|(_, expr)| match expr.kind {
+        ExprKind::Binary {
+            op: BinaryOp::Add,
+            left,
+            right,
+        } => is_square(left) || is_square(right),
+        ExprKind::Assign {
+            op: Some(BinaryOp::Add),
+            value,
+            ..
+        } => is_square(value),
+        _ => false,
+    })
+}
+
+/// The last name of a variable, a member or a component, and what identifies it; none of other expressions. The
+/// fourth component of a vector that holds a sphere is named `r`.
+fn place_name(tree: &Tree, id: ExprId) -> Option<(String, Vec<String>)> {
+    match &tree[id].kind {
+        ExprKind::Variable(variable) => {
+            let name = tree[*variable].name.clone();
+            Some((name, vec![format!("{variable:?}")]))
+        }
+        ExprKind::Member { structure, member } => {
+            let (_, mut path) = place_name(tree, *structure)?;
+            let Type::Struct(of) = tree[*structure].ty else {
+                return None;
+            };
+            let name = tree[of].members.get(*member)?.name.clone();
+            path.push(name.clone());
+            Some((name, path))
+        }
+        ExprKind::Swizzle { vector, components } => {
+            let (_, mut path) = place_name(tree, *vector)?;
+            path.push(format!("{:?}", components.components()));
+            (components.components() == [3]).then(|| ("r".to_owned(), path))
+        }
+        _ => None,
     }
 }
 
