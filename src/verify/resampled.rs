@@ -86,6 +86,8 @@ pub(super) struct Estimates {
     pub(super) pixels: Vec<Estimate>,
     /// Whether neighbors use the same random numbers, so that the variance of sums is unknown.
     pub(super) are_correlated: bool,
+    /// The correlation of the noise of neighbors in x or in y, whichever is less.
+    pub(super) axis_correlation: f64,
 }
 
 /// The estimates for a pixel.
@@ -191,6 +193,7 @@ impl Resampled for Tracer<f64> {
         Some(Arc::new(Estimates {
             pixels: pixels(places).into_par_iter().map(estimate).collect(),
             are_correlated: false,
+            axis_correlation: 0.0,
         }))
     }
 

@@ -15,6 +15,8 @@ use toyproof_glsl::tree::{
     walk,
 };
 
+use crate::pixel_dependence::PixelDependence;
+
 /// The smallest absolute value of an integer that is a constant of a hash.
 const MIN_HASH_INTEGER: u32 = 1 << 16;
 
@@ -64,6 +66,21 @@ impl Reseeding {
         }
         tree.clear_cached_values();
         checked
+    }
+
+    /// Whether some of these operations compute with the position of the pixel, by the flow of data. A sampler that
+    /// counts its numbers in each pixel alike does not, though a loop may take more of them in some pixels.
+    pub(super) fn depends_on_pixel(self, checked: &Checked) -> bool {
+        let mut salted = checked.tree.clone();
+        let mut is_changed = |id: ExprId| {
+            let before = salted.exprs.len();
+            self.change(&mut salted, id, 1);
+            salted.exprs.len() > before
+        };
+        let changed: Vec<ExprId> = checked.tree.exprs.ids().filter(|&id| is_changed(id)).collect();
+        let dependence = PixelDependence::of(checked);
+        // Without such operations, only the shift of the pixel yields other numbers.
+        changed.is_empty() || changed.into_iter().any(|id| dependence.reaches(id))
     }
 
     /// The offset of pixels, in pixels: enough to change any hash of their coordinates, and nothing else.
@@ -370,6 +387,18 @@ mod tests {
         }
         let global = checked("const int BITS = 6 ^ 3;\nfloat random(vec2 p) { return p.x * float(BITS); }");
         assert!(!is_deterministic(&global));
+    }
+
+    #[test]
+    fn a_counter_is_no_hash_of_the_position() {
+        let depends = |random: &str| Reseeding::all()[0].depends_on_pixel(&checked(random));
+        for hash in HASHES {
+            assert!(depends(hash), "{hash}");
+        }
+        let counter = "uint state = 1u;
+            float next() { state = state * 747796405u + 2891336453u; return float(state >> 8) / 16777216.0; }
+            float random(vec2 p) { float sum = 0.0; for (int i = 0; i < int(p.x); i++) sum += next(); return sum / p.x; }";
+        assert!(!depends(counter));
     }
 
     #[test]

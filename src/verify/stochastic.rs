@@ -14,6 +14,7 @@ use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 
 use crate::compare::{CheckSummary, PixelStatus, RandomPixel, Regions, means, uses_scene_numbers};
 use crate::decide::{Checks, MAX_VARIANCE_RATIO, MeanComparison, OtherRandomNumbers};
+use crate::expected::draws_by_random_numbers;
 use crate::mistake::NoisyPixel;
 use crate::notes::sample_pixels;
 use crate::replicates::{self, Incomparable};
@@ -41,6 +42,8 @@ pub(super) struct Stochastic<'a> {
     size: [u32; 2],
     /// The rows of a scene.
     rows: Option<SampledRows<'a>>,
+    /// Whether it is an image, whose noise is unknown.
+    is_image: bool,
 }
 
 /// The colors of a shader and of a scene in rows spread over an image.
@@ -67,6 +70,7 @@ impl<'a> Stochastic<'a> {
             reference,
             size,
             rows,
+            is_image: matches!(expected, Expected::Image(_)),
         };
         match expected {
             Expected::Scene(_) => {
@@ -101,6 +105,10 @@ impl<'a> Stochastic<'a> {
         }
         let is_random = self.differs_randomly(algorithm);
         if !is_random && !replicates::is_random(program, case, reference, algorithm, deadline) {
+            return None;
+        }
+        // An image of such a shader has no noise.
+        if self.is_image && draws_by_random_numbers(case.checked, case.frame) {
             return None;
         }
         let samples = reference.samples();

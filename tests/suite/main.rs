@@ -76,6 +76,7 @@ mod terminal;
 mod trade;
 mod ui;
 mod unstable;
+mod value_noise;
 mod wording;
 #[cfg(target_os = "linux")]
 mod write_faults;

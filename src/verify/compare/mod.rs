@@ -26,7 +26,7 @@ pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
 pub(crate) use mean::{MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION};
 pub use mean::{MeanTest, RandomPixel, means, uses_scene_numbers};
 pub use region::{Region, Regions};
-pub(crate) use replicate::is_correlated;
 pub use replicate::{
     RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,
 };
+pub(crate) use replicate::{is_correlated, neighbor_correlations};

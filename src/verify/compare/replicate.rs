@@ -272,8 +272,16 @@ fn z_score(excess: f64, variance: f64) -> f64 {
     }
 }
 
-/// Whether the noise of neighbors, their deviation from their own means, is correlated in some direction.
+/// Whether the noise of neighbors is correlated in some direction.
 pub(crate) fn is_correlated(pixels: &[ReplicatedPixel]) -> bool {
+    neighbor_correlations(pixels)
+        .into_iter()
+        .any(|correlation| correlation > MIN_CORRELATION)
+}
+
+/// The correlation of the noise of neighbors, their deviation from their own means: in x, in y and along both
+/// diagonals.
+pub(crate) fn neighbor_correlations(pixels: &[ReplicatedPixel]) -> [f64; 4] {
     let places: std::collections::HashMap<[u32; 2], &ReplicatedPixel> =
         pixels.iter().map(|pixel| (pixel.at, pixel)).collect();
     let correlation = |[dx, dy]: [i32; 2]| {
@@ -299,10 +307,7 @@ pub(crate) fn is_correlated(pixels: &[ReplicatedPixel]) -> bool {
         }
         covariance / (own * other).sqrt().max(f64::MIN_POSITIVE)
     };
-    let directions = [[1, 0], [0, 1], [1, 1], [1, -1]];
-    directions
-        .into_iter()
-        .any(|direction| correlation(direction) > MIN_CORRELATION)
+    [[1, 0], [0, 1], [1, 1], [1, -1]].map(correlation)
 }
 
 /// Whether the difference of the means exceeds what the reference's noise can explain, even if pixels share it.

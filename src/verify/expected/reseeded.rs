@@ -1,16 +1,16 @@
 //! Reference shaders with other random numbers, and images, which have none.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{ParametricProgram, Places, Point, Program, Settings, UndefinedPolicy};
-use toyproof_image::Image;
+use toyproof_eval::{MAX_VALUES, ParametricProgram, Places, Point, Program, Settings, UndefinedPolicy};
+use toyproof_glsl::Checked;
+use toyproof_image::{Frame, Image};
 
 use super::image::ImageReference;
-use super::shader::ShaderReference;
-use crate::TOTAL_TIME_FACTOR;
-use crate::compare::{ReplicatedPixel, is_correlated};
+use super::shader::{DEFAULT_TOLERANCE, ShaderReference};
+use crate::bounds::{EXPLANATION_TIMEOUT, MAX_ITERATIONS};
+use crate::compare::{ReplicatedPixel, is_correlated, neighbor_correlations};
 use crate::replicates::{self, MAX_DISTANCE_RATIO, MIN_RANDOM_CHANGE, RANDOMNESS_GRID};
 use crate::resampled::{
     ESTIMATE_SETS, Estimate, Estimates, RESAMPLES, Resampled, differ_by, mean, pixels, variance,
@@ -26,6 +26,10 @@ const MAX_RATIO: f64 = MAX_DISTANCE_RATIO * (TRIED_SETS + 1) as f64 / (TRIED_SET
 
 /// The largest variance of correlated noise as a share of the variance of the image's pixels.
 const MAX_NOISE_SHARE: f64 = 0.5;
+
+/// The least correlation of neighbors, in x and in y, of noise that is smooth: value noise of several octaves has
+/// more, though the cells of the last ones are as small as pixels.
+const MIN_SMOOTHNESS: f64 = 0.6;
 
 type Colors = Vec<[f64; 3]>;
 
@@ -47,8 +51,8 @@ impl ShaderReference {
         })
     }
 
-    /// Whether a reseeding changes pixels, and the unchanged image is like the changed ones. None if the time
-    /// limit is exceeded.
+    /// Whether a reseeding changes pixels, and the unchanged image is like the changed ones. None if a pixel runs
+    /// too many loop iterations.
     fn changes_noise_alone(&self, reseeding: Reseeding, own: &Colors, places: &Places) -> Option<bool> {
         let first = self.set(Some(reseeding), 1, places)?;
         let changes = |(&a, &b): (&[f64; 3], &[f64; 3])| differ_by(a, b, MIN_RANDOM_CHANGE);
@@ -72,7 +76,7 @@ impl ShaderReference {
     fn set(&self, reseeding: Option<Reseeding>, set: u32, places: &Places) -> Option<Colors> {
         let settings = Settings::<f64> {
             undefined: UndefinedPolicy::Plain,
-            deadline: Some(Instant::now() + self.timeout * TOTAL_TIME_FACTOR),
+            max_iterations: MAX_ITERATIONS,
             ..Settings::default()
         };
         let image = match reseeding {
@@ -89,9 +93,9 @@ impl ShaderReference {
 
     /// The colors of some pixels with a set of random numbers.
     fn pixels(&self, reseeding: Reseeding, set: u32, pixels: &[[u32; 2]]) -> Option<Colors> {
-        let limit = self.timeout * TOTAL_TIME_FACTOR;
         let checked = reseeding.of(self.checked(), set);
-        let program = ParametricProgram::new(&checked, &[], &self.frame, limit).ok()?;
+        let program =
+            ParametricProgram::new(&checked, &[], &self.frame, MAX_VALUES, EXPLANATION_TIMEOUT).ok()?;
         let [dx, dy] = Reseeding::shift(set);
         // Derivatives need whole quads.
         let corners = [[0, 0], [1, 0], [0, 1], [1, 1]];
@@ -104,7 +108,7 @@ impl ShaderReference {
         });
         let quads: Vec<Point> = quads.collect();
         let settings = Settings::<f64> {
-            deadline: Some(Instant::now() + limit),
+            max_iterations: MAX_ITERATIONS,
             ..Settings::default()
         };
         let colors = program.evaluate(&self.frame, &settings, |evaluator| evaluator.colors(&quads));
@@ -130,21 +134,42 @@ impl ShaderReference {
             .zip(&estimates)
             .filter(|(_, estimate)| estimate.is_random(self));
         let noise: Vec<ReplicatedPixel> = random.map(|(at, estimate)| estimate.replicated(at)).collect();
+        let [x, y, ..] = neighbor_correlations(&noise);
         Some(Estimates {
             are_correlated: is_correlated(&noise),
+            axis_correlation: x.min(y),
             pixels: estimates,
         })
     }
 
-    /// Whether the random numbers determine what the image shows, such as the places of objects, rather than
-    /// its noise: neighboring pixels change together, and by as much as pixels differ from each other.
-    fn is_content(estimates: &Estimates) -> bool {
+    /// Whether the random numbers determine what the image shows, such as the places of objects or the shape of
+    /// clouds, rather than its noise: neighboring pixels change together, and by as much as pixels differ from each
+    /// other; or they change smoothly, though the numbers depend on the pixel, as those of a lattice do. A
+    /// sampler's numbers differ from pixel to pixel, or do not depend on it.
+    fn is_content(&self, estimates: &Estimates) -> bool {
+        let is_lattice = || {
+            let reseeding = self.reseeding();
+            reseeding.is_some_and(|reseeding| reseeding.depends_on_pixel(self.checked()))
+        };
+        if estimates.axis_correlation > MIN_SMOOTHNESS && is_lattice() {
+            return true;
+        }
         let own: Colors = estimates.pixels.iter().map(|estimate| estimate.own).collect();
         let noise = estimates.pixels.iter().map(|estimate| estimate.variance);
         let noise: f64 = noise.map(|variance| variance.iter().sum::<f64>()).sum();
         let of_image = variance(&own).iter().sum::<f64>() * own.len() as f64;
         estimates.are_correlated && noise > MAX_NOISE_SHARE * of_image
     }
+}
+
+/// Whether a shader has random numbers that determine what it shows, rather than its noise.
+pub(crate) fn draws_by_random_numbers(checked: &Checked, frame: &Frame) -> bool {
+    let Ok(program) = Program::prepared(checked, UndefinedPolicy::Plain) else {
+        return false;
+    };
+    let shader =
+        ShaderReference::unevaluated(Arc::new(program), frame, DEFAULT_TOLERANCE, EXPLANATION_TIMEOUT);
+    shader.reseeding().is_some() && !shader.is_stochastic()
 }
 
 fn colors(image: &Image) -> Colors {
@@ -162,7 +187,7 @@ fn squared_distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 impl Resampled for ShaderReference {
     fn is_stochastic(&self) -> bool {
         let estimates = || self.estimates(&replicates::places(self.frame.size, self));
-        self.reseeding().is_some() && estimates().is_none_or(|estimates| !Self::is_content(&estimates))
+        self.reseeding().is_some() && estimates().is_none_or(|estimates| !self.is_content(&estimates))
     }
 
     fn estimates(&self, places: &Places) -> Option<Arc<Estimates>> {
