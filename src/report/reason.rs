@@ -269,11 +269,14 @@ fn permitted(difference: Difference, text: &str, differing: Share) -> Statement 
     .detail(text)
 }
 
+/// The largest number of standard deviations that is stated: more says no more.
+const MAX_DEVIATIONS: f64 = 100.0;
+
 fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement {
     let whose = sampler.map_or("reference", |_| "scene's sampler");
     let own_name = sampler.map_or_else(String::new, |sampler| format!(", `{}`", sampler.name()));
     let own_numbers = format!(
-        "{} because the shader does not use the random numbers of the {whose}{own_name}",
+        "{}: the shader's random numbers, or what it computes from them, are not those of the {whose}{own_name}",
         of_all(pixels, ["differs", "differ"]),
     );
     let other_numbers = format!("{own_numbers}; means were compared instead");
@@ -286,6 +289,9 @@ fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement 
         } => {
             let much = match deviations {
                 None => String::new(),
+                Some(deviations) if deviations > MAX_DEVIATIONS && deviations.is_finite() => {
+                    format!(", by more than {MAX_DEVIATIONS} standard deviations")
+                }
                 Some(deviations) if deviations.is_finite() => {
                     format!(", by {deviations:.0} standard deviations")
                 }

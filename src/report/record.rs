@@ -18,6 +18,9 @@ use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRec
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
 
+/// What a record states if no fix was searched for.
+const UNSEARCHED: &str = "fixes are not searched for in shaders of several passes";
+
 /// All shaders of one run.
 #[derive(Debug, Serialize)]
 pub struct Report {
@@ -121,6 +124,10 @@ pub struct Record {
     /// Whether the search for a fix ended before all edits were tried.
     #[serde(default)]
     pub is_search_cut: bool,
+    /// Whether the time limit of explanations, which only a hang reaches, cut what explains the verdict: another run
+    /// may find more.
+    #[serde(default)]
+    pub is_cut_by_time: bool,
     /// The likely cause of the verdict in the shader's text; null if none is known.
     #[serde(default)]
     pub cause: Option<Position>,
@@ -167,6 +174,7 @@ impl Record {
             fix: None,
             suspects: Vec::new(),
             is_search_cut: false,
+            is_cut_by_time: false,
             cause: None,
             growth: None,
             frames: None,
@@ -190,6 +198,7 @@ impl Record {
         if let Some(search) = &findings.search {
             self.set_search(search, files);
         }
+        self.is_cut_by_time = findings.is_cut_by_time;
         self.cause = findings.cause.map(|cause| files.position(cause).into());
         self.algorithm = answer(&findings.algorithm);
         self.precision = answer(&findings.precision);
@@ -227,6 +236,11 @@ impl Record {
         {
             self.mistake = Some(Mistake::of(&repair.mistake));
         }
+    }
+
+    /// States that no fix was searched for, because the image depends on other passes.
+    pub fn set_unsearched(&mut self) {
+        self.details.push(UNSEARCHED.to_owned());
     }
 
     /// Records why there is no image, apart from the diagnostics.
@@ -571,7 +585,7 @@ mod tests {
         let read: Record = serde_json::from_value(json.clone()).unwrap();
         assert_eq!(serde_json::to_value(&read).unwrap(), json);
         let mut older = json;
-        for key in ["fix", "suspects", "is_search_cut"] {
+        for key in ["fix", "suspects", "is_search_cut", "is_cut_by_time"] {
             older.as_object_mut().unwrap().remove(key).unwrap();
         }
         let read: Record = serde_json::from_value(older).unwrap();

@@ -136,6 +136,7 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
             }
             lines.extend(record.is_search_cut.then(|| layout.below("", CUT_SEARCH)));
         }
+        lines.extend(record.is_cut_by_time.then(|| layout.below("", CUT_BY_TIME)));
     }
     if layout.detail >= Detail::Full {
         lines.extend(check_lines(record).iter().map(|line| layout.below("", line)));
@@ -234,6 +235,10 @@ fn suspect_texts(record: &Record, layout: &Layout) -> Vec<String> {
 /// What is stated of a search that found no fix and was not complete.
 pub(super) const CUT_SEARCH: &str =
     "the search for a fix reached its limit; a larger --search tries more edits";
+
+/// What a record states if what explains the verdict was cut by its time limit.
+pub(super) const CUT_BY_TIME: &str =
+    "the search for an explanation exceeded its time limit; another run on an idle machine may find more";
 
 /// The table of the checks, and the comparison of the images.
 fn check_lines(record: &Record) -> Vec<String> {
@@ -549,6 +554,20 @@ mod tests {
         );
         assert!(full.contains(&below), "{full}");
         assert_eq!(text(&suspected(), Detail::Short, None).lines().count(), 1);
+    }
+
+    #[test]
+    fn an_explanation_cut_by_time_is_told_from_a_budget_that_is_used_up() {
+        for mut record in [repaired(), suspected()] {
+            assert!(!text(&record, Detail::Normal, None).contains(CUT_BY_TIME));
+            record.is_search_cut = false;
+            record.is_cut_by_time = true;
+            let normal = text(&record, Detail::Normal, None);
+            assert!(
+                normal.contains(CUT_BY_TIME) && !normal.contains(CUT_SEARCH),
+                "{normal}"
+            );
+        }
     }
 
     #[test]

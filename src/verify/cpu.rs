@@ -11,15 +11,17 @@ use toyproof_eval::{
 };
 use toyproof_image::{Frame, Image};
 
-/// The time limit of an image in [`evaluate_at`]. It is generous, since most take milliseconds and the result
-/// must not depend on the machine's load.
-const PLACES_TIMEOUT: Duration = Duration::from_secs(60);
-
-/// Evaluates a shader in f64 at some places of a frame; none if it exceeds the time limit.
-pub(super) fn evaluate_at(program: &Program, frame: &Frame, places: &Places) -> Option<Image> {
+/// Evaluates a shader in f64 at some places of a frame; none if a pixel runs more loop iterations. The result does
+/// not depend on the load of the machine: iterations are counted, and there is no deadline.
+pub(super) fn evaluate_at(
+    program: &Program,
+    frame: &Frame,
+    places: &Places,
+    max_iterations: u32,
+) -> Option<Image> {
     let settings = Settings::<f64> {
         undefined: UndefinedPolicy::Plain,
-        deadline: Some(Instant::now() + PLACES_TIMEOUT),
+        max_iterations,
         ..Settings::default()
     };
     program.at(frame, places, &settings).ok()
@@ -40,6 +42,8 @@ pub(super) struct Evaluator<'a> {
     frame: &'a Frame,
     /// The frame with what earlier frames render in double precision; none if it does not depend on them.
     double_frame: Option<&'a Frame>,
+    /// The largest number of loop iterations of a pixel.
+    max_iterations: u32,
     /// Set when the images are no longer needed.
     stop: &'a AtomicBool,
     /// The time left for the images in f32 and in f64.
@@ -98,6 +102,7 @@ impl<'a> Evaluator<'a> {
             program,
             frame,
             double_frame: None,
+            max_iterations: Settings::<f64>::default().max_iterations,
             stop,
             single: TimeBudget::new(limit),
             double: TimeBudget::new(limit),
@@ -111,6 +116,14 @@ impl<'a> Evaluator<'a> {
     /// Renders another frame in f64: one with what earlier frames render in double precision.
     pub(super) fn with_double(self, double_frame: Option<&'a Frame>) -> Self {
         Self { double_frame, ..self }
+    }
+
+    /// Fails if a pixel runs more loop iterations.
+    pub(super) fn with_max_iterations(self, max_iterations: u32) -> Self {
+        Self {
+            max_iterations,
+            ..self
+        }
     }
 
     pub(super) fn program(&self) -> &'a Program {
@@ -190,6 +203,7 @@ impl<'a> Evaluator<'a> {
         self.perturbed.spend(extra, |deadline| {
             let settings = Settings::<RandomRounding> {
                 undefined: UndefinedPolicy::Plain,
+                max_iterations: self.max_iterations,
                 noise: seed,
                 deadline: Some(deadline),
                 wanted: Some(wanted),
@@ -270,6 +284,7 @@ impl<'a> Evaluator<'a> {
         budget.spend(Duration::ZERO, |deadline| {
             let settings = Settings::<N> {
                 undefined,
+                max_iterations: self.max_iterations,
                 deadline: Some(deadline),
                 interrupt: Some(self.stop),
                 ..Settings::default()

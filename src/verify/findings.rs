@@ -4,15 +4,16 @@ use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Diagnostic, Span};
-use toyproof_eval::{self as eval, Places, Program};
+use toyproof_eval::{self as eval, Fault, Places, Program};
 use toyproof_image::{Image, Rgb8Image};
 
 use crate::alternative::{Alternative, Alternatives, WrongShader};
+use crate::bounds::explanation_deadline;
 use crate::compare::{self, CheckSummary, Comparison, DiffLevel, PixelStatus, Regions};
 use crate::contain::{Panic, Part, contain};
 use crate::decide::{CheckEvidence, Checks, Evidence, MAX_UNSTABLE, Reason, Share, Verdict, decide};
 use crate::mistake::{Diagnosis, Stage};
-use crate::repair::{self, NoisyImage, SearchResult};
+use crate::repair::{self, Before, NoisyImage, SearchResult};
 use crate::reseed::Reseeding;
 use crate::stochastic::Stochastic;
 use crate::{Case, Expected, ReferenceKind, acne, alternative, notes};
@@ -60,8 +61,13 @@ pub struct Findings {
     pub search: Option<SearchResult>,
     /// The known mistake that explains the few differing pixels of a correct image.
     pub tolerated_mistake: Option<Diagnosis>,
+    /// Whether what explains a difference was cut by the time limit of explanations, which only a hang reaches: the
+    /// explanation may be another one elsewhere.
+    pub is_cut_by_time: bool,
     /// Internal errors; the parts in which they occurred are missing here.
     pub panics: Vec<Panic>,
+    /// The faults that the evaluator observed in f32, each at one place.
+    pub(crate) faults: Vec<Fault>,
     /// The evaluator's time for all its images.
     pub eval: Duration,
     /// The time of rendering the reference; nearly 0 where it was cached.
@@ -141,13 +147,8 @@ impl Findings {
 
     /// Decides from the checks, and searches for what explains a difference. `stochastic` is there if
     /// the reference may be.
-    pub(super) fn explain(
-        &mut self,
-        case: &Case,
-        program: &Program,
-        deadline: Instant,
-        stochastic: Option<&Stochastic>,
-    ) {
+    pub(super) fn explain(&mut self, case: &Case, program: &Program, stochastic: Option<&Stochastic>) {
+        let deadline = explanation_deadline(case.search.map_or(0.0, |search| search.budget));
         let summary = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         let mut evidence = CheckEvidence {
             checks: Checks {
@@ -199,6 +200,8 @@ impl Findings {
         self.notes
             .extend(notes::unbound(case.checked, case.lints, case.frame));
         self.locate_loss_of_precision(case, program, deadline);
+        // What gave up because of the deadline did so after it.
+        self.is_cut_by_time = Instant::now() >= deadline;
     }
 
     /// Decides from the algorithm check in float32, where double precision cannot be evaluated. What explains a
@@ -354,7 +357,12 @@ impl Findings {
                 Some(NoisyImage { pixels, places })
             };
             let search = contain(Part::Repair, || {
-                repair::search(case, options, algorithm, compares_means, &image, deadline)
+                let before = Before {
+                    check: algorithm,
+                    faults: &self.faults,
+                    compares_means,
+                };
+                repair::search(case, options, before, &image, deadline)
             });
             self.search = self.contained(search);
         }

@@ -4,7 +4,7 @@
 //! visibly in the end, the frames are rendered again to find out why: because one frame of float32 is
 //! imprecise, because the shader is chaotic, or because small errors add up.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::{Diagnostic, grouped, plural};
@@ -13,6 +13,7 @@ use toyproof_glsl::Code;
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{BUFFERS, Clock, Target};
 
+use crate::bounds::explanation_deadline;
 use crate::buffers::BufferLints;
 use crate::compare::{CheckSummary, SEEN, precision};
 use crate::decide::{MAX_UNSTABLE, Share};
@@ -277,7 +278,7 @@ fn find_step(frames: &Frames, until: i32) -> Result<Option<(GrowthCause, Option<
             };
             if share.ratio() > MAX_UNSTABLE {
                 let bound = single.bound(pass, &inputs);
-                let deadline = Instant::now() + timeout;
+                let deadline = explanation_deadline(0.0);
                 let cause = notes::lost_digits(&frames.programs[pass], &bound, &differing, deadline);
                 let step = GrowthCause::Step {
                     target,

@@ -104,6 +104,7 @@
 
 mod acne;
 pub mod alternative;
+mod bounds;
 mod buffers;
 pub mod compare;
 pub mod contain;
@@ -122,6 +123,7 @@ mod on_gpu;
 #[cfg(not(feature = "gpu"))]
 #[path = "no_gpu.rs"]
 mod on_gpu;
+mod pixel_dependence;
 pub mod playback;
 pub mod repair;
 mod replicates;
@@ -265,8 +267,6 @@ impl Failure {
 
 /// The evaluator's time limit as a multiple of the GPU's: a slow evaluator is not the shader's fault.
 const EVALUATOR_TIME_FACTOR: u32 = 4;
-/// The time limit of all checks of a shader as a multiple of one image's.
-const TOTAL_TIME_FACTOR: u32 = 8;
 
 /// Runs the three checks. Without a `worker`, or where it renders no image of a shader that has a reference, the
 /// evaluator renders the image, and there is no toolchain check.
@@ -275,7 +275,6 @@ const TOTAL_TIME_FACTOR: u32 = 8;
 /// Returns why there is no image of the shader: [`Failure::Gpu`], [`Failure::Cpu`], [`Failure::Overdue`] or
 /// [`Failure::LoopTruncated`].
 pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Failure> {
-    let deadline = Instant::now() + case.timeout * TOTAL_TIME_FACTOR;
     let program = Program::within(case.checked, case.timeout * EVALUATOR_TIME_FACTOR);
     if let Err(eval::Refusal::TooSlow(overdue)) = program {
         return Err(overdue.into());
@@ -292,7 +291,7 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
             .with_double(case.from_start.map(|from_start| from_start.double))),
         Err(refusal) => Err((*refusal).into()),
     };
-    let session = VerifySession::new(case, evaluator, deadline, counts);
+    let session = VerifySession::new(case, evaluator, counts);
     match worker {
         None => on_cpu(case, session),
         Some(worker) => {
@@ -300,6 +299,24 @@ pub fn verify(worker: Option<&mut Worker>, case: &Case) -> Result<Findings, Fail
             on_gpu::verify(worker, case, program, session, &iteration_counts, &stop)
         }
     }
+}
+
+/// Verifies an edit of a shader, or the like, with the evaluator. The result does not depend on the load of the
+/// machine: what takes long are pixels with more than `max_iterations` loop iterations, which fail. The deadline
+/// is only there against a hang.
+pub(crate) fn verify_within(
+    case: &Case,
+    max_iterations: u32,
+    deadline: Instant,
+) -> Result<Findings, Failure> {
+    let left = deadline.saturating_duration_since(Instant::now());
+    let program = Program::within(case.checked, left).map_err(eval::Failure::from)?;
+    let stop = AtomicBool::new(false);
+    let evaluator = Evaluator::new(&program, case.frame, left, &stop)
+        .with_double(case.from_start.map(|from_start| from_start.double))
+        .with_max_iterations(max_iterations);
+    let (counts, _) = mpsc::channel();
+    on_cpu(case, VerifySession::new(case, Ok(evaluator), counts))
 }
 
 /// Verifies with the evaluator alone.

@@ -192,15 +192,14 @@ fn pixels(observed: &Observed) -> String {
 /// The largest number of differing pixels that are explained to find the cause.
 const MAX_EXPLAINED_PIXELS: usize = 5;
 
-/// Returns the place at which most of the explained pixels diverge between f32 and f64; none if the time
-/// limit is exceeded.
+/// Returns the place at which most of the explained pixels diverge between f32 and f64; none if the deadline is
+/// exceeded.
 pub(super) fn cause(
     program: &Program,
     case: &Case,
     deadline: Instant,
     check: &CheckResult,
 ) -> Option<Diagnostic> {
-    let deadline = deadline.min(Instant::now() + case.timeout);
     let pixels = sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS);
     lost_digits(program, case.frame, &pixels, deadline)
 }

@@ -8,6 +8,7 @@ use toyproof_image::Image;
 
 use super::reseed::{Reseeding, is_deterministic};
 use super::{Case, CheckResult};
+use crate::bounds::MAX_ITERATIONS;
 use crate::compare::{
     EXACT_TOLERANCE, MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION, PixelStatus, REPLICATES, ReplicateTest,
     ReplicatedPixel, compare_replicates,
@@ -44,7 +45,7 @@ pub(super) enum Incomparable {
     SameNumbers,
     /// The reference cannot be rendered with other random numbers.
     UnknownNoise,
-    /// No reseeding works for the shader, or the time limit is exceeded.
+    /// No reseeding works for the shader.
     NotReseeded,
 }
 
@@ -277,6 +278,7 @@ impl ReplicatedShader<'_> {
     fn render(&self, program: &Program, places: &Places) -> Option<Vec<ShaderPixel>> {
         let settings = Settings::<f64> {
             undefined: UndefinedPolicy::Plain,
+            max_iterations: MAX_ITERATIONS,
             deadline: Some(self.deadline),
             ..Settings::default()
         };

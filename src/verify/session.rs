@@ -4,13 +4,14 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use toyproof_eval::{self as eval, Observations, Seed};
 use toyproof_image::{Image, Rgb8Image};
 use toyproof_scene::Scene;
 use toyproof_translate::FloatMode;
 
+use crate::bounds::explanation_deadline;
 use crate::compare::{self, Comparison, DiffLevel, Mixed, Reference, SEEN, Undefined};
 use crate::contain::{Part, contain};
 use crate::cpu::{Band, DoubleBand, Evaluator};
@@ -34,8 +35,6 @@ pub(super) struct VerifySession<'a> {
     case: &'a Case<'a>,
     /// The evaluator, or why it failed.
     pub(super) evaluator: Result<Evaluator<'a>, eval::Failure>,
-    /// The deadline of all checks.
-    deadline: Instant,
     counts: Option<Sender<IterationCount>>,
     /// What the evaluator observed in f32.
     pub(super) observed: Observations,
@@ -66,7 +65,6 @@ impl<'a> VerifySession<'a> {
     pub(super) fn new(
         case: &'a Case<'a>,
         evaluator: Result<Evaluator<'a>, eval::Failure>,
-        deadline: Instant,
         counts: Sender<IterationCount>,
     ) -> Self {
         let [width, height] = case.frame.size;
@@ -83,7 +81,6 @@ impl<'a> VerifySession<'a> {
             });
         Self {
             case,
-            deadline,
             counts: evaluator.is_ok().then_some(counts),
             evaluator,
             observed: Observations::default(),
@@ -324,6 +321,8 @@ impl<'a> VerifySession<'a> {
             search: None,
             tolerated_mistake: None,
             panics: Vec::new(),
+            faults: Vec::new(),
+            is_cut_by_time: false,
             eval: self.eval,
             trace: self.case.expected.map(|_| self.trace),
         };
@@ -339,11 +338,7 @@ impl<'a> VerifySession<'a> {
                 let (not_finite, silhouettes, actual) = (self.not_finite, self.silhouettes, &findings.actual);
                 let notes = contain(Part::Notes, || {
                     let mut notes: Vec<_> = not_finite
-                        .diagnostic(
-                            program,
-                            case.frame,
-                            self.deadline.min(Instant::now() + case.timeout),
-                        )
+                        .diagnostic(program, case.frame, explanation_deadline(0.0))
                         .into_iter()
                         .collect();
                     if let (Some((scene, silhouettes, double)), Some(&at)) =
@@ -356,8 +351,14 @@ impl<'a> VerifySession<'a> {
                 });
                 let notes = findings.contained(notes);
                 findings.notes.extend(notes);
+                findings.faults = self
+                    .observed
+                    .faults
+                    .iter()
+                    .map(|observed| observed.site.fault)
+                    .collect();
                 match self.double_failure {
-                    None => findings.explain(case, program, self.deadline, self.stochastic.as_ref()),
+                    None => findings.explain(case, program, self.stochastic.as_ref()),
                     Some(failure) => findings.decide_in_single(&failure),
                 }
                 if let Some(toolchain) = &findings.toolchain

@@ -88,8 +88,14 @@ fn a_chaotic_project_is_chaotic_only_where_the_difference_is_visible() {
 #[test]
 fn a_wrong_project_is_wrong_until_chaos_reaches_double_precision() {
     let wrong = LOGISTIC.replace("3.9", "3.8");
+    let (shader, _) = check(&wrong, SHOWN, Some(LOGISTIC), "3");
+    assert_eq!(shader["verdict"], "wrong");
+    let unsearched = "fixes are not searched for in shaders of several passes";
+    assert!(
+        shader["details"].as_array().unwrap().contains(&unsearched.into()),
+        "{shader}"
+    );
     let verdict = |frame| check(&wrong, SHOWN, Some(LOGISTIC), frame).0["verdict"].clone();
-    assert_eq!(verdict("3"), "wrong");
     assert_eq!(verdict("30"), "wrong");
     // A right formula is as far from the reference.
     assert_eq!(verdict("150"), "chaotic");

@@ -1,13 +1,16 @@
 //! Wrong shaders are repaired at the line of their mistake, and the search keeps its limits.
 
+use std::time::Duration;
+
 use rayon::ThreadPoolBuilder;
 use toyproof::glsl::Checked;
+use toyproof::verify::mistake::Diagnosis;
 use toyproof::verify::repair::{Donors, Repair, SearchResult};
 use toyproof::verify::{Findings, Verdict};
 
 use crate::support::{
     ANIMATION, EVERY_EXERCISE, Exercise, MANY_OBJECTS, QUADRICS, REFLECTIONS, SHADING, SPHERE, WHITTED,
-    check_and_repair, check_and_repair_with, checked, edited,
+    check_and_repair, check_and_repair_with, check_and_repair_within, checked, edited,
 };
 
 /// A mistake, the exercise in which it is made, and the first repair's text and mistake.
@@ -315,6 +318,51 @@ fn the_result_does_not_depend_on_the_number_of_threads() {
     }
 }
 
+/// Work is counted, so that a short time limit changes nothing as long as the shader renders within it. The two
+/// mistakes of a search take longer than all limits of the first one together.
+#[test]
+fn the_result_does_not_depend_on_the_time_limit() {
+    let exercise = Exercise {
+        size: [32, 18],
+        ..SHADING
+    };
+    let two = edited(
+        &exercise,
+        &[
+            ("max(dot(normal, toLight), 0.0)", "dot(normal, toLight)"),
+            ("i < 2", "i < 1"),
+        ],
+    );
+    let none = format!(
+        "{}\nvoid unused() {{}}",
+        edited(
+            &exercise,
+            &[(
+                "lights[i].color *",
+                "vec3(sin(9.0 * normal.x), 0.3, cos(5.0 * normal.y)) *"
+            )]
+        )
+    );
+    for shader in [two, none] {
+        let result = |milliseconds| {
+            let findings =
+                check_and_repair_within(Duration::from_millis(milliseconds), 2.0, &shader, &exercise)?;
+            assert!(!findings.is_cut_by_time);
+            let mistake = findings.mistake.as_ref().map(Diagnosis::id);
+            let search = findings.search.expect("a wrong shader is searched");
+            let fixes: Vec<_> = search
+                .repairs
+                .into_iter()
+                .map(|repair| (repair.fix, repair.agreeing))
+                .collect();
+            Some((findings.verdict, mistake, fixes, search.suspects, search.is_cut))
+        };
+        // On a slow machine, the image itself may take longer.
+        let short = [50, 250, 1250].into_iter().find_map(result);
+        assert_eq!(short, result(60_000), "{shader}");
+    }
+}
+
 /// An edit may make a loop endless, or a shader so large that nothing compiles in time.
 #[test]
 fn a_search_ends_for_any_shader() {
@@ -326,7 +374,10 @@ fn a_search_ends_for_any_shader() {
     let loops = "void mainImage(out vec4 c, in vec2 p) { float x = 0.0;
         for (int i = 0; i < 40; i++) for (int j = 0; j < 40; j++) { x += fract(p.x * float(i * j)); }
         c = vec4(fract(x)); }";
-    for shader in [large.as_str(), loops] {
+    // Edits of pixels with so many iterations take a share of the budget each.
+    let long_loop = "void mainImage(out vec4 c, in vec2 p) { float x = 0.0;
+        for (int i = 0; i < 60000; i++) { x = fract(x + p.x * 0.37); } c = vec4(x); }";
+    for shader in [large.as_str(), loops, long_loop] {
         let result = search(check_and_repair(shader, &SPHERE));
         assert!(result.repairs.is_empty());
     }

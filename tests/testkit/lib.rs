@@ -259,12 +259,52 @@ pub fn check_and_repair(shader: &str, exercise: &Exercise) -> Findings {
 /// Like [`check_exercise`].
 pub fn check_and_repair_with(donors: Option<&Donors>, shader: &str, exercise: &Exercise) -> Findings {
     let search = SearchOptions {
-        source: shader,
-        lenient: false,
-        budget: DEFAULT_BUDGET,
         donors,
+        ..search_options(shader, DEFAULT_BUDGET)
     };
     check_with(None, Some(search), None, shader, exercise)
+}
+
+/// Checks a shader by the evaluator alone with a time limit, names its mistake, and searches for repairs with a
+/// budget. None if its image takes longer.
+///
+/// # Panics
+/// If the scene is too expensive for known mistakes.
+pub fn check_and_repair_within(
+    timeout: Duration,
+    budget: f64,
+    shader: &str,
+    exercise: &Exercise,
+) -> Option<Findings> {
+    let frame = frame(exercise, exercise.size);
+    let expected = Expected::of_scene(scene(exercise), &frame);
+    let hypotheses = Hypotheses::of(&scene(exercise), &frame).expect("the scene is cheap");
+    let (checked, lints) = linted(shader);
+    let case = Case {
+        timeout,
+        hypotheses: Some(&hypotheses),
+        search: Some(search_options(shader, budget)),
+        ..case(&checked, &lints, &expected, &frame)
+    };
+    verify(None, &case).ok()
+}
+
+/// Checks a shader against a reference like [`check_reference`], and searches for repairs.
+///
+/// # Panics
+/// Like [`check_exercise`].
+pub fn check_reference_and_repair(expected: &Expected, shader: &str, exercise: &Exercise) -> Findings {
+    let search = search_options(shader, DEFAULT_BUDGET);
+    check_expected(expected, None, Some(search), None, shader, exercise)
+}
+
+fn search_options(source: &str, budget: f64) -> SearchOptions<'_> {
+    SearchOptions {
+        source,
+        lenient: false,
+        budget,
+        donors: None,
+    }
 }
 
 /// A reference shader for an exercise: the one that renders its scene, as `toyproof export` writes it.
@@ -321,19 +361,28 @@ fn check_expected(
     let frame = frame(exercise, exercise.size);
     let (checked, lints) = linted(shader);
     let case = Case {
-        checked: &checked,
-        lints: &lints,
-        expected: Some(expected),
         hypotheses,
-        alternatives: None,
         search,
-        frame: &frame,
+        ..case(&checked, &lints, expected, &frame)
+    };
+    verify(worker, &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
+}
+
+/// A case without searches.
+fn case<'a>(checked: &'a Checked, lints: &'a Lints, expected: &'a Expected, frame: &'a Frame) -> Case<'a> {
+    Case {
+        checked,
+        lints,
+        expected: Some(expected),
+        hypotheses: None,
+        alternatives: None,
+        search: None,
+        frame,
         from_start: None,
         float: FloatMode::Strict,
         timeout: Duration::from_secs(60),
         pool: None,
-    };
-    verify(worker, &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
+    }
 }
 
 fn format_errors(errors: &[Diagnostic], files: &Files) -> String {

@@ -128,6 +128,9 @@ impl<'a> Checker<'a> {
         }
         outcome.report(shader.lints.warnings.clone(), &shader.files);
         let findings = self.check_frames(context, &mut outcome, &shader, reference.as_ref());
+        if outcome.record.verdict == Verdict::Wrong && self.args.search > 0.0 && has_history(&shader) {
+            outcome.record.set_unsearched();
+        }
         if let Some((assignment, _)) = &self.plan.assignment {
             let subject = image(&shader).ok().map(|checked| Subject {
                 checked,
@@ -278,7 +281,7 @@ impl<'a> Checker<'a> {
         explains: bool,
     ) -> Result<Findings, Failure> {
         let checked = image(shader)?;
-        let has_history = shader.passes.as_ref().is_some_and(passes::has_history);
+        let has_history = has_history(shader);
         let mut key = index;
         if has_history && self.plan.assignment.is_none() && !matches!(reference, Some(Reference::Given(_))) {
             // The reference has the time of the frame that the user does not name.
@@ -496,6 +499,11 @@ impl<'a> Checker<'a> {
             Reference::Given(given) => Ok(Arc::clone(&given.cached[index])),
         }
     }
+}
+
+/// Whether the image of a shader depends on other passes, or on earlier frames.
+fn has_history(shader: &Shader) -> bool {
+    shader.passes.as_ref().is_some_and(passes::has_history)
 }
 
 /// The tree of the image, with whatever it reads.

@@ -8,7 +8,7 @@ use super::glossary::{Glossary, term};
 use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
 use crate::report::repair::suspect_lines;
-use crate::report::terminal::CUT_SEARCH;
+use crate::report::terminal::{CUT_BY_TIME, CUT_SEARCH};
 use crate::report::{Mistake, Record, Repair, Rubrics};
 
 /// What the article of a shader shows.
@@ -154,6 +154,7 @@ impl Article<'_> {
             fix,
             suspects,
             is_search_cut,
+            is_cut_by_time,
             ..
         } = self.record;
         let mut html = String::new();
@@ -183,6 +184,9 @@ impl Article<'_> {
             if *is_search_cut {
                 let _ = writeln!(html, "<p>{}</p>", sentence(CUT_SEARCH));
             }
+        }
+        if *is_cut_by_time {
+            let _ = writeln!(html, "<p>{}</p>", sentence(CUT_BY_TIME));
         }
         if html.is_empty() {
             return html;

@@ -116,7 +116,7 @@ pub(super) fn fixed_resolution(wrong: &WrongShader) -> Option<Alternative> {
         let other = in_size(size);
         let places = Places::spread(size, PROBES);
         let expected = wrong.expected.colors_in(&other, &places)?;
-        let actual = View::with_inputs(other).image(wrong.program, &places)?;
+        let actual = View::with_inputs(other).image(wrong, &places)?;
         Some(wrong.agree(&expected, &actual))
     };
     let is_wrong_nearby = |[width, height]: [u32; 2]| {

@@ -20,7 +20,7 @@ const DEFAULT_SHADER: &str = "default-shader";
 fn other_scene(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {
     let frame = wrong.frame();
     let same = View::with_inputs(frame.clone());
-    let actual = same.image(wrong.program, &wrong.probes)?;
+    let actual = same.image(wrong, &wrong.probes)?;
     scenes.iter().find_map(|(name, scene)| {
         if wrong
             .expected
@@ -56,7 +56,7 @@ fn default_shader(wrong: &WrongShader) -> Option<Alternative> {
         ..frame.clone()
     };
     let is_default = [frame, &later].into_iter().all(|frame| {
-        let image = View::with_inputs(frame.clone()).image(wrong.program, &wrong.probes);
+        let image = View::with_inputs(frame.clone()).image(wrong, &wrong.probes);
         image.is_some_and(|image| wrong.agree(&default_image(wrong, frame.time), &image))
     });
     is_default.then(|| Alternative {

@@ -1,11 +1,10 @@
 //! Shaders evaluated at other positions: mirrored, rotated, and with other screen coordinates.
 
-use toyproof_eval::{Places, Program};
+use toyproof_eval::Places;
 use toyproof_image::{Frame, Image};
 
 use super::wrong_shader::{WrongShader, pixels_of};
 use super::{Alternative, Difference};
-use crate::cpu::evaluate_at;
 use crate::mistake::KnownMistake;
 
 /// How a shader is evaluated: for each pixel of the expected image, at another position or with other inputs.
@@ -72,21 +71,21 @@ impl View {
         }
     }
 
-    /// The image of the pixels at these places; none if the time limit is exceeded.
-    pub(super) fn image(&self, program: &Program, places: &Places) -> Option<Image> {
+    /// The image of the pixels of a shader at these places; none if one runs too many loop iterations.
+    pub(super) fn image(&self, shader: &WrongShader, places: &Places) -> Option<Image> {
         let [x, y] = self.axes;
         if !self.is_transposed {
             let places = Places {
                 columns: x.of(&places.columns),
                 rows: y.of(&places.rows),
             };
-            return evaluate_at(program, &self.frame, &places);
+            return shader.evaluate(&self.frame, &places);
         }
         let exchanged = Places {
             columns: x.of(&places.rows),
             rows: y.of(&places.columns),
         };
-        let image = evaluate_at(program, &self.frame, &exchanged)?;
+        let image = shader.evaluate(&self.frame, &exchanged)?;
         let [width, height] = places.size();
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let pixels = pixels.map(|(x, y)| image.get(y, x)).collect();
@@ -242,7 +241,7 @@ pub(super) fn framing(wrong: &WrongShader) -> Option<Alternative> {
         columns: along(&probes.columns, width),
         rows: along(&probes.rows, height),
     };
-    let image = evaluate_at(wrong.program, frame, &all)?;
+    let image = wrong.evaluate(frame, &all)?;
     let expected = pixels_of(&wrong.reference, &probes);
     let [columns, rows] = probes.size();
     let differing = |x: usize, y: usize| {

@@ -1,10 +1,11 @@
 //! A wrong shader, and the rules by which a hypothesis about its image is confirmed.
 
-use toyproof_eval::{Places, Program};
+use toyproof_eval::{Places, Program, Settings, UndefinedPolicy};
 use toyproof_image::{Frame, Image};
 
 use super::Alternative;
 use super::view::View;
+use crate::bounds::iterations_of_image;
 use crate::compare::{self, CheckSummary, EXACT_TOLERANCE, Mixed, Pixel, PixelStatus, TOLERANCE, Undefined};
 use crate::cpu::evaluate_at;
 use crate::decide::{CheckEvidence, Checks, Verdict, decide};
@@ -30,7 +31,9 @@ const MAX_UNEXPLAINED_SHARE: f64 = 0.05;
 /// A wrong shader, with its image and the expected one in f64.
 pub(crate) struct WrongShader<'a> {
     pub(super) case: &'a Case<'a>,
-    pub(super) program: &'a Program,
+    program: &'a Program,
+    /// The largest number of loop iterations of a pixel in other frames and at other positions.
+    max_iterations: u32,
     pub(super) expected: &'a Expected,
     /// The status of each pixel in the algorithm check.
     pub(super) statuses: &'a [PixelStatus],
@@ -62,17 +65,28 @@ impl<'a> WrongShader<'a> {
             .bands()
             .map(|rows| Some(expected.rows(&rows).ok()?.image.clone()));
         let bands: Option<Vec<Image>> = bands.collect();
+        let settings = Settings::<f64> {
+            undefined: UndefinedPolicy::Plain,
+            ..Settings::default()
+        };
+        let rendered = program.render_rows(frame, frame.rows(), &settings).ok()?;
         Some(Self {
             case,
             program,
+            max_iterations: iterations_of_image(rendered.observations.max_iterations),
             expected,
             statuses: &algorithm.statuses,
             reference: Image::of_bands(bands?),
-            actual: evaluate_at(program, frame, &Places::spread(frame.size, frame.size))?,
+            actual: rendered.image,
             probes: Places::spread(frame.size, PROBES),
             algorithm: &algorithm.summary,
             checks: checks.clone(),
         })
+    }
+
+    /// The colors of the shader at some places of a frame; none if one runs too many loop iterations.
+    pub(super) fn evaluate(&self, frame: &Frame, places: &Places) -> Option<Image> {
+        evaluate_at(self.program, frame, places, self.max_iterations)
     }
 
     pub(super) fn frame(&self) -> &'a Frame {
@@ -108,7 +122,7 @@ impl<'a> WrongShader<'a> {
         view: &View,
         mistake: impl FnOnce() -> KnownMistake,
     ) -> Option<Alternative> {
-        let actual = view.image(self.program, &self.probes)?;
+        let actual = view.image(self, &self.probes)?;
         let agrees = self.agree(&self.expected_probes(), &actual);
         agrees
             .then(|| self.confirmed(view, self.expected, self.frame(), mistake))
@@ -130,7 +144,7 @@ impl<'a> WrongShader<'a> {
             let band = expected.rows(&rows).ok()?;
             let mut places = Places::spread(frame.size, frame.size);
             places.rows = places.rows[rows.start as usize..rows.end as usize].to_vec();
-            let actual = view.image(self.program, &places)?;
+            let actual = view.image(self, &places)?;
             let undefined = Undefined {
                 pixels: &vec![false; actual.pixels().len()],
                 substituted: Some(&[]),

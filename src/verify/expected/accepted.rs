@@ -1,8 +1,6 @@
 //! The colors of a reference shader for other numbers that are a matter of style: where its rays start off a
 //! surface, how near a march comes to one, how far it goes, and in how many steps.
 
-use std::time::Instant;
-
 use toyproof_diagnostic::Span;
 use toyproof_eval::{Program, Settings, UndefinedPolicy};
 use toyproof_glsl::Checked;
@@ -13,7 +11,7 @@ use toyproof_tracer::ColorRange;
 use super::bands::is_cached;
 use super::shader::ShaderReference;
 use super::{epsilons, march};
-use crate::TOTAL_TIME_FACTOR;
+use crate::bounds::MAX_ITERATIONS;
 use crate::compare::Pixel;
 use crate::decide::Share;
 
@@ -191,11 +189,11 @@ fn literal(value: Value) -> Literal {
     }
 }
 
-/// The image of a variant of the reference; none if a limit is exceeded.
+/// The image of a variant of the reference; none if a pixel runs too many loop iterations.
 fn evaluated(reference: &ShaderReference, varied: &Checked) -> Option<Image> {
     let settings = Settings::<f64> {
         undefined: UndefinedPolicy::Plain,
-        deadline: Some(Instant::now() + reference.timeout * TOTAL_TIME_FACTOR),
+        max_iterations: MAX_ITERATIONS,
         ..Settings::default()
     };
     let program = Program::prepared(varied, UndefinedPolicy::Plain).ok()?;

@@ -24,8 +24,10 @@ pub use self::accepted::MarchDependence;
 pub(crate) use self::bands::ReferenceBand;
 pub use self::conditioning::Conditioning;
 pub use self::image::{ImageReference, Quantization};
+pub(crate) use self::reseeded::draws_by_random_numbers;
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
+use crate::bounds::MAX_ITERATIONS;
 use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
 use crate::cpu::evaluate_at;
 use crate::resampled::Resampled;
@@ -134,7 +136,7 @@ impl Expected {
                 let [columns, rows] = places.pixels();
                 Some(Tracer::<f64>::at(&scene, FrameTime::from(frame)).sampled(&columns, &rows))
             }
-            Self::Shader(shader) => evaluate_at(&shader.program, frame, places),
+            Self::Shader(shader) => evaluate_at(&shader.program, frame, places, MAX_ITERATIONS),
             Self::Image(_) => None,
         }
     }
@@ -162,7 +164,7 @@ impl Expected {
                 )
             }
             Self::Shader(shader) => {
-                let image = evaluate_at(&shader.program, &shader.frame, positions)?;
+                let image = evaluate_at(&shader.program, &shader.frame, positions, MAX_ITERATIONS)?;
                 let colors = image.pixels().iter();
                 Some(colors.map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect())
             }
@@ -234,13 +236,16 @@ impl Expected {
     pub(crate) fn color_range(&self, x: u32, y: u32) -> ColorRange {
         match self {
             Self::Scene(scene) => scene.color_range(x, y, EpsilonSet::Alike),
-            Self::Shader(_) | Self::Image(_) => {
-                let color = self.pixel(x, y);
-                let beyond = self.tolerance() - EXACT_TOLERANCE;
-                ColorRange {
-                    low: color.map(|part| part - beyond),
-                    high: color.map(|part| part + beyond),
-                }
+            Self::Shader(shader) => widened(shader.color_range(x, y), shader.tolerance()),
+            Self::Image(image) => {
+                let color = image.pixel(x, y);
+                widened(
+                    ColorRange {
+                        low: color,
+                        high: color,
+                    },
+                    image.tolerance(),
+                )
             }
         }
     }
@@ -300,5 +305,14 @@ impl Expected {
             Self::Shader(shader) => shader.tied(rows, wanted, number_type, self.tolerance_in(number_type)),
             Self::Image(_) => vec![false; wanted.len()],
         }
+    }
+}
+
+/// The colors within a tolerance of a range, as those within [`EXACT_TOLERANCE`] of another.
+fn widened(range: ColorRange, tolerance: f64) -> ColorRange {
+    let beyond = tolerance - EXACT_TOLERANCE;
+    ColorRange {
+        low: range.low.map(|part| part - beyond),
+        high: range.high.map(|part| part + beyond),
     }
 }

@@ -13,10 +13,12 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::Input;
 use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
+use toyproof_tracer::ColorRange;
 
 use super::NumberType;
 use super::accepted::AcceptedColors;
 use super::bands::{Bands, ReferenceBand};
+use crate::bounds::{EXPLANATION_TIMEOUT, explanation_deadline};
 use crate::compare::{Band, Pixel, changed_by_rounding};
 use crate::cpu::Evaluator;
 use crate::decide::Share;
@@ -77,7 +79,8 @@ impl ShaderReference {
     pub(super) fn in_frame(&self, frame: &Frame) -> Option<Self> {
         let program = Arc::clone(&self.program);
         let lints = Lints::default();
-        let evaluated = Self::evaluated(program, &lints, frame, self.tolerance, self.timeout);
+        // It explains images, so that it must not depend on the load of the machine.
+        let evaluated = Self::evaluated(program, &lints, frame, self.tolerance, EXPLANATION_TIMEOUT);
         evaluated.ok().map(|(reference, _)| reference)
     }
 
@@ -88,7 +91,18 @@ impl ShaderReference {
         tolerance: f64,
         timeout: Duration,
     ) -> Result<(Self, ReferenceFindings), eval::Failure> {
-        let reference = Self {
+        let reference = Self::unevaluated(program, frame, tolerance, timeout);
+        let findings = reference.evaluate(lints)?;
+        Ok((reference, findings))
+    }
+
+    pub(super) fn unevaluated(
+        program: Arc<Program>,
+        frame: &Frame,
+        tolerance: f64,
+        timeout: Duration,
+    ) -> Self {
+        Self {
             bands: Bands::new(frame),
             program,
             frame: frame.clone(),
@@ -97,9 +111,7 @@ impl ShaderReference {
             accepted: OnceLock::new(),
             reseeding: OnceLock::new(),
             estimates: OnceLock::new(),
-        };
-        let findings = reference.evaluate(lints)?;
-        Ok((reference, findings))
+        }
     }
 
     /// Evaluates all bands once.
@@ -116,7 +128,7 @@ impl ShaderReference {
             self.bands.get_or_render(&rows, || band);
         }
         let mut notes = notes::notes(&observed, undefined.count > 0, lints);
-        let deadline = Instant::now() + self.timeout;
+        let deadline = explanation_deadline(0.0);
         notes.extend(not_finite.diagnostic(&self.program, &self.frame, deadline));
         notes.retain(|note| !lints.allows(note));
         Ok(ReferenceFindings { notes, undefined })
@@ -178,7 +190,6 @@ impl ShaderReference {
         };
         let settings = Settings::<f64> {
             undefined: UndefinedPolicy::Plain,
-            deadline: Some(Instant::now() + self.timeout),
             ..Settings::default()
         };
         let evaluated = self.program.at(&self.frame, &quad, &settings);
@@ -196,6 +207,20 @@ impl ShaderReference {
     /// Those colors, if they have been computed.
     pub(super) fn used(&self) -> Option<&AcceptedColors> {
         self.accepted.get()?.as_ref()
+    }
+
+    /// The colors of a pixel for the usual ray epsilons and other marches.
+    pub(super) fn color_range(&self, x: u32, y: u32) -> ColorRange {
+        match self.accepted() {
+            Some(accepted) => *accepted.range((y * self.frame.size[0] + x) as usize),
+            None => {
+                let color = self.pixel(x, y);
+                ColorRange {
+                    low: color,
+                    high: color,
+                }
+            }
+        }
     }
 
     /// Accepts the colors that the shader has for other ray epsilons and marches, where few pixels differ; where

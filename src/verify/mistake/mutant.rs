@@ -1,5 +1,6 @@
 //! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a mistake.
 
+use crate::bounds::MAX_ITERATIONS;
 use crate::cpu::evaluate_at;
 use crate::mistake::KnownMistake;
 use crate::mistake::catalogue::Mistake;
@@ -23,7 +24,7 @@ pub(super) enum MutantSource {
 }
 
 impl MutantSource {
-    /// Renders a view; none if the shader is invalid or exceeds the time limit.
+    /// Renders a view; none if the shader is invalid or runs too many loop iterations.
     pub(super) fn render(&self, view: &View) -> Option<Image> {
         match self {
             Self::Shader(shader) => {
@@ -44,7 +45,7 @@ impl MutantSource {
 
 /// Renders a view of a shader in f64.
 pub(super) fn render(program: &Program, view: &View) -> Option<Image> {
-    evaluate_at(program, &view.frame, &view.places)
+    evaluate_at(program, &view.frame, &view.places, MAX_ITERATIONS)
 }
 
 /// A tracer with mistakes in it. Its image is rendered once, on first use.

@@ -2,16 +2,20 @@
 //! first.
 
 use std::sync::OnceLock;
+use std::time::Instant;
 
 use toyproof_diagnostic::{Deadline, Edit, File, Files, Fix, Span};
+use toyproof_eval::Fault;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
 use toyproof_lint::Lints;
 
 use super::edit::EditKind;
+use super::search::Before;
 use super::{Repair, SearchOptions};
+use crate::bounds::MIN_IMAGE_ITERATIONS;
 use crate::mistake::KnownMistake;
-use crate::{Case, Expected, Findings, Verdict, verify};
+use crate::{Case, Expected, Findings, Verdict, verify_within};
 
 /// The second frame: another size and shape of the image, and another time if the scene moves.
 const OTHER_SIZE: [u32; 2] = [132, 100];
@@ -25,30 +29,52 @@ pub(super) struct Judge<'a> {
     case: &'a Case<'a>,
     expected: &'a Expected,
     options: SearchOptions<'a>,
+    before: Before<'a>,
+    deadline: Instant,
     /// The second frame and its reference.
     other: OnceLock<Option<(Frame, Expected)>>,
 }
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(case: &'a Case<'a>, expected: &'a Expected, options: SearchOptions<'a>) -> Self {
+    pub(super) fn new(
+        case: &'a Case<'a>,
+        expected: &'a Expected,
+        options: SearchOptions<'a>,
+        before: Before<'a>,
+        deadline: Instant,
+    ) -> Self {
         Self {
             case,
             expected,
             options,
+            before,
+            deadline,
             other: OnceLock::new(),
         }
     }
 
-    /// Returns the repair if the edited shader is right in both frames.
-    pub(super) fn confirm(&self, fix: Fix, kinds: &[EditKind]) -> Option<Repair> {
+    /// Returns the repair if the edited shader is right in both frames, and no pixel depends on undefined behavior
+    /// that did not before. `iterations` bounds the loop iterations of most of its pixels.
+    pub(super) fn confirm(&self, fix: Fix, kinds: &[EditKind], iterations: u32) -> Option<Repair> {
         let (_, checked) = self.edited(&fix)?;
-        let findings = self.findings(&checked, self.case.frame, self.expected)?;
+        let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
+        let findings = self.findings(&checked, self.case.frame, self.expected, iterations)?;
+        let undefined = |findings: &Findings| Some(findings.algorithm.as_ref()?.summary.undefined);
+        if self.adds_fault(
+            &findings,
+            undefined(&findings)? > self.before.check.summary.undefined,
+        ) {
+            return None;
+        }
         let summary = &findings.algorithm.as_ref()?.summary;
         let by_means = findings.reason.compares_means();
         // Means are compared over many sets of random numbers; a second frame would add little evidence.
         if !by_means {
             let (frame, expected) = self.other.get_or_init(|| self.other_frame()).as_ref()?;
-            self.findings(&checked, frame, expected)?;
+            let findings = self.findings(&checked, frame, expected, iterations)?;
+            if self.adds_fault(&findings, false) {
+                return None;
+            }
         }
         let differing = if by_means { 0 } else { summary.differing };
         Some(Repair {
@@ -69,7 +95,7 @@ impl<'a> Judge<'a> {
         let options = glsl::Options {
             lenient: self.options.lenient,
             channels: self.case.checked.channels.map(Some),
-            deadline: Deadline::after(self.case.timeout),
+            deadline: Deadline::after(self.deadline.saturating_duration_since(Instant::now())),
             ..glsl::Options::default()
         };
         let checked = glsl::check(&files, file, &options).ok()?;
@@ -77,7 +103,13 @@ impl<'a> Judge<'a> {
     }
 
     /// The findings, if nothing speaks against the algorithm.
-    fn findings(&self, checked: &Checked, frame: &Frame, expected: &Expected) -> Option<Findings> {
+    fn findings(
+        &self,
+        checked: &Checked,
+        frame: &Frame,
+        expected: &Expected,
+        max_iterations: u32,
+    ) -> Option<Findings> {
         let case = Case {
             checked,
             lints: &Lints::default(),
@@ -88,8 +120,25 @@ impl<'a> Judge<'a> {
             frame,
             ..*self.case
         };
-        let findings = verify(None, &case).ok()?;
-        matches!(findings.verdict, Verdict::Correct | Verdict::Unstable).then_some(findings)
+        let findings = verify_within(&case, max_iterations, self.deadline).ok()?;
+        let is_right = matches!(findings.verdict, Verdict::Correct | Verdict::Unstable);
+        // There is no precision check where double precision could not be evaluated.
+        (is_right && findings.precision.is_some()).then_some(findings)
+    }
+
+    /// Whether the edited shader has more faults of a kind than the shader: reads of elements that do not exist or
+    /// of variables without a value, which are no repair, or other undefined operations on which colors depend.
+    fn adds_fault(&self, findings: &Findings, excludes_more: bool) -> bool {
+        let count = |faults: &[Fault], fault: Fault| faults.iter().filter(|&&other| other == fault).count();
+        findings.faults.iter().any(|&fault| {
+            let is_serious = match fault {
+                Fault::IndexOutOfBounds | Fault::NeverWritten => true,
+                // At an edge of any shader that takes derivatives.
+                Fault::LonelyDerivative => false,
+                _ => excludes_more && fault.is_undefined(),
+            };
+            is_serious && count(&findings.faults, fault) > count(self.before.faults, fault)
+        })
     }
 
     /// None if the reference cannot be rendered there.
@@ -168,7 +217,12 @@ fn mistake(kinds: &[EditKind]) -> KnownMistake {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
+    use toyproof_translate::FloatMode;
+
     use super::*;
+    use crate::{DEFAULT_TOLERANCE, ShaderReference, verify};
 
     fn fix(edits: &[(u32, u32, &str)]) -> Fix {
         let file = Files::default().add(File::new("a", ""));
@@ -180,6 +234,98 @@ mod tests {
             message: "edit".to_owned(),
             edits: edits.collect(),
         }
+    }
+
+    /// Whether replacing `old` by `new` in a shader repairs it, compared with a reference shader.
+    fn is_confirmed(shader: &str, reference: &str, old: &str, new: &str) -> bool {
+        let checked = |text: &str| {
+            let mut files = Files::default();
+            let file = files.add(File::new("s", text));
+            glsl::check(&files, file, &glsl::Options::default()).unwrap()
+        };
+        let frame = Frame {
+            size: [24, 16],
+            ..Frame::default()
+        };
+        let lints = Lints::default();
+        let timeout = Duration::from_secs(60);
+        let reference = ShaderReference::new(&checked(reference), &lints, &frame, DEFAULT_TOLERANCE, timeout);
+        let expected = Expected::Shader(Box::new(reference.unwrap().0));
+        let checked = checked(shader);
+        let case = Case {
+            checked: &checked,
+            lints: &lints,
+            expected: Some(&expected),
+            hypotheses: None,
+            alternatives: None,
+            search: None,
+            frame: &frame,
+            from_start: None,
+            float: FloatMode::Strict,
+            timeout,
+            pool: None,
+        };
+        let before = verify(None, &case).unwrap();
+        assert_eq!(before.verdict, Verdict::Wrong);
+        let options = SearchOptions {
+            source: shader,
+            lenient: false,
+            budget: 1.0,
+            donors: None,
+        };
+        let before = Before {
+            check: before.algorithm.as_ref().unwrap(),
+            faults: &before.faults,
+            compares_means: false,
+        };
+        let judge = Judge::new(&case, &expected, options, before, Instant::now() + timeout);
+        let start = shader.find(old).unwrap() as u32;
+        let span = Span::new(
+            checked.tree[checked.main_image].at.span.file,
+            start,
+            start + old.len() as u32,
+        );
+        judge
+            .confirm(Fix::new("edit", span, new), &[EditKind::Number], 0)
+            .is_some()
+    }
+
+    #[test]
+    fn an_edit_that_reads_nothing_defined_is_no_repair() {
+        let with = |index: &str| {
+            format!(
+                "void mainImage(out vec4 c, in vec2 p) {{
+                    float unset;
+                    float all[3] = float[](0.2, 0.5, 0.8);
+                    int at = p.x < 12.0 ? {index} : 0;
+                    float zero = 0.6;
+                    c = vec4(all[at], zero - 0.6, 0.0, 1.0);
+                }}"
+            )
+        };
+        let (wrong, right) = (with("1"), with("2"));
+        let repairs = |new| is_confirmed(&wrong, &right, "? 1", new);
+        assert!(repairs("? 2"));
+        // The last element is used, as on the GPU.
+        assert!(!repairs("? 7"));
+        let wrong = right.replace("zero - 0.6", "zero");
+        let repairs = |new| is_confirmed(&wrong, &right, "zero, 0.0", new);
+        assert!(repairs("zero - 0.6, 0.0"));
+        assert!(!repairs("unset, 0.0"));
+    }
+
+    #[test]
+    fn a_fault_of_the_shader_itself_prevents_no_repair() {
+        let with = |color: &str| {
+            format!(
+                "void mainImage(out vec4 c, in vec2 p) {{
+                    float all[3] = float[](0.2, 0.5, 0.8);
+                    float seen = all[int(p.x / 4.0)];
+                    c = p.x < 12.0 ? vec4({color}, seen, 0.0, 1.0) : vec4(0.3);
+                }}"
+            )
+        };
+        assert!(is_confirmed(&with("0.5"), &with("0.7"), "0.5, seen", "0.7, seen"));
     }
 
     #[test]

@@ -20,7 +20,7 @@ use toyproof_diagnostic::{Fix, Span};
 use toyproof_glsl::Checked;
 use toyproof_image::Rgb8Image;
 
-pub(crate) use self::search::{NoisyImage, search};
+pub(crate) use self::search::{Before, NoisyImage, search};
 use crate::mistake::KnownMistake;
 
 /// The mistakes that repairs are named after.
@@ -91,6 +91,7 @@ pub struct SearchResult {
     pub repairs: Vec<Repair>,
     /// At most three suspects, on different lines, the most suspicious first; also if there are repairs.
     pub suspects: Vec<Suspect>,
-    /// Whether the budget ended before all edits were tried.
+    /// Whether the budget ended before all edits were tried. That a search ended at its deadline, which only a hang
+    /// exceeds, is in [`Findings::is_cut_by_time`](crate::Findings::is_cut_by_time).
     pub is_cut: bool,
 }

@@ -11,6 +11,7 @@ use toyproof_eval::Places;
 use toyproof_tracer::ColorRange;
 
 use crate::compare::{EXACT_TOLERANCE, PixelStatus};
+use crate::decide::MAX_DIFFERING;
 use crate::mistake::NoisyPixel;
 use crate::replicates::MEAN_SETS;
 use crate::{CheckResult, Expected};
@@ -35,6 +36,11 @@ const MIXED_RIGHT: usize = 3;
 
 /// The share of probes that a repair may leave wrong: an edit moves edges, and a probe may lie on one.
 const MAX_LEFT_SHARE: f64 = 0.01;
+
+/// The estimated share of the image's pixels that a repair may leave wrong, and of the wrong pixels: a verdict
+/// tolerates some, whose kinds have more probes than pixels. The confirmation compares all pixels.
+const MAX_LEFT_OF_IMAGE: f64 = 2.0 * MAX_DIFFERING;
+const MAX_LEFT_OF_WRONG: f64 = 0.25;
 
 /// The number of probes of a stochastic shader that are evaluated first.
 const FIRST_MEANS: usize = 32;
@@ -62,6 +68,8 @@ pub(super) struct Probe {
     bias: Option<Bias>,
     /// Whether the shader is wrong there.
     pub(super) is_wrong: bool,
+    /// The share of the image's pixels for which it stands.
+    share: f64,
 }
 
 /// The bias of a pixel of a stochastic shader.
@@ -120,17 +128,20 @@ impl Probes {
         };
         let wrong: Vec<usize> = pixels(PixelStatus::Differs).collect();
         let right: Vec<usize> = pixels(PixelStatus::Agrees).collect();
+        let all = (wrong.len() + right.len()) as f64;
+        let shares = [&wrong, &right].map(|pixels| pixels.len() as f64 / all);
         let wrong = spread(&thinned(&wrong), MAX_WRONG, |at| {
             kind(&[reference(at), actual(at)])
         });
         let right = spread(&thinned(&right), MAX_RIGHT, |at| kind(&[reference(at)]));
-        let probe = |at: usize, is_wrong| {
+        let probe = |(at, share): (usize, f64), is_wrong: bool| {
             let [x, y] = pixel(at);
             Probe {
                 point: [f64::from(x) + 0.5, f64::from(y) + 0.5],
                 range: expected.color_range(x, y),
                 bias: None,
                 is_wrong,
+                share: share * shares[usize::from(!is_wrong)],
             }
         };
         let wrong = wrong.into_iter().map(|at| probe(at, true));
@@ -178,6 +189,7 @@ impl Probes {
                     variance: pixel.variance.map(|variance| variance * MEAN_SETS as f64),
                 }),
                 is_wrong: (0..3).any(is_biased),
+                share: 0.0,
             }
         };
         let (wrong, right): (Vec<Probe>, Vec<Probe>) = pixels
@@ -196,6 +208,13 @@ impl Probes {
         wrong.truncate(first);
         wrong.extend(rest);
         Self::of(wrong, shuffled(&right))
+    }
+
+    /// The first probes.
+    pub(super) fn truncated(&self, count: usize) -> Self {
+        Self {
+            all: self.all[..count.min(self.all.len())].to_vec(),
+        }
     }
 
     /// Whether the shader has random numbers of its own.
@@ -220,6 +239,13 @@ impl Probes {
     /// The largest number of probes that a repair may leave wrong.
     fn max_left(&self) -> usize {
         (MAX_LEFT_SHARE * self.all.len() as f64) as usize
+    }
+
+    /// The largest share of the image's pixels that a repair may leave wrong.
+    fn max_left_share(&self) -> f64 {
+        let wrong = self.all.iter().filter(|probe| probe.is_wrong);
+        let wrong: f64 = wrong.map(|probe| probe.share).sum();
+        MAX_LEFT_OF_IMAGE.min(MAX_LEFT_OF_WRONG * wrong)
     }
 
     /// The number of probes at which all candidates are evaluated.
@@ -261,10 +287,11 @@ impl Probes {
             evaluated: colors.len(),
             ..Outcome::default()
         };
-        let (mut wrong, mut old_error, mut new_error) = (0, 0.0, 0.0);
+        let (mut wrong, mut old_error, mut new_error, mut left) = (0, 0.0, 0.0, 0.0);
         for ((probe, &color), &before) in self.all.iter().zip(colors).zip(before) {
             let distance = probe.distance(color);
             let is_right = distance <= EXACT_TOLERANCE;
+            left += if is_right { 0.0 } else { probe.share };
             if probe.is_wrong {
                 wrong += 1;
                 outcome.repaired += usize::from(is_right);
@@ -280,7 +307,8 @@ impl Probes {
         } else {
             1.0
         };
-        outcome.passes = wrong - outcome.repaired + outcome.broken <= self.max_left();
+        outcome.passes =
+            wrong - outcome.repaired + outcome.broken <= self.max_left() || left <= self.max_left_share();
         Some(outcome)
     }
 
@@ -377,8 +405,9 @@ fn kind(colors: &[[f64; 3]]) -> u32 {
     levels.fold(0, |kind, level| kind * 4 + level)
 }
 
-/// Selects pixels of all kinds, one of each in turn, and within a kind evenly spread.
-fn spread(pixels: &[usize], most: usize, kind: impl Fn(usize) -> u32) -> Vec<usize> {
+/// Selects pixels of all kinds, one of each in turn, and within a kind evenly spread. Each has the share of the pixels
+/// for which it stands.
+fn spread(pixels: &[usize], most: usize, kind: impl Fn(usize) -> u32) -> Vec<(usize, f64)> {
     let mut kinds: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for &pixel in pixels {
         kinds.entry(kind(pixel)).or_default().push(pixel);
@@ -387,18 +416,24 @@ fn spread(pixels: &[usize], most: usize, kind: impl Fn(usize) -> u32) -> Vec<usi
     kinds.sort_by_key(|pixels| std::cmp::Reverse(pixels.len()));
     let orders: Vec<Vec<usize>> = kinds.iter().map(|pixels| bit_reversed(pixels.len())).collect();
     let mut selected = Vec::new();
+    let mut counts = vec![0; kinds.len()];
     let rounds = kinds.iter().map(Vec::len).max().unwrap_or(0);
-    for round in 0..rounds {
-        for (pixels, order) in kinds.iter().zip(&orders) {
-            if let Some(&at) = order.get(round) {
-                selected.push(pixels[at]);
-            }
+    'all: for round in 0..rounds {
+        for (kind, order) in orders.iter().enumerate() {
             if selected.len() == most {
-                return selected;
+                break 'all;
+            }
+            if let Some(&at) = order.get(round) {
+                selected.push((kinds[kind][at], kind));
+                counts[kind] += 1;
             }
         }
     }
+    let share = |kind: usize| kinds[kind].len() as f64 / (counts[kind] * pixels.len()) as f64;
     selected
+        .into_iter()
+        .map(|(pixel, kind)| (pixel, share(kind)))
+        .collect()
 }
 
 /// The numbers below `count`, each prefix of them spread evenly (van der Corput).
@@ -426,6 +461,7 @@ impl Probe {
             },
             bias: None,
             is_wrong,
+            share: 0.0,
         }
     }
 }
@@ -467,7 +503,12 @@ mod tests {
         let pixels: Vec<usize> = (0..1000).collect();
         let selected = spread(&pixels, 20, |at| u32::from(at == 500));
         assert_eq!(selected.len(), 20);
-        assert_eq!(selected[1], 500);
+        assert_eq!(selected[1].0, 500);
+        let share: f64 = selected.iter().map(|(_, share)| share).sum();
+        assert!(
+            (share - 1.0).abs() < 1e-12 && selected[1].1 == 0.001,
+            "{selected:?}"
+        );
         assert_eq!(spread(&pixels[..3], 20, |_| 0).len(), 3);
     }
 

@@ -40,11 +40,12 @@ impl Selection {
     }
 }
 
-/// Compiles a shader with edits that can be selected.
+/// Compiles a shader with edits that can be selected, unless it has too many values.
 pub(super) fn compile(
     shader: &Shader,
     candidates: &[&Candidate],
     frame: &Frame,
+    max_values: usize,
     limit: Duration,
 ) -> Result<ParametricProgram, Refusal> {
     let mut writer = Writer::new(shader.checked.clone(), candidates.len());
@@ -52,7 +53,7 @@ pub(super) fn compile(
         writer.add(shader, number, candidate);
     }
     writer.statements();
-    ParametricProgram::new(&writer.checked, &writer.parameters, frame, limit)
+    ParametricProgram::new(&writer.checked, &writer.parameters, frame, max_values, limit)
 }
 
 struct Writer {

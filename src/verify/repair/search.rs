@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use toyproof_diagnostic::Fix;
-use toyproof_eval::Places;
+use toyproof_eval::{Fault, Places};
 
 use super::confirm::{Judge, compose};
 use super::edit::{Candidate, EditKind};
@@ -12,13 +12,16 @@ use super::edits::{Constants, candidates, donor_candidates};
 use super::probe::Probes;
 use super::shader::Shader;
 use super::trials::Trial;
-use super::under_test::{ShaderUnderTest, UNLIMITED, WAVE};
+use super::under_test::{ShaderUnderTest, UNLIMITED};
 use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
 use crate::mistake::NoisyPixel;
 use crate::{Case, CheckResult};
 
 /// How much a candidate may cost more than the first repair to be tried as an alternative.
 const ALTERNATIVE_MARGIN: f64 = 5.0;
+
+/// How much more to find a repair that leaves no pixel wrong, after one that leaves some.
+const COMPLETE_MARGIN: f64 = 10.0;
 
 /// The largest number of repairs that are reported, that are confirmed, and of attempts to confirm one.
 const MAX_REPAIRS: usize = 3;
@@ -29,6 +32,9 @@ const MAX_ATTEMPTS: usize = 24;
 /// confirming alternatives may take.
 const CONFIRMATION_FACTOR: f64 = 4.0;
 const CONFIRMATION_SHARE: f64 = 0.2;
+
+/// The number of attempts that are made whatever their work.
+const SURE_ATTEMPTS: usize = 4;
 
 /// The largest number of attempts where means are compared, which takes seconds.
 const MAX_ATTEMPTS_BY_MEANS: usize = 4;
@@ -55,15 +61,20 @@ const WORK_PER_UNIT: f64 = 3e8;
 
 /// Searches for the repairs of a wrong shader. None if there is nothing to search for. `means` renders some
 /// pixels of a shader that has random numbers, if it has any and so has its reference. It has other numbers
-/// than the reference if its means were compared, though its mistake may be there.
+/// than the reference if its means were compared, though its mistake may be there. Work is counted; at the
+/// `deadline`, which only a hang exceeds, the search ends.
 pub(crate) fn search(
     case: &Case,
     options: SearchOptions,
-    check: &CheckResult,
-    compares_means: bool,
+    before: Before,
     means: &dyn Fn() -> Option<NoisyImage>,
     deadline: Instant,
 ) -> Option<SearchResult> {
+    let Before {
+        check,
+        compares_means,
+        ..
+    } = before;
     let expected = case.expected?;
     let shader = Shader::new(case.checked, options.source);
     let mut search = Search {
@@ -71,12 +82,14 @@ pub(crate) fn search(
         shader: &shader,
         constants: Constants::of(expected),
         donors: options.donors,
-        judge: Judge::new(case, expected, options),
+        judge: Judge::new(case, expected, options, before, deadline),
         deadline,
         found: Vec::new(),
         best: f64::INFINITY,
         attempts: 0,
+        confirmations: 0,
         confirmation_work: 0.0,
+        budget: options.budget * WORK_PER_UNIT,
         confirmation_budget: CONFIRMATION_SHARE * options.budget * WORK_PER_UNIT,
         suspects: None,
         is_cut: false,
@@ -110,6 +123,17 @@ pub(crate) fn search(
     })
 }
 
+/// What is known of the shader before any edit.
+#[derive(Clone, Copy)]
+pub(crate) struct Before<'a> {
+    /// The algorithm check.
+    pub(crate) check: &'a CheckResult,
+    /// The faults that were observed, each at one place.
+    pub(crate) faults: &'a [Fault],
+    /// Whether its means were compared.
+    pub(crate) compares_means: bool,
+}
+
 /// Some pixels of a shader that has random numbers of its own.
 pub(crate) struct NoisyImage {
     pub(crate) pixels: Vec<NoisyPixel>,
@@ -126,9 +150,13 @@ struct Search<'a> {
     judge: Judge<'a>,
     deadline: Instant,
     found: Vec<Found>,
-    /// The rank of the best repair that leaves no pixel wrong.
+    /// The rank up to which the best repair has been found, if there is one.
     best: f64,
     attempts: usize,
+    /// The number of confirmations.
+    confirmations: usize,
+    /// The budget of the whole search.
+    budget: f64,
     /// The work of confirmations, and the work after which no more alternatives are confirmed.
     confirmation_work: f64,
     confirmation_budget: f64,
@@ -198,10 +226,14 @@ impl Search<'_> {
             .collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut partial = Vec::new();
-        for wave in all.chunks(WAVE) {
+        for wave in all.chunks(tested.wave()) {
             let is_spent = tested.is_spent(budget);
             self.is_cut |= is_spent;
-            if is_spent || wave[0].0 > self.best + ALTERNATIVE_MARGIN || self.is_complete() {
+            if is_spent
+                || tested.is_late()
+                || wave[0].0 > self.best + ALTERNATIVE_MARGIN
+                || self.is_complete()
+            {
                 break;
             }
             let (mut passing, progress): (Vec<Trial>, Vec<Trial>) = tested
@@ -245,17 +277,25 @@ impl Search<'_> {
         if !self.found.is_empty() && self.confirmation_work > self.confirmation_budget {
             return;
         }
+        if self.confirmations >= SURE_ATTEMPTS && self.confirmation_work > self.budget {
+            self.is_cut = true;
+            return;
+        }
         tested.work += work;
         self.attempts += 1;
+        self.confirmations += 1;
         let kinds: Vec<EditKind> = first
             .map(|first| first.kind)
             .into_iter()
             .chain([candidate.kind(tested.shader)])
             .collect();
-        if let Some(repair) = self.judge.confirm(fix, &kinds) {
-            if repair.is_complete() {
-                self.best = self.best.min(tested.trial_rank(candidate));
-            }
+        if let Some(repair) = self.judge.confirm(fix, &kinds, tested.max_iterations) {
+            let margin = if repair.is_complete() {
+                0.0
+            } else {
+                COMPLETE_MARGIN
+            };
+            self.best = self.best.min(tested.trial_rank(candidate) + margin);
             self.found.retain(|found| found.statement != statement);
             self.found.push(Found {
                 repair,
@@ -270,8 +310,8 @@ impl Search<'_> {
         let firsts = firsts(whole, partial);
         let count = firsts.len();
         for (at, first) in firsts.iter().enumerate() {
-            if budget <= 0.0 || Instant::now() >= self.deadline {
-                self.is_cut = true;
+            self.is_cut |= budget <= 0.0;
+            if budget <= 0.0 || whole.is_late() {
                 break;
             }
             let Some((text, checked)) = self.judge.edited(&first.fix) else {

@@ -1,9 +1,9 @@
 //! A shader under test: its probes, the suspicion of its parts, and the trials of all candidates.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{ParametricProgram, Settings};
+use toyproof_eval::{ParametricProgram, Refusal, Settings};
 
 use super::Suspect;
 use super::edit::{Candidate, Change};
@@ -15,6 +15,7 @@ use super::shader::Shader;
 use super::term::Numbers;
 use super::trials::{Trial, try_group};
 use crate::Case;
+use crate::bounds::iterations_of_edited;
 
 /// How much the cost of an edit in the least suspicious place exceeds that in the most suspicious one, when
 /// edits are tried and when they are reported; and the cost of a place on which no wrong pixel depends.
@@ -25,24 +26,31 @@ const REPAIR_PLACE_WEIGHT: f64 = 5.0;
 /// The cost of leaving the whole difference.
 const REMAINING_WEIGHT: f64 = 20.0;
 
-/// The number of candidates that are compiled together.
-pub(super) const GROUP: usize = 32;
+/// The largest number of candidates that are compiled together, and of such groups between two decisions on how to
+/// go on.
+const GROUP: usize = 32;
+const GROUPS: usize = 8;
 
-/// The number of candidates between two decisions on how to go on.
-pub(super) const WAVE: usize = 8 * GROUP;
+/// The share of the budget that all groups between two decisions may take, if each candidate takes the work of so
+/// many probes; and the smallest number of candidates.
+const WAVE_SHARE: f64 = 0.1;
+const TRIAL_PROBES: f64 = 24.0;
+const MIN_WAVE: usize = 8;
 
-/// The factor by which an edited pixel may run more loop iterations than the shader's, and a number of
-/// iterations that is always allowed.
-const ITERATION_FACTOR: u32 = 8;
+/// The share of the budget for evaluating the shader itself, and the smallest number of probes.
+const BEFORE_SHARE: f64 = 0.2;
+const MIN_PROBES: usize = 32;
+
+/// A number of loop iterations that an edited pixel may always have.
 const MIN_ITERATIONS: u32 = 2000;
 
 /// A number of loop iterations that is no limit.
 pub(super) const UNLIMITED: u32 = u32::MAX >> 4;
 
-/// The time limit for compiling a group.
-const COMPILE_LIMIT: Duration = Duration::from_secs(2);
+/// The largest number of values of a group after inlining. Compiling them takes about two seconds.
+const MAX_GROUP_VALUES: usize = 400_000;
 
-/// The work of a group that is too large, or takes too long to compile.
+/// The work of a group that is too large.
 const REFUSED_WORK: f64 = 3e8;
 
 /// The work of compiling an instruction, in terms of instructions that are executed for one chunk of pixels.
@@ -63,6 +71,8 @@ pub(super) struct ShaderUnderTest<'a> {
     pub(super) shader: &'a Shader<'a>,
     probes: Probes,
     deadline: Instant,
+    /// The budget of all work.
+    budget: f64,
     /// The colors of the shader at the probes.
     before: Vec<[f64; 3]>,
     /// The number of loop iterations after which an edited pixel is given up.
@@ -95,6 +105,7 @@ impl<'a> ShaderUnderTest<'a> {
             shader,
             probes: probes.clone(),
             deadline,
+            budget,
             before: Vec::new(),
             max_iterations,
             sites: Vec::new(),
@@ -102,7 +113,7 @@ impl<'a> ShaderUnderTest<'a> {
             work: 0.0,
             probe_work: 0.0,
         };
-        let program = compile(shader, &[], case.frame, COMPILE_LIMIT).ok()?;
+        let program = tested.compile(&[]).ok()?;
         let colors = |probes: &Probes| {
             tested.evaluate(&program, 0, |group| {
                 let run = Run {
@@ -114,12 +125,18 @@ impl<'a> ShaderUnderTest<'a> {
                 Some((colors, group.iterations(), group.work()))
             })
         };
-        let (before, ..) = colors(probes)?;
+        // Fewer probes of a shader whose pixels take long.
+        let few = probes.truncated(MIN_PROBES);
+        let (.., work) = colors(&few)?;
+        let share = BEFORE_SHARE * budget / (2.0 * work);
+        let count = (share * few.all.len() as f64) as usize;
+        let probes = probes.truncated(count.max(MIN_PROBES));
+        let (before, ..) = colors(&probes)?;
         let probes = probes.with_colors(&before)?;
         let (before, iterations, work) = colors(&probes)?;
         tested.probes = probes;
         tested.before = before;
-        tested.max_iterations = iterations.saturating_mul(ITERATION_FACTOR).max(MIN_ITERATIONS);
+        tested.max_iterations = iterations_of_edited(iterations, MIN_ITERATIONS);
         tested.probe_work = work / tested.probes.all.len() as f64;
         // Fewer probes, if evaluating all of them once for each site would cost too much.
         let share = LOCALIZATION_SHARE * budget / (work * shader.sites.len() as f64);
@@ -129,6 +146,11 @@ impl<'a> ShaderUnderTest<'a> {
             MAX_LOCALIZATION_SHARE * budget,
         );
         Some(tested)
+    }
+
+    fn compile(&self, candidates: &[&Candidate]) -> Result<ParametricProgram, Refusal> {
+        let left = self.deadline.saturating_duration_since(Instant::now());
+        compile(self.shader, candidates, self.case.frame, MAX_GROUP_VALUES, left)
     }
 
     fn evaluate<T>(
@@ -149,7 +171,7 @@ impl<'a> ShaderUnderTest<'a> {
 
     /// Compiles some candidates and runs `work` with them.
     fn with_group<T>(&self, candidates: &[&Candidate], work: impl FnOnce(&mut Group) -> Vec<T>) -> Worked<T> {
-        let Ok(program) = compile(self.shader, candidates, self.case.frame, COMPILE_LIMIT) else {
+        let Ok(program) = self.compile(candidates) else {
             return (Vec::new(), REFUSED_WORK);
         };
         self.evaluate(&program, candidates.len(), |group| {
@@ -167,9 +189,25 @@ impl<'a> ShaderUnderTest<'a> {
         groups.into_iter().flat_map(|(results, _)| results).collect()
     }
 
-    /// Whether a budget or the time is spent.
+    /// Whether a budget is spent.
     pub(super) fn is_spent(&self, budget: f64) -> bool {
-        self.work > budget || Instant::now() >= self.deadline
+        self.work > budget
+    }
+
+    /// Whether the time is over.
+    pub(super) fn is_late(&self) -> bool {
+        Instant::now() >= self.deadline
+    }
+
+    /// The number of candidates between two decisions on how to go on, if each takes the work of so many probes.
+    fn wave_of(&self, probes: f64) -> usize {
+        let affordable = WAVE_SHARE * self.budget / (probes * self.probe_work);
+        (affordable as usize).clamp(MIN_WAVE, GROUPS * GROUP)
+    }
+
+    /// The number of candidates that are tried between two decisions on how to go on.
+    pub(super) fn wave(&self) -> usize {
+        self.wave_of(TRIAL_PROBES)
     }
 
     // Suspicion.
@@ -184,12 +222,13 @@ impl<'a> ShaderUnderTest<'a> {
                 .filter(|&site| measured[site].unwrap_or_default().coverage == 0.0)
                 .filter_map(|site| Some((site, disturbed(self.shader, site, by)?)))
                 .collect();
-            for wave in disturbed.chunks(WAVE) {
-                if self.is_spent(budget) {
+            let size = self.wave_of(count as f64);
+            for wave in disturbed.chunks(size) {
+                if self.is_spent(budget) || self.is_late() {
                     break;
                 }
                 let groups = wave
-                    .par_chunks(GROUP)
+                    .par_chunks(size.div_ceil(GROUPS))
                     .map(|group| self.influences(group, count, by.weight));
                 let groups = groups.collect();
                 for (site, suspicion) in self.collect(groups) {
@@ -319,7 +358,7 @@ impl<'a> ShaderUnderTest<'a> {
     /// Tries candidates, and returns those that pass or make progress.
     pub(super) fn try_all(&mut self, candidates: &[(f64, Candidate)]) -> Vec<Trial> {
         let groups = candidates
-            .par_chunks(GROUP)
+            .par_chunks(self.wave().div_ceil(GROUPS))
             .map(|group| self.try_group(group))
             .collect();
         self.collect(groups)

@@ -13,6 +13,9 @@ const COMPARISON: u32 = 12;
 const EXCHANGE: u32 = 12;
 const DELETION: u32 = 15;
 
+/// The cost of deleting a factor and a term at once, which is more natural than another operator by which they cancel.
+const UNSCALED: u32 = 9;
+
 impl Writer<'_> {
     pub(super) fn expression(&mut self, site: usize) {
         let tree = self.tree;
@@ -120,6 +123,9 @@ impl Writer<'_> {
         };
         self.replace(site, kind, DELETION, a.clone());
         self.replace(site, kind, DELETION, b.clone());
+        if matches!(op, Add | Subtract) {
+            self.unscaled(site, left, right);
+        }
         if op == Subtract {
             self.replace(site, kind, DELETION + 2, Term::unary(UnaryOp::Minus, b.clone()));
         }
@@ -134,6 +140,25 @@ impl Writer<'_> {
         // The product of the inner operands in another order: a * (b + c) for a * b + c.
         if matches!(op, Add | Subtract) {
             self.regrouped(site, op, left, right);
+        }
+    }
+
+    /// Deletes a factor and a term that are numbers: x for 0.5 * x + 0.5.
+    fn unscaled(&mut self, site: usize, left: ExprId, right: ExprId) {
+        let tree = self.tree;
+        let is_number = |expr: ExprId| number(tree, expr).is_some();
+        for (product, term) in [(left, right), (right, left)] {
+            if let ExprKind::Binary {
+                op: BinaryOp::Multiply,
+                left,
+                right,
+            } = tree[product].kind
+                && is_number(term)
+                && is_number(left) != is_number(right)
+            {
+                let value = if is_number(left) { right } else { left };
+                self.replace(site, EditKind::SuperfluousTerm, UNSCALED, Term::keep(tree, value));
+            }
         }
     }
 

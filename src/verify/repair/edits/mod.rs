@@ -116,6 +116,7 @@ impl<'a> Writer<'a> {
     /// The values of a type that the variables in scope at a statement have.
     fn values(&self, statement: usize, ty: Type) -> Vec<Term> {
         let scope = &self.shader.statements[statement].scope;
+        let reads_pixels = self.reads_pixels(statement);
         let mut values = Vec::new();
         // The innermost of equal names hides the others.
         let mut names: HashSet<&str> = HashSet::new();
@@ -124,12 +125,23 @@ impl<'a> Writer<'a> {
                 break;
             }
             let name = self.tree[variable].name.as_str();
-            if !name.is_empty() && names.insert(name) {
+            let is_resolution = self.tree[variable].kind == VariableKind::Input(Input::Resolution);
+            if !name.is_empty() && names.insert(name) && (reads_pixels || !is_resolution) {
                 self.values_of(variable, ty, &mut values);
                 self.elements(variable, scope, ty, &mut values);
             }
         }
         values
+    }
+
+    /// Whether a statement computes with pixels: with the resolution, or with the position in `mainImage`. In others,
+    /// which compute with lengths of the scene, a resolution has no meaning.
+    fn reads_pixels(&self, statement: usize) -> bool {
+        let text = self.shader.text(self.shader.statements[statement].span);
+        let position = self.tree[self.shader.checked.main_image].parameters.get(1);
+        let position = position.map(|&position| self.tree[position].name.as_str());
+        let mut words = text.split(|byte: char| !byte.is_ascii_alphanumeric() && byte != '_');
+        words.any(|word| word == "iResolution" || word == "gl_FragCoord" || Some(word) == position)
     }
 
     /// The elements of an array at the indices that the shader uses, and their members.
