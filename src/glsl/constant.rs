@@ -62,6 +62,11 @@ impl Tree {
         }
     }
 
+    /// Clears the cached value of an expression, after a rewrite that may change it.
+    pub fn clear_cached_value(&mut self, expr: ExprId) {
+        self.values.remove(&expr);
+    }
+
     /// Clears the cache, after a rewrite that may change values.
     pub fn clear_cached_values(&mut self) {
         self.values.clear();
@@ -79,7 +84,10 @@ impl Tree {
         }
     }
 
-    fn value_of(&self, expr: ExprId, operands: Vec<Option<Constant>>) -> Option<Constant> {
+    /// Computes the value of a constant expression from those of its operands, in the order in which
+    /// [`ExprKind::for_each_operand`] visits them.
+    #[must_use]
+    pub fn value_of(&self, expr: ExprId, operands: Vec<Option<Constant>>) -> Option<Constant> {
         let ty = self[expr].ty;
         if let ExprKind::Length { array } = self[expr].kind {
             // The type determines the length.

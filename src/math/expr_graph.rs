@@ -106,6 +106,63 @@ impl ExprGraph {
         self.steps.borrow().all[id]
     }
 
+    /// Computes steps in 32-bit floats, without flushing denormals.
+    ///
+    /// # Panics
+    /// If the graph names more arguments than there are.
+    #[must_use]
+    pub fn evaluate(&self, results: &[StepId], arguments: &[f32]) -> Vec<f32> {
+        let steps = self.steps.borrow();
+        // The encodings of the results of all steps: operands precede their users.
+        let mut values: Vec<u32> = Vec::with_capacity(steps.all.len());
+        for &(step, _) in &steps.all {
+            let word = |id: StepId| values[id];
+            let float = |id: StepId| f32::from_bits(values[id]);
+            values.push(match step {
+                Step::Argument(index) => arguments[index].to_bits(),
+                Step::Float(bits) | Step::Bits(bits) => bits,
+                Step::Unary(operation, a) => match operation {
+                    Unary::Negate => (-float(a)).to_bits(),
+                    Unary::Sqrt => float(a).sqrt().to_bits(),
+                    Unary::Abs => float(a).abs().to_bits(),
+                    Unary::Floor => float(a).floor().to_bits(),
+                    Unary::ToBits | Unary::FromBits => word(a),
+                    Unary::FromSigned => (word(a).cast_signed() as f32).to_bits(),
+                    Unary::Not => u32::from(word(a) == 0),
+                },
+                Step::Binary(operation, a, b) if steps.all[a].1 == Kind::Float => {
+                    let (a, b) = (float(a), float(b));
+                    match operation {
+                        Binary::Add => (a + b).to_bits(),
+                        Binary::Subtract => (a - b).to_bits(),
+                        Binary::Multiply => (a * b).to_bits(),
+                        Binary::Divide => (a / b).to_bits(),
+                        Binary::Less => u32::from(a < b),
+                        Binary::And | Binary::Or | Binary::Left | Binary::Right => {
+                            unreachable!("floats have no bits until they are converted")
+                        }
+                    }
+                }
+                Step::Binary(operation, a, b) => {
+                    let (a, b) = (word(a), word(b));
+                    match operation {
+                        Binary::Add => a.wrapping_add(b),
+                        Binary::Subtract => a.wrapping_sub(b),
+                        Binary::Multiply => a.wrapping_mul(b),
+                        Binary::Divide => unreachable!("only floats are divided"),
+                        Binary::Less => u32::from(a < b),
+                        Binary::And => a & b,
+                        Binary::Or => a | b,
+                        Binary::Left => a.wrapping_shl(b),
+                        Binary::Right => a.wrapping_shr(b),
+                    }
+                }
+                Step::Select(condition, yes, no) => word(if word(condition) == 0 { no } else { yes }),
+            });
+        }
+        results.iter().map(|&id| f32::from_bits(values[id])).collect()
+    }
+
     fn push(&self, step: Step, kind: Kind) -> StepId {
         let mut steps = self.steps.borrow_mut();
         if let Some(&id) = steps.known.get(&step) {

@@ -5,8 +5,8 @@ mod accuracy;
 use proptest::prelude::*;
 
 use super::{
-    Matrix, cross, determinant, distance, dot, faceforward, inverse, length, mix, modulo, native, normalize,
-    outer_product, reflect, refract, smoothstep,
+    ExprGraph, FloatTerm, Matrix, atan2, cross, determinant, distance, dot, exp, faceforward, fract, inverse,
+    length, log, mix, modulo, native, normalize, outer_product, pow, reflect, refract, sin, smoothstep, tan,
 };
 
 /// Far above f64's rounding errors for components up to 2, far below the effect of a wrong sign or index.
@@ -103,4 +103,47 @@ fn refraction_beyond_the_critical_angle_is_zero() {
 fn vectors_of_one_component_work() {
     assert_eq!(length(&[-3.0_f32]), 3.0);
     assert_eq!(normalize(&[-3.0_f32]), [-1.0]);
+}
+
+#[test]
+fn a_graph_computes_what_the_functions_compute() {
+    let graph = ExprGraph::default();
+    let (x, y) = (graph.argument(0), graph.argument(1));
+    let results = [
+        sin(x),
+        tan(x),
+        exp(x),
+        log(x),
+        pow(x, y),
+        atan2(x, y),
+        smoothstep(x, y, x),
+        fract(x),
+    ];
+    let ids = results.map(FloatTerm::id);
+    // Which NaN it is, is not defined.
+    let bits = |values: &[f32]| {
+        values
+            .iter()
+            .map(|value| (!value.is_nan()).then(|| value.to_bits()))
+            .collect::<Vec<_>>()
+    };
+    for (x, y) in [
+        (0.5_f32, 2.0),
+        (1e5, -0.3),
+        (-3.7, 0.0),
+        (f32::INFINITY, 1.0),
+        (1e-30, 7.5),
+    ] {
+        let direct = [
+            sin(x),
+            tan(x),
+            exp(x),
+            log(x),
+            pow(x, y),
+            atan2(x, y),
+            smoothstep(x, y, x),
+            fract(x),
+        ];
+        assert_eq!(bits(&graph.evaluate(&ids, &[x, y])), bits(&direct), "{x} {y}");
+    }
 }

@@ -1,6 +1,7 @@
-//! Constant expressions that naga cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), overflowing
+//! Constant expressions that naga or tint cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), overflowing
 //! shifts (`1 << 31`), shifts by 32 bits or more, undefined integer quotients, `clamp` with crossed bounds,
-//! `smoothstep` with equal edges; and denormal results, which it does not flush to zero.
+//! `smoothstep` with equal edges, `pow` of a base that is not positive, packed halves; and denormal results, which
+//! naga does not flush to zero.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand
 //! passed through a helper function that returns it unchanged is evaluated at run time instead. naga also
@@ -11,16 +12,18 @@ use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constant, Constructor, ExprId, ExprKind, Scalar, Tree, Type, Value,
 };
 
+use super::float32::Float32Values;
 use crate::lower::builtin::Helper;
 use crate::lower::context::LoweringContext;
 
 pub(super) fn run(cx: &mut LoweringContext) {
+    let mut values = Float32Values::default();
     cx.each_expression_postorder(|cx, id| {
         cx.tree.cache_value(id);
         for value in forwarded_constants(&cx.tree, id) {
             make_opaque(cx, value);
         }
-        let rewrite = rewrite(&cx.tree, id);
+        let rewrite = rewrite(&cx.tree, &mut values, id);
         match rewrite {
             Some(Rewrite::Fold(value)) => {
                 let node = constant_expression(cx, &value, id);
@@ -93,7 +96,7 @@ enum Rewrite {
     Bits(u32),
 }
 
-fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
+fn rewrite(tree: &Tree, values: &mut Float32Values, id: ExprId) -> Option<Rewrite> {
     match &tree[id].kind {
         ExprKind::Literal(literal) => match literal.value {
             Value::Float(value) if (value as f32).to_bits() == f32::MAX.to_bits() => {
@@ -111,8 +114,8 @@ fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
             BinaryOp::Divide | BinaryOp::Remainder if has_no_quotient(tree, left, right) => {
                 Some(Rewrite::MakeOpaque(right))
             }
-            BinaryOp::Divide => leaves_range(tree, id).then_some(Rewrite::MakeOpaque(right)),
-            _ => leaves_range(tree, id).then_some(Rewrite::MakeOpaque(left)),
+            BinaryOp::Divide => leaves_range(tree, values, id).then_some(Rewrite::MakeOpaque(right)),
+            _ => leaves_range(tree, values, id).then_some(Rewrite::MakeOpaque(left)),
         },
         ExprKind::Assign {
             op: Some(BinaryOp::ShiftLeft | BinaryOp::ShiftRight),
@@ -128,10 +131,21 @@ fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
                 (BuiltIn::Smoothstep, &[low, high, _]) => {
                     any_bounds(tree, low, high, |low, high| low.total_cmp(&high).is_eq()).then_some(low)
                 }
+                // naga refuses a negative base, and 0 to the power 0.
+                (BuiltIn::Pow, &[base, _]) => any_scalar(
+                    tree,
+                    base,
+                    |value| matches!(value, Value::Float(base) if base <= 0.0),
+                )
+                .then_some(base),
+                // Half floats may be infinite or NaN, and others may be too large for them.
+                (BuiltIn::PackHalf2x16 | BuiltIn::UnpackHalf2x16, &[argument]) => {
+                    tree[argument].constant.then_some(argument)
+                }
                 _ => None,
             };
             crossed
-                .or_else(|| overflows(tree, id).then_some(first))
+                .or_else(|| overflows(tree, values, id).then_some(first))
                 .map(Rewrite::MakeOpaque)
         }
         _ => None,
@@ -139,24 +153,27 @@ fn rewrite(tree: &Tree, id: ExprId) -> Option<Rewrite> {
 }
 
 /// Whether the value overflows, or is denormal: processors flush it to zero, naga does not.
-fn leaves_range(tree: &Tree, id: ExprId) -> bool {
-    let is_denormal = |value: Value| matches!(value, Value::Float(value) if (value as f32).is_subnormal());
-    overflows(tree, id) || any_scalar(tree, id, is_denormal)
+fn leaves_range(tree: &Tree, values: &mut Float32Values, id: ExprId) -> bool {
+    let is_denormal = |value: &Value| matches!(value, Value::Float(value) if (*value as f32).is_subnormal());
+    overflows(tree, values, id)
+        || tree[id].constant
+            && values
+                .value(tree, id)
+                .is_some_and(|value| value.components().iter().any(is_denormal))
 }
 
 /// Whether the value is not a finite 32-bit float while those of all operands are.
-fn overflows(tree: &Tree, id: ExprId) -> bool {
-    let not_finite = |id: ExprId| {
+fn overflows(tree: &Tree, values: &mut Float32Values, id: ExprId) -> bool {
+    let mut is_infinite = |id: ExprId| {
         tree[id].constant
-            && tree
-                .value(id)
+            && tree[id].ty.scalar() == Some(Scalar::Float)
+            && values
+                .value(tree, id)
                 .is_some_and(|value| value.components().iter().copied().any(is_not_finite))
     };
-    let mut below = false;
-    tree[id].kind.for_each_operand(|operand| {
-        below |= tree[operand].ty.scalar() == Some(Scalar::Float) && not_finite(operand);
-    });
-    tree[id].ty.scalar() == Some(Scalar::Float) && not_finite(id) && !below
+    let mut operands = Vec::new();
+    tree[id].kind.for_each_operand(|operand| operands.push(operand));
+    is_infinite(id) && !operands.into_iter().any(is_infinite)
 }
 
 fn is_not_finite(value: Value) -> bool {

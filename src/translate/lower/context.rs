@@ -263,6 +263,22 @@ impl Builder<'_> {
         id
     }
 
+    /// A 32-bit float, in the fewest digits; a negative one is a negated literal.
+    pub(super) fn float(&mut self, value: f32) -> ExprId {
+        let literal = Literal {
+            text: format!("{:?}", value.abs()).into(),
+            value: Value::Float(value.abs().into()),
+        };
+        let id = self.push(ExprKind::Literal(literal), Type::FLOAT);
+        self.tree[id].constant = true;
+        if value.is_sign_positive() {
+            return id;
+        }
+        let negated = self.unary(UnaryOp::Minus, id);
+        self.tree[negated].constant = true;
+        negated
+    }
+
     /// The literal 0 or 1 of a scalar type.
     pub(super) fn zero_or_one(&mut self, scalar: Scalar, one: bool) -> ExprId {
         self.literal(match scalar {

@@ -323,6 +323,8 @@ fn constants_that_naga_cannot_evaluate() {
         "o.x = float(int(p.x) / 0 + 5 / 0);",
         "o.x = clamp(0.5, 1.0, 0.0);",
         "o.x = normalize(vec3(0.0)).x;",
+        "o.x = length(vec3(1e20));",
+        "o.x = 1.0 / (1e-30 * 1e-10);",
         "int i; o.x = float(1 << (i = 31));",
         "o.x = 1e38 * (o.y, 100.0);",
         "o.x = float(((o.y, uvec2(15) << 16).yx << 27).x);",
@@ -333,6 +335,19 @@ fn constants_that_naga_cannot_evaluate() {
     fixes_rejection(
         Pass::Constants,
         &main_image("const float INF = 1.0 / 0.0;", "o.x = INF;"),
+    );
+}
+
+#[test]
+fn functions_of_constants_have_the_evaluators_values() {
+    fixes_rejection(Pass::Folding, &main_image("", "o.x = pow(0.0, 0.0);"));
+    let literals = lines(
+        "",
+        "o.xy = vec2(cos(3.14159265 / 4.0), -sin(0.5) + p.x) + normalize(vec2(3.0, -4.0)) * float(int(p.x));",
+    );
+    assert_eq!(
+        literals,
+        "o.xy = vec2(0.70710677, -0.47942555 + p.x) + vec2(0.6, -0.8) * float(int(p.x));"
     );
 }
 

@@ -12,6 +12,8 @@ mod context;
 #[cfg(test)]
 mod expression_tests;
 mod flatten;
+mod float32;
+mod folding;
 mod initializer;
 mod lookup;
 mod loops;
@@ -26,6 +28,7 @@ mod stage_io;
 mod tests;
 
 pub(crate) use context::LoweringContext;
+pub(crate) use folding::fold_except;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 
@@ -89,6 +92,8 @@ passes! {
     StageIo = stage_io::lower_stage_io,
     /// `&&` and `||` with an effect on the right.
     ShortCircuit = operator::lower_short_circuit,
+    /// Built-in functions of constants whose last bits naga computes differently.
+    Folding = folding::run,
     /// Filtered texture lookups, which drivers compute with few bits; for strict shaders only.
     Lookups = lookup::expand_lookups,
     /// Built-in functions whose last bits depend on the driver; for strict shaders only.

@@ -4,7 +4,7 @@
 //! Each is generated once (`toyproof_math`); a function of vectors calls that of their components. Matrix
 //! products are expanded late, when the indices of targets have no side effects any more.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
@@ -295,7 +295,7 @@ fn components(ty: Type, name: &str) -> Vec<String> {
 }
 
 /// The components of the result of a function.
-fn apply<'a>(definition: Definition<'a>, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
+pub(super) fn apply<'a>(definition: Definition<'a>, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
     match (definition, arguments) {
         (Definition::Unary(function), [a]) => vec![function(a[0])],
         (Definition::Binary(function), [a, b]) => vec![function(a[0], b[0])],
@@ -306,7 +306,7 @@ fn apply<'a>(definition: Definition<'a>, arguments: &[Vec<FloatTerm<'a>>]) -> Ve
 }
 
 /// `a·b` of a matrix and a matrix or vector.
-fn product<'a>(arguments: &[Vec<FloatTerm<'a>>], types: &[Type]) -> Vec<FloatTerm<'a>> {
+pub(super) fn product<'a>(arguments: &[Vec<FloatTerm<'a>>], types: &[Type]) -> Vec<FloatTerm<'a>> {
     match (arguments, types) {
         ([a, b], [Type::Matrix { rows, .. }, Type::Vector(..)]) => {
             Matrix::new(a, (*rows).into()).times_vector(b)
@@ -331,6 +331,7 @@ fn function_body(graph: &ExprGraph, results: &[StepId], arguments: &[String], ty
         uses: uses(graph, results),
         lines: String::new(),
     };
+    writer.declare_encodings();
     let shared: Vec<StepId> = writer
         .uses
         .iter()
@@ -369,6 +370,22 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
+    /// Declares variables for the encodings of infinities and NaNs: compilers refuse constant expressions with
+    /// such values (tint: "value nan cannot be represented as 'f32'").
+    fn declare_encodings(&mut self) {
+        let encodings: BTreeSet<u32> = self
+            .uses
+            .keys()
+            .filter_map(|&id| match self.graph.step(id).0 {
+                Step::Float(bits) if !f32::from_bits(bits).is_finite() => Some(bits),
+                _ => None,
+            })
+            .collect();
+        for bits in encodings {
+            let _ = write!(self.lines, "uint {} = {bits}u;\n    ", encoding_name(bits));
+        }
+    }
+
     /// Declares a variable for a step with several uses.
     fn declare(&mut self, id: StepId) {
         let (step, kind) = self.graph.step(id);
@@ -446,9 +463,20 @@ fn name(id: StepId) -> String {
     format!("toyproof_{id}")
 }
 
+/// The name of the variable with the encoding of an infinity or a NaN.
+fn encoding_name(bits: u32) -> String {
+    let value = f32::from_bits(bits);
+    let stem = if value.is_nan() { "nan" } else { "infinity" };
+    let sign = if value.is_sign_negative() { "negative_" } else { "" };
+    format!("toyproof_{sign}{stem}")
+}
+
 /// A literal that naga parses to exactly this float.
 fn literal(value: f32) -> String {
-    if !value.is_finite() || value.abs() == f32::MAX {
+    if !value.is_finite() {
+        return format!("uintBitsToFloat({})", encoding_name(value.to_bits()));
+    }
+    if value.abs() == f32::MAX {
         return format!("uintBitsToFloat({}u)", value.to_bits());
     }
     let text = format!("{value:?}");

@@ -11,6 +11,7 @@ mod comment;
 mod construct;
 mod effect;
 mod expression;
+mod folding;
 mod item;
 mod literal;
 mod loops;
@@ -25,16 +26,16 @@ use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue};
 use toyproof_glsl::Checked;
 
-use crate::lower::{LoweringContext, Pass, Passes};
+use crate::lower::{LoweringContext, Pass, Passes, fold_except};
 use crate::print::Order;
 
 /// Why this writer cannot print a shader.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Unprintable {
-    /// A construct that it does not support.
+    /// A construct that it does not support, whose place is not known.
     #[error("{0} is not supported")]
     Construct(&'static str),
-    /// A feature that the host does not provide.
+    /// A feature that the host does not provide, or a construct that is not supported.
     #[error("{}", .0.message)]
     Host(Box<Diagnostic>),
 }
@@ -56,6 +57,7 @@ pub enum Failure {
 /// If a construct is not supported or the deadline passes.
 pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline) -> Result<String, Failure> {
     let mut cx = LoweringContext::new(checked);
+    fold_except(&mut cx, folding::agrees);
     passes().run(&mut cx, deadline)?;
     let order = Order::with_labels(&cx);
     deadline.check()?;
@@ -73,6 +75,7 @@ pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline)
 /// missing returns itself; WGSL zero-initializes locals anyway.
 fn passes() -> Passes {
     [
+        Pass::Folding,
         Pass::ShortCircuit,
         Pass::Matrices,
         Pass::Compounds,

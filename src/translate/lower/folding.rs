@@ -1,0 +1,62 @@
+//! Built-in functions of constants, folded to the evaluator's values.
+//!
+//! naga evaluates functions of constants with the host's own `sin`, whose last bits are not the evaluator's,
+//! and refuses some legal arguments: `pow(0.0, 0.0)`. Literals leave it nothing to evaluate. Values that are
+//! not finite are left to [`super::constant`].
+
+use toyproof_glsl::tree::{BuiltIn, Constructor, ExprId, ExprKind, Type};
+
+use super::float32::{Float32Values, floats, function_of_floats};
+use crate::inexact::InexactFunction;
+use crate::lower::context::LoweringContext;
+
+pub(super) fn run(cx: &mut LoweringContext) {
+    fold_except(cx, |_, _, _| false);
+}
+
+/// Folds functions whose last bits are implementation-defined, except calls that `is_kept`, which gets the
+/// function, its arguments and its value.
+pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn, &[Vec<f32>], &[f32]) -> bool) {
+    let mut values = Float32Values::default();
+    cx.each_expression_postorder(|cx, id| {
+        let ExprKind::BuiltIn { function, arguments } = &cx.tree[id].kind else {
+            return;
+        };
+        if !cx.tree[id].constant || InexactFunction::of(*function, arguments.len()).is_none() {
+            return;
+        }
+        let (function, ty) = (*function, cx.tree[id].ty);
+        let arguments: Option<Vec<Vec<f32>>> = arguments
+            .clone()
+            .into_iter()
+            .map(|argument| floats(&values.value(&cx.tree, argument)?))
+            .collect();
+        let Some(arguments) = arguments else {
+            return;
+        };
+        let Some(value) = function_of_floats(function, ty, &arguments) else {
+            return;
+        };
+        // The evaluator flushes denormals, before functions and after.
+        let is_plain = |value: &f32| value.is_finite() && !value.is_subnormal();
+        let are_plain = arguments.iter().flatten().chain(&value).all(is_plain);
+        if are_plain && !is_kept(function, &arguments, &value) {
+            replace(cx, id, &value);
+        }
+    });
+}
+
+/// Replaces an expression by literals.
+fn replace(cx: &mut LoweringContext, id: ExprId, value: &[f32]) {
+    let ty = cx.tree[id].ty;
+    let mut build = cx.build_at(id);
+    let components: Vec<ExprId> = value.iter().map(|&component| build.float(component)).collect();
+    let node = match (ty, components.as_slice()) {
+        (_, &[only]) => only,
+        (Type::Matrix { .. }, _) => build.construct(Constructor::Matrix, components, ty),
+        _ => build.construct(Constructor::Vector, components, ty),
+    };
+    cx.tree[id] = cx.tree[node].clone();
+    cx.tree[id].constant = true;
+    cx.tree.clear_cached_value(id);
+}
