@@ -1,13 +1,13 @@
 //! Writes valid modules in the languages that hosts accept.
 
+mod hlsl;
 pub mod roundtrip;
 pub mod spirv;
 
-use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 
-use naga::back::{glsl, hlsl, msl, wgsl};
+use naga::back::{glsl, msl, wgsl};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use naga::{Expression, SampleLevel, ShaderStage};
 use serde::{Deserialize, Serialize};
@@ -62,6 +62,7 @@ impl Target {
         match extension.as_str() {
             "glsl" => Some(Self::Glsl),
             "msl" => Some(Self::Msl),
+            "spirv" => Some(Self::Spirv),
             _ => Self::ALL
                 .into_iter()
                 .find(|target| target.extension() == extension),
@@ -84,7 +85,7 @@ pub fn emit(module: &ValidModule, target: Target) -> Result<Vec<u8>, TranslateEr
         Target::Wgsl => write_wgsl(module).map(String::into_bytes),
         Target::Spirv => Ok(spirv::bytes(&spirv::words(module)?)),
         Target::Msl => write_msl(module).map(String::into_bytes),
-        Target::Hlsl => write_hlsl(module).map(String::into_bytes),
+        Target::Hlsl => hlsl::write(module).map(String::into_bytes),
         Target::Glsl => write_glsl(module).map(String::into_bytes),
     }
 }
@@ -229,107 +230,4 @@ fn write_glsl(module: &ValidModule) -> Result<String, TranslateError> {
     .and_then(|mut writer| writer.write())
     .map_err(TranslateError::new)?;
     Ok(text)
-}
-
-/// Writes HLSL: the block at `b0`, the texture of binding K at `tK`, the sampler of binding K at `sK`.
-fn write_hlsl(module: &ValidModule) -> Result<String, TranslateError> {
-    let binding_map = bindings(module)
-        .map(|(binding, _)| {
-            let target = hlsl::BindTarget {
-                register: binding.binding,
-                ..hlsl::BindTarget::default()
-            };
-            (binding, target)
-        })
-        .collect();
-    let options = hlsl::Options {
-        binding_map,
-        force_loop_bounding: false,
-        ..hlsl::Options::default()
-    };
-    let pipeline = hlsl::PipelineOptions::default();
-    let mut text = String::new();
-    let named = without_reserved_names(module.module());
-    hlsl::Writer::new(&mut text, &options, &pipeline)
-        .write(&named, module.info(), None)
-        .map_err(TranslateError::new)?;
-    Ok(with_separate_samplers(&text))
-}
-
-/// Renames items whose names clash with the constructors that naga generates but does not reserve.
-fn without_reserved_names(module: &naga::Module) -> naga::Module {
-    let mut module = module.clone();
-    let free = |name: &mut Option<String>| {
-        if let Some(rest) = name.as_deref().and_then(|name| name.strip_prefix("Construct")) {
-            *name = Some(format!("construct{rest}"));
-        }
-    };
-    let of_function = |function: &mut naga::Function| {
-        free(&mut function.name);
-        function
-            .arguments
-            .iter_mut()
-            .for_each(|argument| free(&mut argument.name));
-        function
-            .local_variables
-            .iter_mut()
-            .for_each(|(_, local)| free(&mut local.name));
-    };
-    module
-        .functions
-        .iter_mut()
-        .for_each(|(_, function)| of_function(function));
-    module
-        .entry_points
-        .iter_mut()
-        .for_each(|entry| of_function(&mut entry.function));
-    module
-        .constants
-        .iter_mut()
-        .for_each(|(_, constant)| free(&mut constant.name));
-    module
-        .global_variables
-        .iter_mut()
-        .for_each(|(_, global)| free(&mut global.name));
-    let types: Vec<_> = module
-        .types
-        .iter()
-        .map(|(handle, ty)| (handle, ty.clone()))
-        .collect();
-    let mut names: HashSet<_> = types.iter().filter_map(|(_, ty)| ty.name.clone()).collect();
-    for (handle, ty) in types {
-        let mut name = ty.name.clone();
-        free(&mut name);
-        if name == ty.name {
-            continue;
-        }
-        // Types that are otherwise equal must have distinct names.
-        while let Some(name) = name.as_mut().filter(|name| names.contains(*name)) {
-            name.push('n');
-        }
-        names.extend(name.clone());
-        module.types.replace(handle, naga::Type { name, ..ty });
-    }
-    module
-}
-
-/// Replaces naga's sampler heap, which it accesses through a buffer, by separate sampler bindings, which are
-/// simpler for hosts of a single shader.
-fn with_separate_samplers(text: &str) -> String {
-    let is_heap = |line: &&str| {
-        line.starts_with("SamplerState nagaSamplerHeap[")
-            || line.starts_with("SamplerComparisonState nagaComparisonSamplerHeap[")
-            || line.starts_with("StructuredBuffer<uint> nagaGroup0SamplerIndexArray ")
-    };
-    let lines = text.lines().filter(|line| !is_heap(line)).map(|line| {
-        let sampler = line.strip_prefix("static const SamplerState ").and_then(|rest| {
-            rest.strip_suffix("]];")?
-                .split_once(" = nagaSamplerHeap[nagaGroup0SamplerIndexArray[")
-        });
-        match sampler {
-            Some((name, register)) => format!("SamplerState {name} : register(s{register});\n"),
-            None => format!("{line}\n"),
-        }
-    });
-    lines.collect()
 }

@@ -12,8 +12,7 @@ use crate::naga_ir::ValidModule;
 ///
 /// GLSL ES 3.00 has neither descriptor sets nor textures apart from samplers, and 3.10 is the first version
 /// that compiles to SPIR-V. For HLSL, glslang packs blocks like D3D with one exception: D3D places a scalar
-/// in the last row of a preceding array, which naga pads for that. glslang also refuses `(T[N])0` as an array
-/// of zeros.
+/// in the last row of a preceding array, which naga pads for that.
 #[must_use]
 pub fn for_glslang(target: Target, text: &str) -> Option<String> {
     match target {
@@ -42,30 +41,10 @@ pub fn for_glslang(target: Target, text: &str) -> Option<String> {
         }
         Target::Hlsl => {
             let lines = text.lines().filter(|line| *line != "    int _pad7_0;");
-            Some(lines.map(with_expanded_zeros).collect::<Vec<_>>().join("\n"))
+            Some(lines.collect::<Vec<_>>().join("\n"))
         }
         Target::Wgsl | Target::Spirv | Target::Msl => None,
     }
-}
-
-/// Larger arrays are not expanded.
-const MAX_EXPANDED_ELEMENTS: usize = 1 << 12;
-
-/// Expands the array of zeros in an HLSL declaration element by element.
-fn with_expanded_zeros(line: &str) -> String {
-    let expanded = || {
-        let (declared, zeros) = line.split_once(" = (")?;
-        let (ty, size) = zeros.strip_suffix("])0;")?.split_once('[')?;
-        let size = size
-            .parse()
-            .ok()
-            .filter(|&size: &usize| size <= MAX_EXPANDED_ELEMENTS)?;
-        Some(format!(
-            "{declared} = {{ {} }};",
-            vec![format!("({ty})0"); size].join(", ")
-        ))
-    };
-    expanded().unwrap_or_else(|| line.to_owned())
 }
 
 /// Converts GLSL that was written from a lowered shader to a `ShaderToy` shader.
@@ -210,21 +189,6 @@ fn classify(line: &str) -> Line<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn only_arrays_of_zeros_are_expanded() {
-        assert_eq!(
-            with_expanded_zeros("static Ray rays[2] = (Ray[2])0;"),
-            "static Ray rays[2] = { (Ray)0, (Ray)0 };"
-        );
-        for line in [
-            "    float x = (1.0);",
-            "float y[9999999] = (float[9999999])0;",
-            "x = (a[2])0",
-        ] {
-            assert_eq!(with_expanded_zeros(line), line);
-        }
-    }
 
     #[test]
     fn inputs_become_those_of_shadertoy() {

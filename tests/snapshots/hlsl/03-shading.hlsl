@@ -49,7 +49,7 @@ static const float3 AMBIENT = float3(0.1, 0.1, 0.15);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Light lights[2] = (Light[2])0;
+static Light lights[2] = { (Light)0, (Light)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {

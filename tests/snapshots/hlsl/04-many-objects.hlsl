@@ -62,7 +62,7 @@ static const float3 AMBIENT = (0.08).xxx;
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[7] = (Sphere[7])0;
+static Sphere spheres[7] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static Light light = (Light)0;
 static float seed = (float)0;
 static float4 gl_FragCoord_1 = (float4)0;

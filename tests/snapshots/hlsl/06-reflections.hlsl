@@ -44,7 +44,7 @@ static const int MAX_DEPTH = int(100);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[4] = (Sphere[4])0;
+static Sphere spheres[4] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {

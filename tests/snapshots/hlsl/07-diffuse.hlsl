@@ -56,8 +56,8 @@ static const float3 AMBIENT = float3(0.3, 0.35, 0.45);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[4] = (Sphere[4])0;
-static Light lights[2] = (Light[2])0;
+static Sphere spheres[4] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
+static Light lights[2] = { (Light)0, (Light)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {

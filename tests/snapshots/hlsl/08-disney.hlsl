@@ -62,7 +62,7 @@ static const float3 LIGHT_COLOR = float3(5.0, 4.8, 4.5);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[10] = (Sphere[10])0;
+static Sphere spheres[10] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {

@@ -51,7 +51,7 @@ static const float3 AMBIENT = (0.25).xxx;
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[4] = (Sphere[4])0;
+static Sphere spheres[4] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static Light light = (Light)0;
 static uint state = (uint)0;
 static float4 gl_FragCoord_1 = (float4)0;

@@ -64,7 +64,7 @@ static const float3 LIGHT_COLOR = (0.85).xxx;
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Quadric quadrics[5] = (Quadric[5])0;
+static Quadric quadrics[5] = { (Quadric)0, (Quadric)0, (Quadric)0, (Quadric)0, (Quadric)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {

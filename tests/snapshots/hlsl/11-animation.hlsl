@@ -45,7 +45,7 @@ static const float3 SUN = float3(0.0, 0.2, -7.0);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere bodies[6] = (Sphere[6])0;
+static Sphere bodies[6] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static float3 lamp = (float3)0;
 static float4 gl_FragCoord_1 = (float4)0;
 

@@ -73,7 +73,7 @@ static const float IOR = 1.5;
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[4] = (Sphere[4])0;
+static Sphere spheres[4] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {
@@ -364,7 +364,7 @@ Branch ConstructBranch(Ray arg0, float3 arg1, int arg2) {
 float3 trace(Ray first)
 {
     Ray first_1 = (Ray)0;
-    Branch stack[8] = (Branch[8])0;
+    Branch stack[8] = { (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0 };
     int top = int(1);
     float3 color = (0.0).xxx;
     Branch branch = (Branch)0;

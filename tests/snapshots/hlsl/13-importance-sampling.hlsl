@@ -74,7 +74,7 @@ static const int EMITTER = int(2);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[6] = (Sphere[6])0;
+static Sphere spheres[6] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static uint state = (uint)0;
 static float4 gl_FragCoord_1 = (float4)0;
 

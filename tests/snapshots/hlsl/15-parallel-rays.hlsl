@@ -44,7 +44,7 @@ static const float3 LIGHT = float3(3.0, 5.0, 4.0);
 
 static float4 toyproof_color = (float4)0;
 cbuffer global : register(b0) { ToyproofFrame global; }
-static Sphere spheres[5] = (Sphere[5])0;
+static Sphere spheres[5] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static float4 gl_FragCoord_1 = (float4)0;
 
 struct FragmentInput_main {
