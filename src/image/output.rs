@@ -85,7 +85,16 @@ fn check_no_symlink_between(folder: &Path, path: &Path) -> io::Result<()> {
 }
 
 fn with_path(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", path_name(path)))
+    io::Error::new(error.kind(), format!("{}: {}", path_name(path), reason(error)))
+}
+
+/// The system's message, without the number of the error and the temporary name that follow it.
+fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    match text.split_once(" (os error ") {
+        Some((message, _)) => message.to_owned(),
+        None => text,
+    }
 }
 
 /// Writes a file at a path atomically, replacing an existing one.
@@ -94,7 +103,13 @@ fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
-    fs::create_dir_all(folder)?;
+    fs::create_dir_all(folder).map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => io::Error::new(
+            io::ErrorKind::NotADirectory,
+            format!("`{}` is not a folder", path_name(folder)),
+        ),
+        _ => error,
+    })?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".toyproof-");
     #[cfg(unix)]
@@ -242,7 +257,18 @@ mod tests {
         let target = folder.path().join("taken");
         fs::create_dir_all(target.join("child")).unwrap();
         let error = write(&target, b"x").unwrap_err();
-        assert!(error.to_string().contains("taken"), "{error}");
+        let path = path_name(&target);
+        assert_eq!(error.to_string(), format!("{path}: Is a directory"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        let file = folder.path().join("file");
+        fs::write(&file, b"").unwrap();
+        let error = write(&file.join("a"), b"x").unwrap_err();
+        let [inside, file] = [file.join("a"), file].map(|path| path_name(&path));
+        assert_eq!(error.to_string(), format!("{inside}: `{file}` is not a folder"));
+        if cfg!(target_os = "linux") {
+            // The temporary file cannot be created.
+            let error = write(Path::new("/proc/a"), b"x").unwrap_err();
+            assert_eq!(error.to_string(), "/proc/a: No such file or directory");
+        }
     }
 }

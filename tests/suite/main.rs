@@ -18,6 +18,7 @@ mod collected;
 mod commands;
 mod containment;
 mod conversion;
+mod conversion_accepted;
 mod converted_passes;
 mod debug;
 mod derivatives;

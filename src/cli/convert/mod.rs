@@ -93,7 +93,9 @@ pub(super) struct Args {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum To {
     Wgsl,
+    #[value(alias = "spirv")]
     Spv,
+    #[value(alias = "msl")]
     Metal,
     Hlsl,
     Glsl,
@@ -538,6 +540,13 @@ impl Batch<'_> {
             }
         };
         self.exit = self.exit.max(exit);
+        // Whoever could not write the file reported why.
+        let is_lost = !written && matches!(status, Status::Converted | Status::Proved);
+        let message = match is_lost {
+            true if message.is_empty() => "not written".to_owned(),
+            true => format!("{message}; not written"),
+            false => message,
+        };
         match status {
             Status::Converted => {}
             Status::Proved => self.tally.proved += 1,
@@ -546,7 +555,7 @@ impl Batch<'_> {
         }
         if self.args.format == Format::Human {
             self.terminal.diagnostics(&diagnostics, &shader.files);
-            self.print_row(status, job, &message);
+            self.print_row(status, written, job, &message);
         }
         self.rows.push(Row {
             shader: job.name(),
@@ -606,10 +615,11 @@ impl Batch<'_> {
     }
 
     /// Prints the result of a shader; a shader that was only converted is confirmed by the path of its file.
-    fn print_row(&self, status: Status, job: &Job, message: &str) {
+    fn print_row(&self, status: Status, written: bool, job: &Job, message: &str) {
         let row = self.layout.row(status.label(), &job.name(), message);
         match status {
-            Status::Converted if self.output == Path::new("-") => {}
+            // The error about the file stands for itself.
+            Status::Converted if !written || self.output == Path::new("-") => {}
             Status::Converted => self.terminal.note(&format!("{row} → {}", path_name(&job.path))),
             // Without a table of proofs, an error stands for itself.
             Status::Refused if !self.args.verify => self

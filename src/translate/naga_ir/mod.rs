@@ -78,10 +78,13 @@ impl ValidModule {
         };
         let validated = Self::validate(module).map(|valid| Self { fetches, ..valid });
         validated.map_err(|error| {
-            let span = error
-                .spans()
-                .next()
-                .map_or(naga::Span::UNDEFINED, |(span, _)| *span);
+            // The first place that is the author's: others are in generated code.
+            let mut spans = error.spans().map(|(span, _)| *span);
+            let is_authors = |span: &naga::Span| {
+                span.to_range()
+                    .is_some_and(|range| lowered.origin(range).is_some())
+            };
+            let span = spans.find(is_authors).unwrap_or(naga::Span::UNDEFINED);
             vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)].into()
         })
     }
@@ -152,7 +155,7 @@ fn naga_diagnostic(code: &'static str, message: &str, span: naga::Span, lowered:
     let diagnostic = Diagnostic::error(code, format!("naga cannot translate this: {message}"));
     match span.to_range().and_then(|range| lowered.origin(range)) {
         Some(span) => diagnostic.at(span),
-        None => diagnostic,
+        None => diagnostic.note("the place is in code that toyproof generates, or naga does not name it"),
     }
 }
 

@@ -27,6 +27,14 @@ fn opposite(op: BinaryOp, scalar: Scalar) -> Option<BinaryOp> {
 impl Writer<'_> {
     /// Returns the code of a value; lines for its side effects are printed first.
     pub(super) fn value(&mut self, id: ExprId) -> TextResult {
+        let printed = self.value_or_reason(id);
+        if printed.is_err() {
+            self.failed_at.get_or_insert(self.cx.tree[id].at);
+        }
+        printed
+    }
+
+    fn value_or_reason(&mut self, id: ExprId) -> TextResult {
         self.check_deadline()?;
         let tree = &self.cx.tree;
         let expr = &tree[id];

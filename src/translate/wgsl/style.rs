@@ -371,7 +371,12 @@ fn members_at_offsets(inputs: &BTreeSet<usize>) -> String {
             format!("@size({}) {name}: {ty},", next.unwrap_or(0) - offset)
         }
     });
-    declarations.collect::<Vec<_>>().join("\n    ")
+    let declarations = declarations.collect::<Vec<_>>().join("\n    ");
+    if declarations.contains("@size") {
+        format!("// `@size` skips inputs that the shader does not read.\n    {declarations}")
+    } else {
+        declarations
+    }
 }
 
 /// The suffix of the type of a texture.

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use toyproof_diagnostic::{Deadline, Files};
+use toyproof_diagnostic::{Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, Type, VariableId, VariableKind, walk,
 };
@@ -39,6 +39,8 @@ pub(super) struct Writer<'a> {
     pub(super) macros: BTreeMap<String, String>,
     /// Helper functions that are called, by name.
     pub(super) helpers: BTreeMap<String, String>,
+    /// The innermost expression that could not be printed.
+    pub(super) failed_at: Option<Place>,
     /// Whether derivatives are used, explicitly or for implicit levels of detail.
     pub(super) uses_derivatives: bool,
     /// Whether `gl_FragCoord` is read other than by `mainImage`'s caller.
@@ -70,6 +72,7 @@ impl<'a> Writer<'a> {
             hoisting: HashMap::new(),
             macros: BTreeMap::new(),
             helpers: BTreeMap::new(),
+            failed_at: None,
             uses_derivatives: false,
             reads_position: false,
         }
@@ -144,6 +147,22 @@ impl<'a> Writer<'a> {
         type_name(self.cx, self.names, ty)
     }
 
+    /// Adds the place of the expression that could not be printed.
+    fn placed(&self, why: Unprintable) -> Unprintable {
+        match (why, self.failed_at) {
+            (Unprintable::Construct(what), Some(at)) => {
+                let style = self.style.name();
+                let message = format!("{what} is not supported in the style `{style}`");
+                Unprintable::Host(Box::new(
+                    Diagnostic::error("E0902", message)
+                        .at(at.span)
+                        .help("use `--style plain`, which supports it"),
+                ))
+            }
+            (why, _) => why,
+        }
+    }
+
     /// Prints the whole text: the author's first comment, and the items in the style's code.
     pub(super) fn write(mut self, order: &Order) -> Result<String, Unprintable> {
         let mut first = self
@@ -154,7 +173,8 @@ impl<'a> Writer<'a> {
             first.push_str("\n\n");
         }
         for &item in &order.items {
-            self.item(item)?;
+            let printed = self.item(item);
+            printed.map_err(|why| self.placed(why))?;
         }
         let items = std::mem::take(&mut self.out);
         let [head, end] = self.style_code(order)?;

@@ -3,6 +3,7 @@
 // 43 spheres in a hierarchy: a parent, six children, and six grandchildren for each child.
 
 struct Inputs {
+    // `@size` skips inputs that the shader does not read.
     @size(20) iResolution: vec3f,
     iFrame: i32,
 }

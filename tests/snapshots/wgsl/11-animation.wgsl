@@ -4,6 +4,7 @@
 // planets, iFrame the satellite.
 
 struct Inputs {
+    // `@size` skips inputs that the shader does not read.
     iResolution: vec3f,
     @size(8) iTime: f32,
     iFrame: i32,
