@@ -15,6 +15,9 @@ pub(crate) const MIN_IMAGE_ITERATIONS: u32 = 1 << 17;
 /// other random numbers is given up. It takes seconds.
 pub(crate) const MAX_ITERATIONS: u32 = 1 << 22;
 
+/// The number of loop iterations after which a pixel is not traced: recording its values takes seconds.
+pub(crate) const MAX_TRACED_ITERATIONS: u32 = 1 << 18;
+
 /// The time for explaining a difference, and for each unit of a search's budget, which takes a second on an idle
 /// core. Machines are seldom fifty times slower.
 pub(crate) const EXPLANATION_TIMEOUT: Duration = Duration::from_secs(600);

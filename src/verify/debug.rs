@@ -42,8 +42,25 @@ pub fn explain<'a>(
     pixel: [u32; 2],
     deadline: Option<Instant>,
 ) -> Result<Explanation<'a>, Failure> {
-    let singles = program.pixel_debugger(frame, settings::<f32>(deadline))?;
-    let doubles = program.pixel_debugger(frame, settings::<f64>(deadline))?;
+    explain_within(
+        program,
+        frame,
+        pixel,
+        Settings::<f64>::default().max_iterations,
+        deadline,
+    )
+}
+
+/// Like [`explain`], but also fails if the pixel runs more loop iterations.
+pub(crate) fn explain_within<'a>(
+    program: &'a Program,
+    frame: &'a Frame,
+    pixel: [u32; 2],
+    max_iterations: u32,
+    deadline: Option<Instant>,
+) -> Result<Explanation<'a>, Failure> {
+    let singles = program.pixel_debugger(frame, settings::<f32>(max_iterations, deadline))?;
+    let doubles = program.pixel_debugger(frame, settings::<f64>(max_iterations, deadline))?;
     let schema = doubles.schema();
     let single = singles.trace(pixel, None)?;
     let double = doubles.trace(pixel, None)?;
@@ -71,8 +88,9 @@ pub fn explain<'a>(
     })
 }
 
-fn settings<'a, N: Number>(deadline: Option<Instant>) -> Settings<'a, N> {
+fn settings<'a, N: Number>(max_iterations: u32, deadline: Option<Instant>) -> Settings<'a, N> {
     Settings {
+        max_iterations,
         deadline,
         ..Settings::default()
     }

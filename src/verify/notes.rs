@@ -12,8 +12,9 @@ use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 
 use super::{Case, CheckResult, Failure};
+use crate::bounds::MAX_TRACED_ITERATIONS;
 use crate::compare::{CheckSummary, PixelStatus};
-use crate::debug::{Explanation, digits, explain};
+use crate::debug::{Explanation, digits, explain_within};
 use crate::decide::is_toolchain_fault;
 
 /// Reports what was observed, except what the lints report already. `excludes_pixels` is true if pixels with
@@ -214,7 +215,7 @@ pub(super) fn lost_digits(
 ) -> Option<Diagnostic> {
     let mut causes = BTreeMap::<u32, (u64, Diagnostic)>::new();
     for pixel in spread(pixels.len(), MAX_EXPLAINED_PIXELS).map(|at| pixels[at]) {
-        let explained = explain(program, frame, pixel, Some(deadline));
+        let explained = explain_within(program, frame, pixel, MAX_TRACED_ITERATIONS, Some(deadline));
         let diagnostic = explained
             .ok()
             .and_then(|explanation| diagnostic(&explanation, pixel));
@@ -257,7 +258,7 @@ impl NotFinite {
     ) -> Option<Diagnostic> {
         let [x, y] = self.first?;
         let count = self.count;
-        let explained = explain(program, frame, [x, y], Some(deadline)).ok()?;
+        let explained = explain_within(program, frame, [x, y], MAX_TRACED_ITERATIONS, Some(deadline)).ok()?;
         let step = explained.not_finite.map(|at| &explained.steps[at])?;
         let value = step.single.iter().flatten().find_map(|value| match value {
             TraceValue::Float(value) if !value.is_finite() => Some(digits(*value, true)),
