@@ -83,6 +83,32 @@ fn crates_import_only_documented_crates() {
     assert_eq!(folders, documented.into_keys().collect::<Vec<_>>());
 }
 
+/// Files of others may be pipes, which `toyproof_image::input` does not wait for.
+#[test]
+fn files_are_opened_by_one_function() {
+    /// Files of the program and of the system, and pipes of the shell: the ends of the paths of their sources.
+    const OWN: [&str; 4] = [
+        "cli/check/shard.rs",
+        "cli/files.rs",
+        "gpu/sandbox/files.rs",
+        "verify/conversion/tool.rs",
+    ];
+    let mut found = Vec::new();
+    for path in sources(Path::new("src")) {
+        if path.iter().any(|part| part == "tests" || part == "tests.rs") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let opens = ["File::open(", "fs::read(", "fs::read_to_string("];
+        if opens.iter().any(|open| code.contains(open)) {
+            found.push(toyproof::diagnostic::path_name(&path));
+        }
+    }
+    found.sort();
+    assert_eq!(found, OWN.map(|path| format!("src/{path}")));
+}
+
 #[test]
 fn only_the_command_line_prints_or_exits() {
     for path in sources(Path::new("src")) {
