@@ -11,18 +11,18 @@ use crate::inexact::InexactFunction;
 use crate::lower::context::LoweringContext;
 
 pub(super) fn run(cx: &mut LoweringContext) {
-    fold_except(cx, |_, _, _| false);
+    fold_except(cx, |_| false);
 }
 
-/// Folds functions whose last bits are implementation-defined, except calls that `is_kept`, which gets the
-/// function, its arguments and its value.
-pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn, &[Vec<f32>], &[f32]) -> bool) {
+/// Folds functions of constants whose last bits are implementation-defined, except those that are kept.
+pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn) -> bool) {
     let mut values = Float32Values::default();
     cx.each_expression_postorder(|cx, id| {
         let ExprKind::BuiltIn { function, arguments } = &cx.tree[id].kind else {
             return;
         };
-        if !cx.tree[id].constant || InexactFunction::of(*function, arguments.len()).is_none() {
+        let is_exact = InexactFunction::of(*function, arguments.len()).is_none();
+        if !cx.tree[id].constant || is_exact || is_kept(*function) {
             return;
         }
         let (function, ty) = (*function, cx.tree[id].ty);
@@ -40,7 +40,7 @@ pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn, &[
         // The evaluator flushes denormals, before functions and after.
         let is_plain = |value: &f32| value.is_finite() && !value.is_subnormal();
         let are_plain = arguments.iter().flatten().chain(&value).all(is_plain);
-        if are_plain && !is_kept(function, &arguments, &value) {
+        if are_plain {
             replace(cx, id, &value);
         }
     });
