@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
-    StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
+    StatementKind, Swizzle, Type, Value, VariableId, VariableKind, walk,
 };
 use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 
@@ -55,6 +55,13 @@ pub(super) fn expand_inexact_functions(cx: &mut LoweringContext) {
                     call(cx, argument, Expansion::UintToFloat, vec![value]);
                 }
             }
+        }
+        // Processors take denormal operands for zero, compilers that fold constants do not.
+        ExprKind::Literal(literal)
+            if matches!(literal.value, Value::Float(value) if (value as f32).is_subnormal()) =>
+        {
+            let zero = cx.build_at(id).literal(Value::Float(0.0));
+            cx.tree[id].kind = cx.tree[zero].kind.clone();
         }
         _ => {}
     });
