@@ -336,7 +336,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         for (length, is_valid) in [(3, true), (4, false), (5, false), (768, true)] {
-            let mut encoder = png::Encoder::new(File::create(&path).unwrap(), 1, 1);
+            let mut encoder = png::Encoder::new(std::fs::File::create(&path).unwrap(), 1, 1);
             encoder.set_color(png::ColorType::Indexed);
             encoder.set_palette(vec![51; length]);
             let mut encoder = encoder.write_header().unwrap();
