@@ -123,7 +123,7 @@ pub(super) fn toolchain_difference(toolchain: &CheckSummary) -> Option<Diagnosti
         .filter(|_| is_toolchain_fault(toolchain))?;
     let message = format!(
         "{} of {} pixels of the driver's image differ from the same float32 arithmetic on the CPU, first at \
-         ({}, {}); the evaluator's image was judged",
+         ({}, {}); the evaluator's image was checked",
         grouped(toolchain.differing),
         grouped(toolchain.pixels),
         first.x,

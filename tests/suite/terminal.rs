@@ -306,8 +306,8 @@ fn a_late_shader_in_a_folder_lists_its_warnings() {
     let run = toyproof(folder.path(), &words(&format!("{CHECK} --timeout 1")));
     assert!(run.stdout.contains("\n             3:"), "{}", run.stdout);
     assert!(
-        run.stdout
-            .contains("[W0009]\n             help: toyproof explain W0009"),
+        run.stdout.contains("[W0009]\n             the loop does not end")
+            && run.stdout.contains("\n             help: toyproof explain W0009\n"),
         "{}",
         run.stdout
     );
