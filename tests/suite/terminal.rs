@@ -307,7 +307,9 @@ fn a_late_shader_in_a_folder_lists_its_warnings() {
     assert!(run.stdout.contains("\n             3:"), "{}", run.stdout);
     assert!(
         run.stdout.contains("[W0009]\n             the loop does not end")
-            && run.stdout.contains("\n             help: toyproof explain W0009\n"),
+            && run
+                .stdout
+                .contains("\n             help: toyproof explain W0009\n"),
         "{}",
         run.stdout
     );
