@@ -174,8 +174,7 @@ fn arrays_of_arrays_keep_their_dimensions() {
     assert_eq!(render(&mut worker, &case, Passes::all()), 3212.0);
 }
 
-/// Bodies whose images Mesa gets wrong without the worker's changes of SPIR-V. `inf` is infinite in a column,
-/// and `bits` writes the bits of a float.
+/// Bodies whose images Mesa gets wrong without the worker's changes of SPIR-V. `inf` is infinite in a column.
 const FOLDED: &[&str] = &[
     // Products and quotients of zeros that result from folding, by what may be infinite.
     "float zero = 0.0; c.x = isnan(inf * zero) ? 1.0 : 0.0;",
@@ -186,19 +185,10 @@ const FOLDED: &[&str] = &[
     "c.x = isnan(inf * step(1.0, 0.5)) ? 1.0 : 0.0;",
     "float sum = 0.0; for (int i = 0; i < 3; i++) sum += inf * float(i); c.x = isnan(sum) ? 1.0 : 0.0;",
     "vec3 ray = vec3(0, 0, -1); c.xyz = vec3(isnan(ray * inf));",
-    "mat2 m = mat2(1.0); c.xy = vec2(isnan(m * vec2(inf, 1.0)));",
     "mat3 m = mat3(1.0); c.xyz = vec3(isnan(m * m * vec3(inf, 1.0, 2.0)));",
-    "mat2 m = transpose(mat2(0.5)) * inf; c.xy = vec2(isnan(m[0]));",
     "float angle = 0.0; c.xy = vec2(isnan(mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * vec2(inf, 1.0)));",
     "c.x = isnan(mix(inf, 0.5, 1.0)) ? 1.0 : 0.0;",
     "c.xyz = vec3(isnan(mix(vec3(inf), vec3(0.5), 1.0)));",
-    "bvec2 no = bvec2(false); vec2 d = p / vec2(1.0, no.y); c.x = isinf(d.y) ? 1.0 : 0.0;",
-    // Denormal constants, derivatives of constants, bits of NaN.
-    "bits(1e-30 * 1e-10, c);",
-    "float a = 1e-30; bits(a * 1e-10, c);",
-    "float tiny = 1e-39; bits(max(tiny, 0.0) + sign(tiny), c);",
-    "float nan = uintBitsToFloat(0x7fc00000u); c.x = isnan(dFdx(nan)) ? 1.0 : 0.0;",
-    "bits(unpackHalf2x16(0x7c01u).x, c);",
     // A loop whose iterations the compiler counts as -2147483648 / -1.
     "int k = 0, i = 3; while (i-- > 0) { if (-2147483647 - 1 == k--) break; } c.x = float(k);",
     // Loops that some pixels leave earlier than others, after assignments.
@@ -207,13 +197,7 @@ const FOLDED: &[&str] = &[
     "float r = p.x; int i = 0; for (;;) { r *= 1.5; if (r > 9.0) { i += 4; break; } if (++i > 5) break; } c = vec4(r, i, 0, 1);",
     "float r = p.x; while ((r = 1.5 * r) < 9.0) {} c.x = r;",
     "for (int i = 0; i < 2; i++) { float r = p.x; do { r += p.y; if (r > 5.0) break; r *= 1.5; } while (r < 8.0); c.x += r; }",
-    "c.x = late(p.x);",
 ];
-
-const FOLDED_PRELUDE: &str =
-    "void bits(float x, inout vec4 c) { uint u = floatBitsToUint(x); c = vec4(u & 65535u, u >> 16, 0, 1); }
-float late(float x) { for (;;) { x *= 1.5; if (x > 9.0) return x; if (x < 1.0) break; } return -x; }
-";
 
 #[test]
 fn the_driver_folds_and_loops_as_the_evaluator() {
@@ -224,7 +208,7 @@ fn the_driver_folds_and_loops_as_the_evaluator() {
     for body in FOLDED {
         let mut files = Files::default();
         let text = format!(
-            "{FOLDED_PRELUDE}void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0); float inf = 1.0 / (p.x - 4.5); {body} }}"
+            "void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0); float inf = 1.0 / (p.x - 4.5); {body} }}"
         );
         let file = files.add(File::new("s", text));
         let checked = check(&files, file, &Options::default()).unwrap_or_else(|_| panic!("{body}"));
