@@ -151,10 +151,11 @@ impl Sequence {
                 frame(&one, &interrupted)
             };
             if end == FrameEnd::Interrupted {
+                let rendered = bar.position();
                 bar.finish_and_clear();
                 terminal.error(format_args!(
                     "interrupted after {} of {} frames",
-                    grouped(bar.position()),
+                    grouped(rendered),
                     grouped(self.frames.count())
                 ));
                 terminal.help("run the same command again to render the others");
