@@ -12,7 +12,7 @@ use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constant, Constructor, ExprId, ExprKind, Scalar, Tree, Type, Value,
 };
 
-use super::float32::Float32Values;
+use super::float32::{Float32Values, floats};
 use crate::lower::builtin::Helper;
 use crate::lower::context::LoweringContext;
 
@@ -138,6 +138,12 @@ fn rewrite(tree: &Tree, values: &mut Float32Values, id: ExprId) -> Option<Rewrit
                     |value| matches!(value, Value::Float(base) if base <= 0.0),
                 )
                 .then_some(base),
+                // The length may overflow although the quotients do not.
+                (BuiltIn::Normalize, &[vector]) if tree[vector].constant => values
+                    .value(tree, vector)
+                    .and_then(|value| floats(&value))
+                    .is_some_and(|vector| !toyproof_math::length(&vector).is_finite())
+                    .then_some(vector),
                 // Half floats may be infinite or NaN, and others may be too large for them.
                 (BuiltIn::PackHalf2x16 | BuiltIn::UnpackHalf2x16, &[argument]) => {
                     tree[argument].constant.then_some(argument)
