@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn texels_beyond_a_texture_are_zero() {
-        let image = Image::new(2, 1, vec![[1.0; 4], [2.0; 4]]);
+        let image = Image::new(2, 1, vec![[1.0_f32; 4], [2.0; 4]]);
         let texture = Texture::from(image).with_mipmaps();
         let Texture::Single(levels) = &texture else {
             panic!("images hold floats");

@@ -149,6 +149,8 @@ pub struct CheckEvidence {
     /// The pixels in which rounding decides whether a ray hits the surface that it starts from, where there
     /// are enough of them to explain the difference.
     pub self_intersection: Option<SelfIntersection>,
+    /// Whether the reference is a shader, whose formulas may lose precision too.
+    pub is_reference_shader: bool,
 }
 
 /// Pixels in which rounding decides whether a ray hits the surface that it starts from.
@@ -279,7 +281,7 @@ pub enum Reason {
         /// edge of a scene passes through the sample.
         tied: u64,
         /// The number of pixels in which float32 is not precise enough, neither for the shader nor for the
-        /// reference, if they are many.
+        /// reference shader, if they are many.
         imprecise_reference: u64,
     },
     /// Without a difference that is permitted, the shader agrees with its reference: `correct`.
@@ -376,7 +378,7 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
         Evidence::Checked(evidence) => {
             let (verdict, reason) = match &evidence.random_numbers {
                 Some(random_numbers) => by_means(random_numbers, &evidence.checks),
-                None => by_checks(&evidence.checks, evidence.growth),
+                None => by_checks(&evidence.checks, evidence.growth, evidence.is_reference_shader),
             };
             match (evidence.self_intersection, verdict) {
                 (Some(cause), _) if cause.in_double => (Verdict::Wrong, Reason::SelfIntersection(cause)),
@@ -425,7 +427,7 @@ fn without_image(failure: &Failure) -> Verdict {
 }
 
 /// The verdict by the three checks, pixel by pixel, and by the growth of errors over frames.
-fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>) -> (Verdict, Reason) {
+fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>, is_reference_shader: bool) -> (Verdict, Reason) {
     let Some(algorithm) = &checks.algorithm else {
         // Without a reference, the subject is the toolchain.
         let fault = checks
@@ -481,7 +483,7 @@ fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>) -> (Verdict, Reason
         .map_or(Share { count: 0, of: 0 }, |precision| {
             Share::of(precision, precision.tied)
         });
-    let is_imprecise = tied.ratio() > MAX_UNSTABLE;
+    let is_imprecise = is_reference_shader && tied.ratio() > MAX_UNSTABLE;
     let reason = Reason::Agrees {
         differing,
         ill_conditioned: algorithm.ill_conditioned,
@@ -522,7 +524,7 @@ fn by_means(random: &OtherRandomNumbers, checks: &Checks) -> (Verdict, Reason) {
     };
     if verdict == Verdict::Correct {
         // Other random numbers in float32 are no growth of errors.
-        let others = by_checks(&random.other_pixels, None);
+        let others = by_checks(&random.other_pixels, None, false);
         if others.0 != Verdict::Correct {
             return others;
         }

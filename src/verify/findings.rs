@@ -157,6 +157,7 @@ impl Findings {
                 toolchain: summary(&self.toolchain),
             },
             growth: case.from_start.and_then(|from_start| from_start.growth),
+            is_reference_shader: self.reference_kind == Some(ReferenceKind::Shader),
             ..CheckEvidence::default()
         };
         self.decide(evidence.clone().into());

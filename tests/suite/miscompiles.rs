@@ -99,7 +99,7 @@ static CASES: &[Case] = &[
     (
         Pass::InexactFunctions,
         "",
-        "uint u = 0xC000BC00u; o.x = unpackHalf2x16(u).y;",
+        "uint u = 0xC000BC00u + uint(p.x) / 1000u; o.x = unpackHalf2x16(u).y;",
         -2.0,
     ),
     // Two iterations, not three.

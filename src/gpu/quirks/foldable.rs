@@ -30,6 +30,8 @@ pub(super) struct Foldable {
     roots: HashMap<u32, u32>,
     /// Parameters that are pointers.
     references: HashSet<u32>,
+    /// The constants that variables without a value of their own are initialized with.
+    nulls: HashSet<u32>,
     /// The parameters of functions.
     parameters: HashMap<u32, Vec<u32>>,
 }
@@ -70,6 +72,9 @@ impl Foldable {
             match (opcode(instruction), instruction) {
                 (Some(Op::TypePointer), &[_, id, ..]) => {
                     pointers.insert(id);
+                }
+                (Some(Op::ConstantNull), &[_, _, id]) => {
+                    self.nulls.insert(id);
                 }
                 (Some(Op::Function), &[_, _, id, ..]) => function = id,
                 (Some(Op::FunctionParameter), &[_, ty, id]) => {
@@ -128,6 +133,8 @@ impl Foldable {
                 let parts = instruction[3..].iter();
                 result(parts.filter_map(|&part| self.known(part)).max())
             }
+            // What is read before it is written is rarely multiplied.
+            Op::Variable if instruction.get(4).is_some_and(|id| self.nulls.contains(id)) => Vec::new(),
             Op::Variable => result(operand(4)),
             Op::Load => result(self.known(self.root(instruction[3]))),
             Op::Store => {

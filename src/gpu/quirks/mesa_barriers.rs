@@ -9,8 +9,9 @@ use toyproof_translate::backend::spirv::{has_type, instructions, is_product, opc
 use super::foldable::{Foldable, Known, Operands};
 use super::opaque::{Opaque, push};
 
-/// Combines some numbers by exclusive or with the bits of `gl_FragCoord.z`, which are 0 if an image is
-/// rendered with triangles at depth 0. Their values do not change, nor does a module without `gl_FragCoord`.
+/// Combines some numbers by or with the bits of `gl_FragCoord.z`, which are 0 if an image is
+/// rendered with triangles at depth 0. Their values do not change, nor does a module without `gl_FragCoord`. An
+/// exclusive or would be undone where a number is hidden twice, as a column and in a matrix.
 /// The numbers are:
 ///
 /// - Numbers and vectors loaded from a uniform block. If a loop or a branch depends on a number, Mesa checks
@@ -250,10 +251,10 @@ impl Rewriter {
         }
         if is_float {
             let bits = self.opaque.value(code, Op::Bitcast, whole, &[known]);
-            let bits = self.opaque.value(code, Op::BitwiseXor, whole, &[bits, zero]);
+            let bits = self.opaque.value(code, Op::BitwiseOr, whole, &[bits, zero]);
             push(code, Op::Bitcast, &[ty, hidden, bits]);
         } else {
-            push(code, Op::BitwiseXor, &[ty, hidden, known, zero]);
+            push(code, Op::BitwiseOr, &[ty, hidden, known, zero]);
         }
     }
 }
@@ -281,8 +282,8 @@ mod tests {
         );
         let opaque = with_opaque_numbers(&plain);
         // The time, the resolution, the mouse and the frame.
-        let hidden = all(&opaque, Op::BitwiseXor);
-        assert_eq!((all(&plain, Op::BitwiseXor).len(), hidden.len()), (0, 4));
+        let hidden = all(&opaque, Op::BitwiseOr);
+        assert_eq!((all(&plain, Op::BitwiseOr).len(), hidden.len()), (0, 4));
         let loads =
             |words| -> Vec<Vec<u32>> { all(words, Op::Load).iter().map(|load| load.to_vec()).collect() };
         assert_eq!(
@@ -309,7 +310,7 @@ mod tests {
     fn only_multiplied_zeros_are_hidden() {
         let hidden = |body: &str| {
             let shader = format!("void mainImage(out vec4 c, in vec2 p) {{ c = vec4(p, p); {body} }}");
-            all(&with_opaque_numbers(&words_of(&shader)), Op::BitwiseXor).len()
+            all(&with_opaque_numbers(&words_of(&shader)), Op::BitwiseOr).len()
         };
         assert_eq!(hidden("c *= vec4(1, 0.5, 2, 1);"), 0);
         assert_eq!(hidden("c = max(c, 0.0) - vec4(0, 1, 2, 3);"), 0);

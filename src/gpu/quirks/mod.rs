@@ -103,7 +103,7 @@ pub const OPAQUE_NUMBERS: Quirk = Quirk {
               results, and derivatives of constants to 0, even of NaN; and it dies of −2³¹ / −1 while it counts \
               the iterations of `while (k-- != -2147483647 - 1)`",
     workaround: "in strict runs, numbers of the uniform block and operands of these operations that may be \
-                 found to be constant are combined by exclusive or with bits of `gl_FragCoord.z` that are 0",
+                 found to be constant are combined by or with bits of `gl_FragCoord.z` that are 0",
     source: "src/gpu/quirks/mesa_barriers.rs",
     removal: "when `tests/suite/evaluator.rs` and `tests/suite/generated.rs` pass without it on the supported \
               versions of Mesa",

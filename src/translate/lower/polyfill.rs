@@ -56,13 +56,6 @@ pub(super) fn expand_inexact_functions(cx: &mut LoweringContext) {
                 }
             }
         }
-        // Processors take denormal operands for zero, compilers that fold constants do not.
-        ExprKind::Literal(literal)
-            if matches!(literal.value, Value::Float(value) if (value as f32).is_subnormal()) =>
-        {
-            let zero = cx.build_at(id).literal(Value::Float(0.0));
-            cx.tree[id].kind = cx.tree[zero].kind.clone();
-        }
         _ => {}
     });
     demote_constants(cx);

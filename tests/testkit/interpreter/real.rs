@@ -150,7 +150,7 @@ impl Number for Single {
 
 impl Real for Single {
     fn from_f64(value: f64) -> Self {
-        Self(flush(value as f32))
+        Self(value as f32)
     }
 
     fn to_f64(self) -> f64 {
