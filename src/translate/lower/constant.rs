@@ -129,7 +129,7 @@ fn rewrite(tree: &Tree, values: &mut Float32Values, id: ExprId) -> Option<Rewrit
                     any_bounds(tree, low, high, |low, high| low > high).then_some(low)
                 }
                 (BuiltIn::Smoothstep, &[low, high, _]) => {
-                    any_bounds(tree, low, high, |low, high| low == high).then_some(low)
+                    any_bounds(tree, low, high, |low, high| !((high - low) as f32).is_normal()).then_some(low)
                 }
                 // naga refuses a negative base, and 0 to the power 0.
                 (BuiltIn::Pow, &[base, _]) => any_scalar(
