@@ -6,8 +6,8 @@ use toyproof::image::{Frame, Image};
 use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
 use toyproof::verify::compare::{
-    Band, CheckSummary, EXACT_TOLERANCE, EpsilonColors, Mixed, PERTURBATIONS, Reference, accept_epsilons,
-    algorithm,
+    Band, CheckSummary, EXACT_TOLERANCE, EpsilonColors, Mixed, PERTURBATIONS, Reference, Undefined,
+    accept_epsilons, algorithm,
 };
 use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
 use toyproof_testkit::{EXERCISES, Exercise, checked, frame, scene};
@@ -199,7 +199,11 @@ impl Subject {
         let standings = algorithm(
             &expected,
             &self.exact,
-            &vec![false; self.exact.pixels().len()],
+            &Undefined {
+                pixels: &vec![false; self.exact.pixels().len()],
+                substituted: Some(&[]),
+                in_reference: &[],
+            },
             &Traced {
                 families: tracer.epsilon_families(),
                 tracer,

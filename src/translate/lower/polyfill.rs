@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
-    StatementKind, Swizzle, Type, Value, VariableId, VariableKind, walk,
+    StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
 };
 use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 
