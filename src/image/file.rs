@@ -305,7 +305,7 @@ mod tests {
         };
         // From headers that outweigh the pixels to several chunks.
         for size in [1, 2, 9, 120, 400] {
-            let pixels: Vec<_> = (0..size * size).map(|at| noise(at)).collect();
+            let pixels: Vec<_> = (0..size * size).map(noise).collect();
             let pixels = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
             let image = Rgb8Image::new(size, size, pixels);
             let bytes = encode_shown(&image, Path::new("a.png")).unwrap();

@@ -230,11 +230,9 @@ impl<'a> Evaluator<'a> {
         let candidates = rendered.undefined;
         let is_derivative = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
         // Derivatives have no substitute value.
-        let mut substituted = match rendered.observations.faults.iter().any(is_derivative) {
-            true => None,
-            false => Some(Vec::new()),
-        };
-        if candidates.contains(&true) && substituted.is_some() {
+        let has_substitutes = !rendered.observations.faults.iter().any(is_derivative);
+        let mut substituted = has_substitutes.then(Vec::new);
+        if candidates.contains(&true) && has_substitutes {
             substituted = self.with_substitutes::<N>(frame, rows)?;
         }
         let undefined = match &substituted {

@@ -108,9 +108,8 @@ fn functions_that_are_never_called() {
     let text = format!("float shade(float x) {{ return x; }} // c *= shade(f.x);\n{main}");
     assert_eq!(warned(&text), ["W0022:1"]);
     // Of a library, one warning is enough.
-    let library: String = (0..9)
-        .map(|i| format!("float f{i}(float x) {{ return x; }}\n"))
-        .collect();
+    let functions = (0..9).map(|i| format!("float f{i}(float x) {{ return x; }}"));
+    let library = functions.collect::<Vec<_>>().join("\n");
     let (found, _) = diagnostics(&format!("{library}{main}"));
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].message, "`f0` and 8 other functions are never called");

@@ -47,9 +47,8 @@ impl Undefined<'_> {
             Some(images) => differs(actual) && images.iter().all(&differs),
         };
         match (self.pixels[at], self.in_reference.get(at) == Some(&true)) {
-            (_, true) => PixelStatus::Undefined,
             (true, false) if is_wrong => PixelStatus::Differs,
-            (true, false) => PixelStatus::Undefined,
+            (true, _) | (_, true) => PixelStatus::Undefined,
             (false, false) if differs(actual) => PixelStatus::Differs,
             (false, false) => PixelStatus::Agrees,
         }

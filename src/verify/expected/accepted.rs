@@ -98,7 +98,9 @@ impl AcceptedColors {
                 if changed.iter().any(|&at| !marched[at]) {
                     limits.extend(varied);
                 }
-                changed.iter().for_each(|&at| marched[at] = true);
+                for &at in &changed {
+                    marched[at] = true;
+                }
             }
         }
         limits.sort_unstable_by_key(|span| span.start);

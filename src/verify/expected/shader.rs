@@ -211,15 +211,13 @@ impl ShaderReference {
 
     /// The colors of a pixel for the usual ray epsilons and other marches.
     pub(super) fn color_range(&self, x: u32, y: u32) -> ColorRange {
-        match self.accepted() {
-            Some(accepted) => *accepted.range((y * self.frame.size[0] + x) as usize),
-            None => {
-                let color = self.pixel(x, y);
-                ColorRange {
-                    low: color,
-                    high: color,
-                }
-            }
+        if let Some(accepted) = self.accepted() {
+            return *accepted.range((y * self.frame.size[0] + x) as usize);
+        }
+        let color = self.pixel(x, y);
+        ColorRange {
+            low: color,
+            high: color,
         }
     }
 
