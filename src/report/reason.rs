@@ -147,9 +147,10 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
                 plural(share.count, "depends", "depend"),
                 percentage(share)
             );
-            Statement::new(match cause.in_double {
-                true => sentence,
-                false => format!("the shader is correct in double precision, but in float32 {sentence}"),
+            Statement::new(if cause.in_double {
+                sentence
+            } else {
+                format!("the shader is correct in double precision, but in float32 {sentence}")
             })
         }
         Reason::Undefined(share) => Statement::new(format!(
@@ -213,7 +214,7 @@ fn agrees(
     [tied, imprecise]: [u64; 2],
 ) -> Statement {
     let Share { count, of } = differing;
-    let mut reason = match (count, ill_conditioned + undefined) {
+    let reason = match (count, ill_conditioned + undefined) {
         (0, 0) => format!("all {} pixels agree with the reference", grouped(of)),
         (0, excluded) => {
             let others = match (ill_conditioned, undefined) {
@@ -233,14 +234,14 @@ fn agrees(
             100.0 * MAX_DIFFERING
         ),
     };
-    if let Some(region) = undefined_region {
+    let left_out = undefined_region.map_or_else(String::new, |region| {
         let [x, y] = region.middle();
-        reason += &format!(
+        format!(
             "; an area of {} pixels around ({x}, {y}) was left out, since it depends on undefined behavior",
             grouped(region.pixels)
-        );
-    }
-    let mut statement = Statement::new(reason);
+        )
+    });
+    let mut statement = Statement::new(reason + &left_out);
     let pixels = |count| format!("in {} {}", grouped(count), plural(count, "pixel", "pixels"));
     if imprecise > 0 {
         statement = statement.detail(format!(

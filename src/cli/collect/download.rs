@@ -315,9 +315,10 @@ impl Submission<'_> {
             let reason = format!("its path is longer than {} bytes", grouped(MAX_PATH_BYTES as u64));
             return self.add(shortened(path), Err(reason), time);
         }
-        let limit = match is_archive(&path[path.len() - 1]) {
-            true => MAX_NESTED_BYTES,
-            false => MAX_BYTES,
+        let limit = if is_archive(&path[path.len() - 1]) {
+            MAX_NESTED_BYTES
+        } else {
+            MAX_BYTES
         };
         let (read, time) = match (place, archive) {
             (Place::None(reason), _) => return self.add(path, Err(reason), time),

@@ -211,9 +211,10 @@ impl Paths {
         if let Some(known) = self.folders.get(original) {
             return known.clone();
         }
-        let name = match is_archive(name) {
-            true => file_name(&name[..name.len() - ".zip".len()]),
-            false => file_name(name),
+        let name = if is_archive(name) {
+            file_name(&name[..name.len() - ".zip".len()])
+        } else {
+            file_name(name)
         };
         let parent = self.folder(parents);
         let path = self.free(&parent, &name);

@@ -31,12 +31,11 @@ impl Students {
         let skipped = usize::from(columns.is_some());
         let mut students = Self::default();
         for row in rows.iter().skip(skipped) {
-            match &columns {
-                Some(columns) => students.add(columns.numbers(row), columns.name(row)),
-                None => {
-                    let name = row.get(1).cloned().unwrap_or_default();
-                    students.add(vec![row[0].clone()], name);
-                }
+            if let Some(columns) = &columns {
+                students.add(columns.numbers(row), columns.name(row));
+            } else {
+                let name = row.get(1).cloned().unwrap_or_default();
+                students.add(vec![row[0].clone()], name);
             }
         }
         students

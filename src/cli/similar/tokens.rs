@@ -40,9 +40,10 @@ pub(super) fn tokens(text: &str) -> Vec<(u64, usize)> {
             } else if first.is_alphanumeric() || first == '_' {
                 let length = end(|next| next.is_alphanumeric() || next == '_');
                 let word = &rest[..length];
-                let token = match KEYWORDS.contains(&word) {
-                    true => Token::Keyword(word),
-                    false => Token::Name,
+                let token = if KEYWORDS.contains(&word) {
+                    Token::Keyword(word)
+                } else {
+                    Token::Name
                 };
                 (token, length)
             } else {
@@ -62,14 +63,11 @@ pub(super) fn tokens(text: &str) -> Vec<(u64, usize)> {
 /// The length of the signed exponent after the digits of a number, `-3` after `1e`.
 fn exponent(digits: &str, rest: &str) -> usize {
     let is_open = digits.ends_with(['e', 'E']) && !digits.starts_with("0x") && rest.starts_with(['+', '-']);
-    match is_open {
-        true => {
-            1 + rest[1..]
-                .find(|next: char| !next.is_ascii_digit())
-                .unwrap_or(rest.len() - 1)
-        }
-        false => 0,
+    if !is_open {
+        return 0;
     }
+    let end = rest[1..].find(|next: char| !next.is_ascii_digit());
+    1 + end.unwrap_or(rest.len() - 1)
 }
 
 #[cfg(test)]
