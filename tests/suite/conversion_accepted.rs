@@ -18,7 +18,7 @@ use toyproof::translate::wgsl::{Style, wgsl};
 use toyproof::translate::{Lowered, lower, lower_strict};
 
 use crate::program::{Run, toyproof};
-use crate::requirements::require_driver;
+use crate::requirements::{require_driver, require_program};
 use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
 
@@ -38,10 +38,10 @@ fn checked(files: &mut Files, shader: &str) -> Checked {
 
 /// Asserts that a compiler accepts a file, if the compiler is installed.
 fn accepts(program: &str, arguments: &[&str], file: &Path) {
-    let run = match Command::new(program).args(arguments).arg(file).output() {
-        Ok(run) => run,
-        Err(_) => return,
-    };
+    if !require_program(program) {
+        return;
+    }
+    let run = Command::new(program).args(arguments).arg(file).output().unwrap();
     let text = fs::read(file).unwrap_or_default();
     assert!(
         run.status.success(),

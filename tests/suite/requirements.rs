@@ -157,8 +157,14 @@ fn run_test(name: &str, variables: &[(&str, &str)]) -> (bool, String) {
     (output.status.success(), String::from_utf8(output.stderr).unwrap())
 }
 
-/// Tests that need something each, variables without which it is missing, and what is reported then.
-const LACKING: [(&str, &[(&str, &str)], &str); 3] = [
+/// A test that needs something, the variables with which it is missing, and what is reported then.
+type Lacking = (
+    &'static str,
+    &'static [(&'static str, &'static str)],
+    &'static str,
+);
+
+const LACKING: [Lacking; 3] = [
     (
         "strict::strict_shaders_compute_the_same_bits_as_rust",
         &[("VK_DRIVER_FILES", "/none"), ("VK_ICD_FILENAMES", "/none")],
