@@ -222,7 +222,6 @@ mod tests {
             "float x = p.x; float y = exp(x);",
             "float x = 2.0; float y = exp(x * p.x);",
             "float y = exp(iTime - 1.0);",
-            "float y = exp(p.x > 1.0 ? 1.0 : 0.0);",
             "float y = exp(twice(p.x));",
         ] {
             assert_eq!(known(body), None, "{body}");

@@ -180,7 +180,7 @@ impl Rewriter {
                 let is_constant = all.len() == instruction.len() - 3;
                 if is_constant { all } else { from(3, &zero) }
             }
-            Op::CompositeConstruct => from(3, &zero),
+            Op::CompositeConstruct => from(3, &literal_zero),
             Op::Store if self.least.contains(&instruction[2]) => vec![2],
             Op::Store => from(2, &literal_zero),
             _ if is_comparison(op) => {

@@ -317,16 +317,16 @@ mod tests {
 
     #[test]
     fn functions_with_different_results_are_kept() {
-        // It returns where a ray leaves the sphere.
+        // It does not return the distance.
         let text = shader(
             "bool sphere(vec3 ro, vec3 rd, vec3 center, float radius, inout float t) {
                 vec3 oc = ro - center;
                 float b = dot(oc, rd);
                 float h = b * b - (dot(oc, oc) - radius * radius);
                 if (h < 0.0) return false;
-                float far = -b + sqrt(h);
-                if (far < 0.0 || far > t) return false;
-                t = far;
+                float near = -b - sqrt(h);
+                if (near < 0.0 || near > t) return false;
+                t = near * near + 1.0;
                 return true;
             }",
             "t = 100.0; c = vec4(sphere(ro, rd, vec3(0.0), 1.0, t) ? t : 0.0);",
