@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 const ITERATION_FACTOR: u32 = 8;
 
 /// The number of loop iterations of a pixel that an image may always have: twice what Mesa before version 23
-/// allows. A pixel with so many takes milliseconds.
+/// allows. A pixel that reaches the limit takes milliseconds.
 pub(crate) const MIN_IMAGE_ITERATIONS: u32 = 1 << 17;
 
 /// The number of loop iterations after which a pixel of a mutant, of a variant of a reference or of a shader with

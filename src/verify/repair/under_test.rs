@@ -199,7 +199,7 @@ impl<'a> ShaderUnderTest<'a> {
         Instant::now() >= self.deadline
     }
 
-    /// The number of candidates between two decisions on how to go on, if each takes the work of so many probes.
+    /// The number of candidates between two decisions on how to go on, if each takes the work of this many probes.
     fn wave_of(&self, probes: f64) -> usize {
         let affordable = WAVE_SHARE * self.budget / (probes * self.probe_work);
         (affordable as usize).clamp(MIN_WAVE, GROUPS * GROUP)
