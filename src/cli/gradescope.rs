@@ -45,6 +45,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 return Exit::Error;
             }
             terminal.confirm(&args.output, &file_size(archive.len()));
+            terminal.note("to use it: upload it on Gradescope, under Configure Autograder");
             Exit::Success
         }
         Err(error) => {

@@ -19,6 +19,7 @@ use crate::native;
 use crate::number::{Number, RandomRounding};
 use crate::observe::{Observations, Site};
 use crate::opt::dce::eliminate_dead_code;
+use crate::opt::denormals::flush_operands;
 use crate::opt::divergence::Divergence;
 use crate::opt::fuse::fuse;
 use crate::opt::gvn::number_values;
@@ -251,6 +252,7 @@ impl Compiled {
                 schema,
             } = compile(checked, parameters, options, deadline)?;
             deadline.check()?;
+            flush_operands(&mut function);
             number_values(&mut function, options.trace);
             deadline.check()?;
             eliminate_dead_code(&mut function);

@@ -13,7 +13,7 @@ use wgpu::{BindGroup, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::Device;
 use super::pipeline::Layout;
-use super::quirks::{LOOP_EXITS, OPAQUE_NUMBERS, loop_exits, mesa_barriers};
+use super::quirks::{FOLDED_DENORMALS, LOOP_EXITS, OPAQUE_NUMBERS, loop_exits, opaque_numbers};
 use super::readback::RowBuffer;
 use super::texture::flat;
 use super::{AdapterSelector, Failure};
@@ -147,8 +147,8 @@ impl Device {
         if self.has(&LOOP_EXITS) {
             words = loop_exits::with_early_exits(&words).into();
         }
-        if program.float == FloatMode::Strict && self.has(&OPAQUE_NUMBERS) {
-            words = mesa_barriers::with_opaque_numbers(&words).into();
+        if program.float == FloatMode::Strict && (self.has(&OPAQUE_NUMBERS) || self.has(&FOLDED_DENORMALS)) {
+            words = opaque_numbers::with_opaque_numbers(&words).into();
         }
         words
     }

@@ -1,7 +1,8 @@
-//! Uniforms and varyings that the shader declares. ShaderToy sets only its own, so these are zero.
+//! Uniforms and varyings that the shader declares. ShaderToy sets only its own, so these are zero. Samplers read a
+//! channel.
 
 use toyproof_glsl::Code;
-use toyproof_glsl::tree::{ExprKind, Type, VariableKind};
+use toyproof_glsl::tree::{ExprKind, VariableKind};
 
 use super::Findings;
 use super::program::Program;
@@ -21,12 +22,7 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
         let Some(at) = variable.at else {
             continue;
         };
-        let value = if matches!(variable.ty, Type::Sampler(_)) {
-            "black"
-        } else {
-            "0"
-        };
-        let message = format!("nothing sets the {kind} `{}`, so it is {value}", variable.name);
+        let message = format!("nothing sets the {kind} `{}`, so it is 0", variable.name);
         findings.add(Code::UnsetUniform, at, message, |diagnostic| {
             diagnostic
                 .note("ShaderToy sets only its own inputs, such as `iTime`")

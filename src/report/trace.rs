@@ -558,7 +558,7 @@ impl Writer {
             return;
         }
         let name = match line.kind {
-            "branch" => "?",
+            "branch" => "condition",
             "return" => "return",
             "subexpression" => &line.text,
             _ => line.name.as_deref().unwrap_or_default(),

@@ -71,6 +71,11 @@ impl Autograder {
         ];
         let packed = toyproof(folder, &arguments);
         assert_eq!(packed.code, 0, "{}", packed.stderr);
+        assert!(
+            packed.stderr.contains("upload it on Gradescope"),
+            "{}",
+            packed.stderr
+        );
         let root = folder.join("autograder");
         let archive = fs::read(folder.join("autograder.zip")).unwrap();
         unpack(&archive, &root.join("source"));

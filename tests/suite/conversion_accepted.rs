@@ -228,6 +228,8 @@ fn constants() -> Vec<String> {
         "cross(vec3(1e20), vec3(-1e20, 1e20, 1.0)).x",
         "(1e39 > 1.0 ? 1.0 : 0.0)",
         "mat2(1e39)[1].y",
+        "(vec2(1.0) / vec2(false)).x",
+        "(vec2(bvec3(false)) / mat2(false)[1]).x",
     ];
     all.extend(others.map(str::to_owned));
     all

@@ -1,10 +1,11 @@
-//! Generated programs: our SPIR-V on lavapipe must render what the evaluator computes, to the bit, and so
-//! must glslang's.
+//! Generated programs: our SPIR-V on a driver must render what the evaluator computes, to the bit, and so must
+//! glslang's where arithmetic is exact.
 //!
 //! `TOYPROOF_PROGRAMS` sets their number (24), `TOYPROOF_SEED` the seed (0), `TOYPROOF_FIRST` the first
 //! program (0), `TOYPROOF_EFFECTS` where operands may have side effects (`ordered` or `anywhere`; by default
-//! programs alternate). A program that crashes the driver, as some do, is reported and counted; it is
-//! compared among the renderers that succeed.
+//! programs alternate), `TOYPROOF_SHRINK` how often a failing program is reduced (300), `TOYPROOF_WRITTEN` a folder
+//! to write the programs to. A program that crashes the driver, as some do, is reported and counted; it is compared
+//! among the renderers that succeed.
 
 use std::cell::RefCell;
 use std::fmt::Write;
@@ -13,6 +14,7 @@ use std::time::Instant;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner};
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
@@ -22,15 +24,15 @@ use toyproof::image::{Frame, Image};
 use toyproof::translate::{FloatMode, lower, lower_strict};
 
 use crate::glslang;
-use crate::requirements::{require_program, require_worker};
+use crate::requirements::{require_program, require_swiftshader, require_worker};
 use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
 
 /// Generates programs from at most `longest` decisions.
-fn programs(effects: Effects, longest: usize) -> impl Strategy<Value = String> {
+fn programs(effects: Effects, arithmetic: Arithmetic, longest: usize) -> impl Strategy<Value = String> {
     (8..longest)
         .prop_flat_map(|length| vec(any::<u8>(), length / 2..=length))
-        .prop_map(move |bytes| generate::program(&bytes, effects, Arithmetic::Exact))
+        .prop_map(move |bytes| generate::program(&bytes, effects, arithmetic))
 }
 
 fn frame() -> Frame {
@@ -57,17 +59,29 @@ fn wrong(kind: &'static str) -> impl Fn(String) -> Wrong {
 /// The renderers that are compared.
 struct Renderers<'a> {
     worker: Worker,
+    /// Creates the worker.
+    start: fn() -> Option<Worker>,
     /// The working folder of glslang, if it takes part.
     glslang: Option<&'a Path>,
     /// Whether ours runs in strict mode.
     strict: bool,
+    arithmetic: Arithmetic,
+    /// The pixels that were compared.
+    pixels: u64,
 }
 
 impl Renderers<'_> {
     /// Compares all images of a program; reports on whose SPIR-V the driver crashed.
     fn compare(&mut self, program: &str) -> Result<Option<String>, Wrong> {
         let checked = checked(program).map_err(wrong("the front end refuses it"))?;
-        let evaluated = evaluated(&checked).map_err(wrong("the evaluator"))?;
+        let (evaluated, defined) = evaluated(&checked).map_err(wrong("the evaluator"))?;
+        if self.arithmetic == Arithmetic::Exact && defined.len() < 64 {
+            return Err(wrong("the evaluator")(format!(
+                "{} pixels are defined",
+                defined.len()
+            )));
+        }
+        self.pixels += defined.len() as u64;
         let mut images = vec![("the evaluator's", evaluated)];
         let mut crashes = String::new();
         let lowered = if self.strict {
@@ -95,7 +109,7 @@ impl Renderers<'_> {
                 Err(failure) => crashes = format!("{crashes}glslang's: {failure}"),
             }
         }
-        match difference(&images) {
+        match difference(&images, &defined) {
             Some(message) => Err(wrong("pixels differ")(message)),
             None => Ok((!crashes.is_empty()).then_some(crashes)),
         }
@@ -109,7 +123,7 @@ impl Renderers<'_> {
         match render(&mut self.worker) {
             Err(failure) if !matches!(failure, Failure::Refused(_) | Failure::Naga(_)) => {
                 eprintln!("once more: {failure}");
-                self.worker = require_worker().expect("there was one before").with_plain_code();
+                self.worker = (self.start)().expect("there was one before").with_plain_code();
                 render(&mut self.worker)
             }
             result => result,
@@ -129,23 +143,20 @@ fn checked(program: &str) -> Result<Checked, String> {
     })
 }
 
-/// The evaluator's image; fails if it finds undefined behavior.
-fn evaluated(checked: &Checked) -> Result<Image, String> {
+/// The evaluator's image, and the pixels that do not depend on undefined behavior.
+fn evaluated(checked: &Checked) -> Result<(Image, Vec<usize>), String> {
     let program = Program::new(checked).map_err(|refusal| refusal.to_string())?;
     let rendered = program
         .render::<f32>(&frame(), &Settings::default())
         .map_err(|failure| failure.to_string())?;
-    match rendered.framebuffer.undefined() {
-        0 => Ok(rendered.framebuffer.image()),
-        count => Err(format!(
-            "{count} pixels are undefined: {:?}",
-            rendered.observations
-        )),
-    }
+    let image = rendered.framebuffer;
+    let is_defined = |&at: &usize| !image.is_undefined(at as u32 % 8, at as u32 / 8);
+    let defined = (0..64).filter(is_defined).collect();
+    Ok((image.image(), defined))
 }
 
-/// The first difference between images, and the number of differing pixels.
-fn difference(pictures: &[(&str, Image)]) -> Option<String> {
+/// The first difference between images among these pixels, and the number of differing pixels.
+fn difference(pictures: &[(&str, Image)], pixels: &[usize]) -> Option<String> {
     let differs = |&index: &usize| {
         let mut colors = pictures
             .iter()
@@ -153,11 +164,12 @@ fn difference(pictures: &[(&str, Image)]) -> Option<String> {
         let first = colors.next();
         colors.any(|color| Some(color) != first)
     };
-    let differing: Vec<usize> = (0..64).filter(differs).collect();
+    let differing: Vec<usize> = pixels.iter().copied().filter(differs).collect();
     let &first = differing.first()?;
     let mut message = format!(
-        "{} of 64, the first at ({}, {}):",
+        "{} of {}, the first at ({}, {}):",
         differing.len(),
+        pixels.len(),
         first % 8,
         first / 8
     );
@@ -173,12 +185,22 @@ fn glslang_and_the_evaluator_agree_with_ours() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    compare_all(Some(folder.path()), 2000);
+    compare_all(require_worker, Some(folder.path()), Arithmetic::Exact, 2000);
 }
 
 #[test]
 fn the_evaluator_agrees_with_ours() {
-    compare_all(None, 900);
+    compare_all(require_worker, None, Arithmetic::Exact, 900);
+}
+
+#[test]
+fn any_arithmetic_is_the_evaluators_on_the_driver() {
+    compare_all(require_worker, None, Arithmetic::AnyOnDrivers, 900);
+}
+
+#[test]
+fn any_arithmetic_is_the_evaluators_on_swiftshader() {
+    compare_all(require_swiftshader, None, Arithmetic::AnyOnDrivers, 900);
 }
 
 /// Where operands of that program may have side effects.
@@ -192,37 +214,52 @@ fn effects(number: u32) -> Effects {
 }
 
 /// Compares the requested number of programs, of at most `longest` decisions.
-fn compare_all(glslang: Option<&Path>, longest: usize) {
-    let Some(worker) = require_worker() else {
+fn compare_all(
+    start: fn() -> Option<Worker>,
+    glslang: Option<&Path>,
+    arithmetic: Arithmetic,
+    longest: usize,
+) {
+    let Some(worker) = start() else {
         return;
     };
     let count: u32 = setting("TOYPROOF_PROGRAMS", 24);
     let seed: u64 = setting("TOYPROOF_SEED", 0);
     let first: u32 = setting("TOYPROOF_FIRST", 0);
+    let written = std::env::var_os("TOYPROOF_WRITTEN");
     let mut seeds = [0; 32];
     seeds[..8].copy_from_slice(&seed.to_le_bytes());
     let config = Config {
         failure_persistence: None,
-        max_shrink_iters: 300,
+        max_shrink_iters: setting("TOYPROOF_SHRINK", 300),
         ..Config::default()
     };
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seeds);
     let mut runner = TestRunner::new_with_rng(config, rng);
     let renderers = RefCell::new(Renderers {
         worker: worker.with_plain_code(),
+        start,
         glslang,
         strict: false,
+        arithmetic,
+        pixels: 0,
     });
-    let start = Instant::now();
+    let begin = Instant::now();
     let (mut failures, mut crashes) = (Vec::new(), 0);
     for number in 0..count {
         let effects = effects(number);
-        let tree = programs(effects, longest).new_tree(&mut runner).unwrap();
+        let tree = programs(effects, arithmetic, longest)
+            .new_tree(&mut runner)
+            .unwrap();
         if number < first {
             continue;
         }
+        if let Some(folder) = &written {
+            let path = Path::new(folder).join(format!("{number:05}.glsl"));
+            std::fs::write(path, tree.current()).unwrap();
+        }
         // glslang leaves matrix products to the driver, whose sums are exact here.
-        renderers.borrow_mut().strict = number % 4 >= 2;
+        renderers.borrow_mut().strict = arithmetic != Arithmetic::Exact || number % 4 >= 2;
         let (found, crashed) = (RefCell::new(None), RefCell::new(None));
         let result = runner.run_one(tree, |program| {
             let wrong = match renderers.borrow_mut().compare(&program) {
@@ -246,9 +283,10 @@ fn compare_all(glslang: Option<&Path>, longest: usize) {
             crashes += 1;
         }
     }
-    let each = start.elapsed().as_secs_f64() * 1e3 / f64::from(count.saturating_sub(first).max(1));
+    let each = begin.elapsed().as_secs_f64() * 1e3 / f64::from(count.saturating_sub(first).max(1));
     let summary = format!(
-        "seed {seed}: {count} programs, {} wrong, the driver crashed on {crashes}",
+        "seed {seed}: {count} programs with {} defined pixels, {} wrong, the driver crashed on {crashes}",
+        renderers.borrow().pixels,
         failures.len()
     );
     eprintln!("{summary}, {each:.0} ms each");
@@ -314,8 +352,11 @@ fn operands_are_evaluated_in_the_order_of_glslang() {
     let folder = tempfile::tempdir().unwrap();
     let mut renderers = Renderers {
         worker: worker.with_plain_code(),
+        start: require_worker,
         glslang: Some(folder.path()),
         strict: true,
+        arithmetic: Arithmetic::Exact,
+        pixels: 0,
     };
     let mut failures = String::new();
     for body in ORDERS {

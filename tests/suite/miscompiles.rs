@@ -9,7 +9,7 @@ use toyproof::image::{Frame, Image};
 use toyproof::translate::lower::{Pass, Passes, lower_with};
 use toyproof::translate::{FloatMode, lower_strict};
 
-use crate::requirements::require_worker;
+use crate::requirements::{require_swiftshader, require_worker};
 
 /// A miscompilation: the pass that fixes it, the text before `mainImage`, its body, and the expected `o.x`.
 type Case = (Pass, &'static str, &'static str, f32);
@@ -174,7 +174,8 @@ fn arrays_of_arrays_keep_their_dimensions() {
     assert_eq!(render(&mut worker, &case, Passes::all()), 3212.0);
 }
 
-/// Bodies whose images Mesa gets wrong without the worker's changes of SPIR-V. `inf` is infinite in a column.
+/// Bodies whose images Mesa or `SwiftShader` gets wrong without the worker's changes of SPIR-V. `inf` is infinite in a
+/// column.
 const FOLDED: &[&str] = &[
     // Products and quotients of zeros that result from folding, by what may be infinite.
     "float zero = 0.0; c.x = isnan(inf * zero) ? 1.0 : 0.0;",
@@ -189,6 +190,14 @@ const FOLDED: &[&str] = &[
     "float angle = 0.0; c.xy = vec2(isnan(mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * vec2(inf, 1.0)));",
     "c.x = isnan(mix(inf, 0.5, 1.0)) ? 1.0 : 0.0;",
     "c.xyz = vec3(isnan(mix(vec3(inf), vec3(0.5), 1.0)));",
+    // Denormal operands: zeros where they are computed with, and kept where they are moved.
+    "float d = uintBitsToFloat(uint(p.x) + 5u); c.x = ceil(d); c.y = floor(-d); c.z = sqrt(d); c.w = float(d == 0.0);",
+    "float d = uintBitsToFloat(uint(p.x) + 5u); c = vec4(d * 1e30, min(d, 1.0) * 1e30, max(d, -1.0) * 1e30, sign(d));",
+    "float d = uintBitsToFloat(uint(p.x) + 5u), e = p.y > 3.0 ? d : abs(d); c.x = float(floatBitsToInt(e));",
+    "float d[2]; d[0] = 1.0; d[1] = uintBitsToFloat(uint(p.x)); c.xy = vec2(d[int(p.y) & 1] * 1e38, floatBitsToInt(d[1]));",
+    "float d = p.x; for (int i = 0; i < 3; i++) { if (p.y > float(i)) d = ceil(d); else d = uintBitsToFloat(7u); } c.x = d;",
+    "float e = bool[2](true, false)[1] ? 1.0 : uintBitsToFloat(4u); c.x = e == 0.0 ? 1.0 : 2.0;",
+    "float tiny = 1e-40; c.x = tiny * 1e30 * p.x; c.y = float(tiny > 0.0); c.z = float(tiny < p.x);",
     // A loop whose iterations the compiler counts as -2147483648 / -1.
     "int k = 0, i = 3; while (i-- > 0) { if (-2147483647 - 1 == k--) break; } c.x = float(k);",
     // Loops that some pixels leave earlier than others, after assignments.
@@ -201,7 +210,16 @@ const FOLDED: &[&str] = &[
 
 #[test]
 fn the_driver_folds_and_loops_as_the_evaluator() {
-    let Some(mut worker) = require_worker() else {
+    folds_as_the_evaluator(require_worker);
+}
+
+#[test]
+fn swiftshader_folds_and_loops_as_the_evaluator() {
+    folds_as_the_evaluator(require_swiftshader);
+}
+
+fn folds_as_the_evaluator(start: fn() -> Option<Worker>) {
+    let Some(mut worker) = start() else {
         return;
     };
     let mut wrong = Vec::new();
@@ -223,7 +241,7 @@ fn the_driver_folds_and_loops_as_the_evaluator() {
             Ok(_) => wrong.push(format!("differs: {body}")),
             Err(failure) => {
                 wrong.push(format!("{failure}: {body}"));
-                worker = require_worker().expect("there was one before");
+                worker = start().expect("there was one before");
             }
         }
     }

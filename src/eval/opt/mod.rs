@@ -1,6 +1,7 @@
-//! Optimization passes on the intermediate representation; none changes a bit of the image.
+//! Passes on the intermediate representation. All but `denormals` optimize, and change no bit of the image.
 
 pub(crate) mod dce;
+pub(crate) mod denormals;
 pub(crate) mod divergence;
 pub(crate) mod fuse;
 pub(crate) mod gvn;

@@ -6,8 +6,8 @@ pub(crate) mod loop_cap;
 pub(crate) mod loop_exits;
 pub(crate) mod loop_probe;
 pub(crate) mod loop_steps;
-pub(crate) mod mesa_barriers;
 mod opaque;
+pub(crate) mod opaque_numbers;
 
 use std::process::Command;
 
@@ -99,14 +99,27 @@ pub const OPAQUE_NUMBERS: Quirk = Quirk {
     symptom: "to see whether a condition is uniform, the compiler walks expressions of uniforms as trees and \
               does not finish for an expanded `sin(cos(iTime))`; it folds the product and quotient of a \
               constant zero to zero, even if it is NaN, and a quotient by zero to anything, also if the zero \
-              only results from folding (`mix(x, y, 1.0)`); it folds constants without flushing denormal \
-              results, and derivatives of constants to 0, even of NaN; and it dies of −2³¹ / −1 while it counts \
+              only results from folding (`mix(x, y, 1.0)`); where it folds constants, denormals are neither \
+              zeros as operands nor flushed as results; it takes derivatives of constants for 0, even of NaN; \
+              and it dies of −2³¹ / −1 while it counts \
               the iterations of `while (k-- != -2147483647 - 1)`",
     workaround: "in strict runs, numbers of the uniform block and operands of these operations that may be \
                  found to be constant are combined by or with bits of `gl_FragCoord.z` that are 0",
-    source: "src/gpu/quirks/mesa_barriers.rs",
+    source: "src/gpu/quirks/opaque_numbers.rs",
     removal: "when `tests/suite/evaluator.rs` and `tests/suite/generated.rs` pass without it on the supported \
               versions of Mesa",
+    scope: Scope::Affected,
+};
+
+/// Constants hidden from `SwiftShader`'s compiler.
+pub const FOLDED_DENORMALS: Quirk = Quirk {
+    name: "folded-denormals",
+    driver: DriverKind::SwiftShader,
+    versions: "the SPIRV-Tools in Chromium",
+    symptom: "where it folds constants, denormals are neither zeros as operands nor flushed as results",
+    workaround: "that of `opaque-numbers`",
+    source: "src/gpu/quirks/opaque_numbers.rs",
+    removal: "never: Vulkan allows both",
     scope: Scope::Affected,
 };
 
@@ -139,7 +152,8 @@ pub const TWO_VARIANTS: Quirk = Quirk {
 };
 
 /// All known quirks.
-pub const QUIRKS: [Quirk; 13] = [
+pub const QUIRKS: [Quirk; 14] = [
+    FOLDED_DENORMALS,
     LOOP_CAP,
     LOOP_EXITS,
     OPAQUE_NUMBERS,

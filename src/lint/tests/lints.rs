@@ -184,6 +184,7 @@ fn uniforms_that_nothing_sets() {
         W0030 uniform vec2 offsets[3]; | c.xy = offsets[1];
         W0030 in vec2 at; | c.xy = at;
         -     uniform float speed; | c.x = iTime;
+        -     uniform sampler2D noise; | c = texture(noise, f);
         W0022 uniform float speed; float unreached() { return speed; } | c.x = iTime;
         ",
     );

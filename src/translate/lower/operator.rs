@@ -34,6 +34,7 @@ pub(super) fn lower_boolean_conversions(cx: &mut LoweringContext) {
         if scalar == Scalar::Bool {
             return;
         }
+        let is_constant = cx.tree[only].constant;
         let mut build = cx.build_at(id);
         let only = if let (Type::Vector(..) | Type::Matrix { .. }, Type::Scalar(_)) = (to, from) {
             build.construct(Constructor::Scalar, vec![only], Type::Scalar(scalar))
@@ -45,6 +46,7 @@ pub(super) fn lower_boolean_conversions(cx: &mut LoweringContext) {
                 _ => return,
             }
         };
+        cx.tree[only].constant = is_constant;
         cx.tree[id].kind = ExprKind::Construct {
             constructor,
             arguments: vec![only],

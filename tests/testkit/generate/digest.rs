@@ -80,11 +80,15 @@ impl Generator<'_> {
     }
 }
 
-/// Converts a scalar to `uint`: the bits of a float, unless it is NaN, or a multiple of 1/16 in the range of variables.
+/// Converts a scalar to `uint`: the bits of a float, unless it is NaN or, on drivers, zero; or a multiple of 1/16 in the
+/// range of variables.
 fn number(scalar: Scalar, value: &str, arithmetic: Arithmetic) -> String {
     match scalar {
         Scalar::Float if arithmetic == Arithmetic::Any => {
             format!("(isnan({value}) ? 1u : floatBitsToUint({value}))")
+        }
+        Scalar::Float if arithmetic == Arithmetic::AnyOnDrivers => {
+            format!("(isnan({value}) ? 1u : {value} == 0.0 ? 0u : floatBitsToUint({value}))")
         }
         Scalar::Float => format!("uint(int({value} * 16.0))"),
         _ => format!("uint({value})"),

@@ -1,9 +1,9 @@
-//! Operations whose results are rounded, undefined, or different from driver to driver: only for programs of
-//! [`Arithmetic::Any`](super::Arithmetic).
+//! Operations whose results are rounded, undefined, or different from driver to driver: not for programs of
+//! [`Arithmetic::Exact`].
 
 use super::expr::{Expr, Level, Range};
 use super::types::{Base, FLOAT, Scalar, Type};
-use super::{Generator, Mode};
+use super::{Arithmetic, Generator, Mode};
 
 /// Functions of one operand.
 const FUNCTIONS: [&str; 23] = [
@@ -115,9 +115,13 @@ impl Generator<'_> {
 
     /// A packed vector.
     pub(super) fn packed(&mut self) -> Expr {
-        let name = self
+        let mut name = self
             .choices
             .pick(&["packHalf2x16", "packSnorm2x16", "packUnorm2x16"]);
+        // A half keeps the sign of zero and the bits of NaN.
+        if self.arithmetic == Arithmetic::AnyOnDrivers && name == "packHalf2x16" {
+            name = "packSnorm2x16";
+        }
         let operand = self.expr(Type::of(Base::Vector(Scalar::Float, 2)));
         Expr::call(name, &[operand], Range::VARIABLE)
     }

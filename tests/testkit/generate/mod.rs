@@ -73,6 +73,8 @@ pub enum Arithmetic {
     Exact,
     /// All: rounded and undefined ones, and functions whose last bits are implementation-defined.
     Any,
+    /// All, but the image shows neither the sign of a zero nor the bits of NaN, which Vulkan leaves to the driver.
+    AnyOnDrivers,
 }
 
 /// The kind of expression that is allowed.
@@ -285,7 +287,7 @@ impl<'a> Generator<'a> {
 
     /// Whether undefined, rounded and implementation-defined operations occur.
     fn is_wild(&self) -> bool {
-        self.arithmetic == Arithmetic::Any
+        self.arithmetic != Arithmetic::Exact
     }
 
     fn within<T>(&mut self, mode: Mode, work: impl FnOnce(&mut Self) -> T) -> T {

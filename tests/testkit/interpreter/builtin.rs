@@ -263,12 +263,20 @@ impl<N: Real> Run<'_, N> {
 
 /// Of zeros with different signs the second, of NaN and a number the number, as in lavapipe.
 pub(super) fn min<N: Real>(a: N, b: N) -> N {
-    if a < b || b.is_nan() { a } else { b }
+    if a < b || b.is_nan() {
+        a.operand()
+    } else {
+        b.operand()
+    }
 }
 
 /// As [`min`].
 pub(super) fn max<N: Real>(a: N, b: N) -> N {
-    if a > b || b.is_nan() { a } else { b }
+    if a > b || b.is_nan() {
+        a.operand()
+    } else {
+        b.operand()
+    }
 }
 
 /// A number from `least` to 1 in 16 bits; 1 becomes `scale`.

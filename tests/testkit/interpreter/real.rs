@@ -1,5 +1,6 @@
 //! The number types of the interpreter: f32 as in strict shaders, and f64.
 
+use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -15,6 +16,9 @@ pub trait Real: Number<Bool = bool> + Debug + PartialOrd {
     fn to_f64(self) -> f64;
     /// The nearest f32.
     fn to_f32(self) -> f32;
+    /// What operations take it for: a denormal f32 is zero.
+    #[must_use]
+    fn operand(self) -> Self;
     /// Rounds up.
     #[must_use]
     fn ceil(self) -> Self;
@@ -89,9 +93,21 @@ transcendental! {
     Log2 log2, libm::log2;
 }
 
-/// An f32 of which sums, differences, products and quotients that are denormal become zero.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+/// An f32 whose denormals are zeros as operands, and become zeros as results; where it is moved, they keep their bits.
+#[derive(Debug, Clone, Copy)]
 pub struct Single(pub f32);
+
+impl PartialEq for Single {
+    fn eq(&self, other: &Self) -> bool {
+        flush(self.0) == flush(other.0)
+    }
+}
+
+impl PartialOrd for Single {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        flush(self.0).partial_cmp(&flush(other.0))
+    }
+}
 
 macro_rules! arithmetic {
     ($($operator:ident $name:ident;)*) => {$(
@@ -99,7 +115,7 @@ macro_rules! arithmetic {
             type Output = Self;
 
             fn $name(self, other: Self) -> Self {
-                Self(flush(self.0.$name(other.0)))
+                Self(flush(flush(self.0).$name(flush(other.0))))
             }
         }
     )*};
@@ -128,7 +144,7 @@ impl Number for Single {
     }
 
     fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
+        Self(flush(self.0).sqrt())
     }
 
     fn abs(self) -> Self {
@@ -136,11 +152,11 @@ impl Number for Single {
     }
 
     fn floor(self) -> Self {
-        Self(self.0.floor())
+        Self(flush(self.0).floor())
     }
 
     fn less(self, other: Self) -> bool {
-        self.0 < other.0
+        self < other
     }
 
     fn select(condition: bool, yes: Self, no: Self) -> Self {
@@ -161,16 +177,20 @@ impl Real for Single {
         self.0
     }
 
+    fn operand(self) -> Self {
+        Self(flush(self.0))
+    }
+
     fn ceil(self) -> Self {
-        Self(self.0.ceil())
+        Self(flush(self.0).ceil())
     }
 
     fn trunc(self) -> Self {
-        Self(self.0.trunc())
+        Self(flush(self.0).trunc())
     }
 
     fn round_even(self) -> Self {
-        Self(self.0.round_ties_even())
+        Self(flush(self.0).round_ties_even())
     }
 
     fn transcendental(self, function: Transcendental) -> Self {
@@ -197,6 +217,10 @@ impl Real for f64 {
 
     fn to_f32(self) -> f32 {
         self as f32
+    }
+
+    fn operand(self) -> Self {
+        self
     }
 
     fn ceil(self) -> Self {

@@ -1,6 +1,6 @@
-//! Optimization barriers for Mesa: values that its compiler cannot recognize as uniform or constant.
+//! Optimization barriers: values that a driver's compiler cannot recognize as uniform or constant.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use spirv::{GlslStd450Op, Op, StorageClass};
 
@@ -23,6 +23,7 @@ use super::opaque::{Opaque, push};
 ///   quotient, for zero even if it is NaN, and a quotient by it for anything, regardless of decorations.
 /// - Constants whose operations Mesa folds otherwise than the processor computes them: it does not flush
 ///   denormal products and bit patterns, and it takes all derivatives of constants for 0.
+/// - Denormal constants, which neither Mesa nor `SwiftShader` takes for zeros where they fold them.
 /// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs
 ///   through by its step, and −2³¹ / −1 terminates the process.
 #[must_use]
@@ -70,6 +71,22 @@ fn is_comparison(op: Op) -> bool {
     (Op::IEqual as u32..=Op::SLessThanEqual as u32).contains(&(op as u32))
 }
 
+/// The indices of an instruction's operands that are values, and in whose place another value may be.
+fn values(op: Op, instruction: &[u32]) -> std::ops::Range<usize> {
+    let end = instruction.len();
+    match op {
+        Op::Phi | Op::Variable => 0..0,
+        Op::ReturnValue => 1..end,
+        Op::Store => 2..3,
+        Op::FunctionCall => 4..end,
+        Op::ExtInst => 5..end,
+        Op::CompositeExtract => 3..4,
+        Op::CompositeInsert | Op::VectorShuffle => 3..5,
+        _ if has_type(op) => end.min(3)..end,
+        _ => 0..0,
+    }
+}
+
 /// The type of a number or a vector.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Shape {
@@ -88,6 +105,8 @@ struct Rewriter {
     types: HashMap<u32, u32>,
     /// The constants −2³¹.
     least: Vec<u32>,
+    /// Denormal constants, composites of them, variables that are initialized with them, and what is loaded from these.
+    denormals: HashSet<u32>,
     /// The type of the columns and their number, for each type of matrices.
     matrices: HashMap<u32, (u32, u32)>,
 }
@@ -101,6 +120,7 @@ impl Rewriter {
             into_blocks: Vec::new(),
             types: HashMap::new(),
             least: Vec::new(),
+            denormals: HashSet::new(),
             matrices: HashMap::new(),
         };
         for (_, instruction) in instructions(words) {
@@ -124,9 +144,25 @@ impl Rewriter {
                 }
                 (_, &[ty, id, ..]) if has_type(op) => {
                     rewriter.types.insert(id, ty);
-                    let is_int = rewriter.shapes.get(&ty).is_some_and(|shape| !shape.is_float);
-                    if op == Op::Constant && is_int && instruction[3..] == [1 << 31] {
-                        rewriter.least.push(id);
+                    let is_float = rewriter.shapes.get(&ty).map(|shape| shape.is_float);
+                    match (op, is_float, &instruction[3..]) {
+                        (Op::Constant, Some(false), &[0x8000_0000]) => rewriter.least.push(id),
+                        (Op::Constant, Some(true), &[bits]) if f32::from_bits(bits).is_subnormal() => {
+                            rewriter.denormals.insert(id);
+                        }
+                        // A variable may be initialized with one, and is then loaded.
+                        (
+                            Op::ConstantComposite
+                            | Op::Variable
+                            | Op::AccessChain
+                            | Op::Load
+                            | Op::CompositeExtract,
+                            _,
+                            parts,
+                        ) if parts.iter().any(|part| rewriter.denormals.contains(part)) => {
+                            rewriter.denormals.insert(id);
+                        }
+                        _ => {}
                     }
                     None
                 }
@@ -159,10 +195,21 @@ impl Rewriter {
 
     /// The indices of an instruction's operands that are hidden, by what is known of their values.
     fn hidden_operands(&self, instruction: &[u32], known: &Operands) -> Vec<usize> {
-        use GlslStd450Op as G;
         let Some(op) = opcode(instruction) else {
             return Vec::new();
         };
+        let mut hidden = self.hidden_by_operation(op, instruction, known);
+        for at in values(op, instruction) {
+            if self.denormals.contains(&instruction[at]) && !hidden.contains(&at) {
+                hidden.push(at);
+            }
+        }
+        hidden
+    }
+
+    /// The indices of the operands that are hidden because of what Mesa does with the results of an operation.
+    fn hidden_by_operation(&self, op: Op, instruction: &[u32], known: &Operands) -> Vec<usize> {
+        use GlslStd450Op as G;
         let from = |first: usize, is_hidden: &dyn Fn(Known) -> bool| -> Vec<usize> {
             let operands = first..instruction.len();
             operands
@@ -261,8 +308,6 @@ impl Rewriter {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashSet;
-
     use spirv::{BuiltIn, Decoration};
     use toyproof_translate::backend::spirv::BOUND;
 
@@ -346,6 +391,8 @@ mod tests {
             "v.x = dFdx(1.0);",
             "uint u = 5u; v.x = uintBitsToFloat(u);",
             "int k = int(p.x); if (-2147483647 - 1 == k--) v.x = float(k);",
+            "float tiny = 1e-40; v.x = float(tiny > 0.0);",
+            "v.xy = p.x > 1.0 ? vec2(1e-40, 2.0) : p;",
         ] {
             let uniforms = usize::from(body.contains("iFrame"));
             assert!(hidden_by(body) > uniforms, "{body}");
