@@ -196,6 +196,7 @@ const FOLDED: &[&str] = &[
     "float d = uintBitsToFloat(uint(p.x) + 5u), e = p.y > 3.0 ? d : abs(d); c.x = float(floatBitsToInt(e));",
     "float d[2]; d[0] = 1.0; d[1] = uintBitsToFloat(uint(p.x)); c.xy = vec2(d[int(p.y) & 1] * 1e38, floatBitsToInt(d[1]));",
     "float d = p.x; for (int i = 0; i < 3; i++) { if (p.y > float(i)) d = ceil(d); else d = uintBitsToFloat(7u); } c.x = d;",
+    "c.xy = 2.0 * vec2(1e-38) + floor(1e-40); c.z = 1e-40 == 0.0 ? 1.0 : 2.0;",
     "float e = bool[2](true, false)[1] ? 1.0 : uintBitsToFloat(4u); c.x = e == 0.0 ? 1.0 : 2.0;",
     "float tiny = 1e-40; c.x = tiny * 1e30 * p.x; c.y = float(tiny > 0.0); c.z = float(tiny < p.x);",
     // A loop whose iterations the compiler counts as -2147483648 / -1.
@@ -205,6 +206,7 @@ const FOLDED: &[&str] = &[
     "float r = p.x; int i = 0; do { r *= 1.5; i++; } while (i < 6 && r < 9.0); c = vec4(r, i, 0, 1);",
     "float r = p.x; int i = 0; for (;;) { r *= 1.5; if (r > 9.0) { i += 4; break; } if (++i > 5) break; } c = vec4(r, i, 0, 1);",
     "float r = p.x; while ((r = 1.5 * r) < 9.0) {} c.x = r;",
+    "float m = p.y; for (int i = 0;; i++) { m = inf * 0.0; if (i >= 1) break; } c.x = isnan(m) ? 1.0 : 0.0;",
     "for (int i = 0; i < 2; i++) { float r = p.x; do { r += p.y; if (r > 5.0) break; r *= 1.5; } while (r < 8.0); c.x += r; }",
 ];
 

@@ -73,7 +73,8 @@ impl Opaque {
         self.value(code, Op::Bitcast, one, &[depth])
     }
 
-    /// Appends instructions that compute an unknown `false`.
+    /// Appends instructions that compute an unknown `false`: whether the zero is 1. If they compared it with 0, Mesa
+    /// would know that it is 0 wherever this is `false`.
     pub(super) fn never(&mut self, code: &mut Vec<u32>) -> u32 {
         let int = self.int_type(1);
         let boolean = self.boolean.unwrap_or_else(|| {
@@ -83,9 +84,9 @@ impl Opaque {
             id
         });
         let known = self.fresh();
-        push(&mut self.declared, Op::Constant, &[int, known, 0]);
+        push(&mut self.declared, Op::Constant, &[int, known, 1]);
         let zero = self.zero(code);
-        self.value(code, Op::INotEqual, boolean, &[zero, known])
+        self.value(code, Op::IEqual, boolean, &[zero, known])
     }
 
     /// Appends an operation with a new result id.

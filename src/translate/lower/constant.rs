@@ -1,7 +1,7 @@
 //! Constant expressions that naga or tint cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), overflowing
 //! shifts (`1 << 31`), shifts by 32 bits or more, undefined integer quotients, `clamp` with crossed bounds,
-//! `smoothstep` with equal edges, `pow` of a base that is not positive, packed halves; and denormal results, which
-//! naga does not flush to zero.
+//! `smoothstep` with equal edges, `pow` of a base that is not positive, packed halves; and denormal operands and
+//! results, which naga does not flush to zero.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand
 //! passed through a helper function that returns it unchanged is evaluated at run time instead. naga also
@@ -151,21 +151,26 @@ fn rewrite(tree: &Tree, values: &mut Float32Values, id: ExprId) -> Option<Rewrit
                 _ => None,
             };
             crossed
-                .or_else(|| overflows(tree, values, id).then_some(first))
+                .or_else(|| leaves_range(tree, values, id).then_some(first))
                 .map(Rewrite::MakeOpaque)
         }
         _ => None,
     }
 }
 
-/// Whether the value overflows, or is denormal: processors flush it to zero, naga does not.
+/// Whether the value overflows, or an operand or the value is denormal: processors take it for zero, naga does not.
 fn leaves_range(tree: &Tree, values: &mut Float32Values, id: ExprId) -> bool {
+    if overflows(tree, values, id) {
+        return true;
+    }
+    let mut parts = vec![id];
+    tree[id].kind.for_each_operand(|operand| parts.push(operand));
     let is_denormal = |value: &Value| matches!(value, Value::Float(value) if (*value as f32).is_subnormal());
-    overflows(tree, values, id)
-        || tree[id].constant
-            && values
-                .value(tree, id)
-                .is_some_and(|value| value.components().iter().any(is_denormal))
+    tree[id].constant
+        && parts.into_iter().any(|part| {
+            let value = values.value(tree, part);
+            value.is_some_and(|value| value.components().iter().any(is_denormal))
+        })
 }
 
 /// Whether the value is not a finite 32-bit float while those of all operands are.
