@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
+use crate::native::flush;
 use crate::{Bits, Float, Number};
 
 /// The index of a step in an [`ExprGraph`].
@@ -106,7 +107,7 @@ impl ExprGraph {
         self.steps.borrow().all[id]
     }
 
-    /// Computes steps in 32-bit floats, without flushing denormals.
+    /// Computes steps in 32-bit floats. Denormal arguments and results become zeros.
     ///
     /// # Panics
     /// If the graph names more arguments than there are.
@@ -119,7 +120,7 @@ impl ExprGraph {
             let word = |id: StepId| values[id];
             let float = |id: StepId| f32::from_bits(values[id]);
             values.push(match step {
-                Step::Argument(index) => arguments[index].to_bits(),
+                Step::Argument(index) => flush(arguments[index]).to_bits(),
                 Step::Float(bits) | Step::Bits(bits) => bits,
                 Step::Unary(operation, a) => match operation {
                     Unary::Negate => (-float(a)).to_bits(),
@@ -133,10 +134,10 @@ impl ExprGraph {
                 Step::Binary(operation, a, b) if steps.all[a].1 == Kind::Float => {
                     let (a, b) = (float(a), float(b));
                     match operation {
-                        Binary::Add => (a + b).to_bits(),
-                        Binary::Subtract => (a - b).to_bits(),
-                        Binary::Multiply => (a * b).to_bits(),
-                        Binary::Divide => (a / b).to_bits(),
+                        Binary::Add => flush(a + b).to_bits(),
+                        Binary::Subtract => flush(a - b).to_bits(),
+                        Binary::Multiply => flush(a * b).to_bits(),
+                        Binary::Divide => flush(a / b).to_bits(),
                         Binary::Less => u32::from(a < b),
                         Binary::And | Binary::Or | Binary::Left | Binary::Right => {
                             unreachable!("floats have no bits until they are converted")
