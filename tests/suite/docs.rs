@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
-use std::time::{Duration, UNIX_EPOCH};
+use std::time::{Duration, Instant, UNIX_EPOCH};
 use std::{env, fs};
 
 use crate::architecture::sources;
@@ -246,7 +246,9 @@ fn run_commands(page: &Path, failures: &mut Vec<String>) -> usize {
                     .current_dir(folder.path())
                     .env("PATH", &path);
             }
+            let start = Instant::now();
             let output = shell.output().unwrap();
+            eprintln!("{:.1} s: {line}", start.elapsed().as_secs_f64());
             if output.status.code() != Some(block.exit_code) {
                 let stderr = String::from_utf8_lossy(&output.stderr);
                 failures.push(format!("{}: {line}: {}\n{stderr}", page.display(), output.status));

@@ -108,7 +108,7 @@ fn sweep(step: usize) {
 #[test]
 fn some_changed_numbers_get_verdicts() {
     if require_driver() {
-        sweep(193);
+        sweep(389);
     }
 }
 

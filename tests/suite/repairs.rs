@@ -346,7 +346,7 @@ fn the_result_does_not_depend_on_the_time_limit() {
     for shader in [two, none] {
         let result = |milliseconds| {
             let findings =
-                check_and_repair_within(Duration::from_millis(milliseconds), 2.0, &shader, &exercise)?;
+                check_and_repair_within(Duration::from_millis(milliseconds), 0.5, &shader, &exercise)?;
             assert!(!findings.is_cut_by_time);
             let mistake = findings.mistake.as_ref().map(Diagnosis::id);
             let search = findings.search.expect("a wrong shader is searched");
