@@ -51,7 +51,7 @@ if needs x86_64-w64-mingw32-gcc "apt-get install mingw-w64" && needs wine "apt-g
     x86_64-w64-mingw32-gcc -shared -o "$folder/bcryptprimitives.dll" "$folder/prng.c" -ladvapi32
     cp glsl/02-sphere.glsl glsl/02-sphere.toml "$folder"
     run() { (cd "$folder" && HOME="$folder" WINEDEBUG=-all wine toyproof.exe "$@"); }
-    run check 02-sphere.glsl --on cpu --size 160x90 --out out
+    run check 02-sphere.glsl --device cpu --size 160x90 --out out
     run render 02-sphere.toml -o sphere.png --size 160x90
     run convert 02-sphere.glsl -o sphere.wgsl
     # The first line names the file.

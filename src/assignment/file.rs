@@ -18,7 +18,6 @@ static FORMAT: Format = Format {
     form_code: "E0505",
     value_code: "E0506",
     aliases: &[],
-    renamed: &[],
 };
 
 /// The largest tolerance, in 8-bit levels.

@@ -18,7 +18,7 @@ use super::{Exit, Terminal};
 #[command(after_long_help = "Example:\n  toyproof doctor --device lavapipe")]
 pub(super) struct Args {
     /// The device to test: `auto`, `lavapipe`, `cpu`, or a substring of an adapter's name
-    #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = inputs::parse_device)]
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = inputs::parse_device)]
     device: DeviceSelector,
     /// The format of standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]

@@ -220,7 +220,7 @@ pub(super) struct DriverArgs {
     /// `auto` selects lavapipe if it is installed, else the first Vulkan driver, else the CPU. `cpu` is
     /// toyproof's own evaluator: it needs no driver. There is no toolchain check, since that compares a GPU
     /// with the CPU.
-    #[arg(long, alias = "on", value_name = "DEVICE", default_value = "auto", value_parser = parse_device)]
+    #[arg(long, value_name = "DEVICE", default_value = "auto", value_parser = parse_device)]
     device: DeviceSelector,
     /// The float arithmetic: `strict` or `fast` [default: strict; for `convert`: fast]
     ///

@@ -49,7 +49,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "ERROR", value_parser = parse_max_error, allow_negative_numbers = true)]
     max_error: Option<f64>,
     /// GPUs to measure: `all`, `cpu` for none, `lavapipe`, or a substring of the adapter's name
-    #[arg(long, alias = "on", value_name = "DEVICE", default_value = "all")]
+    #[arg(long, value_name = "DEVICE", default_value = "all")]
     device: String,
     #[command(flatten)]
     language: LanguageArgs,

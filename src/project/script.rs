@@ -8,7 +8,6 @@ static FORMAT: Format = Format {
     form_code: "E0509",
     value_code: "E0510",
     aliases: &[],
-    renamed: &[],
 };
 
 /// The largest number of events of a file.

@@ -2,12 +2,12 @@
 
 use super::Record;
 
-/// What a report shows of the search for a mistake in a wrong shader. Errors and warnings are always shown.
+/// What a report shows of the mistake in a wrong shader. Errors and warnings are always shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hints {
     /// Neither the likely mistake nor lines nor edits.
     None,
-    /// The likely mistake, and the lines of the fix or the suspect lines.
+    /// The likely mistake, the lines of the fix or the suspect lines, and what only the reference uses.
     Line,
     /// Also the edits.
     Fix,
@@ -21,7 +21,10 @@ impl Record {
         {
             fix.hide_edits();
         }
-        if hints < Hints::Line {
+        let unused = std::mem::take(&mut self.unused);
+        if hints >= Hints::Line {
+            self.details.extend(unused);
+        } else {
             self.fix = None;
             self.suspects.clear();
             self.is_search_cut = false;

@@ -100,6 +100,9 @@ pub struct Record {
     /// Further sentences on the reason, the most important first.
     #[serde(default)]
     pub details: Vec<String>,
+    /// What only the reference of a wrong shader uses: details, unless hints are turned off.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unused: Vec<String>,
     /// The command that shows more; null if there is nothing to show.
     #[serde(default)]
     pub help: Option<String>,
@@ -165,6 +168,7 @@ impl Record {
             verdict: Verdict::Error,
             reason: String::new(),
             details: Vec::new(),
+            unused: Vec::new(),
             help: None,
             algorithm: None,
             precision: None,

@@ -19,7 +19,6 @@ static FORMAT: Format = Format {
     form_code: "E0503",
     value_code: "E0504",
     aliases: &[],
-    renamed: &[("maths", "algorithm"), ("rounding", "precision")],
 };
 
 /// The points of each check.
@@ -401,14 +400,6 @@ mod tests {
                 "[style]\npoints = 1",
                 "1:2 E0503 unknown table [style]; \
                  help: expected `visibility`, `images`, [compiles], [algorithm], [precision] or [late]",
-            ),
-            (
-                "[maths]\npoints = 6",
-                "1:2 E0503 unknown key `maths`; it is now called `algorithm`",
-            ),
-            (
-                "compiles.points = 1\nrounding.points = 2",
-                "2:1 E0503 unknown key `rounding`; it is now called `precision`",
             ),
             (
                 "[[algorithm]]\npoints = 1",

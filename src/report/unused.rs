@@ -7,10 +7,10 @@ use toyproof_verify::unused::Unused;
 use super::Record;
 
 impl Record {
-    /// States what only the reference uses, if the shader is wrong. `files` are those of the reference.
+    /// Adds what only the reference uses, if the shader is wrong. `files` are those of the reference.
     pub fn add_unused(&mut self, unused: &Unused, files: &Files) {
         if self.verdict == Verdict::Wrong {
-            self.details.extend(sentences(unused, files));
+            self.unused = sentences(unused, files);
         }
     }
 }
@@ -35,6 +35,7 @@ mod tests {
     use toyproof_diagnostic::{File, Span};
 
     use super::*;
+    use crate::report::Hints;
     use crate::report::record::samples::{correct, record};
 
     #[test]
@@ -45,16 +46,18 @@ mod tests {
             inputs: vec!["iMouse".to_owned(), "iTime".to_owned()],
             functions: vec![("shadow".to_owned(), Span::new(file, 4, 12))],
         };
-        let details = |mut record: Record| {
+        let details = |mut record: Record, hints| {
             record.details.clear();
             record.add_unused(&unused, &files);
+            record.redact(hints);
             record.details
         };
         let expected = [
             "the reference reads `iMouse` and `iTime`, the shader does not",
             "`shadow` is never called; the reference calls it at line 3",
         ];
-        assert_eq!(details(record(Verdict::Wrong)), expected);
-        assert!(details(correct()).is_empty());
+        assert_eq!(details(record(Verdict::Wrong), Hints::Line), expected);
+        assert!(details(record(Verdict::Wrong), Hints::None).is_empty());
+        assert!(details(correct(), Hints::Fix).is_empty());
     }
 }

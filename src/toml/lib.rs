@@ -5,7 +5,7 @@
 //! use toyproof_diagnostic::{File, Files};
 //! use toyproof_toml::{Format, read};
 //!
-//! static FORMAT: Format = Format { form_code: "E0501", value_code: "E0502", aliases: &[], renamed: &[] };
+//! static FORMAT: Format = Format { form_code: "E0501", value_code: "E0502", aliases: &[] };
 //! let mut files = Files::default();
 //! let file = files.add(File::new("a.toml", "radius = \"1\""));
 //! let errors = read(&FORMAT, &files, file, |table| table.required::<f64>("radius")).unwrap_err();
@@ -38,8 +38,6 @@ pub struct Format {
     pub value_code: &'static str,
     /// Accepted spellings of keys: the alias, and the key.
     pub aliases: &'static [(&'static str, &'static str)],
-    /// Keys of earlier versions: the former name, and the present one.
-    pub renamed: &'static [(&'static str, &'static str)],
 }
 
 /// A value and where it stands.
@@ -524,13 +522,6 @@ impl<'r, 't> Table<'r, 't> {
 
     fn report_unknown_key(&self, key: &str, span: Span, value: &DeValue) {
         let is_root = matches!(self.place, Place::Root);
-        let mut renamed = self.reader.format.renamed.iter();
-        let renamed = renamed
-            .find(|(former, present)| *former == key && self.known.iter().any(|(known, _)| known == present));
-        if let Some((_, present)) = renamed {
-            let message = format!("unknown key `{key}`; it is now called `{present}`");
-            return self.reject_form(span, message, "");
-        }
         let message = match value {
             _ if !is_root => format!("unknown key `{key}` in {}", self.place.name()),
             DeValue::Table(_) => format!("unknown table [{key}]"),

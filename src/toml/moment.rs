@@ -72,7 +72,6 @@ mod tests {
         form_code: "E0501",
         value_code: "E0502",
         aliases: &[],
-        renamed: &[],
     };
 
     fn moment(text: &str) -> Result<Moment, String> {

@@ -568,7 +568,7 @@ fn pipes_are_read_once() {
             "cat glsl/02-sphere.toml | {program} check glsl/02-sphere.glsl --scene /dev/stdin --out {out}"
         ),
     ] {
-        let line = format!("{line} --size 64x36 --on cpu");
+        let line = format!("{line} --size 64x36 --device cpu");
         let run = std::process::Command::new("sh")
             .args(["-c", &line])
             .current_dir(root)

@@ -70,11 +70,6 @@ fn the_evaluator_is_chosen_on_request() {
     let run = toyproof(root(), &["doctor", "--device", "cpu"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.starts_with("Selected device: cpu"), "{}", run.stdout);
-    assert_eq!(
-        toyproof(root(), &["doctor", "--on", "cpu"]).stdout,
-        run.stdout,
-        "the old name"
-    );
 }
 
 /// With odd sizes, the central pixel's ray is parallel to an axis of the screen.
@@ -309,7 +304,7 @@ fn sequences_are_numbered_and_resume() {
     }";
     fs::write(folder.path().join("s.glsl"), shader).unwrap();
     let render = |more: &str| {
-        let arguments = format!("run s.glsl -o s.exr --size 2x2 --on cpu --frames 0..3{more}");
+        let arguments = format!("run s.glsl -o s.exr --size 2x2 --device cpu --frames 0..3{more}");
         toyproof(folder.path(), &arguments.split(' ').collect::<Vec<_>>())
     };
     let file = |name: &str| folder.path().join(name);

@@ -70,14 +70,11 @@ const RETIRED: [(&str, &str); 41] = [
 ];
 
 /// Text that has a retired word for a reason: the end of its path, and a part of the text.
-const ALLOWED: [(&str, &str); 6] = [
+const ALLOWED: [(&str, &str); 4] = [
     // The British forms of keys, which scene files accept, and of students' parameters.
     ("scene/file", "colour"),
     ("scene/file", "centre"),
     ("stress/function/role", "centre"),
-    // The former names of keys, which are reported.
-    ("report/rubric", "\"maths\""),
-    ("report/rubric", "\"rounding\""),
     // The name of a medium of ShaderToy.
     ("project/media", "Grey Noise3D"),
 ];

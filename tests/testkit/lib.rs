@@ -131,31 +131,31 @@ pub const SIZE: [u32; 2] = [160, 90];
 /// The same for exercises that take many samples per pixel.
 const SMALL: [u32; 2] = [48, 27];
 
-/// The answer of the algorithm check: every test here has a scene.
+/// The summary of the algorithm check: every test here has a scene.
 pub fn algorithm(findings: &Findings) -> &CheckSummary {
     &findings.algorithm.as_ref().expect("there is a scene").summary
 }
 
 /// The numbers behind a verdict, for people.
 pub fn numbers(findings: &Findings) -> String {
-    let questions = [
-        ("maths", &findings.algorithm),
-        ("rounding", &findings.precision),
+    let checks = [
+        ("algorithm", &findings.algorithm),
+        ("precision", &findings.precision),
         ("toolchain", &findings.toolchain),
     ];
-    let format_errors = questions.into_iter().filter_map(|(name, requested)| {
-        let answer = &requested.as_ref()?.summary;
-        let percent = |count| 100.0 * answer.share(count);
+    let checks = checks.into_iter().filter_map(|(name, check)| {
+        let summary = &check.as_ref()?.summary;
+        let percent = |count| 100.0 * summary.share(count);
         Some(format!(
-            "{name} {:.2} % differ, {:.2} % undecided, {:.2} % undefined, by at most {:.1e}",
-            percent(answer.differing),
-            percent(answer.ill_conditioned),
-            percent(answer.undefined),
-            answer.max_abs
+            "{name} {:.2} % differ, {:.2} % ill-conditioned, {:.2} % undefined, by at most {:.1e}",
+            percent(summary.differing),
+            percent(summary.ill_conditioned),
+            percent(summary.undefined),
+            summary.max_abs
         ))
     });
-    let format_errors: Vec<_> = format_errors.collect();
-    format!("{}: {}", findings.verdict, format_errors.join("; "))
+    let checks: Vec<_> = checks.collect();
+    format!("{}: {}", findings.verdict, checks.join("; "))
 }
 
 /// An exercise's scene.

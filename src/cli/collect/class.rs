@@ -12,7 +12,6 @@ static FORMAT: Format = Format {
     form_code: "E0505",
     value_code: "E0506",
     aliases: &[],
-    renamed: &[],
 };
 
 /// A class.

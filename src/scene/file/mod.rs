@@ -19,7 +19,6 @@ static FORMAT: Format = Format {
     form_code: "E0501",
     value_code: "E0502",
     aliases: &[("centre", "center"), ("colour", "color")],
-    renamed: &[],
 };
 
 /// Parses a scene.
