@@ -1,5 +1,5 @@
-//! Uniforms and varyings that the shader declares. ShaderToy sets only its own, so these are zero. Samplers read a
-//! channel.
+//! Uniforms and varyings that the shader declares. ShaderToy sets only its own, so these are zero. Samplers
+//! read a channel.
 
 use toyproof_glsl::Code;
 use toyproof_glsl::tree::{ExprKind, VariableKind};

@@ -1,7 +1,7 @@
-//! Denormal operands: processors that flush denormals to zero take them for zero, too, where they compute, but move
-//! them as they are. Results of operations are never denormal here, so that only constants and bit patterns can be, and
-//! what is chosen or loaded from among them. Where an operation computes with such a value, it is multiplied by 1
-//! first, which flushes it in f32 and is exact in every other number type.
+//! Denormal operands. Processors that flush denormal results also take denormal operands for zeros where they
+//! compute, but move them unchanged. Results are flushed, so only constants and bit patterns can be denormal, and
+//! values that are selected or loaded from these. Where an operation computes with such a value, the value is
+//! multiplied by 1 first, which flushes it in f32 and is exact in every other number type.
 
 use crate::ir::{AliasGroups, Block, Cell, Function, NONE, Node, Operation, Value, ValueDef};
 
@@ -110,7 +110,8 @@ fn flushed(block: Block, function: &mut Function, denormal: &[bool], one: Value)
     out
 }
 
-/// The product of an operand that may be denormal and 1, which is appended to the block; other operands as they are.
+/// Appends the product of 1 and an operand that may be denormal, and returns it; returns other operands
+/// unchanged.
 fn flush(operand: Value, function: &mut Function, denormal: &[bool], one: Value, out: &mut Block) -> Value {
     if !denormal.get(operand.0 as usize).is_some_and(|&is| is) {
         return operand;

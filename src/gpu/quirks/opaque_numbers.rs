@@ -105,7 +105,8 @@ struct Rewriter {
     types: HashMap<u32, u32>,
     /// The constants −2³¹.
     least: Vec<u32>,
-    /// Denormal constants, composites of them, variables that are initialized with them, and what is loaded from these.
+    /// Denormal constants, composites of them, variables that are initialized with them, and values that are
+    /// loaded from these.
     denormals: HashSet<u32>,
     /// The type of the columns and their number, for each type of matrices.
     matrices: HashMap<u32, (u32, u32)>,
