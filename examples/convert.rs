@@ -6,10 +6,10 @@
 use std::error::Error;
 use std::time::Duration;
 
+use toyproof::convert::{Prover, Runner, Source, Written};
 use toyproof::diagnostic::{Deadline, File, Files, short};
 use toyproof::glsl::{Options, check};
 use toyproof::translate::wgsl::{Style, wgsl};
-use toyproof::verify::conversion::{Prover, Runner, Source, Written};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let shader = std::env::args().nth(1).ok_or("usage: convert SHADER.glsl")?;

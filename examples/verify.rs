@@ -4,16 +4,15 @@
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
 use std::error::Error;
-use std::time::Duration;
 
 use toyproof::diagnostic::{Deadline, File, Files};
-use toyproof::glsl::{Options, check};
+use toyproof::explain::{Options, check};
+use toyproof::glsl;
 use toyproof::image::Frame;
 use toyproof::lint::lint;
 use toyproof::report::state;
 use toyproof::scene;
-use toyproof::translate::FloatMode;
-use toyproof::verify::{Case, Expected, verify};
+use toyproof::verify::{Case, Expected};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -23,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut files = Files::default();
     let shader = files.add(File::new(&shader, std::fs::read_to_string(&shader)?));
     let scene = files.add(File::new(&scene, std::fs::read_to_string(&scene)?));
-    let checked = check(&files, shader, &Options::default())?;
+    let checked = glsl::check(&files, shader, &glsl::Options::default())?;
     let lints = lint(&files, &checked, &Deadline::default());
     let scene = scene::parse(&files, scene)?;
 
@@ -31,21 +30,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         size: scene.film.size,
         ..Frame::default()
     };
-    let case = Case {
-        checked: &checked,
-        lints: &lints,
-        expected: Some(&Expected::of_scene(scene, &frame)),
-        hypotheses: None,
-        alternatives: None,
-        search: None,
-        frame: &frame,
-        from_start: None,
-        float: FloatMode::Strict,
-        timeout: Duration::from_secs(10),
-        pool: None,
-    };
+    let expected = Expected::of_scene(scene, &frame);
+    let case = Case::new(&checked, &lints, &frame).with_expected(&expected);
     // The first argument would be a `gpu::Worker`; without one the toolchain check is left out.
-    let findings = verify(None, &case)?;
+    let findings = check(None, &case, &Options::default())?;
     println!("{}: {}", findings.verdict, state(&findings, &files).reason);
     Ok(())
 }

@@ -33,7 +33,9 @@
 //! | `tracer` | scenes and the reference tracer |
 //! | `translate` | translation by naga to SPIR-V, WGSL, MSL, HLSL and GLSL |
 //! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision) |
+//! | `explain` | the mistake that explains a wrong image, and its repair |
 //! | `gpu` | rendering on a Vulkan driver, in a worker process |
+//! | `convert` | conversions, and their proofs |
 //! | `lab` | measurements of stability, and of accuracy against time |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
 //! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope; with `lab`, assignments |
@@ -68,9 +70,13 @@ pub mod cli;
 #[cfg(feature = "report")]
 pub mod report;
 
+#[cfg(feature = "convert")]
+pub use toyproof_convert as convert;
 pub use toyproof_diagnostic as diagnostic;
 #[cfg(feature = "eval")]
 pub use toyproof_eval as eval;
+#[cfg(feature = "explain")]
+pub use toyproof_explain as explain;
 pub use toyproof_glsl as glsl;
 #[cfg(feature = "gpu")]
 pub use toyproof_gpu as gpu;

@@ -17,7 +17,7 @@ cargo check --target aarch64-apple-darwin
 say "WebAssembly: cargo check of the crates that need no processes"
 cargo check --target wasm32-unknown-unknown -p toyproof-math -p toyproof-diagnostic -p toyproof-image -p toyproof-glsl \
     -p toyproof-lint -p toyproof-translate -p toyproof-eval -p toyproof-scene -p toyproof-tracer
-cargo check --target wasm32-unknown-unknown -p toyproof-verify --no-default-features
+cargo check --target wasm32-unknown-unknown -p toyproof-explain
 
 say "aarch64: the bit-exactness tests of math, tracer and evaluator"
 if needs aarch64-linux-gnu-gcc "apt-get install gcc-aarch64-linux-gnu" && needs qemu-aarch64 "apt-get install qemu-user"; then

@@ -6,7 +6,7 @@ use toyproof_diagnostic::{Diagnostics, FileId, Files, nearest};
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_project::{PassKind, Tab};
 use toyproof_toml::{Format, Literal, Located, Table};
-use toyproof_verify::alternative::{Difference, UnknownDifference};
+use toyproof_verify::{Difference, UnknownDifference};
 
 use super::{
     Assignment, DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, MAX_FRAMES, Reference,

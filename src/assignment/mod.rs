@@ -23,7 +23,7 @@ mod template;
 use std::path::PathBuf;
 
 use toyproof_image::FrameInputs;
-use toyproof_verify::alternative::Difference;
+use toyproof_verify::Difference;
 
 pub use self::function::{DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, Subject};
 pub use self::rules::Rules;

@@ -5,17 +5,18 @@ use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Deadline, path_name};
 use toyproof_eval::{Failure, Program};
+use toyproof_explain::trail::follow_back;
 use toyproof_glsl::Checked;
 use toyproof_image::{FRAME_RATE, Frame};
-use toyproof_project::PassKind;
+use toyproof_project::{CompiledProject, PassKind};
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
+use toyproof_verify::project::bind::{accumulate, default_frame};
 use toyproof_verify::{self as verify, debug};
 
 use super::check::Scenes;
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
-use super::passes;
-use super::project::Passes;
+use super::project::{pass_shader, rendering, target};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::run::{not_evaluated, parse_pass};
 use super::shader::{Shader, Unusable, find};
@@ -79,7 +80,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     let kind = args.pass.unwrap_or(PassKind::Image);
     if let Some(passes) = &shader.passes
-        && (passes::has_history(passes) || kind != PassKind::Image)
+        && (passes.has_history() || kind != PassKind::Image)
     {
         return print_pass(args, (&shader, passes), kind, frame, scene, terminal).unwrap_or_else(|exit| exit);
     }
@@ -106,7 +107,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 /// Prints the trace of the pixel of a pass of a project, and where its difference comes from.
 fn print_pass(
     args: &Args,
-    (shader, passes): (&Shader, &Passes),
+    (shader, passes): (&Shader, &CompiledProject),
     kind: PassKind,
     mut frame: Frame,
     scene: Option<Scene>,
@@ -118,11 +119,14 @@ fn print_pass(
         return Err(Exit::Error);
     };
     if !args.frame.is_moment_given() {
-        let number = passes::default_frame(scene.as_ref());
+        let number = default_frame(scene.as_ref());
         frame = frame.at(number, number as f32 / FRAME_RATE);
     }
     let spinner = terminal.spinner(&shader.name);
-    let trail = passes::follow_back(passes, kind, args.pixel, &frame, args.timeout);
+    let trail = rendering(passes, kind).and_then(|rendering| {
+        let shader = pass_shader(passes, &rendering);
+        follow_back(&shader, target(kind), args.pixel, &frame, args.timeout)
+    });
     spinner.finish_and_clear();
     let trail = trail.map_err(|failure| match failure {
         verify::Failure::Cpu(failure) => not_evaluated(&failure, shader, terminal),
@@ -132,7 +136,7 @@ fn print_pass(
         }
     })?;
     let scene = scene.filter(|_| kind == PassKind::Image).map(|mut scene| {
-        passes::accumulate(&mut scene, frame.frame);
+        accumulate(&mut scene, frame.frame);
         scene
     });
     let expected = scene.map(|scene| expected_color(scene, &frame, args.pixel));

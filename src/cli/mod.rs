@@ -14,7 +14,6 @@ mod help;
 mod inputs;
 mod names;
 mod new;
-mod passes;
 mod pool;
 mod project;
 mod reference;

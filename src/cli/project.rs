@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Diagnostics, Files, path_name};
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl as glsl;
 use toyproof_image as image;
 use toyproof_lint::Lints;
-use toyproof_project::{self as project, NotRendered, PROJECT_FILE, PassKind, Project, Rendering, Tab};
+use toyproof_player::Target;
+use toyproof_project::{self as project, CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_toml::list_of;
+use toyproof_verify::Failure;
+use toyproof_verify::project::playback::PassShader;
 
 use super::files::{self, Input, ProjectTexts, ReadError, Texts};
 use super::inputs::may_write;
@@ -33,47 +36,43 @@ fn parse(texts: ProjectTexts, files: &mut Files) -> Result<Project, Diagnostics>
     }
 }
 
-/// A project whose tabs compile, with what renders its image.
-#[derive(Debug)]
-pub(super) struct Passes {
-    pub(super) project: Project,
-    /// The trees of the passes, in the order of the project.
-    pub(super) checked: Vec<Checked>,
+/// The passes of a rendering, to evaluate or render them.
+pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rendering) -> PassShader<'a> {
+    PassShader {
+        checked: project.checked_of(rendering).collect(),
+        graph: &rendering.graph,
+        media: &rendering.media,
+    }
 }
 
-impl Passes {
-    /// What renders the image and another pass.
-    ///
-    /// # Errors
-    /// If a pass is needed that cannot be rendered.
-    pub(super) fn rendering(&self, also: PassKind) -> Result<Rendering, NotRendered> {
-        self.project.rendering(&[also])
-    }
+/// What renders the image of a project.
+///
+/// # Errors
+/// If a pass is needed that cannot be rendered.
+pub(super) fn rendering(project: &CompiledProject, kind: PassKind) -> Result<Rendering, Failure> {
+    let rendering = project.rendering(kind);
+    rendering.map_err(|error| Failure::Unrendered(error.to_string()))
+}
 
-    /// The trees of the passes of a rendering, in its order.
-    pub(super) fn checked_of<'a>(&'a self, rendering: &'a Rendering) -> impl Iterator<Item = &'a Checked> {
-        rendering.passes.iter().map(|&at| &self.checked[at])
+/// What the pass of a kind renders, if it is rendered.
+pub(super) fn target(kind: PassKind) -> Target {
+    match kind {
+        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
+        _ => Target::Image,
     }
+}
 
-    /// The tree of the image.
-    pub(super) fn image(&self) -> &Checked {
-        let mut passes = self.project.passes.iter().zip(&self.checked);
-        let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
-        image.expect("every project has an image").1
-    }
-
-    /// Why a command that renders the image alone cannot use the project; none if the image reads no pass.
-    pub(super) fn unrendered(&self, name: &str) -> Option<Unreadable> {
-        let needed = self.project.needed_by_image();
-        let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
-        (!names.is_empty()).then(|| Unreadable {
-            name: name.to_owned(),
-            reason: format!(
-                "the image reads {}, which this command does not render",
-                names.join(", ")
-            ),
-        })
-    }
+/// Why a command that renders the image alone cannot use the project; `None` if the image reads no pass.
+pub(super) fn unrendered(project: &CompiledProject, name: &str) -> Option<Unreadable> {
+    let needed = project.project.needed_by_image();
+    let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
+    (!names.is_empty()).then(|| Unreadable {
+        name: name.to_owned(),
+        reason: format!(
+            "the image reads {}, which this command does not render",
+            names.join(", ")
+        ),
+    })
 }
 
 /// The files of the images that a project reads from its folder.
@@ -105,7 +104,7 @@ pub(super) fn check(
     files: &mut Files,
     lints: &mut Lints,
     options: &glsl::Options,
-) -> Result<Passes, Unusable> {
+) -> Result<CompiledProject, Unusable> {
     let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());
     let folder = match &texts {
         ProjectTexts::Folder { folder, .. } => folder.clone(),
@@ -128,7 +127,7 @@ pub(super) fn check(
         checked.push(pass.checked);
     }
     lints.warnings = passes.warnings;
-    Ok(Passes { project, checked })
+    Ok(CompiledProject { project, checked })
 }
 
 /// Import a project from ShaderToy's JSON into a folder

@@ -9,6 +9,8 @@ use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name, plural};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image, input};
+use toyproof_project::PassKind;
+use toyproof_verify::project::bind::bind_reference;
 use toyproof_verify::{
     Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, MarchDependence, Quantization,
     ShaderReference, Share, unbound,
@@ -16,7 +18,7 @@ use toyproof_verify::{
 
 use super::Terminal;
 use super::inputs::{LanguageArgs, shell_word};
-use super::passes::bind_reference;
+use super::project::{pass_shader, rendering};
 use super::shader::{Shader, Unusable};
 use crate::cli::files::{self, Input, InputSource};
 use crate::report;
@@ -256,10 +258,10 @@ impl Evaluation<'_> {
         let name = self.name;
         let spinner = terminal.spinner(name);
         let mut frame = frame.clone();
-        let bound = shader
-            .passes
-            .as_ref()
-            .map_or(Ok(()), |passes| bind_reference(passes, &mut frame, self.timeout));
+        let bound = shader.passes.as_ref().map_or(Ok(()), |passes| {
+            let rendering = rendering(passes, PassKind::Image)?;
+            bind_reference(&pass_shader(passes, &rendering), &mut frame, self.timeout)
+        });
         bound.map_err(|failure| {
             terminal.error(format_args!(
                 "the passes of the reference {name} cannot be evaluated: {failure}; no shader was checked"

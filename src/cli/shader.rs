@@ -7,11 +7,12 @@ use std::path::{Component, Path, PathBuf};
 use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity, grouped, path_name, plural};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
+use toyproof_project::CompiledProject;
 
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
 use crate::cli::files::{self, Input, ReadError, Search, Texts, content_diagnostic};
-use crate::cli::project::{self, Passes};
+use crate::cli::project;
 
 /// The lints may take one part in this many of a shader's time limit.
 const LINT_TIME_SHARE: u32 = 4;
@@ -23,7 +24,7 @@ pub(super) struct Shader {
     pub(super) checked: Result<Checked, Unusable>,
     pub(super) lints: Lints,
     /// All tabs, if it is a project.
-    pub(super) passes: Option<Passes>,
+    pub(super) passes: Option<CompiledProject>,
     /// Whether a student submitted no shader.
     pub(super) is_missing: bool,
 }
@@ -152,7 +153,7 @@ fn read(
     found: &Input,
     files: &mut Files,
     lints: &mut Lints,
-    passes: &mut Option<Passes>,
+    passes: &mut Option<CompiledProject>,
     options: &glsl::Options,
 ) -> Result<Checked, Unusable> {
     match files::read(found) {
@@ -165,7 +166,7 @@ fn read(
         }
         Ok(Texts::Project(texts)) => {
             let project = passes.insert(project::check(texts, files, lints, options)?);
-            match project.unrendered(&found.name()) {
+            match project::unrendered(&project, &found.name()) {
                 None => Ok(project.image().clone()),
                 Some(unrendered) => Err(Unusable::Unrendered(unrendered)),
             }

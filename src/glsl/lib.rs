@@ -134,6 +134,16 @@ impl Checked {
         self.tree.exprs.iter().any(|(_, expr)| is_derivative(&expr.kind))
     }
 
+    /// Whether the shader reads an input.
+    #[must_use]
+    pub fn reads(&self, input: tree::Input) -> bool {
+        let is_input =
+            |variable: tree::VariableId| self.tree[variable].kind == tree::VariableKind::Input(input);
+        let reads =
+            |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::Variable(variable) if is_input(*variable));
+        self.tree.exprs.iter().any(|(_, expr)| reads(&expr.kind))
+    }
+
     /// Whether the shader reads a texture.
     #[must_use]
     pub fn reads_textures(&self) -> bool {

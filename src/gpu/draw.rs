@@ -2,9 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
-use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
 use toyproof_image::{Frame, Image};
 use toyproof_translate::backend::spirv;
 use toyproof_translate::naga_ir::{Shape, ValidModule};
@@ -16,46 +14,7 @@ use super::pipeline::Layout;
 use super::quirks::{FOLDED_DENORMALS, LOOP_EXITS, OPAQUE_NUMBERS, loop_exits, opaque_numbers};
 use super::readback::RowBuffer;
 use super::texture::flat;
-use super::{AdapterSelector, Failure};
-
-/// A rendered image with its statistics.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct DrawOutput {
-    /// The image in the float target's format, in bands of rows from the bottom up, as given by
-    /// [`Frame::bands`]. Empty if the bands were passed to a callback.
-    #[serde(skip)]
-    pub bands: Vec<Image>,
-    /// Adapter and driver.
-    pub device: String,
-    /// Whether the shader has loops and the driver is of a kind that terminates long loops.
-    pub(super) may_truncate_loops: bool,
-    /// Number of pixels in which the driver terminated a loop, whose colors are meaningless. `None` if that
-    /// could not be determined in time; 0 if it was not checked.
-    pub loop_truncated: Option<u64>,
-    /// Time for naga to parse, validate and emit.
-    pub translate: Duration,
-    /// Time for the driver to compile.
-    pub compile: Duration,
-    /// Time to render and read back.
-    pub draw: Duration,
-}
-
-impl DrawOutput {
-    /// Returns whether the driver may have terminated a loop, so that a check is needed.
-    #[must_use]
-    pub fn may_truncate_loops(&self) -> bool {
-        self.may_truncate_loops
-    }
-
-    /// Joins the bands into an image.
-    ///
-    /// # Panics
-    /// If the bands were passed to a callback.
-    #[must_use]
-    pub fn image(self) -> Image {
-        Image::of_bands(self.bands)
-    }
-}
+use super::{AdapterSelector, Failure, naga_failed, refused};
 
 /// A compiled shader with the bindings and the target of a frame.
 #[derive(Debug)]
@@ -79,7 +38,7 @@ pub(super) struct Program {
 impl Program {
     /// Emits SPIR-V for a module, decorated for strict arithmetic if `float` is strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
-        let words = spirv::words(module).map_err(Failure::naga)?;
+        let words = spirv::words(module).map_err(naga_failed)?;
         Ok(Self {
             words: apply_float_mode(words, float),
             channels: module.channels(),
@@ -302,7 +261,7 @@ impl LocalRenderer {
         float: FloatMode,
         selector: &AdapterSelector,
     ) -> Result<Self, Failure> {
-        let module = ValidModule::parse(lowered).map_err(Failure::refused)?;
+        let module = ValidModule::parse(lowered).map_err(refused)?;
         let device = Device::open(selector)?;
         let prepared = device.prepare(&Program::new(&module, float)?, frame)?;
         Ok(Self { device, prepared })

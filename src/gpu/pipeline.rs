@@ -3,13 +3,13 @@
 use std::num::NonZeroU64;
 
 use toyproof_image::{BLOCK_BYTES, Frame};
+use toyproof_player::ChannelSampling;
 use toyproof_translate::naga_ir::Shape;
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, Features,
     PipelineLayout, RenderPipeline, Sampler, ShaderModule, ShaderStages, TextureView,
 };
 
-use super::protocol::ChannelSampling;
 use super::quirks::TWO_VARIANTS;
 use super::texture::{FORMAT, black, dimension, upload};
 

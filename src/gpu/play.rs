@@ -5,16 +5,15 @@ use std::sync::OnceLock;
 use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::{self as glsl, Stage};
 use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{Channel, Player, Renderer};
+use toyproof_player::{Channel, ChannelSampling, Player, Readback, Renderer};
 use toyproof_translate::naga_ir::ValidModule;
 use toyproof_translate::{FloatMode, Lowered, lower_strict};
 use wgpu::{TextureUsages, TextureView, TextureViewDescriptor};
 
-use super::Failure;
 use super::device::Device;
 use super::draw::{Compiled, Program};
-use super::protocol::{ChannelSampling, Readback};
 use super::texture::{extent, flat, upload, write};
+use super::{Failure, refused};
 
 /// Renders passes on a device.
 #[derive(Debug)]
@@ -176,14 +175,16 @@ fn halving_program() -> Result<Program, Failure> {
         stage: Stage::Buffer,
         ..glsl::Options::default()
     };
-    let checked = glsl::check(&files, file, &options).map_err(Failure::refused)?;
-    let module = ValidModule::parse(&lower_strict(&checked)).map_err(Failure::refused)?;
+    let checked = glsl::check(&files, file, &options).map_err(refused)?;
+    let module = ValidModule::parse(&lower_strict(&checked)).map_err(refused)?;
     Program::new(&module, FloatMode::Strict)
 }
 
 /// The SPIR-V of all passes.
-pub(super) fn programs(passes: &[Lowered], float: FloatMode) -> Result<Vec<Program>, Failure> {
-    let program = |lowered| Program::new(&ValidModule::parse(lowered).map_err(Failure::refused)?, float);
+pub(super) fn programs(passes: &[(Lowered, FloatMode)]) -> Result<Vec<Program>, Failure> {
+    let program = |(lowered, float): &(Lowered, FloatMode)| {
+        Program::new(&ValidModule::parse(lowered).map_err(refused)?, *float)
+    };
     passes.iter().map(program).collect()
 }
 

@@ -4,15 +4,14 @@ use std::io::{self, Read, Write};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{self as player, Graph, State};
+use toyproof_player::{ChannelSampling, DrawOutput, DriverFailure as Failure, Graph, Phase, Readback, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Hosted;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox};
+use super::{AdapterSelector, Driver, Sandbox};
 
 /// The parent's first message.
 #[derive(Debug, Serialize, Deserialize)]
@@ -92,51 +91,10 @@ pub(super) struct PlayJob {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum PlayedPasses {
     /// As they are lowered.
-    Lowered(Vec<Lowered>, FloatMode),
+    Lowered(Vec<(Lowered, FloatMode)>),
     /// As they are converted. Operations in which drivers differ are expanded to operations on which they
     /// agree, with strict arithmetic.
     Converted(Vec<ShaderArtifact>),
-}
-
-/// How the sampler of a channel reads its texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ChannelSampling {
-    /// Whether texels are interpolated.
-    pub linear: bool,
-    /// Whether mipmaps are used, and interpolated.
-    pub mipmaps: bool,
-    /// Whether the texture is repeated; otherwise its edge is.
-    pub repeat: bool,
-}
-
-impl Default for ChannelSampling {
-    /// Linear and repeated, with the mipmaps that the texture has.
-    fn default() -> Self {
-        Self {
-            linear: true,
-            mipmaps: true,
-            repeat: true,
-        }
-    }
-}
-
-impl From<Sampling> for ChannelSampling {
-    fn from(sampling: Sampling) -> Self {
-        Self {
-            linear: sampling.filter != Filter::Nearest,
-            mipmaps: sampling.filter == Filter::Mipmap,
-            repeat: sampling.wrap == Wrap::Repeat,
-        }
-    }
-}
-
-/// A texture of the passes of a shader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Readback {
-    /// What a pass rendered last.
-    Last(player::Target),
-    /// The other texture of a buffer, which its pass renders next.
-    Other(usize),
 }
 
 /// SPIR-V of a different compiler and the frame to render.

@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Instant;
 
 use toyproof_image::Frame;
-use toyproof_player::{Player, State};
+use toyproof_player::{DrawOutput, Player, Readback, State};
 use toyproof_translate::backend::{Target, emit, spirv};
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
@@ -16,13 +16,12 @@ use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
 use super::play::{self, DevicePlayer, PassRenderer};
 use super::protocol::{
-    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply, Setup, ShaderArtifact,
-    receive, send,
+    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Reply, Setup, ShaderArtifact, receive, send,
 };
 use super::quirks::loop_probe::{self, Probe};
 use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
 use super::sandbox::{self, Sandbox};
-use super::{AdapterSelector, Failure, Phase, draw};
+use super::{AdapterSelector, Failure, Phase, naga_failed, refused};
 
 /// Maximum size of a worker's address space in bytes.
 pub const MAX_MEMORY_BYTES: u64 = 6 << 30;
@@ -149,10 +148,10 @@ impl<W: Write> Server<W> {
     fn translate(&mut self, lowered: Lowered, target: Target, float: FloatMode) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
+            let module = ValidModule::parse(&lowered).map_err(refused)?;
             match target {
                 Target::Spirv => Ok(Program::new(&module, float)?.bytes()),
-                _ => emit(&module, target).map_err(Failure::naga),
+                _ => emit(&module, target).map_err(naga_failed),
             }
         })
         .map(Output::Translated)
@@ -168,7 +167,7 @@ impl<W: Write> Server<W> {
             selector,
         } = draw_job;
         let (program, loops) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
+            let module = ValidModule::parse(&lowered).map_err(refused)?;
             Ok((Program::new(&module, float)?, loop_probe::has_loops(&module)))
         })?;
         let translate = start.elapsed();
@@ -181,7 +180,7 @@ impl<W: Write> Server<W> {
         let start = Instant::now();
         self.render_and_send(&prepared)?;
         let device = self.device()?;
-        Ok(Output::Drawn(Box::new(draw::DrawOutput {
+        Ok(Output::Drawn(Box::new(DrawOutput {
             bands: Vec::new(),
             device: device.name(),
             may_truncate_loops: loops && device.has(&LOOP_CAP),
@@ -258,7 +257,7 @@ impl<W: Write> Server<W> {
             selector,
         } = play_job;
         let programs = on_translator_thread(move || match passes {
-            PlayedPasses::Lowered(passes, float) => play::programs(&passes, float),
+            PlayedPasses::Lowered(passes) => play::programs(&passes),
             PlayedPasses::Converted(artifacts) => artifacts.into_iter().map(artifact_program).collect(),
         })?;
         self.open(&selector)?;
@@ -312,7 +311,7 @@ impl<W: Write> Server<W> {
             selector,
         } = draw_job;
         let (module, iterations) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
+            let module = ValidModule::parse(&lowered).map_err(refused)?;
             let iterations = probe_program(&module, Probe::Iterations, float)?;
             Ok((module, iterations))
         })?;
@@ -374,20 +373,20 @@ fn artifact_program(artifact: ShaderArtifact) -> Result<Program, Failure> {
     let (words, channels) = match artifact {
         ShaderArtifact::Wgsl(hosted) => {
             let module = ValidModule::of_wgsl(&hosted.text).map_err(|error| Failure::Reread(error.0))?;
-            words_and_channels(&loop_steps::with_steps_last(&module).map_err(Failure::naga)?)?
+            words_and_channels(&loop_steps::with_steps_last(&module).map_err(naga_failed)?)?
         }
         ShaderArtifact::Lowered(lowered) => {
-            words_and_channels(&ValidModule::parse(&lowered).map_err(Failure::refused)?)?
+            words_and_channels(&ValidModule::parse(&lowered).map_err(refused)?)?
         }
         ShaderArtifact::Words(words, channels) => (words, channels),
     };
-    let words = spirv::expanded(&words).map_err(Failure::naga)?;
+    let words = spirv::expanded(&words).map_err(naga_failed)?;
     Ok(Program::from_words(words, channels, FloatMode::Strict))
 }
 
 /// The SPIR-V words of a module and the shapes of its textures.
 fn words_and_channels(module: &ValidModule) -> Result<(Vec<u32>, [Shape; 4]), Failure> {
-    let words = spirv::words(module).map_err(Failure::naga)?;
+    let words = spirv::words(module).map_err(naga_failed)?;
     Ok((words, module.channels()))
 }
 
@@ -400,7 +399,7 @@ fn send_reply(output: impl Write, reply: &Reply) -> Result<(), Failure> {
 }
 
 fn probe_program(module: &ValidModule, probe: Probe, float: FloatMode) -> Result<Program, Failure> {
-    Program::new(&loop_probe::probed(module, probe).map_err(Failure::naga)?, float)
+    Program::new(&loop_probe::probed(module, probe).map_err(naga_failed)?, float)
 }
 
 /// Runs naga on a thread with a large stack. Panics become failures.

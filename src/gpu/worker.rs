@@ -10,15 +10,14 @@ use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::path_name;
 use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{Graph, State};
+use toyproof_player::{ChannelSampling, DrawOutput, Graph, Readback, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::protocol::{
-    ChannelSampling, DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Readback, Reply, Setup,
-    ShaderArtifact, receive, send,
+    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Reply, Setup, ShaderArtifact, receive, send,
 };
-use super::{AdapterSelector, DrawOutput, Driver, Failure, Phase, Sandbox, device, quirks, sandbox};
+use super::{AdapterSelector, Driver, Failure, MAX_MEMORY_BYTES, Phase, Sandbox, device, quirks, sandbox};
 
 /// A worker process, started on first use and restarted after each failure.
 #[derive(Debug)]
@@ -356,8 +355,8 @@ impl Worker {
         media: Vec<Texture>,
         state: Option<State>,
     ) -> Result<String, Failure> {
-        if let PlayedPasses::Lowered(passes, _) = &passes
-            && let Some(diagnostic) = passes.iter().find_map(Lowered::too_deep)
+        if let PlayedPasses::Lowered(passes) = &passes
+            && let Some(diagnostic) = passes.iter().find_map(|(lowered, _)| lowered.too_deep())
         {
             return Err(Failure::Invalid(vec![diagnostic.clone()]));
         }
@@ -652,7 +651,10 @@ fn classify(phase: Phase, status: Option<ExitStatus>, stderr: &str) -> Failure {
         return Failure::StackOverflow { phase };
     }
     if stderr.contains("memory allocation of") || stderr.contains("out of memory") {
-        return Failure::OutOfMemory { phase };
+        return Failure::OutOfMemory {
+            phase,
+            limit_bytes: MAX_MEMORY_BYTES,
+        };
     }
     Failure::Crash {
         phase,

@@ -41,12 +41,16 @@
 //! ```
 
 mod clock;
+mod driver;
+mod failure;
 mod play;
 mod state;
 
 use std::fmt;
 
 pub use clock::Clock;
+pub use driver::{ChannelSampling, DrawOutput, Driver, Readback};
+pub use failure::{DriverFailure, Phase};
 pub use play::{Channel, Player, Renderer};
 use serde::{Deserialize, Serialize};
 pub use state::State;

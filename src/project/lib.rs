@@ -23,6 +23,7 @@
 //! ```
 
 mod check;
+mod compiled;
 mod folder;
 mod graph;
 mod json;
@@ -40,6 +41,7 @@ pub use toyproof_glsl::{Filter, Wrap};
 use toyproof_image::Image;
 
 pub use self::check::{CheckedPass, CheckedProject, check};
+pub use self::compiled::CompiledProject;
 use self::folder::Format;
 pub use self::folder::PROJECT_FILE;
 pub use self::graph::{NotRendered, Rendering, Replaced};

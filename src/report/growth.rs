@@ -1,7 +1,7 @@
 //! The growth of rounding errors over the frames of a project, for programs.
 
 use serde::{Deserialize, Serialize};
-use toyproof_verify::growth::{Growth, GrowthCause};
+use toyproof_verify::project::growth::{Growth, GrowthCause};
 
 /// The largest number of frames that are listed, besides the last.
 const MAX_LISTED: usize = 100;
@@ -77,7 +77,7 @@ impl GrowthRecord {
 #[cfg(test)]
 pub(super) mod samples {
     use toyproof_verify::Share;
-    use toyproof_verify::growth::{FrameError, VisibleGrowth};
+    use toyproof_verify::project::growth::{FrameError, VisibleGrowth};
 
     use super::*;
 

@@ -2,13 +2,13 @@
 
 use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printable};
 use toyproof_eval as eval;
+use toyproof_explain::Findings;
 use toyproof_gpu as gpu;
 use toyproof_scene::Sampler;
-use toyproof_verify::alternative::Difference;
+use toyproof_verify::Difference;
 use toyproof_verify::compare::Region;
 use toyproof_verify::{
-    Failure, Findings, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Means, Reason, ReferenceKind, Share,
-    Verdict,
+    Failure, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Means, Reason, ReferenceKind, Share, Verdict,
 };
 
 use super::Mistake;
@@ -62,9 +62,11 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
         .as_ref()
         .is_some_and(|search| !search.repairs.is_empty());
     let is_explained = findings.mistake.is_some() || is_repaired;
-    if let (Verdict::Wrong, false, Some(color)) =
-        (findings.verdict, is_explained, findings.actual.only_color())
-    {
+    if let (Verdict::Wrong, false, Some(color)) = (
+        findings.verdict,
+        is_explained,
+        findings.results.actual.only_color(),
+    ) {
         statement.details.push(match color {
             [0, 0, 0] => "every pixel is black".to_owned(),
             [r, g, b] => format!("every pixel has the same color, ({r}, {g}, {b}) of 255"),
@@ -72,13 +74,13 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
     }
     if let (Reason::AlgorithmDiffers { differing, .. }, false) = (&findings.reason, is_explained)
         && differing.count == differing.of
-        && findings.actual.only_color().is_none()
+        && findings.results.actual.only_color().is_none()
     {
         statement
             .details
             .push("no pixel agrees: is this the right reference?".to_owned());
     }
-    if findings.reference_kind == Some(ReferenceKind::Image) {
+    if findings.results.reference_kind == Some(ReferenceKind::Image) {
         statement.details.push(
             "only the image was compared: it does not show where rounding decides the reference's colors"
                 .to_owned(),
@@ -98,7 +100,7 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
 
 /// The visible difference of float32 from double precision, if it is large enough for a warning.
 fn imprecise(findings: &Findings) -> Option<Share> {
-    let share = Share::differing(&findings.precision.as_ref()?.summary);
+    let share = Share::differing(&findings.results.precision.as_ref()?.summary);
     (share.ratio() > MAX_UNSTABLE).then_some(share)
 }
 

@@ -7,10 +7,11 @@ use serde::ser::{Error, SerializeSeq};
 use serde::{Deserialize, Serialize, Serializer};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
+use toyproof_explain::Findings;
+use toyproof_explain::known::{Diagnosis, KnownMistake};
+use toyproof_explain::repair::SearchResult;
 use toyproof_verify::compare::{CheckSummary, Comparison};
-use toyproof_verify::mistake::{Diagnosis, KnownMistake};
-use toyproof_verify::repair::SearchResult;
-use toyproof_verify::{CheckResult, Evidence, Failure, Findings, Reason, Verdict, decide};
+use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
 use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRecord, Submitted, Suspect};
@@ -204,17 +205,18 @@ impl Record {
         }
         self.is_cut_by_time = findings.is_cut_by_time;
         self.cause = findings.cause.map(|cause| files.position(cause).into());
-        self.algorithm = answer(&findings.algorithm);
-        self.precision = answer(&findings.precision);
-        self.toolchain = answer(&findings.toolchain);
+        self.algorithm = answer(&findings.results.algorithm);
+        self.precision = answer(&findings.results.precision);
+        self.toolchain = answer(&findings.results.toolchain);
         self.comparison = findings
+            .results
             .comparison
             .as_ref()
             .map(|(comparison, _)| comparison.clone());
         let seconds = &mut self.seconds;
-        seconds.eval = Some(findings.eval.as_secs_f64());
-        seconds.trace = findings.trace.map(|trace| trace.as_secs_f64());
-        if let Some(gpu_run) = &findings.gpu_run {
+        seconds.eval = Some(findings.results.eval.as_secs_f64());
+        seconds.trace = findings.results.trace.map(|trace| trace.as_secs_f64());
+        if let Some(gpu_run) = &findings.results.gpu_run {
             seconds.translate = Some(gpu_run.translate.as_secs_f64());
             seconds.gpu = Some((gpu_run.compile + gpu_run.draw).as_secs_f64());
         }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Edit, Files, Span, grouped};
-use toyproof_verify::repair;
+use toyproof_explain::repair;
 
 use super::reason::excerpt;
 
@@ -226,10 +226,10 @@ pub(super) fn suspect_lines(suspects: &[Suspect]) -> Option<(&'static str, Strin
 #[cfg(test)]
 pub(super) mod samples {
     use toyproof_diagnostic::{File, Files, Fix, Span};
+    use toyproof_explain::known::KnownMistake;
+    use toyproof_explain::repair::{Repair, SearchResult, Suspect};
     use toyproof_image::Rgb8Image;
     use toyproof_verify::Verdict;
-    use toyproof_verify::mistake::KnownMistake;
-    use toyproof_verify::repair::{Repair, SearchResult, Suspect};
 
     use crate::report::Record;
     use crate::report::record::samples::{question, record};

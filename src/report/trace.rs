@@ -5,9 +5,9 @@ use std::fmt::Write;
 use serde::{Serialize, Serializer};
 use toyproof_diagnostic::{Files, Span, grouped};
 use toyproof_eval::{Event, EventKind, TraceSchema, TraceValue};
+use toyproof_explain::trail::Trail;
 use toyproof_glsl::tree::{Scalar, Tree, Type};
 use toyproof_verify::debug::{Explanation, Step, digits};
-use toyproof_verify::trail::Trail;
 
 /// The trace of a pixel in f32 and in f64, in terms of the source text.
 #[derive(Debug, Serialize)]

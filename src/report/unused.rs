@@ -1,8 +1,8 @@
 //! What the reference of a wrong shader uses, and the shader does not.
 
 use toyproof_diagnostic::Files;
+use toyproof_explain::unused::Unused;
 use toyproof_verify::Verdict;
-use toyproof_verify::unused::Unused;
 
 use super::Record;
 

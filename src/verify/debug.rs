@@ -52,7 +52,7 @@ pub fn explain<'a>(
 }
 
 /// Like [`explain`], but also fails if the pixel runs more loop iterations.
-pub(crate) fn explain_within<'a>(
+pub fn explain_within<'a>(
     program: &'a Program,
     frame: &'a Frame,
     pixel: [u32; 2],

@@ -8,12 +8,17 @@ use toyproof_eval as eval;
 use toyproof_glsl::Code;
 use toyproof_scene::Sampler;
 
-use crate::Failure;
-use crate::alternative::Difference;
-use crate::compare::{
-    CheckSummary, MeanTest, RARE_EVENT_VARIANCE_RATIO, REPLICATES, Region, Regions, ReplicateTest, SEEN,
+use crate::compare::{Region, Regions, Share};
+use crate::difference::Difference;
+use crate::evidence::{Checks, Evidence, MeanComparison, OtherRandomNumbers, SelfIntersection};
+use crate::failure::Failure;
+use crate::limits::{
+    MAX_BIAS_BOUND, MAX_UNDEFINED, MAX_UNSTABLE, MAX_VARIANCE_RATIO, MIN_RANDOM_PIXELS, is_different,
+    is_toolchain_fault,
 };
-use crate::growth::{GrowthCause, VisibleGrowth};
+use crate::project::growth::{GrowthCause, VisibleGrowth};
+use crate::random::mean_test::MeanTest;
+use crate::random::replicate_test::{RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest};
 
 /// The verdict on a shader, in the order of precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -69,164 +74,6 @@ impl fmt::Display for Verdict {
             Self::Correct => "correct",
             Self::Ok => "ok",
         })
-    }
-}
-
-/// The largest share of differing pixels in f64 of a shader that is not wrong. Only legal ray epsilons cause
-/// such differences: a ray that grazes an edge between two of the tested epsilons may have the color of
-/// neither. Such rays form lines, so that a compact region of differing pixels is a mistake however small.
-pub const MAX_DIFFERING: f64 = 0.001;
-
-/// Whether the differing pixels of the algorithm check are a mistake: they are many, or form a compact
-/// region.
-#[must_use]
-pub fn is_different(algorithm: &CheckSummary) -> bool {
-    algorithm.share(algorithm.differing) > MAX_DIFFERING || algorithm.regions.largest_compact.is_some()
-}
-
-/// The largest share of pixels that visibly change with the number type, or are ill-conditioned in f64, of a
-/// shader that is not unstable. Silhouettes of a well-written shader in float32 cause less than a tenth of
-/// it.
-pub const MAX_UNSTABLE: f64 = 0.003;
-
-/// The largest share of undefined pixels, and of pixels that are ill-conditioned in the reference, for which
-/// there is a verdict: a check that excludes everything proves nothing.
-pub const MAX_UNDEFINED: f64 = 0.05;
-
-/// The ratio of variances above which the noise of a stochastic shader is reported.
-pub(crate) const MAX_VARIANCE_RATIO: f64 = 1.2;
-
-/// The largest undetected difference of means, two and a half 8-bit levels; above it the verdict is
-/// inconclusive.
-pub(crate) const MAX_BIAS_BOUND: f64 = 0.01;
-
-/// The smallest number of random pixels whose means are compared: with fewer, a mistake in some of them is
-/// not detected.
-const MIN_RANDOM_PIXELS: u64 = 1000;
-
-/// Everything that a verdict depends on.
-#[derive(Debug, Clone)]
-pub enum Evidence {
-    /// There is no image of the shader.
-    NoImage(Failure),
-    /// The GPU rendered the shader, but the evaluator failed, so that no check was run.
-    NotEvaluated {
-        /// Why the evaluator failed.
-        failure: eval::Failure,
-        /// Whether there is a reference to compare with.
-        has_reference: bool,
-    },
-    /// The shader was checked.
-    Checked(Box<CheckEvidence>),
-}
-
-impl From<CheckEvidence> for Evidence {
-    fn from(evidence: CheckEvidence) -> Self {
-        Self::Checked(Box::new(evidence))
-    }
-}
-
-/// The results of the three checks; none for a check that was not run.
-#[derive(Debug, Clone, Default)]
-pub struct Checks {
-    /// The shader in f64 against the reference in f64.
-    pub algorithm: Option<CheckSummary>,
-    /// The image in f32 against the shader in f64.
-    pub precision: Option<CheckSummary>,
-    /// The GPU in f32 against the CPU in f32, in bits.
-    pub toolchain: Option<CheckSummary>,
-}
-
-/// The results of the checks, and of the tests that a difference calls for.
-#[derive(Debug, Clone, Default)]
-pub struct CheckEvidence {
-    /// The three checks.
-    pub checks: Checks,
-    /// The visible difference that earlier frames cause between float32 and double precision.
-    pub growth: Option<VisibleGrowth>,
-    /// The comparison of means, where the shader differs from its scene only by its random numbers.
-    pub random_numbers: Option<OtherRandomNumbers>,
-    /// The pixels in which rounding decides whether a ray hits the surface that it starts from, where there
-    /// are enough of them to explain the difference.
-    pub self_intersection: Option<SelfIntersection>,
-    /// Whether the reference is a shader, whose formulas may lose precision too.
-    pub is_reference_shader: bool,
-}
-
-/// Pixels in which rounding decides whether a ray hits the surface that it starts from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SelfIntersection {
-    /// The pixels.
-    pub pixels: Share,
-    /// Whether it decides in double precision too.
-    pub in_double: bool,
-}
-
-/// A shader that differs from a stochastic reference only in pixels that depend on random numbers.
-#[derive(Debug, Clone)]
-pub struct OtherRandomNumbers {
-    /// The scene's sampler; none for other references.
-    pub sampler: Option<Sampler>,
-    /// The number of samples per pixel of the reference, if it is known.
-    pub samples: Option<u32>,
-    /// The comparison of the means.
-    pub means: MeanComparison,
-    /// The checks without the pixels that depend on random numbers.
-    pub other_pixels: Checks,
-}
-
-/// How the means of a shader and of its reference were compared.
-#[derive(Debug, Clone)]
-pub enum MeanComparison {
-    /// By replicates: evaluations of the shader with other random numbers.
-    Replicates {
-        /// The result.
-        test: ReplicateTest,
-        /// The number of pixels that were compared.
-        pixels: u64,
-        /// The shader's number of samples, if a smaller one than the scene's explains its noise.
-        fewer_samples: Option<u32>,
-    },
-    /// By the one image of the shader, where its random numbers could not be changed.
-    OneImage {
-        /// The result.
-        test: MeanTest,
-        /// The number of pixels that were compared.
-        pixels: u64,
-    },
-    /// Not at all: the reference, or the shader, cannot be rendered with other random numbers.
-    UnknownNoise,
-}
-
-/// A number of pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Share {
-    /// These pixels.
-    pub count: u64,
-    /// All pixels of the image.
-    pub of: u64,
-}
-
-impl Share {
-    /// Returns `count` pixels of those of a check.
-    #[must_use]
-    pub fn of(check: &CheckSummary, count: u64) -> Self {
-        Self {
-            count,
-            of: check.pixels,
-        }
-    }
-
-    /// Returns the pixels that differ in a check.
-    #[must_use]
-    pub fn differing(check: &CheckSummary) -> Self {
-        Self::of(check, check.differing)
-    }
-
-    /// The share, from 0 to 1.
-    #[must_use]
-    pub fn ratio(self) -> f64 {
-        self.count as f64 / self.of.max(1) as f64
     }
 }
 
@@ -387,16 +234,6 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
             }
         }
     }
-}
-
-/// Whether the driver's image visibly differs from the evaluator's, so that naga, the driver or toyproof is at
-/// fault. Not every pixel that depends on undefined behavior is detected: where most pixels do, a few others prove
-/// nothing.
-#[must_use]
-pub(crate) fn is_toolchain_fault(toolchain: &CheckSummary) -> bool {
-    toolchain.max_abs > SEEN
-        && toolchain.share(toolchain.differing) > MAX_DIFFERING
-        && toolchain.differing > toolchain.undefined
 }
 
 /// The verdict on a shader without an image.
@@ -582,8 +419,11 @@ fn by_replicates(
 
 #[cfg(test)]
 mod tests {
+    use toyproof_player::DriverFailure;
+
     use super::*;
-    use crate::compare::PixelStatus;
+    use crate::compare::{CheckSummary, PixelStatus};
+    use crate::evidence::CheckEvidence;
 
     /// The result of a check of 10,000 pixels.
     fn summary([differing, ill_conditioned, undefined]: [u64; 3], max_abs: f64) -> CheckSummary {
@@ -820,9 +660,8 @@ mod tests {
             of(Failure::Unrendered("buffers".to_owned())),
             Verdict::Inconclusive
         );
-        #[cfg(feature = "gpu")]
         assert_eq!(
-            of(Failure::Gpu(toyproof_gpu::Failure::Device(String::new()))),
+            of(Failure::Gpu(DriverFailure::Device(String::new()))),
             Verdict::Error
         );
         assert_eq!(of(Failure::Cpu(eval::Failure::TimeUp)), Verdict::Timeout);

@@ -1,21 +1,16 @@
-//! Diagnostics about a run: what the evaluator observed, colors that are not finite, and the line in which a
-//! shader loses precision.
-
-use std::collections::BTreeMap;
-use std::time::Instant;
+//! Diagnostics about a run: what the evaluator observed, what is not bound, and what the driver rendered.
 
 use toyproof_diagnostic::{Diagnostic, Severity, Span, grouped, plural};
-use toyproof_eval::{self as eval, EventKind, Fault, MESA_CAP, Observations, Observed, Program, TraceValue};
+use toyproof_eval::{self as eval, Fault, MESA_CAP, Observations, Observed};
 use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
 use toyproof_glsl::{Checked, Code};
-use toyproof_image::{Frame, Image};
+use toyproof_image::Frame;
 use toyproof_lint::Lints;
+use toyproof_player::{DriverFailure, Phase};
 
-use super::{Case, CheckResult, Failure};
-use crate::bounds::MAX_TRACED_ITERATIONS;
-use crate::compare::{CheckSummary, PixelStatus};
-use crate::debug::{Explanation, digits, explain_within};
-use crate::decide::is_toolchain_fault;
+use crate::compare::CheckSummary;
+use crate::failure::Failure;
+use crate::limits::is_toolchain_fault;
 
 /// Reports what was observed, except what the lints report already. `excludes_pixels` is true if pixels with
 /// undefined behavior are excluded.
@@ -85,9 +80,8 @@ pub fn unbound_channels(checked: &Checked, frame: &Frame) -> Vec<(usize, Span)> 
 /// Reports why a worker rendered no image, where the evaluator takes its place.
 #[must_use]
 pub fn driver_failure(failure: &Failure) -> Diagnostic {
-    #[cfg(feature = "gpu")]
-    if let Failure::Gpu(toyproof_gpu::Failure::Timeout {
-        phase: toyproof_gpu::Phase::Compiling,
+    if let Failure::Gpu(DriverFailure::Timeout {
+        phase: Phase::Compiling,
         after,
     }) = failure
     {
@@ -188,160 +182,4 @@ fn pixels(observed: &Observed) -> String {
         grouped(count),
         plural(count, "pixel", "pixels")
     )
-}
-
-/// The largest number of differing pixels that are explained to find the cause.
-const MAX_EXPLAINED_PIXELS: usize = 5;
-
-/// Returns the place at which most of the explained pixels diverge between f32 and f64; none if the deadline is
-/// exceeded.
-pub(super) fn cause(
-    program: &Program,
-    case: &Case,
-    deadline: Instant,
-    check: &CheckResult,
-) -> Option<Diagnostic> {
-    let pixels = sample_pixels(check, case.frame.size, MAX_EXPLAINED_PIXELS);
-    lost_digits(program, case.frame, &pixels, deadline)
-}
-
-/// Returns the place at which most of a few of these pixels, spread over them, diverge between f32 and f64;
-/// none if the deadline is exceeded.
-pub(super) fn lost_digits(
-    program: &Program,
-    frame: &Frame,
-    pixels: &[[u32; 2]],
-    deadline: Instant,
-) -> Option<Diagnostic> {
-    let mut causes = BTreeMap::<u32, (u64, Diagnostic)>::new();
-    for pixel in spread(pixels.len(), MAX_EXPLAINED_PIXELS).map(|at| pixels[at]) {
-        let explained = explain_within(program, frame, pixel, MAX_TRACED_ITERATIONS, Some(deadline));
-        let diagnostic = explained
-            .ok()
-            .and_then(|explanation| diagnostic(&explanation, pixel));
-        if let Some((span, diagnostic)) = diagnostic {
-            causes.entry(span.start).or_insert((0, diagnostic)).0 += 1;
-        }
-    }
-    let most = causes.into_values().max_by_key(|&(votes, _)| votes);
-    most.map(|(_, diagnostic)| diagnostic)
-}
-
-/// Pixels with NaN or infinite colors.
-#[derive(Debug, Default)]
-pub(super) struct NotFinite {
-    /// The number of pixels.
-    count: u64,
-    /// The first of these pixels.
-    first: Option<[u32; 2]>,
-}
-
-impl NotFinite {
-    /// Counts the pixels of a band that begins at `row`.
-    pub(super) fn record(&mut self, band: &Image, row: u32) {
-        let is_bad = |pixel: &[f32; 4]| pixel[..3].iter().any(|part| !part.is_finite());
-        let bad = band.pixels().iter().enumerate();
-        let mut bad = bad.filter(|(_, pixel)| is_bad(pixel)).map(|(at, _)| at as u32);
-        if let Some(at) = bad.next() {
-            let width = band.size()[0];
-            self.first.get_or_insert([at % width, row + at / width]);
-            self.count += 1 + bad.count() as u64;
-        }
-    }
-
-    /// Reports the origin of the first such color; none if all are finite, or if it was not found.
-    pub(super) fn diagnostic(
-        &self,
-        program: &Program,
-        frame: &Frame,
-        deadline: Instant,
-    ) -> Option<Diagnostic> {
-        let [x, y] = self.first?;
-        let count = self.count;
-        let explained = explain_within(program, frame, [x, y], MAX_TRACED_ITERATIONS, Some(deadline)).ok()?;
-        let step = explained.not_finite.map(|at| &explained.steps[at])?;
-        let value = step.single.iter().flatten().find_map(|value| match value {
-            TraceValue::Float(value) if !value.is_finite() => Some(digits(*value, true)),
-            _ => None,
-        });
-        let message = format!(
-            "this makes the color of {} {} NaN or infinite, first at ({x}, {y}), where it is {}",
-            grouped(count),
-            plural(count, "pixel", "pixels"),
-            value.unwrap_or_else(|| "not finite".to_owned()),
-        );
-        let span = explained.schema.event(step.event).at.span;
-        Some(
-            Diagnostic::warning(Code::NotFinite.as_str(), message)
-                .at(span)
-                .note(hint([x, y])),
-        )
-    }
-}
-
-/// Returns at most `max_count` of the differing pixels, spread over the image; of the ill-conditioned ones if
-/// none differs, and else of those in which the reference is ill-conditioned.
-pub(super) fn sample_pixels(check: &CheckResult, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
-    let width = size[0] as usize;
-    let of = |status| {
-        let statuses = check.statuses.iter().enumerate();
-        statuses.filter(move |&(_, &own)| own == status).map(|(at, _)| at)
-    };
-    let statuses = [
-        PixelStatus::Differs,
-        PixelStatus::IllConditioned,
-        PixelStatus::Tied,
-    ];
-    let status = statuses.into_iter().find(|&status| of(status).next().is_some());
-    let Some(status) = status else {
-        return Vec::new();
-    };
-    let mut left = of(status).enumerate();
-    spread(of(status).count(), max_count)
-        .filter_map(|chosen| left.find(|&(number, _)| number == chosen))
-        .map(|(_, at)| [(at % width) as u32, (at / width) as u32])
-        .collect()
-}
-
-/// At most `max_count` numbers below `all`, evenly spaced.
-fn spread(all: usize, max_count: usize) -> impl Iterator<Item = usize> {
-    let count = all.min(max_count);
-    (0..count).map(move |at| (2 * at + 1) * all / (2 * count))
-}
-
-fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, Diagnostic)> {
-    let step = &explanation.steps[explanation.cause?];
-    let event = explanation.schema.event(step.event);
-    let at = format!("at ({x}, {y})");
-    let message = match step.worst() {
-        Some((_, single, double)) if event.kind == EventKind::Branch => {
-            let branch = |value| matches!(value, TraceValue::Word(word) if word != 0);
-            format!(
-                "float32 takes another branch here: {at} the condition is {}, but {} in double precision",
-                branch(single),
-                branch(double)
-            )
-        }
-        Some((_, TraceValue::Float(single), TraceValue::Float(double)))
-            if digits(single, true) != digits(double, false) =>
-        {
-            format!(
-                "float32 loses precision here: {at} this is {}, but {} in double precision",
-                digits(single, true),
-                digits(double, false)
-            )
-        }
-        _ => format!("float32 and double precision diverge here, {at}"),
-    };
-    let span = event.at.span;
-    Some((
-        span,
-        Diagnostic::warning(Code::LostDigits.as_str(), message)
-            .at(span)
-            .note(hint([x, y])),
-    ))
-}
-
-fn hint([x, y]: [u32; 2]) -> String {
-    format!("`toyproof debug` with `--pixel {x},{y}` shows how this value is computed")
 }

@@ -6,21 +6,24 @@ use std::sync::mpsc::Sender;
 use std::thread;
 use std::time::Duration;
 
-use toyproof_eval::{self as eval, Observations, Seed};
+use toyproof_diagnostic::Diagnostic;
+use toyproof_eval::{self as eval, Observations, Program, Seed};
 use toyproof_image::{Image, Rgb8Image};
-use toyproof_scene::Scene;
 use toyproof_translate::FloatMode;
 
 use crate::bounds::explanation_deadline;
-use crate::compare::{self, Comparison, DiffLevel, Mixed, Reference, SEEN, Undefined};
+use crate::case::Case;
+use crate::compare::{self, CheckResult, Comparison, DiffLevel, Mixed, Reference, SEEN, Undefined};
 use crate::contain::{Part, contain};
-use crate::cpu::{Band, DoubleBand, Evaluator};
-use crate::decide::{Reason, Verdict};
-use crate::expected::{NumberType, ReferenceBand};
-use crate::notes::{self, NotFinite};
-use crate::silhouette_precision::{self, SilhouetteBand};
-use crate::stochastic::Stochastic;
-use crate::{Case, CheckResult, Expected, Failure, Findings, GpuRun, join, timed};
+use crate::driver::GpuRun;
+use crate::evaluator::{Band, DoubleBand, Evaluator};
+use crate::expected::{Expected, NumberType, ReferenceBand};
+use crate::failure::Failure;
+use crate::loss::NotFinite;
+use crate::notes;
+use crate::pool::{join, timed};
+use crate::random::stochastic::Stochastic;
+use crate::verified::CheckResults;
 
 /// The message after each band.
 #[derive(Debug, Clone, Copy)]
@@ -31,10 +34,10 @@ pub(super) struct IterationCount {
 }
 
 /// The results so far.
-pub(super) struct VerifySession<'a> {
+pub(super) struct VerifySession<'a, 'e> {
     case: &'a Case<'a>,
     /// The evaluator, or why it failed.
-    pub(super) evaluator: Result<Evaluator<'a>, eval::Failure>,
+    pub(super) evaluator: Result<Evaluator<'e>, eval::Failure>,
     counts: Option<Sender<IterationCount>>,
     /// What the evaluator observed in f32.
     pub(super) observed: Observations,
@@ -47,8 +50,6 @@ pub(super) struct VerifySession<'a> {
     actual: Rgb8Image,
     reference: Option<Rgb8Image>,
     not_finite: NotFinite,
-    /// Spheres with a possibly wrong silhouette, and the image in f64, if there are any.
-    silhouettes: Option<(Scene, Vec<SilhouetteBand>, Rgb8Image)>,
     /// Why double precision could not be evaluated, from some band on; the shader is then compared with its
     /// reference in float32.
     double_failure: Option<eval::Failure>,
@@ -61,24 +62,15 @@ pub(super) struct VerifySession<'a> {
 /// Returns the next band that a GPU rendered; none if the GPU failed.
 pub(super) type NextBand<'a> = dyn FnMut() -> Result<Option<Image>, Failure> + 'a;
 
-impl<'a> VerifySession<'a> {
+impl<'a, 'e> VerifySession<'a, 'e> {
     pub(super) fn new(
         case: &'a Case<'a>,
-        evaluator: Result<Evaluator<'a>, eval::Failure>,
+        evaluator: Result<Evaluator<'e>, eval::Failure>,
         counts: Sender<IterationCount>,
     ) -> Self {
         let [width, height] = case.frame.size;
         let empty = || Rgb8Image::empty(width, height);
         let pixels = width as usize * height as usize;
-        let silhouettes = case
-            .expected
-            .and_then(Expected::as_scene)
-            .filter(|_| !case.lints.discriminants.is_empty())
-            .map(|reference| {
-                let scene = reference.at_moment();
-                let candidates = silhouette_precision::candidates(&scene);
-                (scene, candidates, empty())
-            });
         Self {
             case,
             counts: evaluator.is_ok().then_some(counts),
@@ -93,7 +85,6 @@ impl<'a> VerifySession<'a> {
             actual: empty(),
             reference: case.expected.map(|_| empty()),
             not_finite: NotFinite::default(),
-            silhouettes: silhouettes.filter(|(_, candidates, _)| !candidates.is_empty()),
             double_failure: None,
             stochastic: case
                 .expected
@@ -101,6 +92,11 @@ impl<'a> VerifySession<'a> {
             eval: Duration::ZERO,
             trace: Duration::ZERO,
         }
+    }
+
+    /// Whether the evaluator takes the shader.
+    pub(super) fn has_program(&self) -> bool {
+        self.evaluator.is_ok()
     }
 
     /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, the evaluator
@@ -213,14 +209,10 @@ impl<'a> VerifySession<'a> {
                     stochastic.record(&double.image, &reference.image, offset);
                 }
                 self.check_precision(rows, double, judged, &band.undefined);
-                if let Some((_, _, image)) = &mut self.silhouettes {
-                    image.extend(&double.image);
-                }
             }
             Err(failure) => {
                 self.double_failure.get_or_insert_with(|| failure.clone());
                 self.stochastic = None;
-                self.silhouettes = None;
             }
         }
         if let (Some(drawn), FloatMode::Strict) = (drawn, self.case.float) {
@@ -243,7 +235,7 @@ impl<'a> VerifySession<'a> {
             Ok(double) => (&double.image, double.substituted.as_deref(), NumberType::Double),
             Err(_) => (&band.single, None, NumberType::Single),
         };
-        let from_row = FromRow {
+        let band_reference = BandReference {
             expected,
             rows,
             number_type,
@@ -270,7 +262,7 @@ impl<'a> VerifySession<'a> {
                 &reference.image,
                 actual,
                 &undefined,
-                &from_row,
+                &band_reference,
                 &mut self.mixed,
                 perturbed,
             )
@@ -302,90 +294,80 @@ impl<'a> VerifySession<'a> {
         self.precision.extend(precise, actual, &statuses, rows.start);
     }
 
-    /// Returns the findings; `gpu_run` is the GPU that rendered the image.
-    pub(super) fn findings(self, gpu_run: Option<GpuRun>) -> Findings {
-        let mut findings = Findings {
-            verdict: Verdict::Ok,
-            reason: Reason::NoReference,
-            algorithm: None,
-            precision: None,
-            toolchain: None,
-            comparison: self.comparison,
-            reference: self.reference,
-            reference_kind: self.case.expected.map(Expected::kind),
-            actual: self.actual,
-            gpu_run,
-            notes: Vec::new(),
-            cause: None,
-            mistake: None,
-            search: None,
-            tolerated_mistake: None,
-            panics: Vec::new(),
-            faults: Vec::new(),
-            is_cut_by_time: false,
-            eval: self.eval,
-            trace: self.case.expected.map(|_| self.trace),
+    /// Returns the results, why the evaluator failed if it did, and what is recorded to compare means. `drawn` is the
+    /// GPU that rendered the image, or the note about the driver's failure; `program` is the evaluator's.
+    pub(super) fn finish(
+        self,
+        drawn: Option<Result<GpuRun, Diagnostic>>,
+        program: Option<&Program>,
+    ) -> (CheckResults, Option<eval::Failure>, Option<Stochastic<'a>>) {
+        let case = self.case;
+        let (gpu_run, mut driver_note) = match drawn {
+            Some(Ok(gpu_run)) => (Some(gpu_run), None),
+            Some(Err(note)) => (None, Some(note)),
+            None => (None, None),
         };
-        match self.evaluator {
-            Err(failure) => findings.evaluator_failed(failure),
-            Ok(evaluator) => {
-                let complete = |check: CheckResult| check.with_regions(self.case.frame.size[0]);
-                findings.algorithm = self.case.expected.map(|_| complete(self.algorithm));
-                findings.precision = self.double_failure.is_none().then(|| complete(self.precision));
-                findings.toolchain = self.toolchain.map(complete);
-                let (case, program) = (self.case, evaluator.program());
-                findings.notes = notes::notes(&self.observed, self.excludes_pixels, case.lints);
-                let (not_finite, silhouettes, actual) = (self.not_finite, self.silhouettes, &findings.actual);
-                let notes = contain(Part::Notes, || {
-                    let mut notes: Vec<_> = not_finite
-                        .diagnostic(program, case.frame, explanation_deadline(0.0))
-                        .into_iter()
-                        .collect();
-                    if let (Some((scene, silhouettes, double)), Some(&at)) =
-                        (silhouettes, case.lints.discriminants.first())
-                    {
-                        let silhouettes = silhouette_precision::visible(silhouettes, &scene, actual, &double);
-                        notes.extend(silhouette_precision::warning(&silhouettes, at));
-                    }
-                    notes
-                });
-                let notes = findings.contained(notes);
-                findings.notes.extend(notes);
-                findings.faults = self
-                    .observed
-                    .faults
-                    .iter()
-                    .map(|observed| observed.site.fault)
-                    .collect();
-                match self.double_failure {
-                    None => findings.explain(case, program, self.stochastic.as_ref()),
-                    Some(failure) => findings.decide_in_single(&failure),
-                }
-                if let Some(toolchain) = &findings.toolchain
-                    && findings.verdict != Verdict::Error
-                {
-                    findings
-                        .notes
-                        .extend(notes::toolchain_difference(&toolchain.summary));
-                }
-                findings.notes.retain(|note| !case.lints.allows(note));
+        let mut panics = Vec::new();
+        let (mut notes, mut faults) = (Vec::new(), Vec::new());
+        let (mut algorithm, mut precision, mut toolchain) = (None, None, None);
+        if self.evaluator.is_ok() {
+            let complete = |check: CheckResult| check.with_regions(case.frame.size[0]);
+            algorithm = case.expected.map(|_| complete(self.algorithm));
+            precision = self.double_failure.is_none().then(|| complete(self.precision));
+            toolchain = self.toolchain.map(complete);
+            notes = notes::notes(&self.observed, self.excludes_pixels, case.lints);
+            let not_finite = contain(Part::Notes, || {
+                self.not_finite
+                    .diagnostic(program?, case.frame, explanation_deadline(0.0))
+            });
+            match not_finite {
+                Ok(note) => notes.extend(note),
+                Err(panic) => panics.push(panic),
+            }
+            notes.extend(self.double_failure.as_ref().map(notes::only_single));
+            notes.retain(|note| !case.lints.allows(note));
+            let observed = self.observed.faults.iter();
+            faults = observed.map(|observed| observed.site.fault).collect();
+            // Without a reference, the toolchain is what is checked.
+            if let Some(toolchain) = toolchain.as_ref().filter(|_| case.expected.is_some()) {
+                let note = notes::toolchain_difference(&toolchain.summary);
+                driver_note = driver_note.or(note.filter(|note| !case.lints.allows(note)));
             }
         }
-        findings
+        let results = CheckResults {
+            algorithm,
+            precision,
+            toolchain,
+            comparison: self.comparison,
+            reference: self.reference,
+            reference_kind: case.expected.map(Expected::kind),
+            actual: self.actual,
+            gpu_run,
+            notes,
+            driver_note,
+            faults,
+            panics,
+            eval: self.eval,
+            trace: case.expected.map(|_| self.trace),
+        };
+        (results, self.evaluator.err(), self.stochastic)
     }
 }
 
-/// The reference of a band.
-pub(super) struct FromRow<'a> {
-    pub(super) expected: &'a Expected,
-    pub(super) rows: &'a Range<u32>,
+/// The reference of a band, with which the algorithm check compares it.
+#[derive(Debug, Clone, Copy)]
+pub struct BandReference<'a> {
+    /// The reference.
+    pub expected: &'a Expected,
+    /// The rows of the band.
+    pub rows: &'a Range<u32>,
     /// The number type in which the shader was evaluated.
-    pub(super) number_type: NumberType,
+    pub number_type: NumberType,
     /// Whether the shader takes derivatives.
-    pub(super) derives: bool,
+    pub derives: bool,
 }
 
-impl Reference for FromRow<'_> {
+impl Reference for BandReference<'_> {
     fn tolerance(&self) -> f64 {
         match self.number_type {
             NumberType::Double => self.expected.tolerance(),

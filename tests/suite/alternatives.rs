@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use toyproof::verify::alternative::Difference;
+use toyproof::verify::Difference;
 
 use crate::program::{Run, toyproof};
 use crate::support::{COMPLEX_SCENE, Exercise, SHADING, WHITTED};

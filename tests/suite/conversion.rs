@@ -6,6 +6,7 @@ use std::time::Duration;
 use std::{env, fs};
 
 use ::spirv::Op;
+use toyproof::convert::{Proof, Prover, Runner, Source, Unproved, Written, compare_with_original, frames};
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::gpu::{ShaderArtifact, Worker};
@@ -13,9 +14,6 @@ use toyproof::translate::backend::{Target, emit, roundtrip, spirv};
 use toyproof::translate::lower;
 use toyproof::translate::naga_ir::{Shape, ValidModule};
 use toyproof::translate::wgsl::{Style, wgsl};
-use toyproof::verify::conversion::{
-    Proof, Prover, Runner, Source, Unproved, Written, compare_with_original, frames,
-};
 
 use crate::program::{command, run, toyproof};
 use crate::requirements::{require_chromium, require_driver, require_program, require_worker};

@@ -6,15 +6,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use toyproof::convert::{PassSources, PassesProof, Prover, ReadGraph, Runner, Source, Unproved, Written};
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{self, Checked, Filter, Wrap};
 use toyproof::image;
 use toyproof::player::{Graph, Pass, Source as Read, Target};
 use toyproof::project::{PassKind, Project, Rendering, check};
 use toyproof::translate::wgsl::{Style, wgsl};
-use toyproof::verify::conversion::{
-    Passes, PassesProof, Prover, ReadGraph, Runner, Source, Unproved, Written,
-};
 
 use crate::program::{Run, toyproof};
 use crate::requirements::{require_chromium, require_driver, require_worker};
@@ -89,7 +87,7 @@ impl Converted {
             .iter()
             .map(|checked| Source { checked, files })
             .collect();
-        let passes = Passes {
+        let passes = PassSources {
             sources: &sources,
             graph: &self.rendering.graph,
             media: &self.rendering.media,

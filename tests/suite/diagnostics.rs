@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use toyproof::assignment::Assignment;
 use toyproof::diagnostic::{Deadline, Diagnostic, File, FileId, Files, human};
+use toyproof::explain;
 use toyproof::glsl::{self, Checked, Code};
 use toyproof::image::{Frame, noise};
 use toyproof::lint::lint;
@@ -14,10 +15,10 @@ use toyproof::player::Clock;
 use toyproof::project::{self, Buffer, PassKind, Project, Tab};
 use toyproof::report::{Explanation, Rubric, explanations};
 use toyproof::scene::{self, Scene};
-use toyproof::translate::FloatMode;
-use toyproof::verify::growth::{Frames, follow};
-use toyproof::verify::playback::PassShader;
-use toyproof::verify::{Case, Expected, verify};
+use toyproof::verify::project::frames::Frames;
+use toyproof::verify::project::growth::follow;
+use toyproof::verify::project::playback::PassShader;
+use toyproof::verify::{Case, Expected};
 
 use crate::architecture::sources;
 use crate::program::toyproof;
@@ -158,22 +159,13 @@ fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<D
     let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));
     let lints = lint(files, checked, &Deadline::default());
     let case = Case {
-        checked,
-        lints: &lints,
         expected: expected.as_ref(),
-        hypotheses: None,
-        alternatives: None,
-        search: None,
-        frame: &frame,
-        from_start: None,
-        float: FloatMode::Strict,
-        timeout: Duration::from_secs(60),
-        pool: None,
+        ..Case::new(checked, &lints, &frame).with_timeout(Duration::from_secs(60))
     };
     let mut all = lints.warnings.clone();
     // A shader that never ends has no run to report on.
     all.extend(
-        verify(None, &case)
+        explain::check(None, &case, &explain::Options::default())
             .map(|findings| findings.notes)
             .unwrap_or_default(),
     );

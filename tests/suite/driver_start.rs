@@ -8,6 +8,7 @@ use std::{fs, thread};
 use serde_json::Value;
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval;
+use toyproof::explain::{self, Findings};
 use toyproof::glsl::Checked;
 use toyproof::gpu::{AdapterSelector, Failure, Phase, Worker};
 use toyproof::image::Frame;
@@ -15,7 +16,7 @@ use toyproof::lint::Lints;
 use toyproof::scene::{self, Scene};
 use toyproof::translate::backend::Target;
 use toyproof::translate::{FloatMode, lower};
-use toyproof::verify::{self, Case, Expected, Findings, Verdict, verify};
+use toyproof::verify::{self, Case, Expected, Verdict};
 
 use crate::program::{Run, command, run};
 use crate::requirements::{require_driver, require_program, require_worker, skip};
@@ -156,20 +157,12 @@ fn judge_against(
         ..Frame::default()
     };
     let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));
+    let lints = Lints::default();
     let case = Case {
-        checked,
-        lints: &Lints::default(),
         expected: expected.as_ref(),
-        hypotheses: None,
-        alternatives: None,
-        search: None,
-        frame: &frame,
-        from_start: None,
-        float: FloatMode::Strict,
-        timeout,
-        pool: None,
+        ..Case::new(checked, &lints, &frame).with_timeout(timeout)
     };
-    verify(Some(&mut worker(script)), &case)
+    explain::check(Some(&mut worker(script)), &case, &explain::Options::default())
 }
 
 #[test]
@@ -177,7 +170,11 @@ fn the_evaluator_checks_shaders_that_the_driver_cannot_compile_in_time() {
     let minute = Duration::from_secs(60);
     let findings = judge("COMPILING; exec sleep 60", &checked(SPHERE.shader), minute).unwrap();
     assert_eq!(findings.verdict, Verdict::Ok);
-    assert!(findings.toolchain.is_none() && findings.precision.is_some() && findings.gpu_run.is_none());
+    assert!(
+        findings.results.toolchain.is_none()
+            && findings.results.precision.is_some()
+            && findings.results.gpu_run.is_none()
+    );
     let note = findings.notes.iter().find(|note| note.code == "W0606").unwrap();
     assert!(
         note.message.contains("takes longer than 0.3 s to compile"),
@@ -234,7 +231,7 @@ fn a_drivers_fault_takes_no_verdict_away() {
             let findings = judge_against(Some(&scene), script, &checked(shader), HANG_GUARD).unwrap();
             assert_eq!(findings.verdict, verdict, "{script}");
             assert!(
-                findings.toolchain.is_none() && findings.gpu_run.is_none(),
+                findings.results.toolchain.is_none() && findings.results.gpu_run.is_none(),
                 "{script}"
             );
             let note = findings.notes.iter().find(|note| note.code == "W0610").unwrap();

@@ -5,9 +5,10 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use toyproof::eval::{Program, Settings};
+use toyproof::explain::Findings;
 use toyproof::tracer::{ColorRange, EpsilonSet};
+use toyproof::verify::Verdict;
 use toyproof::verify::compare::EXACT_TOLERANCE;
-use toyproof::verify::{Findings, Verdict};
 
 use crate::requirements::{require_driver, require_worker};
 use crate::support::exercises::{EDITED, Edited};

@@ -4,9 +4,9 @@
 use std::fmt::Write as _;
 
 use toyproof::diagnostic::{File, Files};
+use toyproof::explain::known::Diagnosis;
 use toyproof::scene;
 use toyproof::scene::export;
-use toyproof::verify::mistake::Diagnosis;
 use toyproof::verify::{Expected, Verdict};
 
 use crate::support::{Exercise, check_and_name_on_cpu, check_exercise_with, frame, numbers, scene as parsed};

@@ -3,7 +3,7 @@
 //!
 //! The evaluator alone checks them; drivers are tested elsewhere.
 
-use toyproof::verify::mistake::Diagnosis;
+use toyproof::explain::known::Diagnosis;
 use toyproof::verify::{Reason, Verdict};
 
 use crate::support::{

@@ -1,7 +1,7 @@
 //! Known mistakes are named, and correct shaders are not blamed.
 
+use toyproof::explain::known::Hypotheses;
 use toyproof::verify::Verdict;
-use toyproof::verify::mistake::Hypotheses;
 
 use crate::fair_verdicts::glass;
 use crate::support::faults::{self, faults, hypotheses, name, named_faults};

@@ -15,7 +15,7 @@ use toyproof::image::{Frame, Texture};
 use toyproof::player::{Clock, Graph, Target};
 use toyproof::project::{PassKind, Project, Rendering, Tab, check};
 use toyproof::translate::FloatMode;
-use toyproof::verify::playback::{CpuPlayback, DevicePlayback, PassShader};
+use toyproof::verify::project::playback::{CpuPlayback, DevicePlayback, PassShader};
 
 use crate::requirements::require_worker;
 

@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use rayon::ThreadPoolBuilder;
+use toyproof::explain::Findings;
+use toyproof::explain::known::Diagnosis;
+use toyproof::explain::repair::{Donors, Repair, SearchResult};
 use toyproof::glsl::Checked;
-use toyproof::verify::mistake::Diagnosis;
-use toyproof::verify::repair::{Donors, Repair, SearchResult};
-use toyproof::verify::{Findings, Verdict};
+use toyproof::verify::Verdict;
 
 use crate::support::{
     ANIMATION, EVERY_EXERCISE, Exercise, MANY_OBJECTS, QUADRICS, REFLECTIONS, SHADING, SPHERE, WHITTED,

@@ -3,7 +3,8 @@
 
 use std::time::Duration;
 
-use toyproof::verify::{DEFAULT_TOLERANCE, Expected, Findings, ShaderReference, Verdict};
+use toyproof::explain::Findings;
+use toyproof::verify::{DEFAULT_TOLERANCE, Expected, ShaderReference, Verdict};
 
 use crate::support::{Edit, Exercise, SPHERE, check_reference, edit, frame, linted};
 

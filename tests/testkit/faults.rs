@@ -1,7 +1,7 @@
 //! Mistakes that students make in the course's shaders.
 
 use toyproof::eval::Program;
-use toyproof::verify::mistake::Hypotheses;
+use toyproof::explain::known::Hypotheses;
 
 use crate::exercises::EDITED;
 use crate::{

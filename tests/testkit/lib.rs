@@ -28,17 +28,17 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use toyproof::diagnostic::{self, Deadline, Diagnostic, File, Files};
+use toyproof::explain::known::Hypotheses;
+use toyproof::explain::repair::{DEFAULT_BUDGET, Donors, SearchOptions};
+use toyproof::explain::{self, Findings, Options};
 use toyproof::glsl::{self, Checked};
 use toyproof::gpu::Worker;
 use toyproof::image::{Frame, Image};
 use toyproof::lint::{Lints, lint};
 use toyproof::scene::{self, FrameTime, Scene, export};
 use toyproof::tracer::Tracer;
-use toyproof::translate::FloatMode;
 use toyproof::verify::compare::CheckSummary;
-use toyproof::verify::mistake::Hypotheses;
-use toyproof::verify::repair::{DEFAULT_BUDGET, Donors, SearchOptions};
-use toyproof::verify::{Case, Expected, Findings, ShaderReference, verify};
+use toyproof::verify::{Case, Driver, Expected, ShaderReference};
 
 /// A shader of the course and its scene.
 #[derive(Debug, Clone, Copy)]
@@ -133,15 +133,20 @@ const SMALL: [u32; 2] = [48, 27];
 
 /// The summary of the algorithm check: every test here has a scene.
 pub fn algorithm(findings: &Findings) -> &CheckSummary {
-    &findings.algorithm.as_ref().expect("there is a scene").summary
+    &findings
+        .results
+        .algorithm
+        .as_ref()
+        .expect("there is a scene")
+        .summary
 }
 
 /// The numbers behind a verdict, for people.
 pub fn numbers(findings: &Findings) -> String {
     let checks = [
-        ("algorithm", &findings.algorithm),
-        ("precision", &findings.precision),
-        ("toolchain", &findings.toolchain),
+        ("algorithm", &findings.results.algorithm),
+        ("precision", &findings.results.precision),
+        ("toolchain", &findings.results.toolchain),
     ];
     let checks = checks.into_iter().filter_map(|(name, check)| {
         let summary = &check.as_ref()?.summary;
@@ -280,13 +285,15 @@ pub fn check_and_repair_within(
     let expected = Expected::of_scene(scene(exercise), &frame);
     let hypotheses = Hypotheses::of(&scene(exercise), &frame).expect("the scene is cheap");
     let (checked, lints) = linted(shader);
-    let case = Case {
-        timeout,
+    let options = Options {
         hypotheses: Some(&hypotheses),
         search: Some(search_options(shader, budget)),
-        ..case(&checked, &lints, &expected, &frame)
+        ..Options::default()
     };
-    verify(None, &case).ok()
+    let case = Case::new(&checked, &lints, &frame)
+        .with_expected(&expected)
+        .with_timeout(timeout);
+    explain::check(None, &case, &options).ok()
 }
 
 /// Checks a shader against a reference like [`check_reference`], and searches for repairs.
@@ -360,29 +367,16 @@ fn check_expected(
 ) -> Findings {
     let frame = frame(exercise, exercise.size);
     let (checked, lints) = linted(shader);
-    let case = Case {
+    let options = Options {
         hypotheses,
         search,
-        ..case(&checked, &lints, expected, &frame)
+        ..Options::default()
     };
-    verify(worker, &case).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
-}
-
-/// A case without searches.
-fn case<'a>(checked: &'a Checked, lints: &'a Lints, expected: &'a Expected, frame: &'a Frame) -> Case<'a> {
-    Case {
-        checked,
-        lints,
-        expected: Some(expected),
-        hypotheses: None,
-        alternatives: None,
-        search: None,
-        frame,
-        from_start: None,
-        float: FloatMode::Strict,
-        timeout: Duration::from_secs(60),
-        pool: None,
-    }
+    let case = Case::new(&checked, &lints, &frame)
+        .with_expected(expected)
+        .with_timeout(Duration::from_secs(60));
+    let worker = worker.map(|worker| worker as &mut Driver);
+    explain::check(worker, &case, &options).unwrap_or_else(|failure| panic!("{failure}\n{shader}"))
 }
 
 fn format_errors(errors: &[Diagnostic], files: &Files) -> String {

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use toyproof::convert::{Runner, compare_with_original, frames};
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Checked, Options, check};
@@ -11,7 +12,6 @@ use toyproof::gpu::{AdapterSelector, ShaderArtifact, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::wgsl::Style;
 use toyproof::translate::{FloatMode, lower_strict};
-use toyproof::verify::conversion::{Runner, compare_with_original, frames};
 use toyproof_testkit::differences;
 
 /// The time limit of an image.

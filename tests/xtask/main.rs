@@ -97,7 +97,7 @@ enum Task {
         #[arg(long, default_value = "")]
         only: String,
         /// The work of a search
-        #[arg(long, default_value_t = toyproof::verify::repair::DEFAULT_BUDGET)]
+        #[arg(long, default_value_t = toyproof::explain::repair::DEFAULT_BUDGET)]
         search: f64,
         /// Search for known mistakes as well
         #[arg(long)]

@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use toyproof::diagnostic::{File, Files};
+use toyproof::explain::known::Hypotheses;
+use toyproof::explain::repair::{Donors, Repair, SearchOptions, SearchResult};
+use toyproof::explain::{self, Options};
 use toyproof::glsl::Checked;
 use toyproof::image::Frame;
 use toyproof::lint::Lints;
 use toyproof::scene;
-use toyproof::translate::FloatMode;
-use toyproof::verify::mistake::Hypotheses;
-use toyproof::verify::repair::{Donors, Repair, SearchOptions, SearchResult};
-use toyproof::verify::{Case, Expected, Verdict, verify};
+use toyproof::verify::{Case, Expected, Verdict};
 use toyproof_testkit::faults::faults;
 use toyproof_testkit::{checked, edited};
 
@@ -156,27 +156,23 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
     let checked = checked(&sample.shader);
     let expected = Expected::of_scene(scene.clone(), &frame);
     let hypotheses = names.then(|| Hypotheses::of(&scene, &frame)).flatten();
-    let options = SearchOptions {
+    let search = SearchOptions {
         source: &sample.shader,
         lenient: false,
         budget,
         donors: None,
     };
-    let case = Case {
-        checked: &checked,
-        lints: &Lints::default(),
-        expected: Some(&expected),
+    let options = Options {
         hypotheses: hypotheses.as_ref(),
-        alternatives: None,
-        search: Some(options),
-        frame: &frame,
-        from_start: None,
-        float: FloatMode::Strict,
-        timeout: Duration::from_secs(20),
-        pool: None,
+        search: Some(search),
+        ..Options::default()
     };
+    let lints = Lints::default();
+    let case = Case::new(&checked, &lints, &frame)
+        .with_expected(&expected)
+        .with_timeout(Duration::from_secs(20));
     let start = Instant::now();
-    let findings = match verify(None, &case) {
+    let findings = match explain::check(None, &case, &options) {
         Ok(findings) => findings,
         Err(failure) => {
             println!("{}: {failure}", sample.name);
@@ -184,15 +180,15 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
             return;
         }
     };
-    let mut search = findings.search.unwrap_or_default();
-    if search.repairs.is_empty() && findings.verdict == Verdict::Wrong && donors.is_some() {
-        let again = Case {
-            search: Some(SearchOptions { donors, ..options }),
-            hypotheses: None,
-            ..case
+    let mut found = findings.search.unwrap_or_default();
+    if found.repairs.is_empty() && findings.verdict == Verdict::Wrong && donors.is_some() {
+        let options = Options {
+            search: Some(SearchOptions { donors, ..search }),
+            ..Options::default()
         };
-        let again = verify(None, &again).ok().and_then(|findings| findings.search);
-        search.repairs = again.unwrap_or_default().repairs;
+        let again = explain::check(None, &case, &options);
+        let again = again.ok().and_then(|findings| findings.search);
+        found.repairs = again.unwrap_or_default().repairs;
     }
     let time = start.elapsed();
     for panic in &findings.panics {
@@ -203,7 +199,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
         rates.others += 1;
         return;
     }
-    rates.add(sample, &search, findings.mistake.is_some(), time);
+    rates.add(sample, &found, findings.mistake.is_some(), time);
 }
 
 impl Rates {

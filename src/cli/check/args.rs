@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use toyproof_verify::alternative::Difference;
-use toyproof_verify::repair::DEFAULT_BUDGET;
+use toyproof_explain::repair::DEFAULT_BUDGET;
+use toyproof_verify::Difference;
 
 use super::shard::Shard;
 use crate::cli::inputs::{DriverArgs, FrameArgs, LanguageArgs};

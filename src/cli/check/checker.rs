@@ -6,16 +6,19 @@ use std::time::Instant;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::{Deadline, Files, Severity, Span, plural};
+use toyproof_explain::repair::{Donors, SearchOptions};
+use toyproof_explain::unused::Unused;
+use toyproof_explain::whole_image::{Alternatives, OtherScenes};
+use toyproof_explain::{self as explain, Findings, Options};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame};
+use toyproof_project::{CompiledProject, PassKind};
 use toyproof_scene::Scene;
-use toyproof_verify::alternative::{Alternatives, OtherScenes};
 use toyproof_verify::contain::{Part, contain};
-use toyproof_verify::repair::{Donors, SearchOptions};
-use toyproof_verify::unused::Unused;
-use toyproof_verify::{Case, Failure, Findings, FromStart, Verdict, unbound, unbound_channels, verify};
+use toyproof_verify::project::bind::{BoundFrame, Renderers, accumulate, bind, default_frame};
+use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unbound_channels};
 
 use super::Args;
 use super::images::{FIXED, IMAGES, keep};
@@ -25,9 +28,8 @@ use super::reference::{CachedReference, Reference, References, SceneCache, other
 use super::submission::Submission;
 use crate::assignment::Subject;
 use crate::cli::inputs::{frame_flags, shell_word};
-use crate::cli::passes::{self, BoundFrame, Renderers};
 use crate::cli::pool;
-use crate::cli::project::Passes;
+use crate::cli::project::{pass_shader, rendering};
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
 use crate::report::{self, CheckedFrame, GrowthRecord, Record};
@@ -290,7 +292,7 @@ impl<'a> Checker<'a> {
                     Some(Reference::Scene(scene)) => scene.scene.as_ref().ok(),
                     _ => None,
                 };
-                let number = passes::default_frame(scene);
+                let number = default_frame(scene);
                 *frame = frame.at(number, number as f32 / FRAME_RATE);
             }
             key = self.plan.frames.len() + frame.frame as usize;
@@ -321,13 +323,6 @@ impl<'a> Checker<'a> {
             checked,
             lints: &shader.lints,
             expected: cached.as_ref().map(|cached| &cached.expected),
-            hypotheses,
-            alternatives: (!has_history).then_some(Alternatives {
-                permitted: &self.plan.permitted,
-                scenes: Some(&self.other_scenes),
-            }),
-            search: (explains && !has_history && self.args.search > 0.0)
-                .then(|| self.search_options(shader, checked)),
             frame,
             from_start: from_start.as_ref().map(|bound| FromStart {
                 double: &bound.double,
@@ -337,11 +332,21 @@ impl<'a> Checker<'a> {
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),
         };
+        let options = Options {
+            hypotheses,
+            alternatives: (!has_history).then_some(Alternatives {
+                permitted: &self.plan.permitted,
+                scenes: Some(&self.other_scenes),
+            }),
+            search: (explains && !has_history && self.args.search > 0.0)
+                .then(|| self.search_options(shader, checked)),
+        };
         if self.fell_back.load(Ordering::Relaxed) {
             context.worker = None;
         }
-        let mut verified = verify(context.worker.as_mut(), &case);
-        if let Err(Failure::Gpu(failure)) = &verified
+        let worker = context.worker.as_mut().map(|worker| worker as &mut Driver);
+        let mut findings = explain::check(worker, &case, &options);
+        if let Err(Failure::Gpu(failure)) = &findings
             && failure.is_without_driver()
             && self.args.driver.may_fall_back()
         {
@@ -351,9 +356,9 @@ impl<'a> Checker<'a> {
                 )));
             }
             context.worker = None;
-            verified = verify(None, &case);
+            findings = explain::check(None, &case, &options);
         }
-        let mut findings = verified?;
+        let mut findings = findings?;
         if let (Some(Reference::Given(prepared)), Some(cached)) = (reference, &cached)
             && let Some(warning) = prepared.march_warning(&cached.expected)
         {
@@ -378,16 +383,18 @@ impl<'a> Checker<'a> {
         context: &mut WorkerContext,
         outcome: &mut Outcome,
         shader: &Shader,
-        passes: &Passes,
+        passes: &CompiledProject,
         (frame, has_reference): (&mut Frame, bool),
     ) -> Result<Option<BoundFrame>, Failure> {
         let renderers = Renderers {
-            worker: context.worker.as_mut(),
+            driver: context.worker.as_mut().map(|worker| worker as &mut Driver),
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),
         };
-        let Some(mut bound) = passes::bind(passes, frame, has_reference, renderers)? else {
+        let rendering = rendering(passes, PassKind::Image)?;
+        let pass_shader = pass_shader(passes, &rendering);
+        let Some(mut bound) = bind(&pass_shader, frame, has_reference, renderers)? else {
             return Ok(None);
         };
         outcome.report(std::mem::take(&mut bound.notes), &shader.files);
@@ -428,19 +435,21 @@ impl<'a> Checker<'a> {
             checked,
             lints: &shader.lints,
             expected: Some(&cached.expected),
-            hypotheses: None,
-            alternatives: None,
-            search: Some(SearchOptions {
-                donors: Some(donors),
-                ..self.search_options(&shader, checked)
-            }),
             frame: &frame,
             from_start: None,
             float: self.args.driver.float(),
             timeout: self.args.driver.timeout(),
             pool: context.pool.as_ref(),
         };
-        let findings = contain(Part::Repair, || verify(None, &case)).ok()?.ok()?;
+        let options = Options {
+            search: Some(SearchOptions {
+                donors: Some(donors),
+                ..self.search_options(&shader, checked)
+            }),
+            ..Options::default()
+        };
+        let findings = contain(Part::Repair, || explain::check(None, &case, &options));
+        let findings = findings.ok()?.ok()?;
         let search = findings
             .search
             .as_ref()
@@ -492,7 +501,7 @@ impl<'a> Checker<'a> {
                 frame.size = self.plan.frames[index].inputs.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
                 if has_history {
-                    passes::accumulate(&mut scene, frame.frame);
+                    accumulate(&mut scene, frame.frame);
                 }
                 Ok(self.scenes.get(scene, key, frame))
             }
@@ -503,7 +512,7 @@ impl<'a> Checker<'a> {
 
 /// Whether the image of a shader depends on other passes, or on earlier frames.
 fn has_history(shader: &Shader) -> bool {
-    shader.passes.as_ref().is_some_and(passes::has_history)
+    shader.passes.as_ref().is_some_and(CompiledProject::has_history)
 }
 
 /// The tree of the image, with whatever it reads.

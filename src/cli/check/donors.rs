@@ -6,8 +6,8 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use toyproof_diagnostic::{grouped, plural};
+use toyproof_explain::repair::Donors;
 use toyproof_verify::Verdict;
-use toyproof_verify::repair::Donors;
 
 use super::args::CheckFormat;
 use super::batch::Batch;

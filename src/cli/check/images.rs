@@ -5,10 +5,11 @@ use std::io;
 use std::path::Path;
 
 use toyproof_diagnostic::path_name;
+use toyproof_explain::Findings;
 use toyproof_image::{self as image, ImageError, Rgb8Image, input, output};
+use toyproof_verify::CheckResult;
 use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
 use toyproof_verify::contain::{Part, contain};
-use toyproof_verify::{CheckResult, Findings};
 
 use super::outcome::Outcome;
 use super::submission::Submission;
@@ -38,31 +39,31 @@ pub(super) const FIXED: ImageKind = ImageKind {
 pub(super) const IMAGES: [ImageKind; 7] = [
     ImageKind {
         suffix: "-actual.png",
-        make: |findings| Some(Cow::Borrowed(&findings.actual)),
+        make: |findings| Some(Cow::Borrowed(&findings.results.actual)),
     },
     ImageKind {
         suffix: "-reference.png",
-        make: |findings| findings.reference.as_ref().map(Cow::Borrowed),
+        make: |findings| findings.results.reference.as_ref().map(Cow::Borrowed),
     },
     ImageKind {
         suffix: "-difference.png",
         make: |findings| {
-            let (_, marks) = findings.comparison.as_ref()?;
+            let (_, marks) = findings.results.comparison.as_ref()?;
             Some(difference(findings, marks, SEEN_BY_EYE))
         },
     },
     FIXED,
     ImageKind {
         suffix: "-algorithm.png",
-        make: |findings| check(findings, findings.algorithm.as_ref(), SEEN_BY_EYE),
+        make: |findings| check(findings, findings.results.algorithm.as_ref(), SEEN_BY_EYE),
     },
     ImageKind {
         suffix: "-precision.png",
-        make: |findings| check(findings, findings.precision.as_ref(), SEEN_BY_EYE),
+        make: |findings| check(findings, findings.results.precision.as_ref(), SEEN_BY_EYE),
     },
     ImageKind {
         suffix: "-toolchain.png",
-        make: |findings| check(findings, findings.toolchain.as_ref(), IN_BITS),
+        make: |findings| check(findings, findings.results.toolchain.as_ref(), IN_BITS),
     },
 ];
 
@@ -73,7 +74,7 @@ fn check<'a>(findings: &Findings, check: Option<&CheckResult>, legend: Legend) -
 
 fn difference<'a>(findings: &Findings, marks: &[DiffLevel], legend: Legend) -> Cow<'a, Rgb8Image> {
     Cow::Owned(toyproof_verify::compare::difference(
-        findings.actual.size(),
+        findings.results.actual.size(),
         marks,
         legend,
     ))

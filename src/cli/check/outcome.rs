@@ -1,7 +1,8 @@
 //! The result of checking a shader: its record, and the messages that wait for its turn.
 
 use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files};
-use toyproof_verify::{Failure, Findings};
+use toyproof_explain::Findings;
+use toyproof_verify::Failure;
 
 use crate::cli::Terminal;
 use crate::report::Record;
@@ -53,7 +54,7 @@ impl Outcome {
 
     pub(super) fn set_findings(&mut self, findings: &Findings, files: &Files) {
         self.record.set_findings(findings, files);
-        if let Some(gpu_run) = &findings.gpu_run {
+        if let Some(gpu_run) = &findings.results.gpu_run {
             self.messages.push(Message::Detail(format!(
                 "{}: translated in {:.4} s, compiled in {:.3} s, rendered in {:.3} s on {}",
                 self.record.shader,

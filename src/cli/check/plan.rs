@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{Frame, FrameInputs};
-use toyproof_verify::alternative::Difference;
+use toyproof_verify::Difference;
 
 use super::work::TaskInputs;
 use super::{Args, reports};

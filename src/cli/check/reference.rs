@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 use toyproof_diagnostic::{File, Files, path_name};
+use toyproof_explain::known::Hypotheses;
+use toyproof_explain::whole_image::OtherScenes;
 use toyproof_image::Frame;
 use toyproof_scene::{self as scene, Scene};
-use toyproof_verify::alternative::OtherScenes;
-use toyproof_verify::mistake::Hypotheses;
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
 use super::Args;

@@ -3,21 +3,22 @@
 use std::path::PathBuf;
 
 use rayon::ThreadPool;
+use toyproof_convert::header::{self, ProofStatus};
+use toyproof_convert::{
+    self as conversion, ConvertError, Converter, FRAMES, FallbackReason, Prover, Runner, Source, Unproved,
+    WgslError,
+};
 use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_glsl as glsl;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
 use toyproof_project::PassKind;
 use toyproof_translate::wgsl::Unprintable;
-use toyproof_verify::conversion::{
-    self, ConvertError, Converter, FRAMES, FallbackReason, PassesProof, Proved, Prover, Runner, Source,
-    Unproved, WgslError,
-};
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable};
 use super::super::{Exit, pool};
-use super::{To, header};
+use super::To;
 use crate::cli::files::{Input, ReadError};
 
 /// The settings of a batch, the same for every shader.
@@ -54,25 +55,6 @@ pub(super) struct OutputFile {
     /// Its name in the folder of a project; none for the one file of a shader.
     pub(super) name: Option<String>,
     pub(super) bytes: Vec<u8>,
-}
-
-/// The status of a conversion's proof.
-pub(super) enum ProofStatus {
-    /// No proof was requested.
-    NotRequested,
-    /// It is proved.
-    Proved(Proved),
-    /// All passes are proved.
-    ProvedPasses(PassesProof),
-    /// It is not proved, for this reason.
-    NotProved(String),
-}
-
-impl ProofStatus {
-    /// Returns whether it is proved, or no proof was requested.
-    pub(super) fn is_proved(&self) -> bool {
-        !matches!(self, Self::NotProved(_))
-    }
 }
 
 /// Why there is no file.

@@ -1,10 +1,7 @@
 //! `toyproof convert`
 
 mod conversion;
-mod graph;
-mod header;
 mod passes;
-mod script;
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
@@ -16,14 +13,16 @@ use std::time::Instant;
 use anstyle::{AnsiColor, Style as TextStyle};
 use clap::ValueEnum;
 use serde::Serialize;
+use toyproof_convert::graph::GRAPH_FILE;
+use toyproof_convert::header::{self, ProofStatus};
+use toyproof_convert::{Converter, Proved};
 use toyproof_diagnostic::{self as diagnostic, grouped, path_name, plural};
 use toyproof_gpu::browser;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
-use toyproof_verify::conversion::{Converter, Proved};
 
-use self::conversion::{Conversion, ProofStatus, Refusal, Settings};
+use self::conversion::{Conversion, Refusal, Settings};
 use super::inputs::{DriverArgs, Format, LanguageArgs, may_write};
 use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
@@ -373,7 +372,7 @@ impl Job {
     /// The file that is written last.
     fn last_file(&self) -> PathBuf {
         if self.has_passes {
-            self.path.join(graph::GRAPH_FILE)
+            self.path.join(GRAPH_FILE)
         } else {
             self.path.clone()
         }

@@ -1,16 +1,15 @@
-//! Converts the passes of a project, and writes how they are played.
+//! Converts the passes of a project, and writes how they are host_graph.
 
+use toyproof_convert::graph::{GRAPH_FILE, HostGraph, target_name};
+use toyproof_convert::header::{self, ProofStatus};
+use toyproof_convert::{PassSources, PassesConversion, Prover, ReadGraph, Source, script};
 use toyproof_gpu::Worker;
-use toyproof_project::PassKind;
+use toyproof_project::{CompiledProject, PassKind};
 use toyproof_translate::wgsl::Style;
-use toyproof_verify::conversion::{Passes as Converted, PassesConversion, Prover, ReadGraph, Source};
 
 use super::super::Exit;
 use super::super::shader::Shader;
-use super::conversion::{Conversion, OutputFile, ProofStatus, Refusal, Settings, refusal};
-use super::graph::{GRAPH_FILE, Played, target_name};
-use super::{header, script};
-use crate::cli::project::Passes;
+use super::conversion::{Conversion, OutputFile, Refusal, Settings, refusal};
 
 impl Settings<'_> {
     /// Converts a project whose image reads other passes.
@@ -19,27 +18,32 @@ impl Settings<'_> {
         translator: &mut Worker,
         prover: Option<&mut Prover>,
         shader: &Shader,
-        passes: &Passes,
+        passes: &CompiledProject,
     ) -> Result<Conversion, Refusal> {
         self.check_passes()?;
         let rendering = passes.rendering(PassKind::Image);
         let rendering =
             rendering.map_err(|error| Refusal::Message(format!("the project {error}"), Exit::Error))?;
         let checked: Vec<_> = passes.checked_of(&rendering).collect();
-        let played = Played::new(&passes.project, &rendering, &checked);
+        let host_graph = HostGraph::new(&passes.project, &rendering, &checked);
         let extension = self.to.extension();
-        let targets = played.graph.passes().iter().map(|pass| target_name(pass.target));
+        let targets = host_graph
+            .graph
+            .passes()
+            .iter()
+            .map(|pass| target_name(pass.target));
         let names: Vec<String> = targets.map(|name| format!("{name}.{extension}")).collect();
         let (last, read) = if self.converter.style == Style::WgpuShadertoy {
-            let text = script::script(&played, &names).map_err(|why| Refusal::Message(why, Exit::Error))?;
+            let text =
+                script::script(&host_graph, &names).map_err(|why| Refusal::Message(why, Exit::Error))?;
             let sampling = checked.iter().map(|checked| checked.sampling).collect();
-            let graph = played.graph.clone();
+            let graph = host_graph.graph.clone();
             ((script::SCRIPT_FILE, text), ReadGraph { graph, sampling })
         } else {
-            let text = played
+            let text = host_graph
                 .file(&shader.name, &self.to.name(), self.to.entry_point(), &names)
                 .to_json();
-            let read = played.read(&text);
+            let read = host_graph.read(&text);
             let read = read.map_err(|why| Refusal::Message(format!("{GRAPH_FILE}: {why}"), Exit::Error))?;
             ((GRAPH_FILE, text), read)
         };
@@ -50,10 +54,10 @@ impl Settings<'_> {
                 files: &shader.files,
             })
             .collect();
-        let converted = Converted {
+        let converted = PassSources {
             sources: &sources,
-            graph: &played.graph,
-            media: &played.media,
+            graph: &host_graph.graph,
+            media: &host_graph.media,
         };
         let converted = self
             .converter

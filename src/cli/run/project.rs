@@ -12,14 +12,13 @@ use toyproof_glsl::{self as glsl, Filter};
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Channel, Clock, Source, State, Target};
-use toyproof_project::{PassKind, Rendering, Tab};
-use toyproof_verify::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
+use toyproof_project::{CompiledProject, PassKind, Rendering, Tab};
+use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::state::{self, Owner};
 use super::{Precision, Rendered, Runner, is_too_large, not_evaluated, of_sequence};
 use crate::cli::inputs::short_device;
-use crate::cli::passes::target;
-use crate::cli::project::Passes;
+use crate::cli::project::{pass_shader, target};
 use crate::cli::sequence::{FrameEnd, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{Exit, Terminal};
@@ -203,7 +202,7 @@ fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
 
 impl Runner<'_> {
     /// Renders a project: one frame, or each of a sequence into its file.
-    pub(super) fn project(&mut self, shader: &Shader, passes: &Passes, path: &Path) -> Exit {
+    pub(super) fn project(&mut self, shader: &Shader, passes: &CompiledProject, path: &Path) -> Exit {
         // The worker is used beside this runner, which writes the images. The next shader has the same frame.
         let (mut worker, frame) = (self.worker.take(), self.frame.clone());
         let exit = self.render_project(&mut worker, shader, passes, path);
@@ -215,16 +214,12 @@ impl Runner<'_> {
         &mut self,
         worker: &mut Option<Worker>,
         shader: &Shader,
-        passes: &Passes,
+        passes: &CompiledProject,
         path: &Path,
     ) -> Result<Exit, Exit> {
         let kind = self.args.pass.unwrap_or(PassKind::Image);
         let rendering = self.rendering(shader, passes, kind)?;
-        let scheduled = PassShader {
-            checked: passes.checked_of(&rendering).collect(),
-            graph: &rendering.graph,
-            media: &rendering.media,
-        };
+        let scheduled = pass_shader(passes, &rendering);
         if self.args.frames.is_none()
             && self.args.state.is_none()
             && let Some(frame) = bound(&rendering, &self.clock(self.frame.frame).frame(self.frame.frame))
@@ -323,7 +318,12 @@ impl Runner<'_> {
     }
 
     /// What renders a pass, with the textures that the user binds to the channels of the image.
-    fn rendering(&self, shader: &Shader, passes: &Passes, kind: PassKind) -> Result<Rendering, Exit> {
+    fn rendering(
+        &self,
+        shader: &Shader,
+        passes: &CompiledProject,
+        kind: PassKind,
+    ) -> Result<Rendering, Exit> {
         if passes.project.pass(kind).is_none() {
             let error = format!("there is no {kind}");
             return Err(self.refuse(shader, &error, "name one of its passes with --pass"));
@@ -469,7 +469,7 @@ impl Runner<'_> {
     }
 
     /// A digest of everything that the frames of a sequence depend on.
-    fn fingerprint_of_project(&self, shader: &Shader, passes: &Passes) -> String {
+    fn fingerprint_of_project(&self, shader: &Shader, passes: &CompiledProject) -> String {
         let mut hasher = DefaultHasher::new();
         for checked in &passes.checked {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);

@@ -8,9 +8,7 @@ use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{input, output};
 use toyproof_player::{BUFFERS, Clock, State};
-use toyproof_project::Rendering;
-
-use crate::cli::project::Passes;
+use toyproof_project::{CompiledProject, Rendering};
 
 /// Identifies the format.
 const FORMAT: &str = "toyproof state 2";
@@ -37,7 +35,7 @@ pub(super) struct Owner {
 
 impl Owner {
     /// The owner of the states of a project.
-    pub(super) fn new(passes: &Passes, rendering: &Rendering, files: &Files, clock: &Clock) -> Self {
+    pub(super) fn new(passes: &CompiledProject, rendering: &Rendering, files: &Files, clock: &Clock) -> Self {
         let mut digest = Sha256::new();
         let mut add = |bytes: &[u8]| {
             digest.update((bytes.len() as u64).to_le_bytes());

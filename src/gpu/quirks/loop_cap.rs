@@ -8,9 +8,9 @@ use toyproof_image::{Frame, Image};
 use toyproof_translate::FloatMode;
 use toyproof_translate::naga_ir::ValidModule;
 
-use super::super::Failure;
 use super::super::device::Device;
 use super::super::draw::{CLEAR_COLOR, Program};
+use super::super::{Failure, refused};
 
 /// Whether a driver terminates the loops of an invocation after a number of iterations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ pub(crate) fn measure(device: &Device) -> Result<LoopCap, Failure> {
     let checked = glsl::check(&files, file, &glsl::Options::default())
         .map_err(|errors| Failure::Invalid(errors.into()))?;
     let lowered = toyproof_translate::lower(&checked);
-    let module = ValidModule::parse(&lowered).map_err(Failure::refused)?;
+    let module = ValidModule::parse(&lowered).map_err(refused)?;
     let program = Program::new(&module, FloatMode::Strict)?;
     let frame = Frame {
         size: [1, 1],

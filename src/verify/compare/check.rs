@@ -206,6 +206,38 @@ pub fn toolchain(expected: &Image, actual: &Image, undefined: &[bool]) -> Vec<Pi
     pixels.map(status).collect()
 }
 
+/// A number of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    /// These pixels.
+    pub count: u64,
+    /// All pixels of the image.
+    pub of: u64,
+}
+
+impl Share {
+    /// Returns `count` pixels of those of a check.
+    #[must_use]
+    pub fn of(check: &CheckSummary, count: u64) -> Self {
+        Self {
+            count,
+            of: check.pixels,
+        }
+    }
+
+    /// Returns the pixels that differ in a check.
+    #[must_use]
+    pub fn differing(check: &CheckSummary) -> Self {
+        Self::of(check, check.differing)
+    }
+
+    /// The share, from 0 to 1.
+    #[must_use]
+    pub fn ratio(self) -> f64 {
+        self.count as f64 / self.of.max(1) as f64
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -51,7 +51,7 @@ fn color<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f32; 3], D::Erro
 
 impl Pixel {
     /// The pixel at `index`, bottom row first, in two images of one size.
-    pub(crate) fn at(index: usize, expected: &Image, actual: &Image) -> Self {
+    pub fn at(index: usize, expected: &Image, actual: &Image) -> Self {
         let width = expected.size()[0] as usize;
         let rgb = |image: &Image| {
             let [r, g, b, _] = image.pixels()[index];

@@ -11,11 +11,11 @@ const MAX_CACHED_PIXELS: u32 = 1 << 21;
 
 /// Some rows of a reference.
 #[derive(Debug, PartialEq)]
-pub(crate) struct ReferenceBand {
+pub struct ReferenceBand {
     /// The image in f64, rounded once at the end.
-    pub(crate) image: Image,
+    pub image: Image,
     /// The pixels without a defined color; empty if all have one.
-    pub(crate) undefined: Vec<bool>,
+    pub undefined: Vec<bool>,
 }
 
 /// The bands by their first rows; none of an image that is too large.

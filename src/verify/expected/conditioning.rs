@@ -10,7 +10,8 @@ use toyproof_scene::{Point, Scene};
 
 use super::scene::SceneReference;
 use super::{Expected, NumberType};
-use crate::decide::{MAX_DIFFERING, Share};
+use crate::compare::Share;
+use crate::limits::MAX_DIFFERING;
 
 /// The number of tested pixels, roughly; divided by the number of samples of each.
 const TESTED_PIXELS: u32 = 6000;

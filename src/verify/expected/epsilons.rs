@@ -4,7 +4,7 @@
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprId, ExprKind, Literal, Value};
 
-use super::accepted::{Edit, Subject, Variation};
+use super::variation::{Edit, Subject, Variation};
 
 /// The lengths that authors use, in units of the scene: those up to the default `max_offset` of a scene.
 const USUAL_EPSILONS: [f64; 3] = [1e-5, 1e-4, 1e-3];

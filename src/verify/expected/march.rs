@@ -10,7 +10,7 @@ use toyproof_glsl::tree::{
     StatementKind, Tree, Type, Value, VariableId, VariableKind, walk,
 };
 
-use super::accepted::{Edit, Subject, Variation};
+use super::variation::{Edit, Subject, Variation};
 
 /// How much farther marches go, and in how many more steps.
 const FARTHER: i32 = 2;

@@ -7,9 +7,10 @@ mod conditioning;
 mod epsilons;
 mod image;
 mod march;
-mod reseeded;
+mod number_type;
 mod scene;
 mod shader;
+mod variation;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -21,36 +22,16 @@ use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
 pub use self::accepted::MarchDependence;
-pub(crate) use self::bands::ReferenceBand;
+pub use self::bands::ReferenceBand;
 pub use self::conditioning::Conditioning;
 pub use self::image::{ImageReference, Quantization};
-pub(crate) use self::reseeded::draws_by_random_numbers;
+pub use self::number_type::NumberType;
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
 use crate::bounds::MAX_ITERATIONS;
 use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
-use crate::cpu::evaluate_at;
-use crate::resampled::Resampled;
-
-/// The number type whose rounding is simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum NumberType {
-    /// In f64.
-    Double,
-    /// In f32.
-    Single,
-}
-
-impl NumberType {
-    /// How much numbers of a scene and coordinates of pixels are perturbed, relatively: by a few units in the
-    /// last place.
-    fn perturbation(self) -> f64 {
-        match self {
-            Self::Double => 4.0 * f64::EPSILON,
-            Self::Single => 2.0 * f64::from(f32::EPSILON),
-        }
-    }
-}
+use crate::evaluator::evaluate_at;
+use crate::random::estimates::Resampled;
 
 /// What shaders are compared with in one frame. Results are computed on first use, from any thread: the
 /// reference of many shaders is rendered once, unless it is too large for the cache.
@@ -98,7 +79,9 @@ impl Expected {
         self.as_scene().map(SceneReference::scene)
     }
 
-    pub(crate) fn as_scene(&self) -> Option<&SceneReference> {
+    /// The reference, if it is a scene.
+    #[must_use]
+    pub fn as_scene(&self) -> Option<&SceneReference> {
         match self {
             Self::Scene(scene) => Some(scene),
             Self::Shader(_) | Self::Image(_) => None,
@@ -106,12 +89,12 @@ impl Expected {
     }
 
     /// The tracer of the scene, if it is one.
-    pub(crate) fn tracer(&self) -> Option<&Tracer<f64>> {
+    pub fn tracer(&self) -> Option<&Tracer<f64>> {
         self.as_scene().map(SceneReference::tracer)
     }
 
     /// The shader, if it is one.
-    pub(crate) fn shader(&self) -> Option<&Checked> {
+    pub fn shader(&self) -> Option<&Checked> {
         match self {
             Self::Shader(shader) => Some(shader.checked()),
             Self::Scene(_) | Self::Image(_) => None,
@@ -119,7 +102,7 @@ impl Expected {
     }
 
     /// The reference in another frame; none if it is an image, or cannot be rendered there.
-    pub(crate) fn in_frame(&self, frame: &Frame) -> Option<Self> {
+    pub fn in_frame(&self, frame: &Frame) -> Option<Self> {
         match self {
             Self::Scene(scene) => Some(Self::of_scene(scene.scene().clone(), frame)),
             Self::Shader(shader) => Some(Self::Shader(Box::new(shader.in_frame(frame)?))),
@@ -128,7 +111,7 @@ impl Expected {
     }
 
     /// The colors at some places of another frame; none for an image.
-    pub(crate) fn colors_in(&self, frame: &Frame, places: &Places) -> Option<Image> {
+    pub fn colors_in(&self, frame: &Frame, places: &Places) -> Option<Image> {
         match self {
             Self::Scene(scene) => {
                 let mut scene = scene.scene().clone();
@@ -142,7 +125,7 @@ impl Expected {
     }
 
     /// Whether random numbers decide where and how pixels are sampled.
-    pub(crate) fn is_stochastic(&self) -> bool {
+    pub fn is_stochastic(&self) -> bool {
         match self {
             Self::Scene(scene) => scene.tracer().sampler().is_some(),
             Self::Shader(shader) => shader.is_stochastic(),
@@ -152,7 +135,7 @@ impl Expected {
 
     /// The colors at some positions within pixels, row by row, of a reference that is not stochastic; none for an
     /// image.
-    pub(crate) fn colors_within(&self, positions: &Places) -> Option<Vec<[f64; 3]>> {
+    pub fn colors_within(&self, positions: &Places) -> Option<Vec<[f64; 3]>> {
         match self {
             Self::Scene(scene) => {
                 let Places { columns, rows } = positions;
@@ -215,7 +198,7 @@ impl Expected {
     ///
     /// # Errors
     /// If a shader that is too large for the cache cannot be evaluated again.
-    pub(crate) fn rows(&self, rows: &Range<u32>) -> Result<Arc<ReferenceBand>, eval::Failure> {
+    pub fn rows(&self, rows: &Range<u32>) -> Result<Arc<ReferenceBand>, eval::Failure> {
         match self {
             Self::Scene(scene) => Ok(scene.rows(rows)),
             Self::Shader(shader) => shader.rows(rows),
@@ -224,7 +207,7 @@ impl Expected {
     }
 
     /// The color of a pixel; NaN where it is not known.
-    pub(crate) fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+    pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
         match self {
             Self::Scene(scene) => scene.tracer().pixel(x, y),
             Self::Shader(shader) => shader.pixel(x, y),
@@ -233,7 +216,7 @@ impl Expected {
     }
 
     /// The accepted colors of a pixel: others agree if they are within [`EXACT_TOLERANCE`] of these.
-    pub(crate) fn color_range(&self, x: u32, y: u32) -> ColorRange {
+    pub fn color_range(&self, x: u32, y: u32) -> ColorRange {
         match self {
             Self::Scene(scene) => scene.color_range(x, y, EpsilonSet::Alike),
             Self::Shader(shader) => widened(shader.color_range(x, y), shader.tolerance()),
@@ -251,12 +234,12 @@ impl Expected {
     }
 
     /// The number of samples of a pixel, as far as it is known: a shader takes any number.
-    pub(crate) fn samples(&self) -> u32 {
+    pub fn samples(&self) -> u32 {
         self.tracer().map_or(1, Tracer::samples)
     }
 
     /// Whether the image depends on the time.
-    pub(crate) fn is_animated(&self) -> bool {
+    pub fn is_animated(&self) -> bool {
         match self {
             Self::Scene(scene) => !scene.scene().motions.is_empty(),
             Self::Shader(shader) => shader.reads_time(),
@@ -299,7 +282,7 @@ impl Expected {
 
     /// Of the `wanted` pixels of some rows, those in which the reference itself changes color by rounding in
     /// this number type, whatever a shader's formulas.
-    pub(crate) fn tied(&self, rows: &Range<u32>, wanted: &[bool], number_type: NumberType) -> Vec<bool> {
+    pub fn tied(&self, rows: &Range<u32>, wanted: &[bool], number_type: NumberType) -> Vec<bool> {
         match self {
             Self::Scene(scene) => scene.tied(rows, wanted, number_type),
             Self::Shader(shader) => shader.tied(rows, wanted, number_type, self.tolerance_in(number_type)),

@@ -10,8 +10,8 @@ use toyproof_image::Frame;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
 
-use super::NumberType;
 use super::bands::{Bands, ReferenceBand, is_cached};
+use super::number_type::NumberType;
 use crate::compare::{EXACT_TOLERANCE, EpsilonColors, SEEN};
 
 /// The largest number of color ranges of a scene that are cached: more than one for each pixel of an image of
@@ -68,7 +68,7 @@ impl SceneReference {
     }
 
     /// The reference of another scene in the same frame.
-    pub(super) fn with_scene(&self, scene: Scene) -> Self {
+    pub fn with_scene(&self, scene: Scene) -> Self {
         let frame = Frame {
             size: self.scene.film.size,
             frame: self.time.frame,
@@ -78,7 +78,9 @@ impl SceneReference {
         Self::new(scene, &frame)
     }
 
-    pub(super) fn scene(&self) -> &Scene {
+    /// The scene, as it is given.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
@@ -89,11 +91,13 @@ impl SceneReference {
     }
 
     /// The scene at the frame's time, without motion.
-    pub(crate) fn at_moment(&self) -> Scene {
+    pub fn at_moment(&self) -> Scene {
         self.scene.at(self.time)
     }
 
-    pub(crate) fn tracer(&self) -> &Tracer<f64> {
+    /// The tracer, in double precision.
+    #[must_use]
+    pub fn tracer(&self) -> &Tracer<f64> {
         &self.tracer
     }
 

@@ -15,17 +15,16 @@ use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 use toyproof_tracer::ColorRange;
 
-use super::NumberType;
 use super::accepted::AcceptedColors;
 use super::bands::{Bands, ReferenceBand};
-use crate::bounds::{EXPLANATION_TIMEOUT, explanation_deadline};
-use crate::compare::{Band, Pixel, changed_by_rounding};
-use crate::cpu::Evaluator;
-use crate::decide::Share;
-use crate::notes::{self, NotFinite};
-use crate::resampled::Estimates;
-use crate::reseed::Reseeding;
-use crate::{EVALUATOR_TIME_FACTOR, reads};
+use super::number_type::NumberType;
+use crate::bounds::{EVALUATOR_TIME_FACTOR, EXPLANATION_TIMEOUT, explanation_deadline};
+use crate::compare::{Band, Pixel, Share, changed_by_rounding};
+use crate::evaluator::Evaluator;
+use crate::loss::NotFinite;
+use crate::notes;
+use crate::random::estimates::Estimates;
+use crate::random::reseed::Reseeding;
 
 /// The default tolerance of colors: half of an 8-bit level.
 pub const DEFAULT_TOLERANCE: f64 = 0.5 / 255.0;
@@ -36,17 +35,17 @@ const MAX_ACCEPTED_SHARE: f64 = 0.05;
 /// A shader that others are compared with, in one frame.
 #[derive(Debug)]
 pub struct ShaderReference {
-    pub(super) program: Arc<Program>,
-    pub(super) frame: Frame,
+    pub(crate) program: Arc<Program>,
+    pub(crate) frame: Frame,
     tolerance: f64,
-    pub(super) timeout: Duration,
+    pub(crate) timeout: Duration,
     bands: Bands,
     /// The colors for other ray epsilons and marches.
     accepted: OnceLock<Option<AcceptedColors>>,
     /// How its random numbers can be changed, if it has any that can.
-    pub(super) reseeding: OnceLock<Option<Reseeding>>,
+    pub(crate) reseeding: OnceLock<Option<Reseeding>>,
     /// The estimates of pixels with other random numbers, and their places.
-    pub(super) estimates: OnceLock<(Places, Option<Arc<Estimates>>)>,
+    pub(crate) estimates: OnceLock<(Places, Option<Arc<Estimates>>)>,
 }
 
 /// What the evaluation of a reference shader showed.
@@ -76,7 +75,7 @@ impl ShaderReference {
     }
 
     /// The same shader in another frame; none if it cannot be evaluated there.
-    pub(super) fn in_frame(&self, frame: &Frame) -> Option<Self> {
+    pub(crate) fn in_frame(&self, frame: &Frame) -> Option<Self> {
         let program = Arc::clone(&self.program);
         let lints = Lints::default();
         // It explains images, so that it must not depend on the load of the machine.
@@ -96,7 +95,7 @@ impl ShaderReference {
         Ok((reference, findings))
     }
 
-    pub(super) fn unevaluated(
+    pub(crate) fn unevaluated(
         program: Arc<Program>,
         frame: &Frame,
         tolerance: f64,
@@ -154,12 +153,12 @@ impl ShaderReference {
     }
 
     /// The shader.
-    pub(super) fn checked(&self) -> &Checked {
+    pub(crate) fn checked(&self) -> &Checked {
         self.program.checked()
     }
 
     pub(super) fn reads_time(&self) -> bool {
-        reads(self.checked(), Input::Time)
+        self.checked().reads(Input::Time)
     }
 
     pub(super) fn tolerance(&self) -> f64 {

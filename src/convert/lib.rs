@@ -1,0 +1,291 @@
+//! Converts shaders, and proves that a conversion is equivalent to the original: the written file is read
+//! again, run, and compared with the shader.
+//!
+//! The file calls `sin` and the like, whose last bits WGSL and its relatives leave to the implementation. For
+//! the proof, the evaluator's definitions replace them in what naga parsed; everything else is the file's. So
+//! no tolerance is needed: a conversion is proved if every pixel has the evaluator's bits.
+//!
+//! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves what is [`Written`], on a
+//! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
+//! any worker.
+
+pub mod graph;
+pub mod header;
+mod original;
+mod passes;
+mod proof;
+mod prover;
+pub mod script;
+mod tool;
+
+#[cfg(test)]
+mod tests;
+
+use std::time::Duration;
+
+pub use passes::{
+    PASS_FRAMES, PASS_SIZES, PassComparison, PassSources, PassesConversion, PassesProof, PixelDifference,
+    ReadGraph,
+};
+pub use proof::{Against, FRAMES, Proof, Rgb8Comparison, Runner, TestFrame, compare_with_original, frames};
+pub use prover::{Proved, Prover, Reader, Readers, Unproved};
+use thiserror::Error;
+pub use tool::ToolError;
+use toyproof_diagnostic::{Deadline, Files, Overdue};
+use toyproof_glsl::Checked;
+use toyproof_gpu::{self as gpu, Worker};
+use toyproof_translate::backend::Target;
+use toyproof_translate::wgsl::{self, Style, Unprintable};
+use toyproof_translate::{FloatMode, Lowered};
+
+/// A shader to convert.
+#[derive(Debug, Clone, Copy)]
+pub struct Source<'a> {
+    /// The shader.
+    pub checked: &'a Checked,
+    /// The files that it was read from.
+    pub files: &'a Files,
+}
+
+impl Source<'_> {
+    /// The author's text.
+    fn text(&self) -> &str {
+        let at = self.checked.tree[self.checked.main_image].at;
+        self.files.get(at.span.file).text()
+    }
+}
+
+/// The settings of a conversion.
+#[derive(Debug, Clone, Copy)]
+pub struct Converter {
+    /// The language; none for the lowered GLSL that naga parses.
+    pub target: Option<Target>,
+    /// The kind of host that WGSL is written for.
+    pub style: Style,
+    /// Whether functions such as `sin` are expanded.
+    pub float: FloatMode,
+    /// The time limit of each step.
+    pub timeout: Duration,
+}
+
+/// A converted shader.
+#[derive(Debug, Clone)]
+pub enum Written {
+    /// The GLSL that naga parses.
+    Lowered(Lowered),
+    /// WGSL for a kind of host.
+    Wgsl(String, Style),
+    /// A file of naga's in a language other than WGSL.
+    Naga {
+        /// The language.
+        target: Target,
+        /// The file.
+        bytes: Vec<u8>,
+        /// What naga wrote it from.
+        lowered: Lowered,
+    },
+}
+
+impl Written {
+    /// The bytes of the file.
+    #[must_use]
+    pub fn into_bytes(self) -> Vec<u8> {
+        match self {
+            Self::Lowered(lowered) => lowered.text().as_bytes().to_vec(),
+            Self::Wgsl(text, _) => text.into_bytes(),
+            Self::Naga { bytes, .. } => bytes,
+        }
+    }
+}
+
+/// The result of a conversion.
+#[derive(Debug)]
+pub struct Conversion {
+    /// The file.
+    pub written: Written,
+    /// The proof; none if none was requested.
+    pub proof: Option<Result<Proved, Unproved>>,
+    /// Why naga wrote the WGSL, which the author recognizes less well.
+    pub fallback: Option<FallbackReason>,
+}
+
+/// Why our own WGSL writer was not used.
+#[derive(Debug, Error)]
+pub enum FallbackReason {
+    /// It wrote nothing.
+    #[error(transparent)]
+    Unwritable(WgslError),
+    /// Its text could not be proved, and naga's could.
+    #[error(transparent)]
+    Unproved(Unproved),
+}
+
+/// Why our own WGSL writer wrote nothing.
+#[derive(Debug, Error)]
+pub enum WgslError {
+    /// The shader has a construct that it does not support.
+    #[error("cannot be written in the style `{}`: {why}", style.name())]
+    Unprintable {
+        /// The kind of host.
+        style: Style,
+        /// The construct.
+        why: Unprintable,
+    },
+    /// naga rejects its text with this message.
+    #[error("{0}")]
+    Refused(String),
+    /// The worker that reads its text failed.
+    #[error(transparent)]
+    Worker(gpu::Failure),
+}
+
+/// Why a shader could not be converted.
+#[derive(Debug, Error)]
+pub enum ConvertError {
+    /// It takes too long to compile.
+    #[error(transparent)]
+    Overdue(#[from] Overdue),
+    /// naga or its worker failed.
+    #[error(transparent)]
+    Worker(#[from] gpu::Failure),
+    /// It cannot be written as WGSL for this kind of host, and naga writes for none but the plain one.
+    #[error(transparent)]
+    Unwritable(WgslError),
+}
+
+impl Conversion {
+    /// Writes a proof beside the file, if there is a prover.
+    ///
+    /// # Errors
+    /// If the shader takes too long to compile.
+    fn new(source: Source, written: Written, prover: Option<&mut Prover>) -> Result<Self, ConvertError> {
+        let proof = match prover.map(|prover| prover.prove(source, &written)) {
+            Some(Err(Unproved::Overdue(overdue))) => return Err(overdue.into()),
+            proof => proof,
+        };
+        Ok(Self {
+            written,
+            proof,
+            fallback: None,
+        })
+    }
+
+    /// Returns whether it is proved, or no proof was requested.
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        self.proof.as_ref().is_none_or(Result::is_ok)
+    }
+
+    /// Returns whether it is not proved, and another conversion of the shader might be.
+    fn is_replaceable(&self) -> bool {
+        matches!(&self.proof, Some(Err(unproved)) if !unproved.is_of_shader())
+    }
+}
+
+impl Converter {
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL
+    /// that our own writer cannot write, or that is not proved, is naga's.
+    ///
+    /// # Errors
+    /// Returns why there is no conversion. One that is not proved is not an error.
+    pub fn convert(
+        &self,
+        source: Source,
+        translator: &mut Worker,
+        mut prover: Option<&mut Prover>,
+    ) -> Result<Conversion, ConvertError> {
+        let Some(target) = self.target else {
+            let lowered = self.lower(source)?;
+            return Conversion::new(source, Written::Lowered(lowered), prover);
+        };
+        if !self.prints_wgsl() {
+            let written = self.write_with_naga(source, target, translator)?;
+            return Conversion::new(source, written, prover);
+        }
+        let own = self
+            .write_wgsl(source, translator)
+            .and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
+        let is_plain = self.may_fall_back();
+        let own = match own {
+            Ok(own) if is_plain && own.is_replaceable() => Ok(own),
+            Err(ConvertError::Unwritable(error)) if is_plain => Err(error),
+            own => return own,
+        };
+        let other = self
+            .write_with_naga(source, target, translator)
+            .and_then(|written| Conversion::new(source, written, prover));
+        let with_reason = |reason| {
+            move |other| Conversion {
+                fallback: Some(reason),
+                ..other
+            }
+        };
+        match (own, other) {
+            (Err(error), other) => other.map(with_reason(FallbackReason::Unwritable(error))),
+            (
+                Ok(Conversion {
+                    proof: Some(Err(unproved)),
+                    ..
+                }),
+                Ok(other),
+            ) if other.is_proved() => Ok(with_reason(FallbackReason::Unproved(unproved))(other)),
+            // Neither is proved: the readable one is better.
+            (Ok(own), _) => Ok(own),
+        }
+    }
+
+    /// Whether our own writer prints the files.
+    fn prints_wgsl(&self) -> bool {
+        self.target == Some(Target::Wgsl) && self.float == FloatMode::Fast
+    }
+
+    /// Whether naga can write what our own writer cannot.
+    fn may_fall_back(&self) -> bool {
+        self.prints_wgsl() && self.style == Style::Plain
+    }
+
+    fn lower(&self, source: Source) -> Result<Lowered, ConvertError> {
+        let deadline = Deadline::after(self.timeout);
+        Ok(self.float.lower_for_host(source.checked, &deadline)?)
+    }
+
+    /// Writes WGSL that keeps the author's names and comments, and that naga reads.
+    fn write_wgsl(&self, source: Source, translator: &mut Worker) -> Result<Written, ConvertError> {
+        let deadline = Deadline::after(self.timeout);
+        let text = wgsl::wgsl(source.checked, source.files, self.style, &deadline);
+        let text = text.map_err(|failure| match failure {
+            wgsl::Failure::Overdue(overdue) => ConvertError::Overdue(overdue),
+            wgsl::Failure::Unprintable(why) => ConvertError::Unwritable(WgslError::Unprintable {
+                style: self.style,
+                why,
+            }),
+        })?;
+        match translator.read_wgsl(&self.style.hosted(&text).text) {
+            Ok(()) => Ok(Written::Wgsl(text, self.style)),
+            Err(failure @ gpu::Failure::Timeout { .. }) => Err(failure.into()),
+            Err(gpu::Failure::Reread(why)) => Err(ConvertError::Unwritable(WgslError::Refused(why))),
+            Err(failure) => Err(ConvertError::Unwritable(WgslError::Worker(failure))),
+        }
+    }
+
+    fn write_with_naga(
+        &self,
+        source: Source,
+        target: Target,
+        translator: &mut Worker,
+    ) -> Result<Written, ConvertError> {
+        let lowered = self.lower(source)?;
+        let bytes = translator.translate(lowered.clone(), target, self.float)?;
+        Ok(match target {
+            Target::Wgsl => {
+                let text = String::from_utf8_lossy(&bytes).into_owned();
+                Written::Wgsl(text, Style::Plain)
+            }
+            _ => Written::Naga {
+                target,
+                bytes,
+                lowered,
+            },
+        })
+    }
+}

@@ -1,0 +1,296 @@
+//! Conversions of shaders with several passes, and their proofs: the written files are played for some frames,
+//! in the order and with the samplers of the written graph, beside the original shader, and the bits of all
+//! passes are compared.
+
+use std::fmt;
+
+use toyproof_glsl::Sampling;
+use toyproof_gpu::{ShaderArtifact, Worker};
+use toyproof_image::{Image, Texture};
+use toyproof_player::{Graph, Target};
+
+use super::original::{Original, PlayedFrame};
+use super::proof::{Rgb8Comparison, Runner};
+use super::prover::{Prover, Reader, Unproved, fully_undefined, unobserved, validate};
+use super::{ConvertError, Converter, FallbackReason, Source, Written};
+
+/// The sizes in which the passes are played, in pixels: textures of one size are no multiples of the other's.
+pub const PASS_SIZES: [[u32; 2]; 2] = [[96, 54], [60, 80]];
+
+/// The number of frames that are played in each size.
+pub const PASS_FRAMES: i32 = 8;
+
+/// A shader with several passes to convert.
+#[derive(Debug, Clone, Copy)]
+pub struct PassSources<'a> {
+    /// The passes, in the order of the graph.
+    pub sources: &'a [Source<'a>],
+    /// The order of the passes, and what they read.
+    pub graph: &'a Graph,
+    /// The textures that do not change. Those that are not available are replaced, so that what is read of
+    /// them is observed.
+    pub media: &'a [Texture],
+}
+
+/// What a written graph says, with the media of the original.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReadGraph {
+    /// The order of the passes, and what they read.
+    pub graph: Graph,
+    /// How the channels of each pass are sampled.
+    pub sampling: Vec<[Sampling; 4]>,
+}
+
+/// A converted shader with several passes.
+#[derive(Debug)]
+pub struct PassesConversion {
+    /// The file of each pass, and why naga wrote it, if our own writer could have.
+    pub files: Vec<(Written, Option<FallbackReason>)>,
+    /// The proof; none if none was requested.
+    pub proof: Option<Result<PassesProof, Unproved>>,
+}
+
+/// The result of playing converted passes beside their original.
+#[derive(Debug, Clone)]
+pub struct PassesProof {
+    /// One comparison for each texture that is rendered, over all frames.
+    pub passes: Vec<PassComparison>,
+    /// The device that rendered them.
+    pub device: String,
+    /// The readers whose results were played; none if no reader reads the language, so that what the files
+    /// were written from was played.
+    pub readers: Vec<Reader>,
+    /// The name and version of the validator that accepts the files.
+    pub validator: Option<String>,
+    /// The name and version of the browser that renders each pass like the original.
+    pub browser: Option<(String, Rgb8Comparison)>,
+}
+
+/// The comparison of a pass with its original, over all frames.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassComparison {
+    /// What the pass renders.
+    pub target: Target,
+    /// The number of pixels of all frames.
+    pub pixels: u64,
+    /// The number of pixels that depend on undefined behavior.
+    pub undefined: u64,
+    /// The number of pixels that differ.
+    pub differing: u64,
+    /// The first pixel that differs.
+    pub first: Option<PixelDifference>,
+}
+
+/// A pixel of a pass that differs from the original's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PixelDifference {
+    /// The number of the frame.
+    pub frame: i32,
+    /// Width and height of the frame in pixels.
+    pub size: [u32; 2],
+    /// The position from the bottom left, in pixels.
+    pub at: [u32; 2],
+    /// The original's color.
+    pub expected: [f32; 4],
+    /// The conversion's color.
+    pub actual: [f32; 4],
+}
+
+/// The name of a pass, as the site shows it.
+fn name(target: Target) -> String {
+    match target {
+        Target::Image => "Image".to_owned(),
+        Target::Buffer(number) => format!("Buffer {}", char::from(b'A' + number as u8)),
+    }
+}
+
+impl fmt::Display for PassComparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = name(self.target);
+        let Some(first) = &self.first else {
+            return write!(f, "{name} is equal");
+        };
+        let ([width, height], [x, y]) = (first.size, first.at);
+        write!(
+            f,
+            "{name} differs from frame {} on, first at pixel ({x}, {y}) of {width}×{height}, which is {:?}, not {:?}",
+            first.frame, first.actual, first.expected
+        )
+    }
+}
+
+impl PassesProof {
+    /// The number of pixels of all passes and frames.
+    #[must_use]
+    pub fn pixels(&self) -> u64 {
+        self.passes.iter().map(|pass| pass.pixels).sum()
+    }
+
+    /// The number of pixels that depend on undefined behavior.
+    #[must_use]
+    pub fn undefined(&self) -> u64 {
+        self.passes.iter().map(|pass| pass.undefined).sum()
+    }
+}
+
+impl Converter {
+    /// Converts the passes of a shader; `translator` runs naga. With a prover, the conversion is proved too, as
+    /// `graph` says how it is played. If plain WGSL is not proved, naga writes all passes.
+    ///
+    /// # Errors
+    /// The number of the first pass that cannot be converted, and why.
+    pub fn convert_passes(
+        &self,
+        passes: &PassSources,
+        graph: &ReadGraph,
+        translator: &mut Worker,
+        mut prover: Option<&mut Prover>,
+    ) -> Result<PassesConversion, (usize, ConvertError)> {
+        let mut files = Vec::new();
+        for (number, &source) in passes.sources.iter().enumerate() {
+            let converted = self.convert(source, translator, None);
+            let converted = converted.map_err(|error| (number, error))?;
+            files.push((converted.written, converted.fallback));
+        }
+        let mut prove = |files: &[(Written, Option<FallbackReason>)]| {
+            let prover = prover.as_deref_mut()?;
+            let written: Vec<&Written> = files.iter().map(|(written, _)| written).collect();
+            Some(prover.prove_passes(passes, &written, graph))
+        };
+        let own = prove(&files);
+        let Some(Err(unproved)) = own else {
+            return Ok(PassesConversion { files, proof: own });
+        };
+        if self.may_fall_back() && !unproved.is_of_shader() {
+            let other = passes.sources.iter().map(|&source| {
+                let written = self.write_with_naga(source, self.target?, translator).ok()?;
+                Some((written, None))
+            });
+            if let Some(mut other) = other.collect::<Option<Vec<_>>>()
+                && let Some(Ok(proof)) = prove(&other)
+            {
+                other[0].1 = Some(FallbackReason::Unproved(unproved));
+                return Ok(PassesConversion {
+                    files: other,
+                    proof: Some(Ok(proof)),
+                });
+            }
+        }
+        Ok(PassesConversion {
+            files,
+            proof: Some(Err(unproved)),
+        })
+    }
+}
+
+impl Prover<'_> {
+    /// Proves that written passes, played as the graph says, render the same textures as the shader: to the
+    /// bit in [`PASS_FRAMES`] frames of each of [`PASS_SIZES`], except in pixels that depend on undefined
+    /// behavior. After a frame in which such a pixel differs, the conversion goes on from the original's
+    /// textures.
+    ///
+    /// # Errors
+    /// Why it is not proved.
+    pub fn prove_passes(
+        &mut self,
+        passes: &PassSources,
+        written: &[&Written],
+        graph: &ReadGraph,
+    ) -> Result<PassesProof, Unproved> {
+        if let Some(unobserved) = passes
+            .sources
+            .iter()
+            .find_map(|source| unobserved(source.checked))
+        {
+            return Err(unobserved);
+        }
+        let mut validator = None;
+        let mut readings: Vec<(Reader, Vec<ShaderArtifact>)> = Vec::new();
+        let mut is_read = true;
+        for (source, written) in passes.sources.iter().zip(written) {
+            validator = validate(written)?;
+            let mut of_pass = self.readings(source.checked, written)?;
+            if let (true, Written::Naga { lowered, .. }) = (of_pass.is_empty(), written) {
+                is_read = false;
+                of_pass.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
+            }
+            for (reader, artifact) in of_pass {
+                match readings.iter_mut().find(|(known, _)| *known == reader) {
+                    Some((_, artifacts)) => artifacts.push(artifact),
+                    None => readings.push((reader, vec![artifact])),
+                }
+            }
+        }
+        let Runner::Driver(worker) = &mut self.runner else {
+            return Err(Unproved::PassesWithoutDriver);
+        };
+        let original = Original::play(passes, worker, self.timeout, self.pool)?;
+        let mut proofs = Vec::new();
+        let mut readers = Vec::new();
+        for (reader, artifacts) in readings {
+            let proof = original.compare(passes, worker, artifacts, graph)?;
+            if proof.iter().any(|pass| pass.differing > 0) {
+                return Err(Unproved::PassesDiffer(proof));
+            }
+            proofs.push(proof);
+            readers.push(reader);
+        }
+        let browser = match &mut self.browser {
+            Some(browser) => original.compare_in_browser(browser, passes.sources, written)?,
+            None => None,
+        };
+        let proof = PassesProof {
+            // There is at least one reader.
+            passes: proofs.swap_remove(0),
+            device: original.device,
+            readers: if is_read { readers } else { Vec::new() },
+            validator,
+            browser,
+        };
+        match original.undefined_by {
+            Some((pass, by)) if proof.undefined() == proof.pixels() => {
+                Err(fully_undefined(by, passes.sources[pass].files))
+            }
+            _ => Ok(proof),
+        }
+    }
+}
+
+impl PassComparison {
+    pub(super) fn new(target: Target) -> Self {
+        Self {
+            target,
+            pixels: 0,
+            undefined: 0,
+            differing: 0,
+            first: None,
+        }
+    }
+
+    /// Compares the pass in a frame, and returns whether all bits are equal. The sign of a zero and the bits of
+    /// NaN are open.
+    pub(super) fn add(&mut self, frame: &PlayedFrame, actual: &Image, undefined: &[bool]) -> bool {
+        let expected = frame.texture(self.target);
+        let same = |a: f32, b: f32| a == b || a.is_nan() && b.is_nan();
+        let mut has_same_bits = true;
+        for (at, (a, b)) in expected.pixels().iter().zip(actual.pixels()).enumerate() {
+            has_same_bits &= a.map(f32::to_bits) == b.map(f32::to_bits);
+            let is_undefined = undefined[at];
+            let differs = !is_undefined && !a.iter().zip(b).all(|(&a, &b)| same(a, b));
+            self.pixels += 1;
+            self.undefined += u64::from(is_undefined);
+            self.differing += u64::from(differs);
+            if differs && self.first.is_none() {
+                let width = actual.size()[0] as usize;
+                self.first = Some(PixelDifference {
+                    frame: frame.inputs.frame,
+                    size: frame.inputs.size,
+                    at: [at % width, at / width].map(|side| side as u32),
+                    expected: *a,
+                    actual: *b,
+                });
+            }
+        }
+        has_same_bits
+    }
+}

@@ -1,0 +1,423 @@
+//! Proves conversions: each reader that is available reads the written file, and what it read is run.
+
+use std::fmt;
+use std::time::Duration;
+
+use rayon::ThreadPool;
+use thiserror::Error;
+use toyproof_diagnostic::{Deadline, Files, Overdue, grouped, plural};
+use toyproof_eval::{Fault, Observed};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::SamplerShape;
+use toyproof_gpu::browser::{self, Chromium, Text};
+use toyproof_gpu::{self as gpu, ShaderArtifact};
+use toyproof_image::{Frame, Image};
+use toyproof_translate::FloatMode;
+use toyproof_translate::backend::{Target, roundtrip, spirv};
+use toyproof_translate::naga_ir::Shape;
+use toyproof_translate::wgsl::Style;
+
+use super::passes::PassComparison;
+use super::proof::{Against, Proof, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy};
+use super::tool::{self, ToolError};
+use super::{Source, Written};
+use toyproof_verify::Failure;
+
+/// Proves conversions.
+#[derive(Debug)]
+pub struct Prover<'a> {
+    /// What runs the conversion.
+    pub runner: Runner<'a>,
+    /// A browser that must also render WGSL and GLSL like the original.
+    pub browser: Option<&'a mut Chromium>,
+    /// The time limit of an image.
+    pub timeout: Duration,
+    /// The evaluator's thread pool; rayon's global pool if none.
+    pub pool: Option<&'a ThreadPool>,
+}
+
+/// A conversion that renders the same image as the original.
+#[derive(Debug, Clone)]
+pub enum Proved {
+    /// The file was read again.
+    File(Proof, Readers),
+    /// The shader that naga wrote the file from was run; no reader reads the file itself.
+    Source(Proof),
+}
+
+impl Proved {
+    /// The comparison with the original, of the first reader if there are several.
+    #[must_use]
+    pub fn proof(&self) -> &Proof {
+        match self {
+            Self::File(proof, _) | Self::Source(proof) => proof,
+        }
+    }
+}
+
+/// The readers of a conversion.
+#[derive(Debug, Clone)]
+pub struct Readers {
+    /// The readers whose results were run, each separately.
+    pub run: Vec<Reader>,
+    /// The name and version of the validator that accepts the file.
+    pub validator: Option<String>,
+    /// The name and version of the browser that renders it like the original.
+    pub browser: Option<(String, Rgb8Comparison)>,
+}
+
+/// A reader of a converted file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Reader {
+    /// naga.
+    Naga,
+    /// The driver, which takes SPIR-V as it is.
+    Driver,
+    /// Our own front end.
+    FrontEnd,
+    /// A compiler to SPIR-V, with its version.
+    Compiler(String),
+}
+
+impl fmt::Display for Reader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Naga => "naga",
+            Self::Driver => "the driver",
+            Self::FrontEnd => "toyproof's GLSL front end",
+            Self::Compiler(name) => name,
+        })
+    }
+}
+
+/// Why a conversion is not proved.
+#[derive(Debug, Error)]
+pub enum Unproved {
+    /// A tool rejects the file.
+    #[error(transparent)]
+    Tool(#[from] ToolError),
+    /// The length of a SPIR-V file is not a multiple of four bytes.
+    #[error("the length of the SPIR-V file is not a multiple of four bytes")]
+    PartialWord,
+    /// Our own front end rejects the file with this message.
+    #[error("toyproof's GLSL front end rejects the output: {0}")]
+    FrontEnd(String),
+    /// The evaluator does not run SPIR-V.
+    #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
+    Binary,
+    /// The evaluator does not play converted passes.
+    #[error("several passes can be verified only with a Vulkan driver")]
+    PassesWithoutDriver,
+    /// There is no driver to run it.
+    #[error("a proof requires a Vulkan driver: {0}")]
+    NoDriver(gpu::Failure),
+    /// The shader takes too long to compile.
+    #[error(transparent)]
+    Overdue(Overdue),
+    /// The conversion or the original has no images.
+    #[error(transparent)]
+    Run(Failure),
+    /// Some pixels differ.
+    #[error(
+        "{} of {} pixels {} from {}{}, by at most {max_abs:.1e}",
+        grouped(*differing),
+        grouped(*pixels),
+        plural(*differing, "differs", "differ"),
+        match against {
+            Against::Evaluator => "the evaluator's image",
+            Against::StrictRun => "the original's image on the same driver",
+        },
+        reader.as_ref().map_or_else(String::new, |reader| format!(" as read by {reader}")),
+    )]
+    Differs {
+        /// The reader, if there are several.
+        reader: Option<Reader>,
+        /// The number of pixels that differ.
+        differing: u64,
+        /// The number of pixels of all frames.
+        pixels: u64,
+        /// The largest difference of a component.
+        max_abs: f64,
+        /// The reference.
+        against: Against,
+    },
+    /// A pass of a shader with several differs from the original's on the same driver.
+    #[error("{}", differing_passes(.0))]
+    PassesDiffer(Vec<PassComparison>),
+    /// Every pixel depends on undefined behavior.
+    #[error("every pixel depends on undefined behavior, such as {} at {at}", fault.words())]
+    FullyUndefined {
+        /// The operation that occurs in most pixels.
+        fault: Fault,
+        /// Its position: file, line and column.
+        at: String,
+    },
+    /// A channel is a cube map or a volume, which are black in the compared frames, so that what is read from it
+    /// cannot be observed.
+    #[error(
+        "iChannel{channel} is {shape}, which is black in the compared frames, so reads of it cannot be verified"
+    )]
+    Unobserved {
+        /// The number of the channel.
+        channel: usize,
+        /// The kind of texture.
+        shape: &'static str,
+    },
+    /// The browser cannot be given one of the channels.
+    #[error("in Chromium, only shaders whose channels are 2D textures can be tested")]
+    BrowserChannel,
+    /// The browser does not render the original.
+    #[error("the original shader cannot be rendered with WebGL 2: {0}")]
+    BrowserOriginal(browser::Failure),
+    /// The browser does not render the conversion.
+    #[error(transparent)]
+    Browser(browser::Failure),
+    /// The browser renders the conversion with other colors than the original.
+    #[error(
+        "in Chromium, {} of {} pixels {} from the original in WebGL 2, by at most {:.1}/255",
+        grouped(.0.differing),
+        grouped(.0.pixels),
+        plural(.0.differing, "differs", "differ"),
+        .0.max * 255.0
+    )]
+    BrowserDiffers(Rgb8Comparison),
+}
+
+impl Unproved {
+    /// Returns whether the reason applies to every conversion of the shader: it takes too long, depends on
+    /// undefined behavior, or cannot be run.
+    #[must_use]
+    pub fn is_of_shader(&self) -> bool {
+        match self {
+            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } | Self::Unobserved { .. } => {
+                true
+            }
+            Self::Run(failure) => matches!(
+                failure,
+                Failure::Cpu(_)
+                    | Failure::LoopTruncated(_)
+                    | Failure::Gpu(gpu::Failure::Timeout { .. } | gpu::Failure::Device(_))
+            ),
+            _ => false,
+        }
+    }
+}
+
+impl From<Failure> for Unproved {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::Gpu(failure) if failure.is_without_driver() => Self::NoDriver(failure),
+            Failure::Overdue(overdue) => Self::Overdue(overdue),
+            failure => Self::Run(failure),
+        }
+    }
+}
+
+impl Prover<'_> {
+    /// Proves that a written file renders the same images as the shader: to the bit in every frame of
+    /// [`super::FRAMES`], except in pixels that depend on undefined behavior.
+    ///
+    /// # Errors
+    /// Returns why it is not proved.
+    pub fn prove(&mut self, source: Source, written: &Written) -> Result<Proved, Unproved> {
+        let validator = validate(written)?;
+        let mut readings = self.readings(source.checked, written)?;
+        let is_unread = readings.is_empty();
+        if let (true, Written::Naga { lowered, .. }) = (is_unread, written) {
+            readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
+        }
+        if let Some(unobserved) = unobserved(source.checked) {
+            return Err(unobserved);
+        }
+        let frames = frames(source.checked);
+        let (run, proof) = self.run(source, readings, &frames)?;
+        if is_unread {
+            return Ok(Proved::Source(proof));
+        }
+        let browser = match &mut self.browser {
+            Some(browser) => in_browser(browser, source, written, &frames, &proof.undefined_at)?,
+            None => None,
+        };
+        Ok(Proved::File(
+            proof,
+            Readers {
+                run,
+                validator,
+                browser,
+            },
+        ))
+    }
+
+    /// What each available reader reads of a file.
+    pub(super) fn readings(
+        &self,
+        checked: &Checked,
+        written: &Written,
+    ) -> Result<Vec<(Reader, ShaderArtifact)>, Unproved> {
+        let (target, bytes) = match written {
+            Written::Lowered(lowered) => {
+                return Ok(vec![(Reader::Naga, ShaderArtifact::Lowered(lowered.clone()))]);
+            }
+            Written::Wgsl(text, style) => {
+                return Ok(vec![(
+                    Reader::Naga,
+                    ShaderArtifact::Wgsl(style.hosted_in(text, checked.stage)),
+                )]);
+            }
+            Written::Naga { target, bytes, .. } => (*target, bytes),
+        };
+        let channels = checked.channels.map(|shape| match shape {
+            SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
+            SamplerShape::D3 => Shape::D3,
+            SamplerShape::Cube => Shape::Cube,
+        });
+        let mut readings = Vec::new();
+        match target {
+            Target::Spirv => {
+                let words = spirv::of_bytes(bytes).ok_or(Unproved::PartialWord)?;
+                readings.push((Reader::Driver, ShaderArtifact::Words(words, channels)));
+            }
+            Target::Glsl => {
+                let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
+                let again = read_shadertoy(&text, checked.stage, self.timeout)?;
+                let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
+                let lowered = lowered.map_err(Unproved::Overdue)?;
+                readings.push((Reader::FrontEnd, ShaderArtifact::Lowered(lowered)));
+            }
+            Target::Wgsl | Target::Hlsl | Target::Msl => {}
+        }
+        if let Runner::Driver(_) = self.runner
+            && let Some((words, compiler)) = tool::compile(target, bytes)?
+        {
+            readings.push((Reader::Compiler(compiler), ShaderArtifact::Words(words, channels)));
+        }
+        Ok(readings)
+    }
+
+    /// Runs each reader's result; all of them must agree with the shader.
+    fn run(
+        &mut self,
+        source: Source,
+        readings: Vec<(Reader, ShaderArtifact)>,
+        frames: &[Frame],
+    ) -> Result<(Vec<Reader>, Proof), Unproved> {
+        let (readers, artifacts): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
+        let mut proofs = compare_with_original(
+            &mut self.runner,
+            source.checked,
+            artifacts,
+            frames,
+            self.timeout,
+            self.pool,
+        )?;
+        if let Some(proof) = proofs.first()
+            && let Some(by) = proof.undefined_by
+            && proof.undefined() == proof.pixels()
+        {
+            return Err(fully_undefined(by, source.files));
+        }
+        let different = proofs.iter().zip(&readers).find(|(proof, _)| !proof.holds());
+        if let Some((proof, reader)) = different {
+            return Err(Unproved::Differs {
+                reader: (readers.len() > 1).then(|| reader.clone()),
+                differing: proof.differing(),
+                pixels: proof.pixels(),
+                max_abs: proof.max_abs(),
+                against: proof.against,
+            });
+        }
+        // There is a proof for each reader, and at least one reader.
+        Ok((readers, proofs.swap_remove(0)))
+    }
+}
+
+fn differing_passes(passes: &[PassComparison]) -> String {
+    let differing = passes.iter().filter(|pass| pass.differing > 0);
+    differing.map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+/// Validates a file with an external tool, if one is installed; returns its name and version.
+pub(super) fn validate(written: &Written) -> Result<Option<String>, ToolError> {
+    match written {
+        Written::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
+        Written::Naga { target, bytes, .. } => tool::validate(*target, bytes),
+        // Only their hosts complete them.
+        Written::Wgsl(..) | Written::Lowered(_) => Ok(None),
+    }
+}
+
+/// The first channel whose texture is black in the compared frames.
+pub(super) fn unobserved(checked: &Checked) -> Option<Unproved> {
+    let channels = checked.channels.iter().enumerate();
+    channels
+        .filter_map(|(channel, shape)| match shape {
+            SamplerShape::Cube => Some((channel, "a cube map")),
+            SamplerShape::D3 => Some((channel, "a volume texture")),
+            SamplerShape::D2 | SamplerShape::D2Array => None,
+        })
+        .map(|(channel, shape)| Unproved::Unobserved { channel, shape })
+        .next()
+}
+
+/// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.
+pub(super) fn fully_undefined(by: Observed, files: &Files) -> Unproved {
+    let span = by.site.at.span;
+    let place = files.position(span);
+    let name = files.name(span);
+    Unproved::FullyUndefined {
+        fault: by.site.fault,
+        at: format!("{name}:{}:{}", place.line, place.column),
+    }
+}
+
+/// Renders a conversion and its original in a browser: their 8-bit colors may differ by at most 1/255, except
+/// in the pixels of each frame that are undefined. Returns the browser's name and the comparison; none for
+/// languages that browsers do not run.
+pub(super) fn in_browser(
+    browser: &mut Chromium,
+    source: Source,
+    written: &Written,
+    frames: &[Frame],
+    undefined: &[Vec<bool>],
+) -> Result<Option<(String, Rgb8Comparison)>, Unproved> {
+    let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
+    if source.checked.reads_textures() && !source.checked.channels.iter().all(is_flat) {
+        return Err(Unproved::BrowserChannel);
+    }
+    let original = browser::as_shadertoy(source.text());
+    let sampling = source.checked.sampling;
+    let render_original = |browser: &mut Chromium| {
+        let images = browser.render(Text::Glsl(&original), sampling, frames);
+        images.map_err(Unproved::BrowserOriginal)
+    };
+    let (original, converted) = match written {
+        Written::Wgsl(text, style) => {
+            let hosted = style.hosted_in(text, source.checked.stage);
+            let original = render_original(browser)?;
+            let images = browser.render(Text::Wgsl(&hosted.text), sampling, frames);
+            let images = images.map_err(Unproved::Browser)?;
+            if hosted.upside_down {
+                (original, images.iter().map(Image::upside_down).collect())
+            } else {
+                (original, images)
+            }
+        }
+        Written::Naga {
+            target: Target::Glsl,
+            bytes,
+            ..
+        } => {
+            let original = render_original(browser)?;
+            let text = String::from_utf8_lossy(bytes);
+            let images = browser.render(Text::Glsl(&text), sampling, frames);
+            (original, images.map_err(Unproved::Browser)?)
+        }
+        Written::Naga { .. } | Written::Lowered(_) => return Ok(None),
+    };
+    let shown = Rgb8Comparison::of(&original, &converted, undefined);
+    if shown.differing > 0 {
+        return Err(Unproved::BrowserDiffers(shown));
+    }
+    let name = browser.name().unwrap_or("Chromium").to_owned();
+    Ok(Some((name, shown)))
+}

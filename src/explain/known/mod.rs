@@ -1,0 +1,501 @@
+//! Finds the mistake that explains a wrong image: the image is compared with those of mutants, tracers with
+//! one classic mistake, and with two at once where no single one explains it. A mistake replaces parts of the
+//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
+
+mod catalogue;
+mod change;
+#[cfg(test)]
+mod documentation;
+mod fit;
+mod mutant;
+mod pair;
+mod stochastic;
+mod thumbnail;
+
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+use toyproof_diagnostic::Span;
+use toyproof_eval::{Places, Program};
+use toyproof_image::Frame;
+use toyproof_scene::export::MarkedShader;
+use toyproof_scene::{FrameTime, Scene};
+
+use crate::known::mutant::{Mutant, MutantSource, render};
+use crate::known::thumbnail::{
+    Thumbnail, View, WrongImage, cost_per_pixel, differing, max_unexplained, pixels,
+};
+use toyproof_verify::MAX_DIFFERING;
+
+/// A mistake that a shader may have, or a symptom of many mistakes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KnownMistake {
+    /// The id, such as `far-root`, under which `docs/guide/mistakes.md` lists it.
+    pub id: &'static str,
+    /// The bug in the shader, to follow “likely mistake: ”.
+    pub description: Cow<'static, str>,
+    /// Whether it is only a symptom of many mistakes: most of the image is lost.
+    pub is_symptom: bool,
+    /// Where it is in the shader, if that is known.
+    pub at: Option<Span>,
+}
+
+impl KnownMistake {
+    pub(crate) fn new(id: &'static str, description: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            id,
+            description: description.into(),
+            is_symptom: false,
+            at: None,
+        }
+    }
+
+    /// A symptom of many mistakes.
+    fn symptom(id: &'static str, description: &'static str) -> Self {
+        Self {
+            is_symptom: true,
+            ..Self::new(id, description)
+        }
+    }
+}
+
+/// Rays that hit the surface they start from.
+pub(crate) fn self_intersection() -> KnownMistake {
+    KnownMistake::new(
+        "self-intersection",
+        "self-intersection (shadow acne): secondary rays start on the surface; offset the origin along the normal \
+         or use a minimum t of about 1e-3",
+    )
+}
+
+/// What explains a wrong image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnosis {
+    /// The mistake, or two that were made at once; never empty.
+    pub mistakes: Vec<KnownMistake>,
+    /// Other mistakes each of which alone renders the same image, the most likely first.
+    pub alternatives: Vec<KnownMistake>,
+}
+
+/// The largest number of alternative mistakes that are reported.
+const MAX_ALTERNATIVES: usize = 3;
+
+impl Diagnosis {
+    /// A single mistake without alternatives.
+    pub(crate) fn of(mistake: KnownMistake) -> Self {
+        Self {
+            mistakes: vec![mistake],
+            alternatives: Vec::new(),
+        }
+    }
+
+    /// The mistakes of a mutant. The `others` render the same image.
+    fn new(mutant: &Mutant, others: &[&Mutant]) -> Self {
+        let mistakes = mutant.mistakes.clone();
+        let mut alternatives: Vec<KnownMistake> = Vec::new();
+        for other in others.iter().flat_map(|other| &other.mistakes) {
+            // A change of the scene may be equivalent to an edit of the shader.
+            let is_same =
+                |known: &KnownMistake| known.id == other.id || known.description == other.description;
+            if alternatives.len() < MAX_ALTERNATIVES && !mistakes.iter().chain(&alternatives).any(is_same) {
+                alternatives.push(other.clone());
+            }
+        }
+        Self {
+            mistakes,
+            alternatives,
+        }
+    }
+
+    /// The id of the mistake; for two at once both ids, such as `no-aspect+no-gamma`.
+    #[must_use]
+    pub fn id(&self) -> String {
+        let ids: Vec<&str> = self.mistakes.iter().map(|mistake| mistake.id).collect();
+        ids.join("+")
+    }
+}
+
+/// A part of the search for the mistake, in the order of the parts. The later ones find nothing where a single
+/// mistake matches, even if it is not reported.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The mistakes of the catalogue, and changes of the scene.
+    Single,
+    /// One wrong number, and single mistakes with other ray epsilons.
+    Number,
+    /// Two mistakes at once, in at most that many pairs.
+    Pair(usize),
+}
+
+/// The largest width and height, in pixels, and the largest work of the first comparison, so that hundreds of
+/// images take seconds.
+const SMALL_SIDE: u32 = 96;
+const SMALL_WORK: u64 = 100_000;
+
+/// The largest work of the image that confirms a mistake.
+const LARGE_WORK: u64 = 16 * SMALL_WORK;
+
+/// The smallest number of pixels of an image that is compared.
+const MIN_VIEW_PIXELS: u32 = 256;
+
+/// The number of wrong pixels below which larger images are compared, and the factor of their width and
+/// height.
+const MIN_WRONG_PIXELS_SMALL: u64 = 32;
+const FINE_FACTOR: u32 = 3;
+
+/// The number of wrong pixels below which the cause may be anything, even other ray epsilons.
+const MIN_WRONG_PIXELS: u64 = 8;
+
+/// The largest number of mistakes, besides the first, that render the same image; with more, there are too
+/// many explanations and none is reported.
+const MAX_OTHER_MISTAKES: usize = 3;
+
+/// The smallest number of pixels that a mistake must explain, all of them, and the largest number that are
+/// compared.
+const MIN_EXPLAINED_PIXELS: usize = 4;
+const MAX_COMPARED_PIXELS: usize = 40;
+
+/// The number of pairs of mistakes that are rendered before they are compared.
+const PAIR_BATCH: usize = 32;
+
+/// The mutants of a scene. Their images are rendered once, on first use.
+#[derive(Debug)]
+pub struct Hypotheses {
+    scene: Scene,
+    frame_time: FrameTime,
+    /// The view of the first comparison.
+    small: View,
+    /// The tracer and the shaders without a mistake.
+    correct: Vec<Mutant>,
+    /// Mutants that lose most of the image, so that many mistakes may be the cause.
+    general: Vec<Mutant>,
+    wrong: Vec<Mutant>,
+    /// The shader that renders the scene, as students write it, in each of the variants that matter.
+    shaders: Vec<MarkedShader>,
+    /// The hypotheses for larger images, created when needed; none if these are large.
+    fine: Option<OnceLock<Box<Hypotheses>>>,
+}
+
+impl Hypotheses {
+    /// Creates the hypotheses for images of a frame; none if the scene is so expensive that no image worth
+    /// comparing is small enough.
+    #[must_use]
+    pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {
+        let small = View::of(frame, SMALL_SIDE, SMALL_WORK / cost_per_pixel(scene));
+        let is_enough = small.pixels() >= u64::from(MIN_VIEW_PIXELS).min(pixels(frame));
+        is_enough.then(|| Self::in_size(scene, small, Some(OnceLock::new())))
+    }
+
+    fn in_size(scene: &Scene, small: View, fine: Option<OnceLock<Box<Self>>>) -> Self {
+        let frame_time = FrameTime::from(&small.frame);
+        let shaders = mutant::variants(scene);
+        let tracer = MutantSource::Scene(Box::new(scene.clone()), frame_time);
+        let correct_images = [tracer]
+            .into_iter()
+            .chain(shaders.iter().cloned().map(MutantSource::Shader));
+        let changed = |change: change::Change| {
+            Mutant::new(
+                vec![change.mistake],
+                MutantSource::Scene(Box::new(change.scene), change.frame_time),
+            )
+        };
+        let edited = shaders
+            .iter()
+            .flat_map(|shader| catalogue::all().filter_map(|mistake| Mutant::edited(shader, mistake)));
+        let changes = change::all(scene, frame_time).into_iter().map(changed);
+        Self {
+            scene: scene.clone(),
+            frame_time,
+            small,
+            correct: correct_images
+                .map(|source| Mutant::new(Vec::new(), source))
+                .collect(),
+            general: change::general(scene, frame_time)
+                .into_iter()
+                .map(changed)
+                .collect(),
+            wrong: edited.chain(changes).collect(),
+            shaders,
+            fine,
+        }
+    }
+
+    /// Returns the hypotheses for images large enough to distinguish mistakes where few pixels are wrong.
+    fn fine(&self, frame: &Frame) -> Option<&Self> {
+        let fine = self.fine.as_ref()?;
+        let work = u64::from(FINE_FACTOR * FINE_FACTOR) * SMALL_WORK / cost_per_pixel(&self.scene);
+        let large = View::of(frame, FINE_FACTOR * SMALL_SIDE, work);
+        let has_more_pixels = large.pixels() > self.small.pixels();
+        has_more_pixels.then(|| {
+            fine.get_or_init(|| Box::new(Self::in_size(&self.scene, large, None)))
+                .as_ref()
+        })
+    }
+
+    /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. The result does
+    /// not depend on the machine's load.
+    #[must_use]
+    pub fn recognize(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Diagnosis> {
+        let stages = [Stage::Single, Stage::Number, Stage::Pair(pairs)];
+        stages
+            .into_iter()
+            .find_map(|stage| self.recognize_in(stage, student, frame))
+    }
+
+    /// Returns what [`Self::recognize`] finds in one of its stages.
+    #[must_use]
+    pub fn recognize_in(&self, stage: Stage, student: &Program, frame: &Frame) -> Option<Diagnosis> {
+        let small = render(student, &self.small)?;
+        let pixels = small.pixels().len();
+        let correct_images = self
+            .correct
+            .iter()
+            .filter_map(|correct| correct.image(&self.small));
+        let (differing, correct) = correct_images
+            .map(|correct| (thumbnail::differing(&small, correct), correct))
+            .min_by_key(|&(differing, _)| differing)?;
+        if differing < MIN_WRONG_PIXELS_SMALL
+            && let Some(fine) = self.fine(frame)
+        {
+            return fine.recognize_in(stage, student, frame);
+        }
+        if differing < MIN_WRONG_PIXELS || differing as f64 <= pixels as f64 * MAX_DIFFERING {
+            return None;
+        }
+        let wrong_image = WrongImage {
+            differing,
+            small: &small,
+            view: &self.small,
+        };
+        let confirmed = |mutant: &Mutant, others: &[&Mutant]| {
+            self.is_confirmed(mutant, student, frame)
+                .then(|| Diagnosis::new(mutant, others))
+        };
+        let general_matches = wrong_image.matching(&self.general);
+        let single_matches = wrong_image.matching(&self.wrong);
+        if stage == Stage::Single {
+            return match (general_matches.first(), &single_matches[..]) {
+                (Some(_), [single]) => confirmed(single, &[]),
+                (Some(general), singles) => confirmed(general, singles),
+                (None, [first, others @ ..]) if others.len() <= MAX_OTHER_MISTAKES => {
+                    confirmed(first, others)
+                }
+                _ => None,
+            };
+        }
+        if !general_matches.is_empty() || !single_matches.is_empty() {
+            return None;
+        }
+        // Some numbers remove all color from any image, and so do many pairs: an image of one color allows no
+        // further conclusion.
+        if small.pixels().windows(2).all(|pair| pair[0] == pair[1]) {
+            return None;
+        }
+        let Stage::Pair(pairs) = stage else {
+            let shader = self.shaders.first();
+            let fitted = fit::fitted_mutants(&self.scene, self.frame_time, shader, &wrong_image, correct);
+            if let Some(mutant) = wrong_image.matching(&fitted).first() {
+                return confirmed(mutant, &[]);
+            }
+            let near_misses = wrong_image.near_misses(self.general.iter().chain(&self.wrong));
+            let with_other_epsilons: Vec<Mutant> = near_misses
+                .iter()
+                .flat_map(|mutant| mutant.with_other_epsilons(self.frame_time, self.scene.max_offset))
+                .collect();
+            let matching = wrong_image.matching(&with_other_epsilons);
+            return matching.first().and_then(|mutant| confirmed(mutant, &[]));
+        };
+        // General mistakes first: of those that render the same image, they claim least.
+        let thumbnail = Thumbnail::render(student, &self.correct, &self.small)?;
+        let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &wrong_image, correct);
+        likely.truncate(pairs);
+        likely.chunks(PAIR_BATCH).find_map(|pairs| {
+            let rendered: Vec<Mutant> = pairs
+                .par_iter()
+                .filter_map(|&pair| pair::both(pair, self.frame_time))
+                .filter(|pair| thumbnail.may_explain(pair) && wrong_image.unexplained_pixels(pair).is_some())
+                .collect();
+            wrong_image
+                .matching(&rendered)
+                .first()
+                .and_then(|pair| confirmed(pair, &[]))
+        })
+    }
+
+    /// Whether a mutant explains a larger image as well, perhaps with other ray epsilons.
+    fn is_confirmed(&self, mutant: &Mutant, student: &Program, frame: &Frame) -> bool {
+        let large = View::of(frame, u32::MAX, LARGE_WORK / cost_per_pixel(&self.scene));
+        let correct = || self.correct.first()?.source.render(&large);
+        let (Some(wrong), Some(correct)) = (render(student, &large), correct()) else {
+            return false;
+        };
+        let all = differing(&wrong, &correct);
+        let limit = max_unexplained(all, wrong.pixels().len());
+        drop(correct);
+        let explains = |mutant: &Mutant| {
+            let image = mutant.source.render(&large);
+            image.is_some_and(|image| differing(&wrong, &image) <= limit)
+        };
+        let explains_with_other_epsilons = || {
+            let others = mutant.with_other_epsilons(self.frame_time, self.scene.max_offset);
+            others.par_iter().any(explains)
+        };
+        explains(mutant) || explains_with_other_epsilons()
+    }
+
+    /// Returns what explains a few pixels in which the `student`'s shader has a wrong color, and
+    /// no others; none with fewer than `MIN_EXPLAINED_PIXELS` pixels.
+    #[must_use]
+    pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Diagnosis> {
+        if pixels.len() < MIN_EXPLAINED_PIXELS {
+            return None;
+        }
+        let step = pixels.len().div_ceil(MAX_COMPARED_PIXELS);
+        let coordinates = |axis: usize| {
+            let places = pixels.iter().step_by(step).map(|pixel| pixel[axis]);
+            let places: std::collections::BTreeSet<u32> = places.collect();
+            places.into_iter().map(|place| f64::from(place) + 0.5).collect()
+        };
+        let view = View {
+            frame: self.small.frame.clone(),
+            places: Places {
+                columns: coordinates(0),
+                rows: coordinates(1),
+            },
+        };
+        let own = render(student, &view)?;
+        let correct = self.correct.first()?.source.render(&view)?;
+        let wrong = differing(&own, &correct);
+        let explains = |mutant: &&Mutant| {
+            let image = mutant.source.render(&view);
+            image.is_some_and(|image| differing(&own, &image) == 0)
+        };
+        if wrong < MIN_EXPLAINED_PIXELS as u64 {
+            return None;
+        }
+        let explaining: Vec<&Mutant> = self.wrong.par_iter().filter(explains).collect();
+        let (first, others) = explaining.split_first()?;
+        (others.len() <= MAX_OTHER_MISTAKES).then(|| Diagnosis::new(first, others))
+    }
+}
+
+/// The scenes of the exercises.
+#[cfg(test)]
+mod exercises {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_scene::{Scene, parse};
+
+    macro_rules! exercises {
+        ($($name:literal),* $(,)?) => {
+            [$(($name, include_str!(concat!("../../../glsl/", $name, ".toml")))),*]
+        };
+    }
+
+    /// The name and the text of each.
+    pub(super) const EXERCISES: [(&str, &str); 15] = exercises![
+        "01-sampling",
+        "02-sphere",
+        "03-shading",
+        "04-many-objects",
+        "05-complex-scene",
+        "06-reflections",
+        "07-diffuse",
+        "08-disney",
+        "09-soft-shadows",
+        "10-quadrics",
+        "11-animation",
+        "12-whitted",
+        "13-importance-sampling",
+        "14-accelerator",
+        "15-parallel-rays",
+    ];
+
+    /// Scenes with what no exercise has.
+    const OTHER_SCENES: [&str; 5] = [NESTED_MOTIONS, BOTH_GLASSES, DIFFUSE_PATHS, MOVED_CAMERA, TURNED];
+
+    /// A turned camera, a turned box, and patterns.
+    pub(super) const TURNED: &str = r#"
+        camera = { eye = [2, 3, 1], look_at = [0.1, 0, -6], roll = 20, fov = 50 }
+        light = [{ position = [9, 9, 5] }]
+        box = [
+            { center = [-0.8, 0.2, -6], size = [1.5, 1.2, 1], axis = [0.2, 1, 0], angle = 30, material = { model = "lambert", color = [0.9, 0.4, 0.2], checker = { color = [0.2, 0.3, 0.4], size = 0.3, space = "object" } } },
+        ]
+        sphere = [
+            { center = [1.2, 0, -6.5], radius = 1, material = { model = "lambert", color = [0.2, 0.4, 0.9], stripes = { color = [0.9, 0.9, 0.6], size = 0.3, direction = [1, 2, 0], space = "object" } } },
+        ]
+    "#;
+
+    const NESTED_MOTIONS: &str = r#"
+        motion = [
+            { name = "a", axis = [0, 1, 0], seconds = 2 },
+            { name = "b", axis = [0, 1, 0], seconds = 2, within = "a" },
+            { name = "c", axis = [0, 1, 0], seconds = 2, within = "b" },
+            { name = "d", axis = [0, 1, 0], seconds = 2, within = "c" },
+        ]
+        sphere = [
+            { center = [0, 0, -6], radius = 1, motion = "d", material = { model = "facing", color = [1, 1, 0] } },
+        ]
+    "#;
+
+    const BOTH_GLASSES: &str = r#"
+        sphere = [
+            { center = [-2, 0, -6], radius = 1, material = { model = "glass", color = [1, 1, 0], ior = 1.5 } },
+            { center = [2, 0, -6], radius = 1, material = { model = "glass", color = [1, 1, 0], ior = 1.5, fresnel = "schlick" } },
+        ]
+    "#;
+
+    const MOVED_CAMERA: &str = r#"
+        camera = { eye = [0, 1, 0] }
+        sphere = [{ center = [0, 0, -6], radius = 1, material = { model = "facing", color = [1, 1, 0] } }]
+    "#;
+
+    const DIFFUSE_PATHS: &str = r#"
+        film = { integrator = "path", max_depth = 3, samples = 2, sampler = "independent" }
+        sphere = [
+            { center = [0, 4, -6], radius = 1, material = { model = "emitter", color = [9, 9, 9] } },
+            { center = [0, 0, -6], radius = 1, material = { model = "diffuse", color = [1, 1, 0] } },
+        ]
+    "#;
+
+    /// The scenes of the exercises, and others, so that each mistake can be made in one of them.
+    pub(super) fn scenes() -> impl Iterator<Item = Scene> {
+        let exercises = EXERCISES.into_iter().map(|(_, text)| text);
+        exercises.chain(OTHER_SCENES).map(scene_of)
+    }
+
+    pub(super) fn scene_of(text: &str) -> Scene {
+        let mut files = Files::default();
+        let file = files.add(File::new("scene", text));
+        parse(&files, file).unwrap()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exercises::scenes;
+    use super::*;
+
+    #[test]
+    fn alternatives_are_few_and_not_repeated() {
+        let scene = scenes().next().unwrap();
+        let mutant = |id, description: &'static str| {
+            let source = MutantSource::Scene(Box::new(scene.clone()), FrameTime::default());
+            Mutant::new(vec![KnownMistake::new(id, description)], source)
+        };
+        let first = mutant("a", "one");
+        let others = [
+            mutant("a", "two"),
+            mutant("b", "one"),
+            mutant("c", "three"),
+            mutant("c", "four"),
+            mutant("d", "five"),
+            mutant("e", "six"),
+            mutant("f", "seven"),
+        ];
+        let diagnosis = Diagnosis::new(&first, &others.iter().collect::<Vec<_>>());
+        assert_eq!(diagnosis.id(), "a");
+        let alternatives: Vec<_> = diagnosis.alternatives.iter().map(|known| known.id).collect();
+        assert_eq!(alternatives, ["c", "d", "e"]);
+    }
+}

@@ -1,0 +1,335 @@
+//! Confirms repairs: the edited text is checked as if its author had written it, in a second frame and in the
+//! first.
+
+use std::sync::OnceLock;
+use std::time::Instant;
+
+use toyproof_diagnostic::{Deadline, Edit, File, Files, Fix, Span};
+use toyproof_eval::Fault;
+use toyproof_glsl::{self as glsl, Checked};
+use toyproof_image::Frame;
+use toyproof_lint::Lints;
+
+use super::edit::EditKind;
+use super::search::Before;
+use super::{Repair, SearchOptions};
+use crate::known::KnownMistake;
+use toyproof_verify::bounds::MIN_IMAGE_ITERATIONS;
+use toyproof_verify::{Case, CheckResults, Expected, Ruling, Verdict, verify_within};
+
+/// The second frame: another size and shape of the image, and another time if the scene moves.
+const OTHER_SIZE: [u32; 2] = [132, 100];
+const OTHER_TIME: f32 = 1.3;
+
+/// The largest number of samples of its image, all pixels together.
+const MAX_SAMPLES: u32 = 1 << 19;
+
+/// Confirms the repairs of one shader.
+pub(super) struct Judge<'a> {
+    case: &'a Case<'a>,
+    expected: &'a Expected,
+    options: SearchOptions<'a>,
+    before: Before<'a>,
+    deadline: Instant,
+    /// The second frame and its reference.
+    other: OnceLock<Option<(Frame, Expected)>>,
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(
+        case: &'a Case<'a>,
+        expected: &'a Expected,
+        options: SearchOptions<'a>,
+        before: Before<'a>,
+        deadline: Instant,
+    ) -> Self {
+        Self {
+            case,
+            expected,
+            options,
+            before,
+            deadline,
+            other: OnceLock::new(),
+        }
+    }
+
+    /// Returns the repair if the edited shader is right in both frames, and no pixel depends on undefined behavior
+    /// that did not before. `iterations` bounds the loop iterations of most of its pixels.
+    pub(super) fn confirm(&self, fix: Fix, kinds: &[EditKind], iterations: u32) -> Option<Repair> {
+        let (_, checked) = self.edited(&fix)?;
+        let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
+        let (results, ruling) = self.verified(&checked, self.case.frame, self.expected, iterations)?;
+        let summary = &results.algorithm.as_ref()?.summary;
+        if self.adds_fault(
+            &results.faults,
+            summary.undefined > self.before.check.summary.undefined,
+        ) {
+            return None;
+        }
+        let by_means = ruling.reason.compares_means();
+        // Means are compared over many sets of random numbers; a second frame would add little evidence.
+        if !by_means {
+            let (frame, expected) = self.other.get_or_init(|| self.other_frame()).as_ref()?;
+            let (results, _) = self.verified(&checked, frame, expected, iterations)?;
+            if self.adds_fault(&results.faults, false) {
+                return None;
+            }
+        }
+        let differing = if by_means { 0 } else { summary.differing };
+        Some(Repair {
+            fix,
+            mistake: mistake(kinds),
+            agreeing: summary.pixels - differing,
+            pixels: summary.pixels,
+            by_means,
+            image: results.actual,
+        })
+    }
+
+    /// The shader with the edits, if it is valid.
+    pub(super) fn edited(&self, fix: &Fix) -> Option<(String, Checked)> {
+        let text = apply(self.options.source, fix)?;
+        let mut files = Files::default();
+        let file = files.add(File::new("<repair>", text.as_str()));
+        let options = glsl::Options {
+            lenient: self.options.lenient,
+            channels: self.case.checked.channels.map(Some),
+            deadline: Deadline::after(self.deadline.saturating_duration_since(Instant::now())),
+            ..glsl::Options::default()
+        };
+        let checked = glsl::check(&files, file, &options).ok()?;
+        Some((text, checked))
+    }
+
+    /// The results of the checks, if nothing speaks against the algorithm.
+    fn verified(
+        &self,
+        checked: &Checked,
+        frame: &Frame,
+        expected: &Expected,
+        max_iterations: u32,
+    ) -> Option<(CheckResults, Ruling)> {
+        let case = Case {
+            checked,
+            lints: &Lints::default(),
+            expected: Some(expected),
+            frame,
+            ..*self.case
+        };
+        let verified = verify_within(&case, max_iterations, self.deadline).ok()?;
+        let ruling = verified.ruling();
+        let is_right = matches!(ruling.verdict, Verdict::Correct | Verdict::Unstable);
+        // There is no precision check where double precision could not be evaluated.
+        (is_right && verified.results.precision.is_some()).then_some((verified.results, ruling))
+    }
+
+    /// Whether the edited shader has more faults of a kind than the shader: reads of elements that do not exist or
+    /// of variables without a value, which are no repair, or other undefined operations on which colors depend.
+    fn adds_fault(&self, faults: &[Fault], excludes_more: bool) -> bool {
+        let count = |faults: &[Fault], fault: Fault| faults.iter().filter(|&&other| other == fault).count();
+        faults.iter().any(|&fault| {
+            let is_serious = match fault {
+                Fault::IndexOutOfBounds | Fault::NeverWritten => true,
+                // At an edge of any shader that takes derivatives.
+                Fault::LonelyDerivative => false,
+                _ => excludes_more && fault.is_undefined(),
+            };
+            is_serious && count(faults, fault) > count(self.before.faults, fault)
+        })
+    }
+
+    /// None if the reference cannot be rendered there.
+    fn other_frame(&self) -> Option<(Frame, Expected)> {
+        let mut frame = self.case.frame.clone();
+        frame.size = OTHER_SIZE;
+        while frame.size[0] * frame.size[1] * self.expected.samples() > MAX_SAMPLES && frame.size[1] > 16 {
+            frame.size = frame.size.map(|side| side * 3 / 4);
+        }
+        if self.expected.is_animated() {
+            frame.time += OTHER_TIME;
+        }
+        let expected = self.expected.in_frame(&frame)?;
+        Some((frame, expected))
+    }
+}
+
+/// The text after all edits, which are sorted and do not overlap; none if they do.
+pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
+    let mut text = String::with_capacity(source.len() + 64);
+    let mut end = 0;
+    for edit in &fix.edits {
+        text.push_str(source.get(end..edit.span.start as usize)?);
+        text.push_str(&edit.replacement);
+        end = edit.span.end as usize;
+    }
+    text.push_str(source.get(end..)?);
+    Some(text)
+}
+
+/// The edits of a text, and those of the text that they result in, as edits of the first; none if they
+/// overlap.
+pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
+    let mut edits = first.edits.clone();
+    for edit in &second.edits {
+        // How much longer the first edits in front of this one, and inside of it, make the text.
+        let (mut shift, mut inside) = (0_i64, 0_i64);
+        let [mut start, mut end] = [edit.span.start, edit.span.end].map(i64::from);
+        for before in &first.edits {
+            let from = i64::from(before.span.start) + shift + inside;
+            let to = from + before.replacement.len() as i64;
+            let growth = before.replacement.len() as i64 - i64::from(before.span.end - before.span.start);
+            if start >= to {
+                shift += growth;
+            } else if start <= from && to <= end {
+                // The second edit's text contains what the first one wrote.
+                inside += growth;
+                edits.retain(|own| own.span != before.span);
+            } else if end > from {
+                return None;
+            }
+        }
+        start -= shift;
+        end -= shift + inside;
+        let [start, end] = [start, end].map(u32::try_from);
+        edits.push(Edit {
+            span: Span::new(first.edits.first()?.span.file, start.ok()?, end.ok()?),
+            replacement: edit.replacement.clone(),
+        });
+    }
+    edits.sort_by_key(|edit| edit.span.start);
+    let overlap = edits.windows(2).any(|pair| pair[0].span.end > pair[1].span.start);
+    (!overlap).then(|| Fix {
+        message: format!("{}, and {}", first.message, second.message),
+        edits,
+    })
+}
+
+/// The mistake that edits of these kinds repair.
+fn mistake(kinds: &[EditKind]) -> KnownMistake {
+    match kinds {
+        [only] => only.mistake(),
+        _ => EditKind::Two.mistake(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use toyproof_verify::{DEFAULT_TOLERANCE, ShaderReference, verify};
+
+    fn fix(edits: &[(u32, u32, &str)]) -> Fix {
+        let file = Files::default().add(File::new("a", ""));
+        let edits = edits.iter().map(|&(start, end, replacement)| Edit {
+            span: Span::new(file, start, end),
+            replacement: replacement.to_owned(),
+        });
+        Fix {
+            message: "edit".to_owned(),
+            edits: edits.collect(),
+        }
+    }
+
+    /// Whether replacing `old` by `new` in a shader repairs it, compared with a reference shader.
+    fn is_confirmed(shader: &str, reference: &str, old: &str, new: &str) -> bool {
+        let checked = |text: &str| {
+            let mut files = Files::default();
+            let file = files.add(File::new("s", text));
+            glsl::check(&files, file, &glsl::Options::default()).unwrap()
+        };
+        let frame = Frame {
+            size: [24, 16],
+            ..Frame::default()
+        };
+        let lints = Lints::default();
+        let timeout = Duration::from_secs(60);
+        let reference = ShaderReference::new(&checked(reference), &lints, &frame, DEFAULT_TOLERANCE, timeout);
+        let expected = Expected::Shader(Box::new(reference.unwrap().0));
+        let checked = checked(shader);
+        let case = Case::new(&checked, &lints, &frame)
+            .with_expected(&expected)
+            .with_timeout(timeout);
+        let before = verify(None, &case).unwrap();
+        assert_eq!(before.ruling().verdict, Verdict::Wrong);
+        let before = before.results;
+        let options = SearchOptions {
+            source: shader,
+            lenient: false,
+            budget: 1.0,
+            donors: None,
+        };
+        let before = Before {
+            check: before.algorithm.as_ref().unwrap(),
+            faults: &before.faults,
+            compares_means: false,
+        };
+        let judge = Judge::new(&case, &expected, options, before, Instant::now() + timeout);
+        let start = shader.find(old).unwrap() as u32;
+        let span = Span::new(
+            checked.tree[checked.main_image].at.span.file,
+            start,
+            start + old.len() as u32,
+        );
+        judge
+            .confirm(Fix::new("edit", span, new), &[EditKind::Number], 0)
+            .is_some()
+    }
+
+    #[test]
+    fn an_edit_that_reads_nothing_defined_is_no_repair() {
+        let with = |index: &str| {
+            format!(
+                "void mainImage(out vec4 c, in vec2 p) {{
+                    float unset;
+                    float all[3] = float[](0.2, 0.5, 0.8);
+                    int at = p.x < 12.0 ? {index} : 0;
+                    float zero = 0.6;
+                    c = vec4(all[at], zero - 0.6, 0.0, 1.0);
+                }}"
+            )
+        };
+        let (wrong, right) = (with("1"), with("2"));
+        let repairs = |new| is_confirmed(&wrong, &right, "? 1", new);
+        assert!(repairs("? 2"));
+        // The last element is used, as on the GPU.
+        assert!(!repairs("? 7"));
+        let wrong = right.replace("zero - 0.6", "zero");
+        let repairs = |new| is_confirmed(&wrong, &right, "zero, 0.0", new);
+        assert!(repairs("zero - 0.6, 0.0"));
+        assert!(!repairs("unset, 0.0"));
+    }
+
+    #[test]
+    fn a_fault_of_the_shader_itself_prevents_no_repair() {
+        let with = |color: &str| {
+            format!(
+                "void mainImage(out vec4 c, in vec2 p) {{
+                    float all[3] = float[](0.2, 0.5, 0.8);
+                    float seen = all[int(p.x / 4.0)];
+                    c = p.x < 12.0 ? vec4({color}, seen, 0.0, 1.0) : vec4(0.3);
+                }}"
+            )
+        };
+        assert!(is_confirmed(&with("0.5"), &with("0.7"), "0.5, seen", "0.7, seen"));
+    }
+
+    #[test]
+    fn composed_edits_give_the_text_of_both() {
+        let source = "a = b + c; d = e;";
+        let first = fix(&[(4, 5, "long"), (8, 9, "")]);
+        let text = apply(source, &first).unwrap();
+        assert_eq!(text, "a = long + ; d = e;");
+        for (start, end, replacement) in [(0, 1, "x"), (17, 18, "f"), (9, 10, "-"), (13, 14, "")] {
+            let second = fix(&[(start, end, replacement)]);
+            let both = compose(&first, &second).unwrap();
+            assert_eq!(apply(source, &both), apply(&text, &second), "{second:?}");
+        }
+        // The second edit encloses the first.
+        let whole = fix(&[(4, 10, "f(long)")]);
+        let both = compose(&first, &whole).unwrap();
+        assert_eq!(both.edits.len(), 2);
+        assert_eq!(apply(source, &both), apply(&text, &whole));
+        assert_eq!(compose(&first, &fix(&[(5, 6, "i")])), None);
+    }
+}

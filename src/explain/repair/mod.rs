@@ -1,0 +1,97 @@
+//! Repair: finds the lines that a wrong image depends on, and the smallest edits of the shader's own text
+//! after which its image is the expected one.
+
+mod confirm;
+mod edit;
+mod edits;
+mod fit;
+mod group;
+mod localize;
+mod probe;
+mod scan;
+mod schema;
+mod search;
+mod shader;
+mod term;
+mod trials;
+mod under_test;
+
+use toyproof_diagnostic::{Fix, Span};
+use toyproof_glsl::Checked;
+use toyproof_image::Rgb8Image;
+
+pub(crate) use self::search::{Before, NoisyImage, search};
+use crate::known::KnownMistake;
+
+/// The mistakes that repairs are named after.
+#[cfg(test)]
+pub(crate) fn mistakes() -> impl Iterator<Item = KnownMistake> {
+    edit::EditKind::ALL.iter().map(|kind| kind.mistake())
+}
+
+/// What a search needs besides the shader and its reference.
+#[derive(Debug, Clone, Copy)]
+pub struct SearchOptions<'a> {
+    /// The text of the shader's file.
+    pub source: &'a str,
+    /// Whether the shader was checked leniently, see [`toyproof_glsl::Options::lenient`].
+    pub lenient: bool,
+    /// The work that may be done, in units of about a second on one core. Work is counted, not timed, so that
+    /// the result is the same on any machine and with any number of threads.
+    pub budget: f64,
+    /// Expressions of correct shaders; if given, only these are tried.
+    pub donors: Option<&'a Donors>,
+}
+
+/// Expressions of correct shaders for the same assignment. Where no small edit repairs a shader, one of them
+/// may.
+#[derive(Debug, Default)]
+pub struct Donors(Vec<edits::Donor>);
+
+impl Donors {
+    /// Collects the expressions of some shaders; their order does not matter.
+    pub fn of<'a>(shaders: impl IntoIterator<Item = &'a Checked>) -> Self {
+        Self(edits::donors(shaders.into_iter().map(|shader| &shader.tree)))
+    }
+}
+
+/// The default of [`SearchOptions::budget`].
+pub const DEFAULT_BUDGET: f64 = 5.0;
+
+/// An edit of the shader, or two at once, after which its image is the expected one.
+#[derive(Debug, Clone)]
+pub struct Repair {
+    /// The edits, with a sentence such as ``replace `tca + thc` with `tca - thc` ``.
+    pub fix: Fix,
+    /// What is wrong with the shader, named by the kind of the edit.
+    pub mistake: KnownMistake,
+    /// The number of pixels that agree with the reference after the edit.
+    pub agreeing: u64,
+    /// The number of pixels that were compared.
+    pub pixels: u64,
+    /// Whether their means agree, because the shader has random numbers of its own.
+    pub by_means: bool,
+    /// The image after the edit, as displayed.
+    pub image: Rgb8Image,
+}
+
+/// A part of the shader on which the wrong pixels depend more than the others.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Suspect {
+    /// The statement.
+    pub span: Span,
+    /// The suspicion, from 0 to 1.
+    pub score: f64,
+}
+
+/// What the search found.
+#[derive(Debug, Clone, Default)]
+pub struct SearchResult {
+    /// At most three repairs, the most likely first. Each alone repairs the image.
+    pub repairs: Vec<Repair>,
+    /// At most three suspects, on different lines, the most suspicious first; also if there are repairs.
+    pub suspects: Vec<Suspect>,
+    /// Whether the budget ended before all edits were tried. That a search ended at its deadline, which only a hang
+    /// exceeds, is in [`Findings::is_cut_by_time`](crate::Findings::is_cut_by_time).
+    pub is_cut: bool,
+}

@@ -1,0 +1,336 @@
+//! The order in which explanations of a difference are searched for, and the verdict that follows.
+
+use std::time::Instant;
+
+use toyproof_diagnostic::Diagnostic;
+use toyproof_eval::Places;
+use toyproof_verify::bounds::explanation_deadline;
+use toyproof_verify::compare::CheckResult;
+use toyproof_verify::contain::{Panic, Part, contain};
+use toyproof_verify::random::Reseeding;
+use toyproof_verify::{
+    CheckEvidence, Checks, Examined, MAX_UNSTABLE, Reason, Ruling, Share, Verdict, Verified, cause, unbound,
+    within,
+};
+
+use crate::known::{self, Diagnosis, Stage};
+use crate::repair::{self, Before, NoisyImage, SearchResult};
+use crate::whole_image::{self, Alternative, Alternatives, WrongShader};
+use crate::{Explanation, Options};
+
+/// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
+const MAX_PAIRS: usize = 512;
+
+/// The largest numbers of columns and of rows of pixels with which repairs of a stochastic shader are tried.
+const NOISY_SIDE: u32 = 24;
+
+/// Explains why an image is wrong or imprecise. The verdict is that of the checks, unless the difference is permitted
+/// (`correct`), or no mistake explains it and the means or the rays of the shader do.
+#[must_use]
+pub fn explain(verified: &Verified, options: &Options) -> Explanation {
+    let Some(examined) = verified.examined() else {
+        return Explanation::of(verified.evidence().into());
+    };
+    within(examined.case.pool, || Search::new(examined, options).run())
+}
+
+impl Explanation {
+    /// A verdict that needs no explanation.
+    fn of(ruling: Ruling) -> Self {
+        Self {
+            ruling,
+            permitted: None,
+            cause: None,
+            mistake: None,
+            search: None,
+            tolerated_mistake: None,
+            is_cut_by_time: false,
+            notes: Vec::new(),
+            panics: Vec::new(),
+        }
+    }
+}
+
+/// A search for explanations.
+struct Search<'a> {
+    examined: Examined<'a>,
+    options: &'a Options<'a>,
+    /// Only a hang exceeds it.
+    deadline: Instant,
+    panics: Vec<Panic>,
+}
+
+/// The verdict after the search for mistakes, and what led to it.
+struct Settled {
+    ruling: Ruling,
+    mistake: Option<Diagnosis>,
+    /// How the shader's random numbers were changed to compare its means.
+    reseeding: Option<Reseeding>,
+    compares_means: bool,
+}
+
+impl<'a> Search<'a> {
+    fn new(examined: Examined<'a>, options: &'a Options<'a>) -> Self {
+        Self {
+            examined,
+            options,
+            deadline: explanation_deadline(options.search.map_or(0.0, |search| search.budget)),
+            panics: Vec::new(),
+        }
+    }
+
+    fn run(mut self) -> Explanation {
+        let evidence = self.examined.evidence();
+        if let Some(permitted) = self.permitted(&evidence) {
+            return permitted;
+        }
+        // From here on, the verdict is final.
+        let Settled {
+            ruling,
+            mistake,
+            reseeding,
+            compares_means,
+        } = self.settle(evidence);
+        let tolerated_mistake = if compares_means {
+            None
+        } else {
+            self.of_few_pixels(&ruling)
+        };
+        let search = self.repairs(&ruling, reseeding);
+        let case = self.examined.case;
+        let cause = self.loss_of_precision(&ruling);
+        let span = cause.as_ref().and_then(|cause| cause.span);
+        let mut warnings = case.lints.warnings.iter();
+        let is_reported = warnings.any(|warning| warning.span == span);
+        let mut notes = unbound(case.checked, case.lints, case.frame);
+        notes.extend(cause.filter(|cause| !is_reported && !case.lints.allows(cause)));
+        Explanation {
+            cause: span,
+            mistake,
+            search,
+            tolerated_mistake,
+            // What gave up because of the deadline did so after it.
+            is_cut_by_time: Instant::now() >= self.deadline,
+            notes,
+            panics: self.panics,
+            ..Explanation::of(ruling)
+        }
+    }
+
+    /// The explanation of a shader that is right but for a permitted difference.
+    fn permitted(&mut self, evidence: &CheckEvidence) -> Option<Explanation> {
+        let permitted = self.options.alternatives?.permitted;
+        let ruling = Ruling::from(evidence.clone());
+        if ruling.verdict != Verdict::Wrong || permitted.is_empty() {
+            return None;
+        }
+        let (difference, found) = self.in_wrong_shader(&evidence.checks, |wrong| {
+            whole_image::find_permitted(wrong, permitted)
+        })?;
+        let algorithm = found.algorithm;
+        let differing = Share::differing(&algorithm);
+        let mut ruling = Ruling::from(CheckEvidence {
+            checks: Checks {
+                algorithm: Some(algorithm.clone()),
+                ..evidence.checks.clone()
+            },
+            ..evidence.clone()
+        });
+        if ruling.verdict == Verdict::Correct {
+            ruling.reason = Reason::Permitted {
+                difference,
+                text: found.mistake.description.into_owned(),
+                differing,
+            };
+        }
+        Some(Explanation {
+            permitted: Some(algorithm),
+            panics: std::mem::take(&mut self.panics),
+            ..Explanation::of(ruling)
+        })
+    }
+
+    /// Searches for a mistake, and decides what no mistake explains.
+    fn settle(&mut self, evidence: CheckEvidence) -> Settled {
+        let may_be_stochastic = self.examined.may_be_stochastic();
+        let ruling = Ruling::from(evidence.clone());
+        // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
+        // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
+        // two mistakes do not render the image of the pair.
+        let mut mistake = self.of_scene(&ruling, Stage::Single);
+        mistake = self.of_whole_image(&ruling, &evidence.checks, mistake, whole_image::find);
+        mistake = mistake.or_else(|| self.of_scene(&ruling, Stage::Number));
+        // A wrong number, such as a light's intensity, says more than the curve that it amounts to.
+        mistake = self.of_whole_image(&ruling, &evidence.checks, mistake, whole_image::find_curve);
+        if !may_be_stochastic {
+            mistake = mistake.or_else(|| self.of_scene(&ruling, Stage::Pair(MAX_PAIRS)));
+        }
+        let mut settled = Settled {
+            ruling,
+            mistake,
+            reseeding: None,
+            compares_means: false,
+        };
+        let mut evidence = evidence;
+        if settled.is_unexplained()
+            && let Some(means) = self.examined.compare_means(&evidence, self.deadline)
+        {
+            evidence = means.evidence;
+            settled.ruling = evidence.clone().into();
+            settled.mistake = self.of_noisy_pixels(&settled.ruling, means.reseeding);
+            settled.reseeding = means.reseeding;
+            settled.compares_means = true;
+        }
+        if settled.is_unexplained() {
+            evidence.self_intersection = self.examined.self_intersection();
+            settled.ruling = evidence.into();
+            if matches!(settled.ruling.reason, Reason::SelfIntersection(_)) {
+                settled.mistake = Some(Diagnosis::of(known::self_intersection()));
+            }
+        }
+        if may_be_stochastic && !settled.compares_means && settled.mistake.is_none() {
+            settled.mistake = self.of_scene(&settled.ruling, Stage::Pair(MAX_PAIRS));
+        }
+        settled
+    }
+
+    /// Searches for the mistake that explains a wrong image, or for two.
+    fn of_scene(&mut self, ruling: &Ruling, stage: Stage) -> Option<Diagnosis> {
+        let hypotheses = self.options.hypotheses?;
+        let Examined { program, case, .. } = self.examined;
+        if ruling.verdict != Verdict::Wrong {
+            return None;
+        }
+        self.contained(Part::Mistake, || {
+            hypotheses.recognize_in(stage, program, case.frame)
+        })
+    }
+
+    /// Searches for a difference that concerns the whole image, which says more than a symptom.
+    fn of_whole_image(
+        &mut self,
+        ruling: &Ruling,
+        checks: &Checks,
+        known: Option<Diagnosis>,
+        find: impl FnOnce(&WrongShader, &Alternatives) -> Option<Alternative>,
+    ) -> Option<Diagnosis> {
+        let is_symptom = |mistake: &Diagnosis| mistake.mistakes.iter().all(|mistake| mistake.is_symptom);
+        let differs = matches!(ruling.reason, Reason::AlgorithmDiffers { .. });
+        let Some(alternatives) = self.options.alternatives.filter(|_| differs) else {
+            return known;
+        };
+        if !known.as_ref().is_none_or(is_symptom) {
+            return known;
+        }
+        let found = self.in_wrong_shader(checks, |wrong| find(wrong, &alternatives));
+        found.map_or(known, |found| Some(Diagnosis::of(found.mistake)))
+    }
+
+    /// Searches among hypotheses about the whole image of the shader.
+    fn in_wrong_shader<T>(
+        &mut self,
+        checks: &Checks,
+        find: impl FnOnce(&WrongShader) -> Option<T>,
+    ) -> Option<T> {
+        let Examined {
+            case,
+            program,
+            results,
+            ..
+        } = self.examined;
+        let algorithm = results.algorithm.as_ref()?;
+        self.contained(Part::Mistake, || {
+            find(&WrongShader::new(case, program, algorithm, checks)?)
+        })
+    }
+
+    /// Searches for the mistake of a shader whose means differ.
+    fn of_noisy_pixels(&mut self, ruling: &Ruling, reseeding: Option<Reseeding>) -> Option<Diagnosis> {
+        let (hypotheses, reseeding) = (self.options.hypotheses?, reseeding?);
+        let (examined, deadline) = (self.examined, self.deadline);
+        if ruling.verdict != Verdict::Wrong {
+            return None;
+        }
+        self.contained(Part::Mistake, || {
+            let pixels = examined.noisy_pixels(reseeding, hypotheses.places(), deadline)?;
+            hypotheses.recognize_noisy(&pixels)
+        })
+    }
+
+    /// Searches for edits that repair a wrong image, and for the lines that it depends on. `reseeding` is
+    /// there if the shader's means were compared.
+    fn repairs(&mut self, ruling: &Ruling, reseeding: Option<Reseeding>) -> Option<SearchResult> {
+        let (examined, deadline) = (self.examined, self.deadline);
+        let algorithm = examined.results.algorithm.as_ref()?;
+        let options = self.options.search?;
+        if ruling.verdict != Verdict::Wrong {
+            return None;
+        }
+        let image = || {
+            // A shader that differs in other pixels, too, may have random numbers of its own.
+            let reseeding = reseeding.or_else(|| examined.reseeding(deadline))?;
+            let places = Places::spread(examined.case.frame.size, [NOISY_SIDE; 2]);
+            let pixels = examined.noisy_pixels(reseeding, &places, deadline)?;
+            Some(NoisyImage { pixels, places })
+        };
+        let before = Before {
+            check: algorithm,
+            faults: &examined.results.faults,
+            compares_means: ruling.reason.compares_means(),
+        };
+        self.contained(Part::Repair, || {
+            repair::search(examined.case, options, before, &image, deadline)
+        })
+    }
+
+    /// Searches for the mistake that explains the few differing pixels of a correct image.
+    fn of_few_pixels(&mut self, ruling: &Ruling) -> Option<Diagnosis> {
+        let hypotheses = self.options.hypotheses?;
+        let examined = self.examined;
+        let algorithm = examined.results.algorithm.as_ref()?;
+        if ruling.verdict != Verdict::Correct || algorithm.summary.differing == 0 {
+            return None;
+        }
+        let differing = algorithm.sample_pixels(examined.case.frame.size, usize::MAX);
+        self.contained(Part::Mistake, || {
+            hypotheses.explaining(examined.program, &differing)
+        })
+    }
+
+    /// Searches for the line in which float32 loses precision, where it is not enough.
+    fn loss_of_precision(&mut self, ruling: &Ruling) -> Option<Diagnostic> {
+        let (examined, deadline) = (self.examined, self.deadline);
+        let results = examined.results;
+        let differs_often = |check: &CheckResult| Share::differing(&check.summary).ratio() > MAX_UNSTABLE;
+        let loses_precision = match &ruling.reason {
+            // The reference loses it at the same place.
+            Reason::Agrees {
+                imprecise_reference, ..
+            } => *imprecise_reference > 0,
+            Reason::NoReference => results.precision.as_ref().is_some_and(differs_often),
+            _ => false,
+        };
+        if ruling.verdict != Verdict::Unstable && !loses_precision {
+            return None;
+        }
+        self.contained(Part::Cause, || {
+            let mut checks = [&results.precision, &results.algorithm].into_iter().flatten();
+            checks.find_map(|check| cause(examined.program, examined.case.frame, deadline, check))
+        })
+    }
+
+    /// Returns a part's result, or the default if it panicked, which is recorded.
+    fn contained<T: Default>(&mut self, part: Part, work: impl FnOnce() -> T) -> T {
+        contain(part, work).unwrap_or_else(|panic| {
+            self.panics.push(panic);
+            T::default()
+        })
+    }
+}
+
+impl Settled {
+    /// Whether there is a fault, and no mistake is known that explains it.
+    fn is_unexplained(&self) -> bool {
+        self.ruling.is_fault() && self.mistake.is_none()
+    }
+}

@@ -1,0 +1,126 @@
+//! What a reference shader uses and another shader does not: inputs, and functions of the same name.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use toyproof_diagnostic::Span;
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{ExprKind, VariableKind};
+
+use toyproof_verify::random::reachable_expressions;
+
+/// What a reference uses and a shader does not.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Unused {
+    /// The names of the inputs that only the reference reads, such as `iMouse`.
+    pub inputs: Vec<String>,
+    /// The names of functions that the shader defines and never calls, each with the first call of a function of
+    /// this name in the reference.
+    pub functions: Vec<(String, Span)>,
+}
+
+impl Unused {
+    /// Compares all passes of a shader with those of its reference, as far as they are executed.
+    #[must_use]
+    pub fn new(shader: &[&Checked], reference: &[&Checked]) -> Self {
+        let (own, expected) = (Uses::of(shader), Uses::of(reference));
+        let mut inputs = expected.inputs;
+        inputs.retain(|name| !own.inputs.contains(name));
+        let is_uncalled = |name: &str| own.defined.contains(name) && !own.calls.contains_key(name);
+        let calls = expected.calls.into_iter().filter(|(name, _)| is_uncalled(name));
+        let mut functions: Vec<_> = calls.collect();
+        functions.sort_by_key(|(_, span)| span.start);
+        Self {
+            inputs: inputs.into_iter().collect(),
+            functions,
+        }
+    }
+}
+
+/// What the passes of a shader use.
+#[derive(Default)]
+struct Uses {
+    inputs: BTreeSet<String>,
+    /// Called functions, each with its first call.
+    calls: BTreeMap<String, Span>,
+    /// Functions with a body.
+    defined: BTreeSet<String>,
+}
+
+impl Uses {
+    fn of(passes: &[&Checked]) -> Self {
+        let mut uses = Self::default();
+        for checked in passes {
+            let tree = &checked.tree;
+            for expr in reachable_expressions(tree, checked.main_image) {
+                match tree[expr].kind {
+                    ExprKind::Variable(variable) if matches!(tree[variable].kind, VariableKind::Input(_)) => {
+                        uses.inputs.insert(tree[variable].name.clone());
+                    }
+                    ExprKind::Call { function, .. } => {
+                        let at = tree[expr].at.span;
+                        let first = uses.calls.entry(tree[function].name.clone()).or_insert(at);
+                        if at.start < first.start {
+                            *first = at;
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            let functions = tree.functions.iter().map(|(_, function)| function);
+            let defined = functions.filter(|function| function.body.is_some());
+            uses.defined.extend(defined.map(|function| function.name.clone()));
+        }
+        uses
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Files};
+
+    use super::*;
+
+    fn checked(text: &str) -> Checked {
+        let mut files = Files::default();
+        let file = files.add(File::new("a.glsl", text));
+        toyproof_glsl::check(&files, file, &Default::default()).unwrap()
+    }
+
+    fn unused(shader: &str, reference: &str) -> (Vec<String>, Vec<String>) {
+        let (shader, reference) = (checked(shader), checked(reference));
+        let Unused { inputs, functions } = Unused::new(&[&shader], &[&reference]);
+        (inputs, functions.into_iter().map(|(name, _)| name).collect())
+    }
+
+    #[test]
+    fn inputs_that_only_the_reference_reads_are_named() {
+        let reference = "float wave(float x) { return sin(x + iTime); }
+            void mainImage(out vec4 c, in vec2 p) {
+                c = vec4(wave(p.x)) * texture(iChannel2, p / iResolution.xy) * iMouse.x * float(iFrame);
+            }";
+        let inputs = |shader: &str| unused(shader, reference).0;
+        let still = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }";
+        assert_eq!(inputs(still), ["iChannel2", "iFrame", "iMouse", "iTime"]);
+        // Reading an input in a function that is never called does not count.
+        let dead = format!("float wave() {{ return iTime; }} {still}");
+        assert_eq!(inputs(&dead), ["iChannel2", "iFrame", "iMouse", "iTime"]);
+        assert!(inputs(reference).is_empty());
+        assert!(unused(reference, still).0.is_empty());
+    }
+
+    #[test]
+    fn a_function_that_only_the_reference_calls_is_named() {
+        let with = |call: &str| {
+            format!(
+                "float shadow(vec2 p) {{ return p.x; }} float sky(vec2 p) {{ return p.y; }}
+                 void mainImage(out vec4 c, in vec2 p) {{ c = vec4({call}); }}"
+            )
+        };
+        let functions = |shader: &str, reference: &str| unused(&with(shader), &with(reference)).1;
+        assert_eq!(functions("sky(p)", "sky(p) * shadow(p)"), ["shadow"]);
+        assert!(functions("sky(p) * shadow(p)", "sky(p)").is_empty());
+        // A shader without the function has other reasons to be wrong.
+        let other = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
+        assert!(unused(other, &with("shadow(p)")).1.is_empty());
+    }
+}

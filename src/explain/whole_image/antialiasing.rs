@@ -1,0 +1,304 @@
+//! Shaders that take several samples of each pixel, where the reference takes one.
+//!
+//! The usual regular grids are tried as they are. Other samples are recognized by what all means of samples have
+//! in common: a pixel's color lies between the colors within the pixel, and nearer to their mean than a single
+//! sample does. A blur has colors from other pixels; a shifted image has single samples.
+
+use rayon::prelude::*;
+use toyproof_eval::Places;
+
+use toyproof_verify::Difference;
+
+use super::Alternative;
+use super::wrong_shader::WrongShader;
+use crate::known::KnownMistake;
+use toyproof_verify::Expected;
+use toyproof_verify::compare::PixelStatus;
+
+/// The usual numbers of samples along each axis.
+const SIDES: [u32; 6] = [2, 3, 4, 5, 6, 8];
+
+/// The first sample of a grid, from the center of the pixel: as a share of the distance of samples, and in
+/// pixels. Grids are centered, or begin at an edge of the pixel, or at its center.
+const STARTS: [[f64; 2]; 3] = [[0.5, -0.5], [0.0, -0.5], [0.0, 0.0]];
+
+/// Offsets of samples from the center of the pixel, the same for x and y.
+fn grid(side: u32, [share, start]: [f64; 2]) -> Vec<f64> {
+    (0..side)
+        .map(|at| (f64::from(at) + share) / f64::from(side) + start)
+        .collect()
+}
+
+/// The largest numbers of rows, and of pixels of a row, at which a grid is tried.
+const MAX_PROBED_ROWS: usize = 12;
+const MAX_PROBED_COLUMNS: usize = 24;
+
+/// The share of these pixels that must agree.
+const MIN_PROBES: f64 = 0.95;
+
+/// The largest number of samples of the reference that are taken.
+const MAX_SAMPLES: usize = 1 << 23;
+
+/// The number of samples along each axis that show which colors occur within a pixel, its edges included.
+const WITHIN: u32 = 9;
+
+/// How far a color may be outside of those within its pixel, as a share of their range: there may be smaller
+/// features than the samples show.
+const MARGIN: f64 = 0.05;
+
+/// The smallest range of colors within a pixel that shows how it is sampled, and the smallest number of such
+/// pixels.
+const MIN_RANGE: f64 = 0.05;
+const MIN_EDGE_PIXELS: u64 = 24;
+
+/// The smallest number of independent samples whose means scatter as little as the colors do.
+const MIN_EFFECTIVE_SAMPLES: f64 = 2.0;
+
+/// The largest sum of squared distances to the means within the pixels, as a share of that to the colors at their
+/// centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are equal.
+const MAX_UNEXPLAINED: f64 = 0.4;
+
+/// The smallest share of edge pixels whose color is neither end of the range within them.
+const MIN_INTERMEDIATE: f64 = 0.3;
+
+/// Finds the samples of each pixel that explain the image.
+pub(super) fn find(wrong: &WrongShader) -> Option<Alternative> {
+    // The random numbers of a reference move within pixels themselves.
+    if wrong.expected.is_stochastic() {
+        return None;
+    }
+    let rows = Rows::differing(wrong);
+    let probes = rows.thinned();
+    // The first evaluation also shows whether the reference has a color everywhere.
+    within(wrong, &probes).filter(Statistics::is_within)?;
+    let grids = SIDES
+        .into_iter()
+        .flat_map(|side| STARTS.map(|start| (side, start)));
+    let exact = grids.into_iter().find_map(|(side, start)| {
+        let offsets = grid(side, start);
+        let is_likely = agreeing(wrong, &probes, &offsets)? >= MIN_PROBES;
+        is_likely
+            .then(|| confirmed_grid(wrong, &rows, &offsets, side))
+            .flatten()
+    });
+    exact.or_else(|| confirmed_average(wrong, &rows))
+}
+
+/// Some pixels, by rows.
+struct Rows(Vec<(u32, Vec<u32>)>);
+
+impl Rows {
+    /// The pixels in which the shader differs.
+    fn differing(wrong: &WrongShader) -> Self {
+        let width = wrong.frame().size[0] as usize;
+        let rows = wrong.statuses.chunks(width).zip(0..).map(|(statuses, y)| {
+            let columns = statuses.iter().zip(0..);
+            let differing = columns.filter(|(status, _)| {
+                matches!(
+                    status,
+                    PixelStatus::Differs | PixelStatus::IllConditioned | PixelStatus::Tied
+                )
+            });
+            (y, differing.map(|(_, x)| x).collect())
+        });
+        Self(
+            rows.filter(|(_, columns): &(u32, Vec<u32>)| !columns.is_empty())
+                .collect(),
+        )
+    }
+
+    /// Few of them, spread over all.
+    fn thinned(&self) -> Self {
+        let step = self.0.len().div_ceil(MAX_PROBED_ROWS).max(1);
+        let rows = self.0.iter().skip(step / 2).step_by(step);
+        let rows = rows.map(|(y, columns)| {
+            let step = columns.len().div_ceil(MAX_PROBED_COLUMNS).max(1);
+            (*y, columns.iter().copied().skip(step / 2).step_by(step).collect())
+        });
+        Self(rows.collect())
+    }
+
+    fn count(&self) -> usize {
+        self.0.iter().map(|(_, columns)| columns.len()).sum()
+    }
+}
+
+/// The colors of the samples of each pixel, in the order of the pixels; none if the reference has no color within
+/// pixels.
+fn samples(expected: &Expected, rows: &Rows, offsets: &[f64]) -> Option<Vec<Vec<[f64; 3]>>> {
+    let side = offsets.len();
+    let rows = rows.0.par_iter().map(|(y, columns)| {
+        let moved = |at: u32| offsets.iter().map(move |offset| f64::from(at) + 0.5 + offset);
+        let positions = Places {
+            columns: columns.iter().flat_map(|&x| moved(x)).collect(),
+            rows: moved(*y).collect(),
+        };
+        let colors = expected.colors_within(&positions)?;
+        let width = positions.columns.len();
+        let of = |pixel: usize| {
+            let all = (0..side * side).map(|at| colors[at / side * width + pixel * side + at % side]);
+            all.map(|color| color.map(|part| part.clamp(0.0, 1.0))).collect()
+        };
+        Some((0..columns.len()).map(of).collect())
+    });
+    let rows: Option<Vec<Vec<Vec<[f64; 3]>>>> = rows.collect();
+    Some(rows?.concat())
+}
+
+fn mean(samples: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|i| samples.iter().map(|sample| sample[i]).sum::<f64>() / samples.len() as f64)
+}
+
+impl WrongShader<'_> {
+    fn color(&self, x: u32, y: u32) -> [f64; 3] {
+        let [r, g, b, _] = self.actual.get(x, y);
+        [r, g, b].map(|part| f64::from(part).clamp(0.0, 1.0))
+    }
+}
+
+/// Whether a pixel is the mean of its samples.
+fn is_mean(wrong: &WrongShader, [x, y]: [u32; 2], samples: &[[f64; 3]]) -> bool {
+    let (own, mean) = (wrong.color(x, y), mean(samples));
+    (0..3).all(|i| (own[i] - mean[i]).abs() <= wrong.tolerance())
+}
+
+fn pixels(rows: &Rows) -> impl Iterator<Item = [u32; 2]> + '_ {
+    rows.0
+        .iter()
+        .flat_map(|(y, columns)| columns.iter().map(move |&x| [x, *y]))
+}
+
+/// The share of some pixels that are the means of their samples.
+fn agreeing(wrong: &WrongShader, rows: &Rows, offsets: &[f64]) -> Option<f64> {
+    let samples = samples(wrong.expected, rows, offsets)?;
+    let agreeing = pixels(rows)
+        .zip(&samples)
+        .filter(|&(pixel, samples)| is_mean(wrong, pixel, samples));
+    Some(agreeing.count() as f64 / rows.count().max(1) as f64)
+}
+
+/// Confirms a grid in all pixels that differ.
+fn confirmed_grid(wrong: &WrongShader, rows: &Rows, offsets: &[f64], side: u32) -> Option<Alternative> {
+    if rows.count() * offsets.len() * offsets.len() > MAX_SAMPLES {
+        return None;
+    }
+    let samples = samples(wrong.expected, rows, offsets)?;
+    let agreeing = pixels(rows)
+        .zip(&samples)
+        .filter(|&(pixel, samples)| is_mean(wrong, pixel, samples));
+    compared(wrong, agreeing.map(|(pixel, _)| pixel), || {
+        format!("each pixel is the mean of {side}×{side} samples; the reference has one, at its center")
+    })
+}
+
+/// Confirms that all pixels that differ are means of colors within them.
+fn confirmed_average(wrong: &WrongShader, rows: &Rows) -> Option<Alternative> {
+    let statistics = within(wrong, rows).filter(Statistics::is_average)?;
+    compared(wrong, statistics.within.into_iter(), || ANY_SAMPLES.to_owned())
+}
+
+const ANY_SAMPLES: &str = "each pixel is the mean of several samples; the reference has one, at its center";
+
+fn compared(
+    wrong: &WrongShader,
+    agreeing: impl Iterator<Item = [u32; 2]>,
+    text: impl FnOnce() -> String,
+) -> Option<Alternative> {
+    let width = wrong.frame().size[0];
+    let statuses = wrong.statuses.iter();
+    let mut agrees: Vec<bool> = statuses.map(|&status| status == PixelStatus::Agrees).collect();
+    for [x, y] in agreeing {
+        agrees[(y * width + x) as usize] = true;
+    }
+    wrong.compared(
+        &wrong.reference,
+        |at| agrees[at],
+        || KnownMistake::new(Difference::Antialiasing.id(), text()),
+    )
+}
+
+/// How the colors of pixels lie among those within them, of which the middle one is that of the center.
+#[derive(Default)]
+struct Statistics {
+    pixels: usize,
+    /// The pixels whose color is within.
+    within: Vec<[u32; 2]>,
+    /// The pixels with an edge, and those of them whose color is neither end of the range.
+    edges: u64,
+    intermediate: u64,
+    /// The sums of the variances within pixels, and of the squared distances to the means and to the centers.
+    variance: f64,
+    to_mean: f64,
+    to_center: f64,
+}
+
+impl Statistics {
+    fn add(&mut self, pixel: [u32; 2], own: [f64; 3], samples: &[[f64; 3]], tolerance: f64) {
+        self.pixels += 1;
+        let mean = mean(samples);
+        let range = |i: usize| {
+            let parts = samples.iter().map(|sample| sample[i]);
+            parts.fold((1.0_f64, 0.0_f64), |(low, high), part| {
+                (low.min(part), high.max(part))
+            })
+        };
+        let ranges = [0, 1, 2].map(range);
+        let is_within = (0..3).all(|i| {
+            let (low, high) = ranges[i];
+            let margin = tolerance + MARGIN * (high - low);
+            (low - margin..=high + margin).contains(&own[i])
+        });
+        if is_within {
+            self.within.push(pixel);
+        }
+        let widest =
+            (0..3).max_by(|&a, &b| (ranges[a].1 - ranges[a].0).total_cmp(&(ranges[b].1 - ranges[b].0)));
+        let i = widest.unwrap_or(0);
+        let (low, high) = ranges[i];
+        if high - low > MIN_RANGE {
+            self.edges += 1;
+            let margin = 2.0 * MARGIN * (high - low);
+            self.intermediate += u64::from((low + margin..=high - margin).contains(&own[i]));
+            let squares = samples.iter().map(|sample| (sample[i] - mean[i]).powi(2));
+            self.variance += squares.sum::<f64>() / samples.len() as f64;
+            self.to_mean += (own[i] - mean[i]).powi(2);
+            self.to_center += (own[i] - samples[samples.len() / 2][i]).powi(2);
+        }
+    }
+
+    fn is_within(&self) -> bool {
+        self.within.len() as f64 >= MIN_PROBES * self.pixels as f64
+    }
+
+    fn is_average(&self) -> bool {
+        self.edges >= MIN_EDGE_PIXELS
+            && self.intermediate as f64 >= MIN_INTERMEDIATE * self.edges as f64
+            && self.variance >= MIN_EFFECTIVE_SAMPLES * self.to_mean
+            && self.to_mean <= MAX_UNEXPLAINED * self.to_center
+    }
+}
+
+/// Compares pixels with the colors within them; none if there are too many, or the reference has none.
+fn within(wrong: &WrongShader, rows: &Rows) -> Option<Statistics> {
+    let offsets: Vec<f64> = (0..WITHIN)
+        .map(|at| f64::from(at) / f64::from(WITHIN - 1) - 0.5)
+        .collect();
+    if rows.count() * offsets.len() * offsets.len() > MAX_SAMPLES {
+        return None;
+    }
+    let samples = samples(wrong.expected, rows, &offsets)?;
+    let mut statistics = Statistics::default();
+    for ([x, y], samples) in pixels(rows).zip(&samples) {
+        statistics.add([x, y], wrong.color(x, y), samples, wrong.tolerance());
+    }
+    Some(statistics)
+}
+
+/// The descriptions of what is recognized here, as examples.
+#[cfg(test)]
+pub(super) fn examples() -> Vec<KnownMistake> {
+    let grid = "each pixel is the mean of 2×2 samples; the reference has one, at its center";
+    [grid, ANY_SAMPLES]
+        .map(|text| KnownMistake::new(Difference::Antialiasing.id(), text))
+        .into()
+}

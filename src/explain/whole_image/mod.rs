@@ -1,0 +1,102 @@
+//! Finds how a wrong image differs as a whole from the expected one: a shader that solves its task may be
+//! antialiased, mirrored or corrected for gamma, or read another input than was asked for.
+//!
+//! A hypothesis is tried at a few pixels and then confirmed: under it, the whole image must be correct by the
+//! same rules as any other. Most hypotheses evaluate the shader differently (a `View`: at other positions, or
+//! with other inputs), so that they apply to every kind of reference.
+
+mod antialiasing;
+mod colors;
+mod curve;
+mod inputs;
+mod scenes;
+mod view;
+mod wrong_shader;
+
+use std::sync::LazyLock;
+
+use toyproof_scene::Scene;
+use toyproof_verify::Difference;
+
+pub(crate) use self::wrong_shader::WrongShader;
+use crate::known::KnownMistake;
+use toyproof_verify::compare::CheckSummary;
+
+/// What a wrong shader is compared with besides its reference.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Alternatives<'a> {
+    /// The differences with which a shader is still correct.
+    pub permitted: &'a [Difference],
+    /// Other scenes, one of which a shader may render instead of its own.
+    pub scenes: Option<&'a OtherScenes>,
+}
+
+/// Scenes with their names, read on first use: correct shaders need none.
+pub type OtherScenes = LazyLock<Vec<(String, Scene)>, Box<dyn FnOnce() -> Vec<(String, Scene)> + Send>>;
+
+/// How a wrong image differs as a whole from the expected one.
+#[derive(Debug)]
+pub(crate) struct Alternative {
+    pub(crate) mistake: KnownMistake,
+    /// The algorithm check without this difference.
+    pub(crate) algorithm: CheckSummary,
+}
+
+/// Returns the difference other than a color curve that explains a wrong image; none if no single one does.
+pub(crate) fn find(wrong: &WrongShader, alternatives: &Alternatives) -> Option<Alternative> {
+    if let Some(scenes) = alternatives.scenes
+        && let Some(found) = scenes::find(wrong, scenes)
+    {
+        return Some(found);
+    }
+    let mut all = Difference::ALL.into_iter();
+    all.find_map(|difference| match difference {
+        Difference::ColorCurve => None,
+        difference => of_kind(wrong, difference),
+    })
+}
+
+/// Returns the color curve that explains a wrong image.
+pub(crate) fn find_curve(wrong: &WrongShader, _: &Alternatives) -> Option<Alternative> {
+    of_kind(wrong, Difference::ColorCurve)
+}
+
+/// Returns the first of the permitted differences that explains a wrong image.
+pub(crate) fn find_permitted(
+    wrong: &WrongShader,
+    permitted: &[Difference],
+) -> Option<(Difference, Alternative)> {
+    let mut all = Difference::ALL.into_iter();
+    all.find_map(|difference| {
+        let is_permitted = permitted.contains(&difference);
+        Some((difference, is_permitted.then(|| of_kind(wrong, difference))??))
+    })
+}
+
+fn of_kind(wrong: &WrongShader, difference: Difference) -> Option<Alternative> {
+    match difference {
+        Difference::MirroredX | Difference::MirroredY | Difference::Rotated => {
+            view::symmetries(wrong, difference)
+        }
+        Difference::SwappedChannels => colors::swapped_channels(wrong),
+        Difference::Mouse => inputs::mouse(wrong),
+        Difference::Time => inputs::time(wrong),
+        Difference::FixedResolution => inputs::fixed_resolution(wrong),
+        Difference::Framing => view::framing(wrong),
+        Difference::Antialiasing => antialiasing::find(wrong),
+        Difference::ColorCurve => colors::curve(wrong),
+    }
+}
+
+/// Every kind of what can be reported, with an example of each computed description.
+#[cfg(test)]
+pub(crate) fn examples() -> Vec<KnownMistake> {
+    [
+        view::examples(),
+        inputs::examples(),
+        colors::examples(),
+        antialiasing::examples(),
+        scenes::examples(),
+    ]
+    .concat()
+}

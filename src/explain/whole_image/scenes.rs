@@ -1,0 +1,94 @@
+//! Shaders that render another scene than was asked for, or ShaderToy's default shader.
+
+use toyproof_image::{Frame, Image};
+
+use super::view::View;
+use super::wrong_shader::WrongShader;
+use super::{Alternative, OtherScenes};
+use crate::known::KnownMistake;
+use toyproof_verify::Expected;
+
+/// Finds what a shader renders instead of its own scene.
+pub(super) fn find(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {
+    default_shader(wrong).or_else(|| other_scene(wrong, scenes))
+}
+
+const OTHER_SCENE: &str = "wrong-scene";
+const DEFAULT_SHADER: &str = "default-shader";
+
+/// Compares the image with those of other scenes, first at a few pixels.
+fn other_scene(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {
+    let frame = wrong.frame();
+    let same = View::with_inputs(frame.clone());
+    let actual = same.image(wrong, &wrong.probes)?;
+    scenes.iter().find_map(|(name, scene)| {
+        if wrong
+            .expected
+            .scene()
+            .is_some_and(|own| own.objects == scene.objects && own.lights == scene.lights)
+        {
+            return None;
+        }
+        let expected = Expected::of_scene(scene.clone(), frame);
+        let probed = expected.colors_in(frame, &wrong.probes)?;
+        let agrees = wrong.agree(&probed, &actual);
+        agrees
+            .then(|| {
+                wrong.confirmed(&same, &expected, frame, || {
+                    KnownMistake::new(
+                        OTHER_SCENE,
+                        format!("the image agrees with another scene, {name}"),
+                    )
+                })
+            })
+            .flatten()
+    })
+}
+
+/// How much later the second frame is in which the default shader is recognized, in seconds.
+const LATER: f32 = 1.7;
+
+/// Recognizes the shader that ShaderToy's editor starts with, in two frames.
+fn default_shader(wrong: &WrongShader) -> Option<Alternative> {
+    let frame = wrong.frame();
+    let later = Frame {
+        time: frame.time + LATER,
+        ..frame.clone()
+    };
+    let is_default = [frame, &later].into_iter().all(|frame| {
+        let image = View::with_inputs(frame.clone()).image(wrong, &wrong.probes);
+        image.is_some_and(|image| wrong.agree(&default_image(wrong, frame.time), &image))
+    });
+    is_default.then(|| Alternative {
+        mistake: KnownMistake::new(DEFAULT_SHADER, DEFAULT_SHADER_TEXT),
+        algorithm: wrong.algorithm.clone(),
+    })
+}
+
+const DEFAULT_SHADER_TEXT: &str = "this is the shader that ShaderToy's editor starts with";
+
+/// The colors of the default shader at the probes: `0.5 + 0.5 * cos(iTime + uv.xyx + vec3(0, 2, 4))`.
+fn default_image(wrong: &WrongShader, time: f32) -> Image {
+    let [width, height] = wrong.size();
+    let [columns, rows] = wrong.probes.size();
+    let pixels = wrong.probes.rows.iter().flat_map(|&y| {
+        wrong.probes.columns.iter().map(move |&x| {
+            let uv = [x / width, y / height, x / width];
+            let [r, g, b] = [0, 1, 2].map(|i| {
+                let angle = f64::from(time) + uv[i] + 2.0 * i as f64;
+                (0.5 + 0.5 * angle.cos()) as f32
+            });
+            [r, g, b, 1.0]
+        })
+    });
+    Image::new(columns, rows, pixels.collect())
+}
+
+/// The descriptions of what is recognized here, as examples.
+#[cfg(test)]
+pub(super) fn examples() -> Vec<KnownMistake> {
+    vec![
+        KnownMistake::new(OTHER_SCENE, "the image agrees with another scene, 03-shading"),
+        KnownMistake::new(DEFAULT_SHADER, DEFAULT_SHADER_TEXT),
+    ]
+}

@@ -1,0 +1,128 @@
+//! Detects rays that hit the surface they start from (“acne”). Rounding decides it in each pixel, so that it
+//! resembles a lack of precision; where double precision has it too, more precision does not help.
+
+use rayon::prelude::*;
+use toyproof_scene::Sampler;
+use toyproof_tracer::{RayEpsilons, Tracer};
+
+use crate::compare::{CheckResult, PixelStatus, Share};
+use crate::evidence::SelfIntersection;
+use crate::limits::MAX_UNSTABLE;
+
+/// The largest number of pixels that are examined.
+const MAX_PIXELS: usize = 64;
+
+/// The share of them that must be what the tracer renders with rays that hit their own surface. It is below 1
+/// because a ray between mirrors may do so more often than is traced. In double precision, rounding decides
+/// nothing else in so many pixels.
+const MIN_EXPLAINED_SHARE: f64 = 0.4;
+const MIN_EXPLAINED_SHARE_IN_DOUBLE: f64 = 0.3;
+
+/// The smallest share of pixels that differ in float32 alone; fewer may be a lack of precision at silhouettes
+/// and at the rim of glass.
+const MIN_SHARE_IN_SINGLE: f64 = 0.01;
+
+/// The tolerance of colors, in float32 too.
+const COLOR_TOLERANCE: f64 = 4.0 / 255.0;
+
+/// Returns the pixels that differ in the check in which most do because rays hit the surfaces they start from,
+/// if there is one.
+pub(super) fn detect(
+    tracer: &Tracer<f64>,
+    size: [u32; 2],
+    algorithm: Option<&CheckResult>,
+    precision: Option<&CheckResult>,
+) -> Option<SelfIntersection> {
+    let epsilons = tracer.acne();
+    if epsilons.is_empty() {
+        return None;
+    }
+    // In f64, rounding decides the color where there is acne, and not where there is another mistake.
+    let decided_by_rounding =
+        |check: &&CheckResult| check.summary.ill_conditioned - check.summary.tied > check.summary.differing;
+    let algorithm = algorithm.into_iter().filter(decided_by_rounding);
+    let algorithm = algorithm.map(|check| (check, true, MAX_UNSTABLE, MIN_EXPLAINED_SHARE_IN_DOUBLE));
+    let precision = precision
+        .into_iter()
+        .map(|check| (check, false, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
+    algorithm
+        .chain(precision)
+        .find_map(|(check, in_double, least, most)| {
+            let summary = &check.summary;
+            let differing = Share::of(
+                summary,
+                summary.differing + summary.ill_conditioned - summary.tied,
+            );
+            if differing.ratio() <= least {
+                return None;
+            }
+            let pixels: Vec<DifferingPixel> = pixels_to_examine(check, size)
+                .into_par_iter()
+                .filter_map(|pixel| DifferingPixel::at(tracer, check, size, pixel))
+                .collect();
+            let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &epsilons));
+            let is_explained = explained.count() as f64 >= most * pixels.len() as f64;
+            (is_explained && !pixels.is_empty()).then_some(SelfIntersection {
+                pixels: differing,
+                in_double,
+            })
+        })
+}
+
+/// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those
+/// whose colors are kept.
+fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
+    let is_ill_conditioned = check.statuses.contains(&PixelStatus::IllConditioned);
+    let status = if is_ill_conditioned {
+        PixelStatus::IllConditioned
+    } else {
+        PixelStatus::Differs
+    };
+    let mut kept: Vec<usize> = check.actual.keys().copied().collect();
+    kept.retain(|&at| check.statuses[at] == status);
+    kept.sort_unstable();
+    let step = kept.len().div_ceil(MAX_PIXELS).max(1);
+    let place = |&at: &usize| [at as u32 % size[0], at as u32 / size[0]];
+    kept.iter().step_by(step).map(place).collect()
+}
+
+/// A pixel that differs visibly from the scene's. Colors are clamped to [0, 1].
+struct DifferingPixel {
+    pixel: [u32; 2],
+    own: [f64; 3],
+    exact: [f64; 3],
+}
+
+impl DifferingPixel {
+    /// None if the pixel has the scene's color, or its own is not kept.
+    fn at(tracer: &Tracer<f64>, check: &CheckResult, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
+        let [x, y] = pixel;
+        let own = check.actual.get(&(y as usize * size[0] as usize + x as usize))?;
+        let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));
+        let exact = tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
+        (0..3)
+            .any(|i| !is_near(own[i], exact[i]))
+            .then_some(Self { pixel, own, exact })
+    }
+
+    /// Whether its color comes from rays that hit their own surface, in all of its samples or in some.
+    fn is_acne(&self, tracer: &Tracer<f64>, epsilons: &[RayEpsilons]) -> bool {
+        let Self { own, exact, .. } = self;
+        // Where lights and BRDFs are sampled too, an intermediate color proves nothing.
+        let is_jittered = tracer.sampler() == Some(Sampler::SineHash);
+        epsilons.iter().any(|epsilons| {
+            let other = tracer
+                .pixel_with_epsilons(self.pixel, epsilons)
+                .map(|part| part.clamp(0.0, 1.0));
+            let is_mixed = |i: usize| {
+                let (least, most) = (other[i].min(exact[i]), other[i].max(exact[i]));
+                is_jittered && (least - COLOR_TOLERANCE..=most + COLOR_TOLERANCE).contains(&own[i])
+            };
+            (0..3).all(|i| is_near(own[i], other[i]) || is_mixed(i))
+        })
+    }
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= COLOR_TOLERANCE
+}

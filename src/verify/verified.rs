@@ -1,0 +1,262 @@
+//! The results of the three checks, and the verdict that follows from them.
+
+use std::time::{Duration, Instant};
+
+use toyproof_diagnostic::Diagnostic;
+use toyproof_eval::{self as eval, Fault, Places, Program};
+use toyproof_image::Rgb8Image;
+
+use crate::bounds::explanation_deadline;
+use crate::case::Case;
+use crate::compare::{CheckResult, Comparison, DiffLevel};
+use crate::contain::Panic;
+use crate::decide::{Reason, Verdict, decide};
+use crate::driver::GpuRun;
+use crate::evidence::{CheckEvidence, Checks, Evidence, SelfIntersection};
+use crate::expected::{Expected, ReferenceKind};
+use crate::random::stochastic::Stochastic;
+use crate::random::{NoisyPixel, Reseeding};
+use crate::self_intersection;
+
+/// The images of a shader and the results of its checks.
+#[derive(Debug)]
+pub struct CheckResults {
+    /// The algorithm check; `None` without a reference.
+    pub algorithm: Option<CheckResult>,
+    /// The precision check.
+    pub precision: Option<CheckResult>,
+    /// The toolchain check; only for strict runs on a GPU.
+    pub toolchain: Option<CheckResult>,
+    /// The comparison of the shader's image with the reference.
+    pub comparison: Option<(Comparison, Vec<DiffLevel>)>,
+    /// The reference's image.
+    pub reference: Option<Rgb8Image>,
+    /// What the reference is; `None` without one.
+    pub reference_kind: Option<ReferenceKind>,
+    /// The GPU's image, or the evaluator's in f32 without a GPU.
+    pub actual: Rgb8Image,
+    /// The GPU and its times; `None` if the evaluator rendered the image.
+    pub gpu_run: Option<GpuRun>,
+    /// Observations of the run, with their lines.
+    pub notes: Vec<Diagnostic>,
+    /// How the driver's image differs from the evaluator's, or why there is none.
+    pub driver_note: Option<Diagnostic>,
+    /// The faults that the evaluator observed in f32, each at one place.
+    pub faults: Vec<Fault>,
+    /// Internal errors; the notes in which they occurred are missing.
+    pub panics: Vec<Panic>,
+    /// The evaluator's time for all its images.
+    pub eval: Duration,
+    /// The time of rendering the reference; nearly 0 where it was cached.
+    pub trace: Option<Duration>,
+}
+
+/// A shader whose three checks have been run.
+#[derive(Debug)]
+pub struct Verified<'a> {
+    /// The results.
+    pub results: CheckResults,
+    pub(crate) case: &'a Case<'a>,
+    pub(crate) program: Option<Program>,
+    /// Why the evaluator failed, if it did.
+    pub(crate) failure: Option<eval::Failure>,
+    /// What is recorded to compare means, for a reference that may be stochastic.
+    pub(crate) stochastic: Option<Stochastic<'a>>,
+}
+
+/// A verdict and its reason.
+#[derive(Debug, Clone)]
+pub struct Ruling {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why.
+    pub reason: Reason,
+}
+
+impl From<Evidence> for Ruling {
+    fn from(evidence: Evidence) -> Self {
+        let (verdict, reason) = decide(evidence);
+        Self { verdict, reason }
+    }
+}
+
+impl From<CheckEvidence> for Ruling {
+    fn from(evidence: CheckEvidence) -> Self {
+        Evidence::from(evidence).into()
+    }
+}
+
+impl Ruling {
+    /// Whether the shader has a fault that a mistake may explain.
+    #[must_use]
+    pub fn is_fault(&self) -> bool {
+        matches!(self.verdict, Verdict::Wrong | Verdict::Unstable)
+    }
+}
+
+/// A shader that was evaluated in double precision, so that a difference can be examined further.
+#[derive(Debug, Clone, Copy)]
+pub struct Examined<'a> {
+    /// The shader and its frame.
+    pub case: &'a Case<'a>,
+    /// The evaluator's program.
+    pub program: &'a Program,
+    /// The results of the checks.
+    pub results: &'a CheckResults,
+    stochastic: Option<&'a Stochastic<'a>>,
+}
+
+/// The comparison of means, and the evidence with it.
+#[derive(Debug)]
+pub struct MeansEvidence {
+    /// The evidence.
+    pub evidence: CheckEvidence,
+    /// How the shader's random numbers were changed; `None` if they were not.
+    pub reseeding: Option<Reseeding>,
+}
+
+impl<'a> Verified<'a> {
+    /// The shader, unless it could not be evaluated in double precision.
+    #[must_use]
+    pub fn examined(&'a self) -> Option<Examined<'a>> {
+        let is_complete = self.failure.is_none() && self.results.precision.is_some();
+        let program = self.program.as_ref().filter(|_| is_complete)?;
+        Some(Examined {
+            case: self.case,
+            program,
+            results: &self.results,
+            stochastic: self.stochastic.as_ref(),
+        })
+    }
+
+    /// The evidence of the three checks.
+    #[must_use]
+    pub fn evidence(&self) -> Evidence {
+        if let Some(failure) = &self.failure {
+            return Evidence::NotEvaluated {
+                failure: failure.clone(),
+                has_reference: self.results.reference.is_some(),
+            };
+        }
+        let evidence = match self.examined() {
+            Some(examined) => examined.evidence(),
+            // Only float32 was evaluated: nothing is known of earlier frames.
+            None => CheckEvidence {
+                checks: self.results.checks(),
+                ..CheckEvidence::default()
+            },
+        };
+        evidence.into()
+    }
+
+    /// The verdict without any search for a mistake: that of the checks, of the comparison of means if the shader
+    /// has other random numbers than its reference, and of the test for self-intersection.
+    #[must_use]
+    pub fn ruling(&self) -> Ruling {
+        match self.examined() {
+            Some(examined) => examined.settled(explanation_deadline(0.0)).into(),
+            None => self.evidence().into(),
+        }
+    }
+}
+
+impl CheckResults {
+    /// The summaries of the checks.
+    #[must_use]
+    pub fn checks(&self) -> Checks {
+        let summary = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
+        Checks {
+            algorithm: summary(&self.algorithm),
+            precision: summary(&self.precision),
+            toolchain: summary(&self.toolchain),
+        }
+    }
+}
+
+impl Examined<'_> {
+    /// The evidence of the three checks.
+    #[must_use]
+    pub fn evidence(&self) -> CheckEvidence {
+        CheckEvidence {
+            checks: self.results.checks(),
+            growth: self.case.from_start.and_then(|from_start| from_start.growth),
+            is_reference_shader: self.results.reference_kind == Some(ReferenceKind::Shader),
+            ..CheckEvidence::default()
+        }
+    }
+
+    /// Whether the reference may be stochastic.
+    #[must_use]
+    pub fn may_be_stochastic(&self) -> bool {
+        self.stochastic.is_some()
+    }
+
+    fn settled(&self, deadline: Instant) -> CheckEvidence {
+        let is_fault = |evidence: &CheckEvidence| Ruling::from(evidence.clone()).is_fault();
+        let mut evidence = self.evidence();
+        if is_fault(&evidence)
+            && let Some(means) = self.compare_means(&evidence, deadline)
+        {
+            evidence = means.evidence;
+        }
+        if is_fault(&evidence) {
+            evidence.self_intersection = self.self_intersection();
+        }
+        evidence
+    }
+
+    /// Compares the means of a shader that differs only in pixels that depend on random numbers; `None` if it differs
+    /// in others, or if nothing is random.
+    #[must_use]
+    pub fn compare_means(&self, evidence: &CheckEvidence, deadline: Instant) -> Option<MeansEvidence> {
+        let (stochastic, algorithm) = (self.stochastic?, self.results.algorithm.as_ref()?);
+        let compared =
+            stochastic.compare_means(algorithm, &evidence.checks, self.program, self.case, deadline)?;
+        let mut random_numbers = compared.random_numbers;
+        let with = |random_numbers| CheckEvidence {
+            random_numbers: Some(random_numbers),
+            ..evidence.clone()
+        };
+        // The precision of the pixels that do not depend on random numbers costs samples of the scene, and
+        // counts only where everything else agrees.
+        if let Some(precision) = &self.results.precision
+            && Ruling::from(with(random_numbers.clone())).verdict == Verdict::Correct
+        {
+            random_numbers.other_pixels.precision =
+                Some(stochastic.precision_of_others(algorithm, precision));
+        }
+        Some(MeansEvidence {
+            evidence: with(random_numbers),
+            reseeding: compared.reseeding,
+        })
+    }
+
+    /// Returns the pixels that differ because rays hit the surfaces they start from, if enough do.
+    #[must_use]
+    pub fn self_intersection(&self) -> Option<SelfIntersection> {
+        let tracer = self.case.expected.and_then(Expected::tracer)?;
+        let [algorithm, precision] = [&self.results.algorithm, &self.results.precision].map(Option::as_ref);
+        self_intersection::detect(tracer, self.case.frame.size, algorithm, precision)
+    }
+
+    /// A reseeding that changes pixels of a shader that differs; `None` if the shader has no random numbers, or the
+    /// reference has none.
+    #[must_use]
+    pub fn reseeding(&self, deadline: Instant) -> Option<Reseeding> {
+        let algorithm = self.results.algorithm.as_ref()?;
+        self.stochastic?
+            .reseeding(self.program, self.case, algorithm, deadline)
+    }
+
+    /// Returns the means of the shader with other random numbers, and of the reference, at these places.
+    #[must_use]
+    pub fn noisy_pixels(
+        &self,
+        reseeding: Reseeding,
+        places: &Places,
+        deadline: Instant,
+    ) -> Option<Vec<NoisyPixel>> {
+        self.stochastic?
+            .noisy_pixels(self.program, self.case, reseeding, places, deadline)
+    }
+}
