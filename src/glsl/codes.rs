@@ -100,8 +100,6 @@ codes! {
     UnusedResult "W0010" "An unused result",
     FloatEquality "W0011" "`==` or `!=` of computed floats",
     UnnormalizedDirection "W0012" "A ray–sphere formula for unit directions with a direction that is not normalized",
-    // A lint that also depends on the scene.
-    NearTangent "W0013" "A ray–sphere discriminant that is too inaccurate for the scene",
     BadAllow "W0014" "A malformed `allow` comment",
     UnusedAllow "W0015" "An unused `allow` comment",
     MissingReturn "W0016" "A function that may reach its end without a `return`",

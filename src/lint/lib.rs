@@ -23,7 +23,6 @@ mod equality;
 mod fraction;
 mod iteration;
 mod program;
-mod quadratic;
 mod randomness;
 mod uncalled;
 mod uniformity;
@@ -45,9 +44,6 @@ pub struct Lints {
     /// Warnings of the front end and the lints that the author does not allow, sorted by position; or a note
     /// that the lints exceeded their time limit.
     pub warnings: Vec<Diagnostic>,
-    /// Discriminants of ray–sphere formulas that lose digits, except those that the author allows. Whether
-    /// the loss is visible depends on the scene.
-    pub discriminants: Vec<Span>,
     /// Warnings (W0004) about variables that are read and written on some paths only, each for a run in which
     /// such a read is observed. They name the declaration in [`Diagnostic::related`].
     pub maybe_uninitialized: Vec<Diagnostic>,
@@ -76,8 +72,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let tree = &checked.tree;
     let program = Program::new(tree, checked.main_image, deadline);
     let mut findings = Findings::default();
-    let quadratics = quadratic::quadratics(&program);
-    direction::run(&program, &quadratics, &mut findings);
+    direction::run(&program, &mut findings);
     edges::run(&program, files, &mut findings);
     equality::run(&program, &mut findings);
     fraction::run(&program, &mut findings);
@@ -88,11 +83,6 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     unused::run(&program, &mut findings);
     uninit::run(&program, &mut findings);
     unset::run(&program, &mut findings);
-    for quadratic in &quadratics {
-        findings.add(Code::NearTangent, tree[quadratic.expr].at, "", |diagnostic| {
-            diagnostic
-        });
-    }
     let within_deadline = deadline.check();
     let mut all = checked.warnings.clone();
     if within_deadline.is_ok() {
@@ -103,16 +93,13 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     }
     let mut allow_warnings = Vec::new();
     let allows = Allows::read(files, &checked.control_comments, tree, &mut allow_warnings);
-    let mut remaining = allows.filter(all);
-    remaining.append(&mut allow_warnings);
+    let mut warnings = allows.filter(all);
+    warnings.append(&mut allow_warnings);
     if let Err(overdue) = within_deadline {
-        remaining.retain(|diagnostic| diagnostic.code != Code::UnusedAllow.as_str());
-        remaining.push(lint_timeout(overdue));
+        warnings.retain(|diagnostic| diagnostic.code != Code::UnusedAllow.as_str());
+        warnings.push(lint_timeout(overdue));
     }
-    remaining.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
-    let (seeds, mut warnings): (Vec<_>, Vec<_>) = remaining
-        .into_iter()
-        .partition(|diagnostic| diagnostic.code == Code::NearTangent.as_str());
+    warnings.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
     warnings.truncate(MAX_REPORTED);
     let named = |found: Vec<Diagnostic>| {
         let found = found.into_iter();
@@ -120,7 +107,6 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     };
     Lints {
         warnings: named(warnings),
-        discriminants: seeds.into_iter().filter_map(|seed| seed.span).collect(),
         maybe_uninitialized: named(findings.maybe_uninitialized),
         allowed: allows.runtime_allows(),
     }

@@ -20,7 +20,7 @@ pub enum Part {
     Repair,
     /// The search for the line where an unstable shader loses digits.
     Cause,
-    /// Notes on values that are not finite and on spheres whose silhouette float32 cannot resolve.
+    /// Notes on values that are not finite.
     Notes,
     /// One image of a shader.
     Image,

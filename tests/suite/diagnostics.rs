@@ -14,11 +14,11 @@ use toyproof::lint::lint;
 use toyproof::player::Clock;
 use toyproof::project::{self, Buffer, PassKind, Project, Tab};
 use toyproof::report::{Explanation, Rubric, explanations};
-use toyproof::scene::{self, Scene};
+use toyproof::scene;
+use toyproof::verify::Case;
 use toyproof::verify::project::frames::Frames;
 use toyproof::verify::project::growth::follow;
 use toyproof::verify::project::playback::PassShader;
-use toyproof::verify::{Case, Expected};
 
 use crate::architecture::sources;
 use crate::program::toyproof;
@@ -62,22 +62,8 @@ fn examples(explanation: &Explanation) -> Vec<Example<'_>> {
     examples
 }
 
-/// The scene that the examples of a code render: the indented text.
-fn scene(explanation: &Explanation) -> Option<Scene> {
-    let outside_fences = explanation.text.split("```").step_by(2);
-    let text: String = outside_fences
-        .flat_map(str::lines)
-        .filter_map(|line| line.strip_prefix("    "))
-        .flat_map(|line| [line, "\n"])
-        .collect();
-    let mut files = Files::default();
-    let file = files.add(File::new("scene.toml", text));
-    let is_scene = !files.get(file).text().is_empty();
-    is_scene.then(|| scene::parse(&files, file).unwrap())
-}
-
 /// All diagnostics of an example.
-fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>, Files) {
+fn diagnostics_of(example: &Example) -> (Vec<Diagnostic>, Files) {
     let mut files = Files::default();
     match example.language {
         "glsl" => {
@@ -88,7 +74,7 @@ fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>,
             };
             let file = files.add(File::new("example.glsl", format!("{}{rest}", example.text)));
             let checked = glsl::check(&files, file, &glsl::Options::default());
-            let mut found = checked.map_or_else(Vec::from, |checked| warnings_of(&files, &checked, scene));
+            let mut found = checked.map_or_else(Vec::from, |checked| warnings_of(&files, &checked));
             // The `mainImage` that an example omits would call its functions.
             found.retain(|found| rest.is_empty() || found.code != Code::Uncalled.as_str());
             (found, files)
@@ -149,19 +135,15 @@ fn diagnostics_of(example: &Example, scene: Option<&Scene>) -> (Vec<Diagnostic>,
 }
 
 /// The warnings on a shader, and those on its run.
-fn warnings_of(files: &Files, checked: &Checked, scene: Option<&Scene>) -> Vec<Diagnostic> {
+fn warnings_of(files: &Files, checked: &Checked) -> Vec<Diagnostic> {
     let frame = Frame {
-        size: scene.map_or([16, 9], |scene| scene.film.size),
+        size: [16, 9],
         // The fourth channel has no image.
         channels: [true, true, true, false].map(|bound| bound.then(|| noise().into())),
         ..Frame::default()
     };
-    let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));
     let lints = lint(files, checked, &Deadline::default());
-    let case = Case {
-        expected: expected.as_ref(),
-        ..Case::new(checked, &lints, &frame).with_timeout(Duration::from_secs(60))
-    };
+    let case = Case::new(checked, &lints, &frame).with_timeout(Duration::from_secs(60));
     let mut all = lints.warnings.clone();
     // A shader that never ends has no run to report on.
     all.extend(
@@ -254,9 +236,8 @@ fn wrong_examples_give_only_their_code_and_right_ones_none() {
             "{}",
             explanation.code
         );
-        let scene = scene(&explanation);
         for example in &examples {
-            let (reported, files) = diagnostics_of(example, scene.as_ref());
+            let (reported, files) = diagnostics_of(example);
             let codes: Vec<_> = reported.iter().map(|diagnostic| &*diagnostic.code).collect();
             let wanted = if example.wrong {
                 vec![explanation.code]
@@ -289,7 +270,7 @@ fn codes_of(functions: &str, uses: &str) -> Vec<String> {
     let file = files.add(File::new("a.glsl", text));
     let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
     let line = |reported: &Diagnostic| reported.span.map_or(0, |span| files.position(span).line);
-    let reported = warnings_of(&files, &checked, None);
+    let reported = warnings_of(&files, &checked);
     let codes = reported
         .iter()
         .map(|reported| format!("{}:{}", reported.code, line(reported)));

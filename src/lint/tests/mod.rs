@@ -206,28 +206,6 @@ fn course_has_no_warnings() {
 }
 
 #[test]
-fn discriminants_are_deferred_unless_allowed() {
-    let discriminants = |comment: &str| {
-        let mut files = Files::default();
-        let text = format!(
-            "void mainImage(out vec4 c, in vec2 p) {{
-                vec3 f = vec3(p, 1.0), d = normalize(vec3(p, -1.0));
-                float b = dot(f, d);
-                float disc = b * b - (dot(f, f) - 4.0); {comment}
-                c = vec4(disc);
-            }}"
-        );
-        let file = files.add(File::new("a", text));
-        let checked = check(&files, file, &Options::default()).unwrap();
-        let lints = lint(&files, &checked, &Deadline::default());
-        assert!(lints.warnings.is_empty(), "{:#?}", lints.warnings);
-        lints.discriminants.len()
-    };
-    assert_eq!(discriminants(""), 1);
-    assert_eq!(discriminants("// toyproof: allow(W0013) it is near"), 0);
-}
-
-#[test]
 fn timed_out_lints_leave_only_a_note() {
     let mut files = Files::default();
     let text = "void mainImage(out vec4 c, in vec2 p) { float unset; c = vec4(unset); }";
