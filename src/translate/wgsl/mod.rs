@@ -17,7 +17,6 @@ mod loops;
 mod names;
 mod statement;
 mod style;
-mod wrap;
 mod writer;
 
 pub use style::{Hosted, Style};

@@ -13,8 +13,8 @@ use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, Input, Place, Sampler, SamplerShape, Swizzle, Type, VariableId, VariableKind,
 };
 
+use super::Unprintable;
 use super::writer::{Text, Writer};
-use super::{Unprintable, wrap};
 use crate::print::Order;
 
 /// The kind of host that WGSL is written for.
@@ -253,13 +253,7 @@ impl Writer<'_> {
             let shape = channels.get(&channel).copied().and_then(dimension);
             values.push((name, shape.unwrap_or_default().to_owned()));
         }
-        Ok(around_shader(self.style.template()).map(|part| {
-            let mut text = String::new();
-            for line in fill(part, holds, &values).lines() {
-                wrap::write_line(&mut text, line, 0);
-            }
-            text
-        }))
+        Ok(around_shader(self.style.template()).map(|part| fill(part, holds, &values)))
     }
 
     /// Checks that the host has a channel, with a texture of that shape.

@@ -8,10 +8,10 @@ use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, Type, VariableId, VariableKind, walk,
 };
 
+use super::Unprintable;
 use super::comment::Comments;
 use super::names::Names;
 use super::style::Style;
-use super::{Unprintable, wrap};
 use crate::lower::LoweringContext;
 use crate::print::Order;
 
@@ -88,7 +88,11 @@ impl<'a> Writer<'a> {
 
     /// Prints a line at the current indentation.
     pub(super) fn line(&mut self, text: &str) {
-        wrap::write_line(&mut self.out, text, self.indent);
+        // Blank lines are empty.
+        let indent = if text.is_empty() { 0 } else { self.indent };
+        self.out += &"    ".repeat(indent);
+        self.out += text;
+        self.out.push('\n');
     }
 
     /// Prints lines indented by one more level.

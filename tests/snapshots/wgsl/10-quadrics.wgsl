@@ -55,16 +55,7 @@ fn cone(apex: vec3f, axis: vec3f, radius: f32, height: f32, color: vec3f) -> Qua
 }
 
 fn paraboloid(apex: vec3f, axis: vec3f, radius: f32, height: f32, color: vec3f) -> Quadric {
-    return Quadric(
-        apex,
-        axis,
-        vec3f(1.0, 1.0, 0.0),
-        -0.5 * radius * radius / height,
-        0.0,
-        0.0,
-        height,
-        color,
-    );
+    return Quadric(apex, axis, vec3f(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height, color);
 }
 
 fn hyperboloid(center: vec3f, axis: vec3f, waist: f32, radius: f32, height: f32, color: vec3f) -> Quadric {
@@ -78,14 +69,7 @@ fn makeScene() {
     quadrics[1] = cylinder(vec3f(-0.9, -1.0, -5.2), vec3f(0.0, 1.0, 0.0), 0.4, 0.8, vec3f(0.3, 0.7, 0.9));
     quadrics[2] = cone(vec3f(0.3, 0.9, -6.5), vec3f(0.0, -1.0, 0.0), 0.7, 1.9, vec3f(0.9, 0.7, 0.2));
     quadrics[3] = paraboloid(vec3f(1.1, -0.9, -5.0), vec3f(0.28, 0.96, 0.0), 0.5, 0.7, vec3f(0.5, 0.9, 0.4));
-    quadrics[4] = hyperboloid(
-        vec3f(2.3, 0.0, -7.5),
-        vec3f(0.0, 1.0, 0.0),
-        0.4,
-        0.8,
-        2.0,
-        vec3f(0.7, 0.5, 0.9),
-    );
+    quadrics[4] = hyperboloid(vec3f(2.3, 0.0, -7.5), vec3f(0.0, 1.0, 0.0), 0.4, 0.8, 2.0, vec3f(0.7, 0.5, 0.9));
 }
 
 // The local coordinates of v: along two directions perpendicular to the axis, and along the axis.

@@ -201,8 +201,7 @@ fn sampleLight(hit: Intersection, reflected: vec3f) -> vec3f {
     }
     let density = lightDensity(hit.point, spheres[emitter]);
     let other = brdfDensity(hit.material, hit.normal, reflected, direction);
-    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing
-        * weight(density, other) / density;
+    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
 }
 
 fn trace(ray_in: Ray) -> vec3f {
