@@ -6,7 +6,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc};
-use toyproof_toml::days_since_1970;
+use toyproof_diagnostic::Date;
 
 const LOCAL_HEADER: u32 = 0x0403_4b50;
 const CENTRAL_HEADER: u32 = 0x0201_4b50;
@@ -273,11 +273,15 @@ fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
 fn dos_time(date: u16, time: u16) -> Option<i64> {
     const NONE: [u16; 2] = [0x21, 0];
     let part = |from: u16, at: u16, bits: u16| i64::from(from >> at & ((1 << bits) - 1));
-    let (year, month, day) = (1980 + part(date, 9, 7), part(date, 5, 4), part(date, 0, 5));
+    let day = Date {
+        year: 1980 + part(date, 9, 7),
+        month: part(date, 5, 4),
+        day: part(date, 0, 5),
+    };
     let (hour, minute, second) = (part(time, 11, 5), part(time, 5, 6), 2 * part(time, 0, 5));
-    let exists = (1..=12).contains(&month) && day >= 1 && hour < 24 && minute < 60 && second < 60;
+    let exists = (1..=12).contains(&day.month) && day.day >= 1 && hour < 24 && minute < 60 && second < 60;
     (exists && [date, time] != NONE)
-        .then(|| 86_400 * days_since_1970(year, month, day) + 3600 * hour + 60 * minute + second)
+        .then(|| 86_400 * day.days_since_1970() + 3600 * hour + 60 * minute + second)
 }
 
 /// The characters of code page 437 from 128.

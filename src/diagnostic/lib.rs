@@ -10,6 +10,7 @@
 //! assert_eq!(short(&unknown, &files), "wave.glsl:1:14: error[E0201]: unknown function `sine`");
 //! ```
 
+mod date;
 mod deadline;
 mod file;
 mod layout;
@@ -21,6 +22,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+pub use self::date::Date;
 pub use self::deadline::{Deadline, Overdue};
 pub use self::file::{File, FileId, Files, Position, Span};
 pub use self::layout::{columns, display_width, wrap};

@@ -24,7 +24,7 @@ use toml::de::{DeTable, DeValue};
 use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
 use toyproof_image::{MAX_PIXELS, MAX_SIDE, check_size};
 
-pub use self::moment::{Moment, days_since_1970};
+pub use self::moment::Moment;
 pub use self::syntax::diagnostic as syntax_error;
 use self::value::describe;
 pub use self::value::{Literal, Value};

@@ -3,6 +3,7 @@
 use toml::Spanned;
 use toml::de::DeValue;
 use toml::value::{Datetime, Offset};
+use toyproof_diagnostic::Date;
 
 use crate::value::{Mismatch, Value, describe};
 
@@ -15,17 +16,6 @@ pub struct Moment {
     pub offset: i64,
 }
 
-/// The days from 1970-01-01 to a day of the Gregorian calendar; months and days count from 1.
-#[must_use]
-pub fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
-    // Years that start in March, in eras of 400 years since 0000-03-01.
-    let year = year - i64::from(month <= 2);
-    let (era, year_of_era) = (year.div_euclid(400), year.rem_euclid(400));
-    let march_month = (month + 9) % 12;
-    let day_of_year = (153 * march_month + 2) / 5 + day - 1;
-    era * 146_097 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year - 719_468
-}
-
 impl Moment {
     /// None without a date, a time or an offset.
     fn of(value: &Datetime) -> Option<Self> {
@@ -34,10 +24,14 @@ impl Moment {
             Offset::Z => 0,
             Offset::Custom { minutes } => 60 * i64::from(minutes),
         };
-        let days = days_since_1970(date.year.into(), date.month.into(), date.day.into());
+        let date = Date {
+            year: date.year.into(),
+            month: date.month.into(),
+            day: date.day.into(),
+        };
         let [hour, minute, second] = [time.hour, time.minute, time.second.unwrap_or_default()].map(i64::from);
         Some(Self {
-            seconds: 86_400 * days + 3600 * hour + 60 * minute + second - offset,
+            seconds: 86_400 * date.days_since_1970() + 3600 * hour + 60 * minute + second - offset,
             offset,
         })
     }
