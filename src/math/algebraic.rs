@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Number;
+use super::float::Number;
 
 /// `x·π/180`
 #[inline]

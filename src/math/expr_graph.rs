@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
+use crate::float::{Bits, Float, Number};
 use crate::native::flush;
-use crate::{Bits, Float, Number};
 
 /// The index of a step in an [`ExprGraph`].
 pub type StepId = usize;

@@ -4,7 +4,7 @@
 //! (1971), and Knuth; the product splits its factors by masking bits instead of multiplying. The results are
 //! exact only if operations are not contracted or reordered.
 
-use super::Float;
+use super::float::Float;
 
 /// `hi + lo`. Products, quotients and roots require it to be normalized: `lo` not much more than half a unit
 /// in the last place of `hi`.

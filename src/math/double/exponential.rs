@@ -3,7 +3,7 @@
 //! The methods and coefficients are those of fdlibm (Sun Microsystems, 1993; `e_exp.c` and `e_log.c`), so that
 //! results have libm's bits.
 
-use super::{FRACTION, each, exponent, is_normal_positive, scaled};
+use super::encoding::{FRACTION, each, exponent, is_normal_positive, scaled};
 
 /// ln 2 in two parts; the product of the first with an integer of 20 bits is exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3FE6_2E42_FEE0_0000), 1.908_214_929_270_587_7e-10];

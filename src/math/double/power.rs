@@ -4,7 +4,7 @@
 //! libm's bits: the binary logarithm of the base in two parts, times the exponent, and two to the power of
 //! that.
 
-use super::{FRACTION, each, exponent, head, is_normal_positive, scaled};
+use super::encoding::{FRACTION, each, exponent, head, is_normal_positive, scaled};
 
 /// `xʸ`; NaN for x < 0, as GLSL leaves it undefined.
 #[inline(always)]

@@ -6,7 +6,7 @@
 //! for trigonometric functions", 1983). The polynomials are fdlibm's (Sun Microsystems, 1993; `k_sin.c` and
 //! `k_cos.c`).
 
-use super::{FRACTION, INTEGER};
+use super::encoding::{FRACTION, INTEGER};
 
 /// `sin(x)`, x in radians; NaN for infinities.
 #[inline(always)]
