@@ -3,7 +3,8 @@
 
 use std::fmt::Write;
 
-use super::{Parts, number, vector};
+use super::expression::{number, vector};
+use super::parts::Parts;
 use crate::{Background, Camera, Figure, Outline, Projection, Sampler, Scene, ToneMap};
 
 impl Parts<'_> {

@@ -1,9 +1,8 @@
 //! The function `trace`: mirrors and glass, or path tracing.
 
 use super::image::AROUND;
-use super::shading::{GLASS, Kind, REFLECTIVE};
+use super::parts::{GLASS, Kind, Parts, REFLECTIVE, is_emitter};
 use super::slot::Slot;
-use super::{Parts, is_emitter};
 use crate::Object;
 
 /// A mirrored ray, offset from its surface.

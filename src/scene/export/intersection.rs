@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use super::expression::{moved_direction, moved_point, number, vector};
 use super::image::PCG;
+use super::parts::Parts;
 use super::pattern::Patterns;
-use super::structure::{moved_direction, moved_point};
-use super::{Parts, number, vector};
 use crate::shape::IDENTITY;
 use crate::{Cuboid, Object, Quadric, QuadricKind, Sampler, Scatter};
 

@@ -1,9 +1,11 @@
 //! Export of the shader that renders a scene, in the course's style, with only the code that the scene
 //! requires.
 
+mod expression;
 mod image;
 mod integrator;
 mod intersection;
+mod parts;
 mod pattern;
 mod shading;
 mod slot;
@@ -11,14 +13,12 @@ mod structure;
 
 use thiserror::Error;
 
+use self::expression::{motion_functions, vector};
 use self::image::{background_function, camera_function, figure_functions, random_functions};
 use self::intersection::quadric_functions;
-use self::pattern::{Patterns, is_own};
-use self::shading::{DISNEY_STRUCTURE, GLASS, Kind, REFLECTIVE};
-use self::structure::motion_functions;
-use crate::{
-    Cuboid, Integrator, Object, Point, Quadric, Requirements, Sampler, Scatter, Scattered, Scene, Shape,
-};
+use self::parts::{GLASS, Kind, Parts, is_emitter};
+use self::shading::DISNEY_STRUCTURE;
+use crate::{Requirements, Sampler, Scene};
 pub use slot::{MarkedShader, Slot};
 
 /// A feature of a scene that exported shaders do not support.
@@ -50,92 +50,7 @@ pub fn marked_shader(scene: &Scene) -> Result<MarkedShader, Unsupported> {
     Ok(MarkedShader::new(format!("// {title}\n\n"), &template))
 }
 
-fn number(value: f64) -> String {
-    format!("{value:?}")
-}
-
-fn vector([x, y, z]: [f64; 3]) -> String {
-    format!("vec3({}, {}, {})", number(x), number(y), number(z))
-}
-
-// The code fragments that a scene needs, and their order.
-
-/// The code fragments that a scene needs.
-struct Parts<'a> {
-    /// Emitters come first if paths are traced.
-    spheres: Vec<(Point, f64, &'a Object)>,
-    planes: Vec<(Point, Point, &'a Object)>,
-    quadrics: Vec<(Quadric, &'a Object)>,
-    boxes: Vec<(Cuboid, &'a Object)>,
-    /// Scatters without motion, and without a pattern in the coordinates of each sphere; the spheres of the
-    /// others are in `spheres`.
-    grids: Vec<&'a Scatter>,
-    patterns: Patterns,
-    /// The models in use, in order of their first object.
-    models: Vec<Kind>,
-    traces_paths: bool,
-}
-
-impl<'a> Parts<'a> {
-    fn of(scene: &'a Scene) -> Self {
-        let mut parts = Self {
-            spheres: Vec::new(),
-            planes: Vec::new(),
-            quadrics: Vec::new(),
-            boxes: Vec::new(),
-            grids: Vec::new(),
-            patterns: Patterns::of(scene),
-            models: Vec::new(),
-            traces_paths: scene.film.integrator == Integrator::Path,
-        };
-        let mut in_grids = vec![false; scene.objects.len()];
-        for Scattered { scatter, objects } in &scene.scatters {
-            let is_emitter = parts.traces_paths && Kind::of(&scatter.material.model) == Kind::Emitter;
-            let has_own_space = scatter.material.pattern.as_ref().is_some_and(is_own);
-            if scatter.motion.is_none() && !is_emitter && !has_own_space {
-                in_grids[objects.clone()].fill(true);
-                parts.grids.push(scatter);
-            }
-        }
-        for (object, in_grid) in scene.objects.iter().zip(in_grids) {
-            let kind = Kind::of(&object.material.model);
-            if !parts.models.contains(&kind) {
-                parts.models.push(kind);
-            }
-            if in_grid {
-                continue;
-            }
-            match object.shape {
-                Shape::Sphere { center, radius } => parts.spheres.push((center, radius, object)),
-                Shape::Plane { point, normal } => parts.planes.push((point, normal, object)),
-                Shape::Quadric(quadric) => parts.quadrics.push((quadric, object)),
-                Shape::Box(cuboid) => parts.boxes.push((cuboid, object)),
-            }
-        }
-        if parts.traces_paths {
-            parts.spheres.sort_by_key(|(_, _, object)| !is_emitter(object));
-        }
-        parts
-    }
-
-    fn uses(&self, model: Kind) -> bool {
-        self.models.contains(&model)
-    }
-
-    fn uses_any(&self, models: &[Kind]) -> bool {
-        models.iter().any(|&model| self.uses(model))
-    }
-
-    /// Whether lights illuminate any surface.
-    fn is_lit(&self) -> bool {
-        !self.traces_paths && self.uses_any(&REFLECTIVE)
-    }
-
-    /// Whether hits carry a model constant: there is more than one model.
-    fn has_model_ids(&self) -> bool {
-        self.models.len() > 1
-    }
-
+impl Parts<'_> {
     fn template(&self, scene: &Scene) -> String {
         let moves = Requirements::of(scene).motion;
         let mut pieces = vec![self.constants(scene)];
@@ -216,8 +131,4 @@ impl<'a> Parts<'a> {
         }
         text
     }
-}
-
-fn is_emitter(object: &Object) -> bool {
-    Kind::of(&object.material.model) == Kind::Emitter
 }

@@ -1,7 +1,6 @@
 //! Patterns: the second colors of surfaces.
 
-use super::structure::{moved_direction, moved_point};
-use super::{number, vector};
+use super::expression::{moved_direction, moved_point, number, vector};
 use crate::{Object, Pattern, PatternKind, Point, Scene, Shape, Space};
 
 /// What the shader's code for patterns depends on.

@@ -2,65 +2,11 @@
 
 use std::fmt::Write;
 
+use super::expression::number;
 use super::image::AROUND;
+use super::parts::{GLASS, Kind, Parts};
 use super::slot::Slot;
-use super::{Parts, number};
-use crate::{Disney, Fresnel, Light, Material, Model, Scene};
-
-/// A reflection model without its parameters.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Facing,
-    Lambert,
-    Diffuse,
-    Glossy,
-    Disney,
-    Mirror,
-    Glass,
-    Schlick,
-    Emitter,
-}
-
-/// The models with a BRDF.
-pub(super) const REFLECTIVE: [Kind; 4] = [Kind::Lambert, Kind::Diffuse, Kind::Glossy, Kind::Disney];
-pub(super) const GLASS: [Kind; 2] = [Kind::Glass, Kind::Schlick];
-
-impl Kind {
-    pub(super) fn of(model: &Model) -> Self {
-        match model {
-            Model::Facing => Self::Facing,
-            Model::Lambert => Self::Lambert,
-            Model::Diffuse => Self::Diffuse,
-            Model::Glossy { .. } => Self::Glossy,
-            Model::Disney(_) => Self::Disney,
-            Model::Mirror => Self::Mirror,
-            Model::Glass {
-                fresnel: Fresnel::Exact,
-                ..
-            } => Self::Glass,
-            Model::Glass {
-                fresnel: Fresnel::Schlick,
-                ..
-            } => Self::Schlick,
-            Model::Emitter => Self::Emitter,
-        }
-    }
-
-    /// Returns the name of its constant in the shader.
-    pub(super) fn glsl_name(self) -> &'static str {
-        match self {
-            Self::Facing => "FACING",
-            Self::Lambert => "LAMBERT",
-            Self::Diffuse => "DIFFUSE",
-            Self::Glossy => "GLOSSY",
-            Self::Disney => "DISNEY",
-            Self::Mirror => "MIRROR",
-            Self::Glass => "GLASS",
-            Self::Schlick => "SCHLICK",
-            Self::Emitter => "EMITTER",
-        }
-    }
-}
+use crate::{Disney, Light, Material, Model, Scene};
 
 /// A member of surfaces besides shape and color, which is copied to a hit.
 pub(super) struct Property {
