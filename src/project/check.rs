@@ -5,7 +5,8 @@ use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked, Code, Options, Stage};
 use toyproof_lint::{Lints, lint};
 
-use crate::{Pass, PassKind, Project, SourceType, Tab};
+use crate::pass::{Pass, PassKind, SourceType, Tab};
+use crate::project::Project;
 
 /// A project all of whose tabs compile.
 #[derive(Debug)]

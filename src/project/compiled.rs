@@ -2,7 +2,9 @@
 
 use toyproof_glsl::Checked;
 
-use crate::{NotRendered, PassKind, Project, Rendering};
+use crate::graph::{NotRendered, Rendering};
+use crate::pass::PassKind;
+use crate::project::Project;
 
 /// A project whose tabs compile, with what renders its image.
 #[derive(Debug)]

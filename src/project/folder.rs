@@ -6,84 +6,19 @@ use std::collections::HashMap;
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, Span, nearest};
+use toyproof_glsl::{Filter, Wrap};
 use toyproof_toml::list_of;
 
-use crate::media::{self, Name, SourceType};
-use crate::node::{Member, Node, Value};
+use crate::format::{Format, Wrapper};
+use crate::json;
+use crate::media;
+use crate::node::{INVALID_SYNTAX, Member, Node, Value};
+use crate::pass::{Buffer, PassKind, SourceType, Tab};
+use crate::project::{Document, Project};
 use crate::read::{Renderpass, default_sampler, read};
-use crate::{Document, Filter, INVALID_SYNTAX, PassKind, Project, Tab, Wrap, Wrapper, json};
 
 /// The name of the file beside the tabs.
 pub const PROJECT_FILE: &str = "project.toml";
-
-/// A variant of the site's JSON, which differ in the keys of inputs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Format {
-    /// The data of the site's own pages.
-    Page,
-    /// The API.
-    Api,
-    /// The editor's export.
-    Editor,
-}
-
-impl Format {
-    const NAMES: [(&str, Self); 3] = [("page", Self::Page), ("api", Self::Api), ("editor", Self::Editor)];
-
-    /// The variant of a tree.
-    pub(crate) fn of(root: &Node, wrapper: Wrapper) -> Self {
-        let passes = root
-            .get("renderpass")
-            .and_then(Node::as_array)
-            .unwrap_or_default();
-        let inputs = passes.iter().filter_map(|pass| pass.get("inputs")?.as_array());
-        let mut inputs = inputs.flatten();
-        if wrapper == Wrapper::Shader || inputs.clone().any(|input| input.get("ctype").is_some()) {
-            Self::Api
-        } else if root.get("flags").is_some() || inputs.any(|input| input.get("previewfilepath").is_none()) {
-            Self::Editor
-        } else {
-            Self::Page
-        }
-    }
-
-    fn name(self) -> &'static str {
-        let mut names = Self::NAMES.iter();
-        names
-            .find(|(_, known)| *known == self)
-            .map_or("", |(name, _)| name)
-    }
-
-    /// The members of an input that name what it reads.
-    fn members(self, name: &Name) -> Vec<Member> {
-        let Name {
-            source_type,
-            id,
-            path,
-            preview,
-            ..
-        } = name;
-        let [id, kind] = [*id, source_type.name()];
-        match self {
-            Self::Page => vec![
-                Member::new("id", id),
-                Member::new("filepath", path.as_str()),
-                Member::new("previewfilepath", preview.as_str()),
-                Member::new("type", kind),
-            ],
-            Self::Api => vec![
-                Member::new("id", id),
-                Member::new("src", path.as_str()),
-                Member::new("ctype", kind),
-            ],
-            Self::Editor => vec![
-                Member::new("type", kind),
-                Member::new("id", id),
-                Member::new("filepath", path.as_str()),
-            ],
-        }
-    }
-}
 
 impl Project {
     /// Reads a project from the files of its folder: the tabs, and `project.toml`, if there is one. Without it, channel
@@ -478,7 +413,7 @@ fn complete_document(members: &mut Vec<Member>) {
 /// The passes of a folder without `project.toml`, in the order of the site.
 fn assumed_passes(tabs: &[(Tab, FileId)]) -> Node {
     let has = |tab: Tab| tabs.iter().any(|(known, _)| *known == tab);
-    let inputs: Vec<Node> = crate::Buffer::ALL
+    let inputs: Vec<Node> = Buffer::ALL
         .into_iter()
         .map(|buffer| Tab::Pass(PassKind::Buffer(buffer)))
         .enumerate()

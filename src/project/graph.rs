@@ -3,11 +3,12 @@
 
 use std::collections::HashMap;
 
-use toyproof_glsl::{Sampling, Wrap};
+use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{Image, Noise, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 
-use crate::{Buffer, Filter, Input, Pass, PassKind, Project, Source, SourceType};
+use crate::pass::{Buffer, Input, Pass, PassKind, Source, SourceType};
+use crate::project::Project;
 
 /// What renders the image of a project.
 #[derive(Debug, Clone)]

@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use toyproof_diagnostic::{Diagnostic, FileId, Files, Span, grouped};
 
-use crate::INVALID_SYNTAX;
-use crate::node::{Member, Node, Value};
+use crate::node::{INVALID_SYNTAX, Member, Node, Value};
 
 /// The maximum nesting depth; ShaderToy's JSON has seven levels.
 const MAX_NESTING: usize = 64;

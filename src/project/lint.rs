@@ -4,7 +4,9 @@ use toyproof_diagnostic::Diagnostic;
 use toyproof_glsl::tree::{ExprKind, Input as Uniform, VariableKind};
 use toyproof_glsl::{Checked, Code};
 
-use crate::{Buffer, CheckedPass, Input, PassKind, Project, Source};
+use crate::check::CheckedPass;
+use crate::pass::{Buffer, Input, PassKind, Source};
+use crate::project::Project;
 
 /// An input that the code of its pass names.
 struct Read<'p> {

@@ -1,56 +1,6 @@
 //! ShaderToy's built-in media, and the ids of everything that an input may read.
 
-use crate::{Buffer, Source};
-
-/// A type of inputs, as the site's JSON names it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum SourceType {
-    /// A buffer of the project.
-    Buffer,
-    /// A picture.
-    Texture,
-    /// A cube map: six pictures, or Cube A.
-    Cubemap,
-    /// A 3D texture.
-    Volume,
-    /// The keyboard.
-    Keyboard,
-    /// The webcam.
-    Webcam,
-    /// A video.
-    Video,
-    /// A piece of music.
-    Music,
-    /// A piece of music of `SoundCloud`.
-    MusicStream,
-    /// The microphone.
-    Mic,
-}
-
-impl SourceType {
-    /// All types, each with its name in JSON.
-    pub(crate) const NAMES: [(&str, Self); 10] = [
-        ("texture", Self::Texture),
-        ("buffer", Self::Buffer),
-        ("cubemap", Self::Cubemap),
-        ("volume", Self::Volume),
-        ("keyboard", Self::Keyboard),
-        ("webcam", Self::Webcam),
-        ("video", Self::Video),
-        ("music", Self::Music),
-        ("musicstream", Self::MusicStream),
-        ("mic", Self::Mic),
-    ];
-
-    /// The name in JSON.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        let mut names = Self::NAMES.iter();
-        names
-            .find(|(_, known)| *known == self)
-            .map_or("", |(name, _)| name)
-    }
-}
+use crate::pass::{Buffer, Source, SourceType};
 
 /// A medium that the site provides. Its file is not redistributable.
 #[derive(Debug, Clone, PartialEq, Eq)]

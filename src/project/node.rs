@@ -3,7 +3,10 @@
 
 use toyproof_diagnostic::{Diagnostic, Span};
 
-use crate::INVALID_VALUE;
+/// The code of errors in the syntax of a project's JSON or TOML.
+pub(crate) const INVALID_SYNTAX: &str = "E0507";
+/// The code of errors in the content of a project's JSON or TOML.
+pub(crate) const INVALID_VALUE: &str = "E0508";
 
 /// A value and its place.
 #[derive(Debug, Clone)]

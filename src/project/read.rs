@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest};
+use toyproof_glsl::{Filter, Wrap};
 use toyproof_toml::list_of;
 
-use crate::folder::Format;
-use crate::media::{self, CUBE_A_FILE, CUBE_A_ID, SourceType};
+use crate::format::{Format, Wrapper};
+use crate::json;
+use crate::media::{self, CUBE_A_FILE, CUBE_A_ID};
 use crate::node::{Node, Value};
-use crate::{
-    Buffer, Document, Filter, Input, MAX_TAB_BYTES, Pass, PassKind, Project, Sampler, Source, Tab, Wrap,
-    Wrapper, json,
-};
+use crate::pass::{Buffer, Input, MAX_TAB_BYTES, Pass, PassKind, Sampler, Source, SourceType, Tab};
+use crate::project::{Document, Project};
 
 /// The maximum number of errors that are reported for one file.
 const MAX_ERRORS: usize = 20;
