@@ -3,49 +3,25 @@
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, Direction, ExprKind, FunctionId, Place, Scalar, Type};
 
 use crate::lower::context::LoweringContext;
+use crate::lower::generated::Helper;
 use crate::lower::{initializer, operator};
 
-/// The operation of a helper function; each is instantiated for its argument types.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Helper {
-    /// Returns its argument, hidden from constant evaluation.
-    Runtime,
-    /// Floored `%`.
-    Remainder,
-    /// `normalize` of a float.
-    Normalize,
-    /// `faceforward` of floats.
-    Faceforward,
-    /// `refract` of floats.
-    Refract,
-    /// `reflect` of floats.
-    Reflect,
-    /// A 2×2 matrix of a `vec4`.
-    Matrix,
-    /// `matrixCompMult`.
-    MatrixCompMult,
-    /// `outerProduct`.
-    OuterProduct,
-    /// `inverse`.
-    Inverse,
-    /// `isnan`.
-    IsNan,
-    /// `isinf`.
-    IsInf,
-    /// `modf`.
-    Modf,
-    /// `==` of structures and arrays.
-    Equal,
-    /// A structure or an array of zeros.
-    Zero,
-    /// A structure of its members; [`super::member`] gives it a body.
-    Make,
+impl LoweringContext {
+    /// Returns the helper function for the given types and adds it on first use.
+    pub(super) fn helper(&mut self, helper: Helper, types: (Type, Type), at: Place) -> FunctionId {
+        if let Some(&id) = self.helper_ids.get(&(helper, types.0, types.1)) {
+            return id;
+        }
+        let id = helper.make(self, types, at);
+        self.helper_ids.insert((helper, types.0, types.1), id);
+        id
+    }
 }
 
 impl Helper {
     /// Adds the function for the given types: that of the first argument, and that of the second where it can
     /// differ.
-    pub(super) fn make(self, cx: &mut LoweringContext, (ty, other): (Type, Type), at: Place) -> FunctionId {
+    fn make(self, cx: &mut LoweringContext, (ty, other): (Type, Type), at: Place) -> FunctionId {
         use Direction::{In, Out};
         let float = Type::FLOAT;
         let boolean = ty.with_scalar(Scalar::Bool).unwrap_or(Type::BOOL);

@@ -13,8 +13,8 @@ use toyproof_glsl::tree::{
 };
 
 use super::float32::{Float32Values, floats};
-use crate::lower::builtin::Helper;
 use crate::lower::context::LoweringContext;
+use crate::lower::generated::Helper;
 
 pub(super) fn run(cx: &mut LoweringContext) {
     let mut values = Float32Values::default();

@@ -11,8 +11,7 @@ use toyproof_glsl::tree::{
 };
 use toyproof_glsl::{Checked, Sampling, Stage};
 
-use crate::lower::builtin::Helper;
-use crate::lower::polyfill::Expansion;
+use crate::lower::generated::{Expansion, Helper};
 
 /// The state that all passes share.
 pub(crate) struct LoweringContext {
@@ -39,7 +38,8 @@ pub(crate) struct LoweringContext {
     pub(crate) checks_fetches: bool,
     /// The diagnostic for a shader that nests deeper than drivers support.
     pub(crate) too_deep: Option<Diagnostic>,
-    helper_ids: HashMap<(Helper, Type, Type), FunctionId>,
+    /// Helper functions, by the types of their arguments.
+    pub(super) helper_ids: HashMap<(Helper, Type, Type), FunctionId>,
     /// Generated functions that replace built-in ones, by the types of their arguments.
     pub(super) expansions: HashMap<(Expansion, Vec<Type>), FunctionId>,
 }
@@ -93,16 +93,6 @@ impl LoweringContext {
             value: None,
             at: Some(at),
         })
-    }
-
-    /// Returns the helper function for the given types and adds it on first use.
-    pub(super) fn helper(&mut self, helper: Helper, types: (Type, Type), at: Place) -> FunctionId {
-        if let Some(&id) = self.helper_ids.get(&(helper, types.0, types.1)) {
-            return id;
-        }
-        let id = helper.make(self, types, at);
-        self.helper_ids.insert((helper, types.0, types.1), id);
-        id
     }
 
     /// Adds a generated function. Its arguments are read in place, like operands: `in` becomes `const in`.

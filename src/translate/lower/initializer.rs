@@ -8,8 +8,8 @@ use toyproof_glsl::tree::{
 };
 
 use super::{lvalue, member};
-use crate::lower::builtin::Helper;
 use crate::lower::context::LoweringContext;
+use crate::lower::generated::Helper;
 
 /// Moves initializers that naga cannot evaluate to a function that runs before `mainImage`, in source order,
 /// and constant arrays out of functions.

@@ -13,7 +13,8 @@ use toyproof_glsl::tree::{
 use toyproof_glsl::{Filter, Sampling, Wrap};
 
 use crate::lower::context::LoweringContext;
-use crate::lower::polyfill::{Expansion, function};
+use crate::lower::generated::{Expansion, Level};
+use crate::lower::polyfill::function;
 
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
@@ -52,23 +53,6 @@ struct Lookup {
     level: Level,
     is_projected: bool,
     has_offset: bool,
-}
-
-/// What determines the level of the mipmaps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Level {
-    /// The derivatives of the coordinates.
-    Implicit,
-    /// These derivatives, and an argument that is added to the level.
-    Biased,
-    /// An argument.
-    Given,
-    /// The derivatives in two arguments.
-    Gradient,
-    /// None: a single texel of a level is fetched.
-    Fetched,
-    /// None: the size of a level is returned.
-    Size,
 }
 
 impl Lookup {

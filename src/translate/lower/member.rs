@@ -13,8 +13,8 @@ use toyproof_glsl::tree::{
     StatementKind, StepOp, Struct, StructId, Tree, Type, Value, VariableId, walk,
 };
 
-use crate::lower::builtin::Helper;
 use crate::lower::context::LoweringContext;
+use crate::lower::generated::Helper;
 use crate::lower::lvalue::{self, Hoist};
 
 pub(super) fn run(cx: &mut LoweringContext) {

@@ -8,12 +8,13 @@
 mod branch;
 mod builtin;
 mod constant;
-mod context;
+pub(crate) mod context;
 #[cfg(test)]
 mod expression_tests;
 mod flatten;
 mod float32;
 mod folding;
+mod generated;
 mod initializer;
 mod lookup;
 mod loops;
@@ -27,11 +28,11 @@ mod stage_io;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use context::LoweringContext;
 pub(crate) use folding::fold_except;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 
+use self::context::LoweringContext;
 use crate::print::{Lowered, print};
 
 /// Lowers a shader and prints it as GLSL for naga.

@@ -7,8 +7,8 @@ use toyproof_glsl::tree::{
     Statement, StatementKind, StepOp, Swizzle, Tree, Type, UnaryOp, Value, VariableId, walk,
 };
 
-use crate::lower::builtin::Helper;
 use crate::lower::context::LoweringContext;
+use crate::lower::generated::Helper;
 use crate::lower::{initializer, lvalue};
 
 /// Splits conversions of `bool` whose sizes differ: `vec3(b)`, `vec2(b3)`, `float(b2)`.

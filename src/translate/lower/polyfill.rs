@@ -8,35 +8,15 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
+    BinaryOp, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
     StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
 };
 use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 
 use crate::inexact::{Definition, InexactFunction};
 use crate::lower::context::LoweringContext;
-use crate::lower::lookup::{self, Level, lookup_function};
-
-/// An operation to expand, instantiated for the types of its arguments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Expansion {
-    /// A built-in function.
-    Function(BuiltIn),
-    /// `*` of matrices and vectors.
-    Product,
-    /// The conversion of a `uint` to the nearest float.
-    UintToFloat,
-    /// A filtered lookup of a channel, whose texture is this variable.
-    Lookup {
-        texture: VariableId,
-        channel: u8,
-        level: Level,
-    },
-    /// The level of the mipmaps for derivatives in texels.
-    LevelOfDetail,
-    /// The coordinates that `textureProj` divides by their last component.
-    Projection,
-}
+use crate::lower::generated::Expansion;
+use crate::lower::lookup::{self, lookup_function};
 
 pub(super) fn expand_inexact_functions(cx: &mut LoweringContext) {
     cx.each_expression(|cx, id| match &cx.tree[id].kind {

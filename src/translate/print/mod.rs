@@ -21,7 +21,7 @@ use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{FunctionId, Input, Place, Sampler, SamplerShape, Type, VariableId, VariableKind};
 
 use self::names::{BLOCK, Names};
-use crate::lower::LoweringContext;
+use crate::lower::context::LoweringContext;
 
 /// Prints everything that a shader's image depends on.
 pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered, Overdue> {

@@ -6,10 +6,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::tree::{BuiltInVariable, ExprKind, FunctionId, Item, StructId, Type, VariableId, walk};
+use toyproof_glsl::tree::{ExprKind, FunctionId, Item, StructId, Type, VariableId, walk};
 
 use super::order::Order;
-use crate::lower::LoweringContext;
+use crate::lower::context::LoweringContext;
 use crate::print::keyword;
 
 /// The members of the uniform block, in order, with their types in it.
@@ -32,11 +32,6 @@ const GENERATED_NAMES: [&str; 3] = ["toyproof_color", "toyproof_image_color", "T
 
 /// The prefix of generated names.
 const GENERATED_PREFIX: &str = "toyproof_";
-
-/// Whether naga has the variable under the same name.
-pub(super) fn is_native(variable: BuiltInVariable) -> bool {
-    variable == BuiltInVariable::FragCoord
-}
 
 /// The names of a shader's items.
 #[derive(Default)]

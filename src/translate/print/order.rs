@@ -7,10 +7,10 @@
 use std::collections::HashSet;
 
 use toyproof_glsl::tree::{
-    ExprId, ExprKind, Function, Item, StatementKind, Type, VariableId, VariableKind, walk,
+    BuiltInVariable, ExprId, ExprKind, Function, Item, StatementKind, Type, VariableId, VariableKind, walk,
 };
 
-use crate::lower::LoweringContext;
+use crate::lower::context::LoweringContext;
 
 /// Everything that an image depends on, definitions before uses.
 pub(crate) struct Order {
@@ -165,7 +165,8 @@ impl Collector<'_> {
                 ExprKind::Construct { .. } => self.add_type(tree[id].ty, dependencies),
                 ExprKind::Variable(variable) => match tree[variable].kind {
                     VariableKind::Input(_) => self.inputs.push(variable),
-                    VariableKind::BuiltIn(built_in) if super::names::is_native(built_in) => {}
+                    // naga has it under the same name.
+                    VariableKind::BuiltIn(BuiltInVariable::FragCoord) => {}
                     _ if self.locals.contains(&variable) => {}
                     _ => dependencies.push(Item::Variable(variable)),
                 },

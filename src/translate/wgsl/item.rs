@@ -10,7 +10,7 @@ use toyproof_glsl::{self as glsl, Options};
 use super::Unprintable;
 use super::names::Names;
 use super::writer::{Facts, Writer, is_out};
-use crate::lower::LoweringContext;
+use crate::lower::context::LoweringContext;
 use crate::print::Order;
 
 impl Writer<'_> {

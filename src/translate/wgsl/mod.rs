@@ -25,7 +25,8 @@ use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::BuiltIn;
 
-use crate::lower::{LoweringContext, Pass, Passes, fold_except};
+use crate::lower::context::LoweringContext;
+use crate::lower::{Pass, Passes, fold_except};
 use crate::print::Order;
 
 /// Why this writer cannot print a shader.

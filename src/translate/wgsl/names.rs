@@ -8,7 +8,7 @@ use toyproof_glsl::tree::{BuiltIn, ExprKind, FunctionId, Item, StructId, Type, V
 
 use super::style::Style;
 use super::writer::type_name;
-use crate::lower::LoweringContext;
+use crate::lower::context::LoweringContext;
 use crate::print::{Numbering, Order};
 
 /// The names of a shader's items.

@@ -12,7 +12,7 @@ use super::Unprintable;
 use super::comment::Comments;
 use super::names::Names;
 use super::style::Style;
-use crate::lower::LoweringContext;
+use crate::lower::context::LoweringContext;
 use crate::print::Order;
 
 /// Prints a lowered shader.
