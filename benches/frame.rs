@@ -13,7 +13,7 @@ use toyproof::gpu;
 use toyproof::gpu::{AdapterSelector, Worker};
 use toyproof::image::Frame;
 use toyproof::scene::{self, Scene};
-use toyproof::tracer::{Real, Tracer};
+use toyproof::tracer::{Backend, Tracer};
 use toyproof::translate::backend::spirv;
 use toyproof::translate::naga_ir::ValidModule;
 use toyproof::translate::{FloatMode, Lowered, lower};
@@ -88,7 +88,7 @@ fn through_the_worker(bencher: Bencher, exercise: &str) {
 
 /// 640×360 by the reference tracer, on all cores.
 #[divan::bench(args = EXERCISES, types = [f32, f64])]
-fn trace<T: Real>(bencher: Bencher, exercise: &str) {
+fn trace<T: Backend>(bencher: Bencher, exercise: &str) {
     let tracer = Tracer::<T>::new(&scene(exercise));
     bencher.bench(|| tracer.render(|| ()));
 }

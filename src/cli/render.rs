@@ -9,7 +9,7 @@ use indicatif::ProgressBar;
 use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
 use toyproof_image::{FRAME_RATE, Frame, Image};
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
-use toyproof_tracer::{Real, Tracer};
+use toyproof_tracer::{Backend, Tracer};
 use toyproof_verify::Expected;
 
 use super::inputs::may_write;
@@ -233,7 +233,7 @@ pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
 }
 
 /// Traces the scene, with a progress bar over its rows.
-fn trace<T: Real>(
+fn trace<T: Backend>(
     scene: &Scene,
     frame_time: FrameTime,
     previous: &mut Option<Tracer<T>>,

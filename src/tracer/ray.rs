@@ -1,17 +1,13 @@
-//! Rays, their intersections with surfaces, and the first hits of camera rays.
+//! Rays, and their intersections with surfaces.
 
 #![expect(
     clippy::inline_always,
     reason = "only what is inlined into a kernel is compiled for its instruction set"
 )]
 
-use crate::camera::topmost_figure;
 use crate::lanes::{Lanes, MAX_LANES, Wide, Wide3, lanes_of};
-use crate::ray_epsilon::Exact;
-use crate::real::{Real, Vector};
-use crate::sampler::{Sample, SampleStream};
+use crate::real::Real;
 use crate::spheres::NO_SURFACE;
-use crate::{Kernel, Tracer};
 
 /// A ray o + t·d with t > 0.
 #[derive(Debug, Clone, Copy)]
@@ -100,78 +96,10 @@ pub(super) enum PrimaryHit<T: Real> {
 
 impl<T: Real> PrimaryHit<T> {
     /// Returns the index of the figure and of the surface; both are `None` for the background.
-    fn id(&self) -> [Option<usize>; 2] {
+    pub(super) fn id(&self) -> [Option<usize>; 2] {
         match self {
             Self::Figure(figure) => [Some(*figure), None],
             Self::Scene(_, first) => [None, first.get().map(|(_, surface)| surface)],
-        }
-    }
-}
-
-impl<T: Real> Tracer<T> {
-    /// Returns whether the samples of the pixel's quad see different surfaces or figures. The quad is the
-    /// block of 2×2 pixels within which GPUs compute derivatives; at the edge of the image it may extend
-    /// beyond it.
-    #[must_use]
-    pub fn is_quad_mixed(&self, x: u32, y: u32) -> bool {
-        let quad = [x & !1, y & !1];
-        let lanes = [[0, 0], [1, 0], [0, 1], [1, 1]];
-        let pixels = lanes.map(|lane| [quad[0] + lane[0], quad[1] + lane[1]]);
-        let count = self.film.samples;
-        let samples = (0..count).flat_map(|index| {
-            pixels.map(|pixel| Sample {
-                pixel,
-                index,
-                count,
-                set: 0,
-            })
-        });
-        let mut hits = samples.map(|sample| {
-            let position = Self::sample_position(
-                sample.pixel,
-                SampleStream::new(self.film.sampler, sample).jitter(),
-            );
-            self.primary_hit(self.camera.screen(position)).id()
-        });
-        let first = hits.next();
-        hits.any(|other| Some(other) != first)
-    }
-
-    /// Returns the origin and the direction of the camera ray through the center of a pixel.
-    #[must_use]
-    pub fn camera_ray(&self, x: u32, y: u32) -> [[T; 3]; 2] {
-        let half = T::from_f64(0.5);
-        let middle = [x, y].map(|along| T::from_f64(f64::from(along)) + half);
-        let ray = self.camera.ray(self.camera.screen(middle));
-        [ray.origin.to_array(), ray.direction.to_array()]
-    }
-
-    /// Finds the first hit of an arbitrary ray: the distance in units of the length of `direction`, and the
-    /// index of the surface in the scene. `from` is the surface on which the ray starts, if any; its start is
-    /// not a hit.
-    #[must_use]
-    pub fn intersect(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
-        let ray = Ray {
-            origin: T::Vec3::from_array(origin),
-            direction: T::Vec3::from_array(direction),
-            from,
-        };
-        self.nearest(&ray).get()
-    }
-
-    /// Finds what is visible at a point of the screen.
-    pub(super) fn primary_hit(&self, screen: [T; 2]) -> PrimaryHit<T> {
-        if let Some(figure) = topmost_figure(&self.figures, screen) {
-            return PrimaryHit::Figure(figure);
-        }
-        let ray = self.camera.ray(screen);
-        PrimaryHit::Scene(ray, self.nearest(&ray))
-    }
-
-    fn nearest(&self, ray: &Ray<T>) -> FirstHit<T> {
-        match &self.kernel {
-            Kernel::Spheres(world) => world.nearest(ray, &Exact),
-            Kernel::Shapes(world) => world.nearest(ray, &Exact),
         }
     }
 }

@@ -6,11 +6,10 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use glam::{DVec3, Vec3};
 use num_traits::Float;
 
-use crate::Backend;
 use crate::lanes::Vectorized;
 
 /// A floating-point type, f32 or f64, with its glam vector.
-pub trait Real: Float + Vectorized + Backend + Debug + Send + Sync + 'static {
+pub trait Real: Float + Vectorized + Debug + Send + Sync + 'static {
     /// The three-component vector of this type.
     type Vec3: Vector<Self>;
 

@@ -4,10 +4,13 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
+use rayon::prelude::*;
 use toyproof_diagnostic::{File, Files};
-use toyproof_scene::{self as scene, Sampler};
+use toyproof_image::Image;
+use toyproof_scene::{self as scene, FrameTime, Sampler, Scene};
 
 use super::*;
+use crate::lanes::Level;
 
 pub(crate) fn scene(text: &str) -> Scene {
     let mut files = Files::default();
@@ -456,7 +459,7 @@ fn bits(image: &Image) -> Vec<[u32; 4]> {
 }
 
 /// For a scene of 45×27 pixels.
-fn assert_same_bits<T: Real>(name: &str, scene: &Scene) {
+fn assert_same_bits<T: Backend>(name: &str, scene: &Scene) {
     let tracers: Vec<_> = Level::all()
         .map(|level| Tracer::<T>::with_level(scene, FrameTime::default(), level, None))
         .collect();

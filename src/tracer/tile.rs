@@ -8,10 +8,10 @@ use toyproof_scene::Sampler;
 use crate::camera::topmost_figure;
 use crate::real::{Real, Vector};
 use crate::sampler::{Sample, SampleStream, Strata, centered};
-use crate::spheres::{NO_SURFACE, PACKET_RAYS, Packet, PacketHits};
+use crate::spheres::{NO_SURFACE, PACKET_RAYS};
+use crate::tracer::Tracer;
 use crate::transfer::tone_map_all;
-use crate::world::{Samples, each_slice};
-use crate::{Kernel, Tracer};
+use crate::world::trace::{Samples, each_slice};
 
 /// Side of a tile in pixels.
 pub(super) const TILE_SIDE: u32 = 8;
@@ -193,7 +193,7 @@ impl<T: Real> Tracer<T> {
                 }),
             };
             let packet = self.camera.packet(&screen, self.level);
-            let found = self.nearest_of_packet(&packet);
+            let found = self.world.nearest_of_packet(&packet);
             let (mut active, mut radiance) = (rays.inside(tile), [[T::zero(); PACKET_RAYS]; 3]);
             if !self.figures.is_empty() {
                 for at in 0..PACKET_RAYS {
@@ -214,10 +214,7 @@ impl<T: Real> Tracer<T> {
                 streams: &mut streams,
                 radiance: radiance.each_mut().map(|of_axis| &mut of_axis[..]),
             };
-            match &self.kernel {
-                Kernel::Spheres(world) => world.trace(samples),
-                Kernel::Shapes(world) => world.trace(samples),
-            }
+            self.world.trace(samples);
             rays.add(&radiance, &mut sums);
         }
         sums
@@ -248,14 +245,6 @@ impl<T: Real> Tracer<T> {
         self.camera.screen_positions(self.level, &[xs, ys])
     }
 
-    /// Finds the first hits of a packet of camera rays.
-    fn nearest_of_packet(&self, packet: &Packet<T>) -> PacketHits<T> {
-        match &self.kernel {
-            Kernel::Spheres(world) => world.nearest_of_packet(packet),
-            Kernel::Shapes(world) => world.nearest_of_packet(packet),
-        }
-    }
-
     /// Returns the index of the surface behind the center of each pixel, bottom row first, or [`u32::MAX`]
     /// for the background.
     #[must_use]
@@ -268,7 +257,7 @@ impl<T: Real> Tracer<T> {
         bands.enumerate().for_each(|(band, surfaces)| {
             for tile in self.tiles(band as u32 * TILE_SIDE) {
                 let packet = self.camera.packet(&self.pixel_centers(tile), self.level);
-                let found = self.nearest_of_packet(&packet);
+                let found = self.world.nearest_of_packet(&packet);
                 for [in_packet, in_band] in tile.rows(width) {
                     for (surface, tag) in surfaces[in_band].iter_mut().zip(&found.surfaces()[in_packet]) {
                         *surface = tag.untag();

@@ -10,7 +10,7 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::{Film, FrameTime, Requirements, Sampler, Scene};
-use toyproof_tracer::{Real, Tracer};
+use toyproof_tracer::{self as tracer, Tracer};
 use toyproof_translate::FloatMode;
 
 use crate::trade::schedule::Cost;
@@ -248,7 +248,7 @@ impl RenderContext<'_> {
     }
 }
 
-fn render_traced<T: Real>(scene: &Scene, frame: &Frame) -> (Image, Duration) {
+fn render_traced<T: tracer::Backend>(scene: &Scene, frame: &Frame) -> (Image, Duration) {
     let start = Instant::now();
     let image = Tracer::<T>::at(scene, RenderContext::frame_time(frame)).render(|| ());
     (image, start.elapsed())

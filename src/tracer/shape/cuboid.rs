@@ -7,7 +7,7 @@
 
 use toyproof_scene as scene;
 
-use super::Primitive;
+use super::primitive::Primitive;
 use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
 use crate::ray::Ray;
 use crate::ray_epsilon::RayEpsilonPolicy;

@@ -7,7 +7,7 @@
 
 use glam::{BVec3A, Vec3A};
 
-use super::{BLOCK_SIZE, NumberedSphere};
+use super::formula::{BLOCK_SIZE, NumberedSphere};
 use crate::real::Real;
 
 /// The most bins on an axis.

@@ -1,6 +1,6 @@
 //! Blocks of eight spheres, their bounding boxes, and conservative tests of packets against boxes.
 
-use super::{BLOCK_SIZE, Eight, NumberedSphere, unit};
+use super::formula::{BLOCK_SIZE, Eight, NumberedSphere, unit};
 use crate::lanes::{Lanes, Wide};
 use crate::real::Real;
 
@@ -48,7 +48,7 @@ pub(super) fn block<T: Real>(spheres: &[NumberedSphere<T>]) -> (Block<T>, Reach<
         center: [nan; 3],
         inverse_unit: nan,
         radius2: nan,
-        numbers: [super::NO_SURFACE; BLOCK_SIZE],
+        numbers: [super::formula::NO_SURFACE; BLOCK_SIZE],
     };
     let mut reach = Reach {
         reach: nan,

@@ -7,8 +7,8 @@
 
 use smallvec::SmallVec;
 
-use super::BLOCK_SIZE;
 use super::binary::BinaryTree;
+use super::formula::BLOCK_SIZE;
 
 /// Smallest costs of representing a subtree by a number of children.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,7 +1,8 @@
 //! Rays in lanes: each lane has a ray of its own, and all are tested against one sphere after the other.
 
+use super::Spheres;
 use super::block::Block;
-use super::{NO_SURFACE, Roots, Spheres, discriminant, other_root};
+use super::formula::{NO_SURFACE, Roots, discriminant, other_root};
 use crate::lanes::{Columns, Lanes, Wide, Wide3};
 use crate::ray::Ray;
 use crate::real::{Real, Vector};

@@ -2,10 +2,11 @@
 
 use smallvec::SmallVec;
 
+use super::Spheres;
 use super::block::{Block, Reach, Slab, Slabs};
+use super::formula::{BLOCK_SIZE, NO_SURFACE, Roots, discriminant};
 use super::single_ray::push_sorted;
 use super::tree::{Child, Node};
-use super::{BLOCK_SIZE, NO_SURFACE, Roots, Spheres, discriminant};
 use crate::lanes::{Kernel, Lanes, Wide, Wide3};
 use crate::ray::{FirstHit, Ray};
 use crate::real::{Real, Vector};

@@ -4,9 +4,10 @@ use std::hint::select_unpredictable;
 
 use smallvec::SmallVec;
 
+use super::Spheres;
 use super::block::{Block, margin};
+use super::formula::{BLOCK_SIZE, Eight, Roots, discriminant};
 use super::tree::{Child, Node};
-use super::{BLOCK_SIZE, Eight, Roots, Spheres, discriminant};
 use crate::lanes::{Kernel, Lanes, MAX_LANES, Wide, Wide3};
 use crate::real::Real;
 

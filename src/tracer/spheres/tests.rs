@@ -6,7 +6,7 @@ use toyproof_scene::unit as unit_interval;
 
 use super::binary::BinaryTree;
 use super::*;
-use crate::lanes::{Level, lanes_of};
+use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3, lanes_of};
 use crate::ray::Ray;
 use crate::real::{Real, Vector};
 

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 use super::binary::BinaryTree;
 use super::block::{Block, Reach, block};
 use super::collapse::Collapse;
-use super::{BLOCK_SIZE, Eight, NumberedSphere};
+use super::formula::{BLOCK_SIZE, Eight, NumberedSphere};
 use crate::real::Real;
 
 /// Up to eight boxes. Empty slots hold inverted boxes.

@@ -8,22 +8,19 @@
 mod path;
 mod points;
 mod queries;
+pub(super) mod trace;
 mod whitted;
 
 use toyproof_scene::{Integrator, Object, Scene, Shape};
 
-use self::whitted::Deferred;
-use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
+use crate::lanes::Level;
 use crate::light::{Background, Light};
 use crate::material::{Material, Model};
 use crate::ray::{FirstHit, Ray};
 use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
 use crate::real::{Real, Vector};
-use crate::sampler::SampleStream;
 use crate::shape::Primitive;
-use crate::spheres::{
-    LaneHits, LaneRays, NO_SURFACE, NumberedSphere, PACKET_RAYS, Packet, PacketHits, Query, Spheres,
-};
+use crate::spheres::{NO_SURFACE, NumberedSphere, PACKET_RAYS, Packet, PacketHits, Query, Spheres};
 
 /// Surfaces and lights. `P` is the shape type of all surfaces: a single kind, where the scene has only that,
 /// for static dispatch.
@@ -54,12 +51,12 @@ struct Emitter<T: Real> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// Creates a world. `store` stores the spheres.
+    /// Creates a world. `store` stores the spheres; `shapes` are those of the scene's objects.
     pub(super) fn new(
         scene: &Scene,
         level: Level,
         store: impl FnOnce(&[NumberedSphere<T>]) -> Spheres<T>,
-        shape: impl Fn(&Object) -> P,
+        shapes: Vec<P>,
     ) -> Self {
         let materials: Vec<_> = scene.objects.iter().map(Material::new).collect();
         let emitters = scene.objects.iter().zip(&materials).enumerate();
@@ -85,7 +82,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
                 .iter()
                 .map(|light| Light::new(light, &scene.objects))
                 .collect(),
-            shapes: scene.objects.iter().map(shape).collect(),
+            shapes,
             spheres: store(&spheres),
             others: (0..scene.objects.len())
                 .filter(|&at| is_other(&scene.objects[at]))
@@ -128,51 +125,18 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         [lights as u32, if is_specular { self.max_depth - 1 } else { 0 }]
     }
 
+    /// Returns whether there are shadow rays, whether they aim at surfaces that rays can hit, and whether
+    /// emitters hit by chance are weighted.
+    pub(super) fn light_policy_dimensions(&self) -> [bool; 3] {
+        let paths = self.integrator == Integrator::Path;
+        let [lights, own_surface] = self.has_lights_and_surfaces();
+        let emitters = paths && self.has_emitters();
+        [lights || emitters, own_surface || emitters, emitters]
+    }
+
     /// Returns whether any surface is emissive.
     pub(super) fn has_emitters(&self) -> bool {
         !self.emitters.is_empty()
-    }
-
-    /// Computes the radiance along a camera ray with the given first hit.
-    pub(super) fn radiance(
-        &self,
-        ray: Ray<T>,
-        first: FirstHit<T>,
-        mut stream: SampleStream,
-        policy: &impl RayEpsilonPolicy<T>,
-    ) -> T::Vec3 {
-        let [origins, directions] =
-            [ray.origin, ray.direction].map(|vector| vector.to_array().map(|component| [component]));
-        let [t, surface] = first.tagged().map(|number| [number]);
-        let mut radiance = [[T::zero()]; 3];
-        let samples = Samples {
-            origins: each_slice(&origins),
-            directions: each_slice(&directions),
-            t: &t,
-            surfaces: &surface,
-            active: 1,
-            streams: std::slice::from_mut(&mut stream),
-            radiance: radiance.each_mut().map(|component| &mut component[..]),
-        };
-        T::run_scalar(Trace {
-            world: self,
-            samples,
-            policy,
-        });
-        let [[r], [g], [b]] = radiance;
-        T::Vec3::new(r, g, b)
-    }
-
-    /// Computes the radiance along many camera rays.
-    pub(super) fn trace(&self, samples: Samples<'_, T>) {
-        T::run(
-            self.level,
-            Trace {
-                world: self,
-                samples,
-                policy: &Exact,
-            },
-        );
     }
 
     /// Returns the surface on which a ray starts and which it must not hit there. A ray with an offset origin
@@ -296,78 +260,5 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             };
             light != Some(other) && t.is_some_and(|t| t < distance)
         })
-    }
-}
-
-/// Samples whose camera rays have been traced, and their radiance. The number of samples is a multiple of the
-/// number of lanes.
-pub(super) struct Samples<'a, T: Real> {
-    pub(super) origins: [&'a [T]; 3],
-    pub(super) directions: [&'a [T]; 3],
-    /// t of the first hits, infinite for none.
-    pub(super) t: &'a [T],
-    /// The surfaces of the first hits, encoded by [`Real::tag`].
-    pub(super) surfaces: &'a [T],
-    /// Bit i is set if sample i is to be traced.
-    pub(super) active: u64,
-    /// The random numbers of each sample.
-    pub(super) streams: &'a mut [SampleStream],
-    /// Receives the components of the radiance of each active sample.
-    pub(super) radiance: [&'a mut [T]; 3],
-}
-
-/// Returns the arrays as slices.
-pub(super) fn each_slice<T, const N: usize>(arrays: &[[T; N]; 3]) -> [&[T]; 3] {
-    arrays.each_ref().map(|array| &array[..])
-}
-
-/// Kernel that traces samples, each in a lane.
-struct Trace<'a, T: Real, P, R> {
-    world: &'a World<T, P>,
-    samples: Samples<'a, T>,
-    policy: &'a R,
-}
-
-impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T, P, R> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, simd: S) {
-        let Self {
-            world,
-            samples,
-            policy,
-        } = self;
-        let mut radiance = samples.radiance;
-        let mut deferred = Deferred::none();
-        let mut at = 0;
-        while at < samples.t.len() {
-            let active = (samples.active >> at) as u32 & (u32::MAX >> (32 - S::COUNT));
-            if active != 0 {
-                let rays = LaneRays {
-                    origin: Wide3::load_slices(simd, samples.origins.map(|of| &of[at..])),
-                    direction: Wide3::load_slices(simd, samples.directions.map(|of| &of[at..])),
-                    from: Wide::splat(simd, T::tag(NO_SURFACE)),
-                };
-                let hits = LaneHits {
-                    t: Wide::load(simd, &samples.t[at..]),
-                    surface: Wide::load(simd, &samples.surfaces[at..]),
-                };
-                let streams = &mut samples.streams[at..];
-                let Wide3(r, g, b) = match world.integrator {
-                    Integrator::Whitted => {
-                        let state = (streams, &mut deferred);
-                        world.whitted(simd, rays, hits, state, active, policy)
-                    }
-                    Integrator::Path => world.path(simd, rays, hits, streams, active, policy),
-                };
-                let mask = simd.mask(active);
-                for (all, new) in radiance.iter_mut().zip([r, g, b]) {
-                    let before = Wide::load(simd, &all[at..]);
-                    new.select(mask, before).store(&mut all[at..]);
-                }
-            }
-            at += S::COUNT;
-        }
     }
 }
