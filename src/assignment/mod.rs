@@ -13,6 +13,12 @@
 //! let assignment = Assignment::parse(&files, file, Path::new("glsl")).unwrap();
 //! assert_eq!(assignment.frames.len(), 2);
 //! ```
+//!
+//! # Parts
+//!
+//! - `file`: reads the TOML file of an assignment; `template` writes a new one.
+//! - `rules`, `function`: check what the image does not show.
+//! - `sample`: a test of a function of a model solution, for a new assignment.
 
 mod file;
 mod function;

@@ -1,5 +1,14 @@
 //! The command line: one file per command. Each parses its arguments, calls the other crates and prints the
 //! result.
+//!
+//! # Parts
+//!
+//! - `files`: finds and reads the inputs, and follows links only inside the named folder.
+//! - `check`: `work` reads what one command checks, `batch` runs it, `shard` distributes a batch over shards,
+//!   and `merge` repeats the command of the shards with their results.
+//! - `collect`: makes folders of students from downloads, whose archives `zip` reads.
+//! - `similar`: compares shaders by winnowing over their trees.
+//! - `terminal`: all output to the terminal.
 
 mod check;
 mod collect;

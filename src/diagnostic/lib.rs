@@ -9,6 +9,14 @@
 //! let unknown = Diagnostic::error("E0201", "unknown function `sine`").at(Span::new(file, 13, 17));
 //! assert_eq!(short(&unknown, &files), "wave.glsl:1:14: error[E0201]: unknown function `sine`");
 //! ```
+//!
+//! # Parts
+//!
+//! - `file`: files, spans, lines and columns; joined files, whose spans are reported in their parts.
+//! - `render`: a diagnostic for people, for editors (one line) and as JSON.
+//! - `text`: escaping of untrusted names and texts, suggestions, numbers in sentences.
+//! - `layout`: display width, wrapping and aligned columns.
+//! - `deadline`: [`Deadline`], which loops over a shader poll, and which rarely reads the clock.
 
 mod date;
 mod deadline;

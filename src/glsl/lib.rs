@@ -51,6 +51,17 @@
 //!
 //! No input overflows the stack, and time is linear in the size of the text after macros are expanded, whose
 //! size is limited. Nesting is limited by [`MAX_NESTING`], time by [`Options::deadline`].
+//!
+//! # Parts
+//!
+//! - `preprocess`: the preprocessor, whose tokens keep the positions of their use and of their source text.
+//! - `parse`: matches brackets, then parses the grammar; continues after errors.
+//! - `check`: scopes, types, rules and built-in functions; called by the parser for each construct.
+//! - `constant`: the values of constant expressions.
+//! - [`tree`]: the typed tree in arenas, and its visitors ([`tree::walk`]).
+//! - `single_edit`: one edit after which an invalid shader compiles.
+//! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
+//! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
 
 mod check;
 mod codes;

@@ -24,7 +24,16 @@
 //! After a hang, a crash, a panic, a lost device or memory exhaustion, the worker is restarted for the next
 //! shader. A library without a `main` of its own, such as a plug-in, needs a small program that serves.
 //!
-//! [`quirks`] lists the faults of drivers that are worked around.
+//! # Parts
+//!
+//! - `worker`: the parent's side: starts the worker, enforces deadlines, classifies failures.
+//! - `serve`, `device`, `pipeline`, `draw`, `readback`: the worker's side.
+//! - `protocol`: the messages between them.
+//! - `play`, `texture`: the passes of a shader, whose textures stay on the device.
+//! - [`quirks`]: each fault of a driver that is worked around, with its symptom and the condition for removal
+//!   (`docs/evidence/drivers.md`), and the code of those workarounds that the worker applies.
+//! - `sandbox`: what a worker process may do.
+//! - [`browser`]: the shader in Chromium, with WebGPU or WebGL 2 on the software driver that Chromium ships.
 
 pub mod browser;
 mod device;

@@ -11,6 +11,17 @@
 //! let png = encode(&ramp, "ramp.png".as_ref()).unwrap();
 //! assert!(png.starts_with(b"\x89PNG"));
 //! ```
+//!
+//! # Parts
+//!
+//! - `rgb8`: images as displayed, in 8 bits.
+//! - `texture`: textures with mipmaps; `noise`: stand-ins for ShaderToy's noise textures.
+//! - `frame`: ShaderToy's inputs of one frame and their uniform block.
+//! - `frame_inputs`: these inputs as a user describes them, before files are read.
+//! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
+//! - `file`: PNG and EXR, the only place that flips rows and quantizes.
+//! - `output`: atomic writing of files.
+//! - [`input`]: the only place that opens files of others: regular files only.
 
 mod file;
 mod frame;

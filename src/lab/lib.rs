@@ -7,6 +7,12 @@
 //! // The ray–sphere formulas whose failures `stress` measures.
 //! assert!(FORMULAS.iter().any(|formula| formula.name == "textbook"));
 //! ```
+//!
+//! # Parts
+//!
+//! - [`stress`]: formulas and authors' own functions against exact integers.
+//! - [`trade`]: accuracy against time of all methods to render an image, within a budget.
+//! - [`chart`]: scatter plots and heat maps.
 
 pub mod chart;
 pub mod stress;

@@ -13,8 +13,18 @@
 //! ```
 //!
 //! False warnings teach users to ignore all warnings, so each analysis reports only what it is sure of. Only
-//! code reachable from `mainImage` is analyzed, except for functions that are never called. Time is linear in the size of the shader; blocks, whose
-//! nesting is bounded, are walked recursively, everything else iteratively.
+//! code reachable from `mainImage` is analyzed, except for functions that are never called. Time is linear in
+//! the size of the shader; blocks, whose nesting is bounded, are walked recursively, everything else
+//! iteratively.
+//!
+//! # Parts
+//!
+//! - `program`: facts that all lints share: reachable functions, definitions of variables.
+//! - `uninit`, `unset`, `unused`, `uncalled`: variables, inputs, values and functions.
+//! - `equality`, `edges`, `fraction`, `randomness`: results that rounding decides, or that are undefined.
+//! - `direction`, `quadratic`: formulas for rays and spheres.
+//! - `iteration`, `uniformity`: loops, and derivatives in non-uniform control flow.
+//! - `allow`: comments that suppress warnings.
 
 mod allow;
 mod direction;

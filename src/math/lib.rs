@@ -17,6 +17,15 @@
 //! **Order of operations**, where the specification (GLSL ES 3.00.6 §8) does not fix it: sums run from left
 //! to right; `normalize(v)` is `v / length(v)`; `mix(a, b, t)` is `a·(1 − t) + b·t`; the product of a matrix
 //! and a vector sums over the columns; an inverse is the adjugate divided by the determinant.
+//!
+//! # Parts
+//!
+//! - `float`: the trait `Number`, the number types, and helpers for bits.
+//! - `algebraic`, `exponential`, `trigonometric`: the functions of GLSL, generic over `Number`.
+//! - `native`: the functions in f32 as drivers compute them, vectorized.
+//! - `double`: sines, powers and logarithms in f64 for several arguments at once.
+//! - `two_float`: sums of two floats, for intermediate results.
+//! - `expr_graph`: the graph of operations that `toyproof_translate` prints.
 
 #![expect(
     clippy::inline_always,

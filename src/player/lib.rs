@@ -39,6 +39,12 @@
 //! }
 //! assert_eq!(player.texture(Target::Image), Some(&3));
 //! ```
+//!
+//! # Parts
+//!
+//! - `play`: [`Player`], which decides what a pass reads and renders, and the trait [`Renderer`].
+//! - `clock`: the inputs of each frame.
+//! - `state`: what the next frame depends on.
 
 mod clock;
 mod driver;

@@ -21,6 +21,17 @@
 //!     Ok(())
 //! }
 //! ```
+//!
+//! # Parts
+//!
+//! - `node`: trees of values with their places.
+//! - `json`, `folder`: the two forms of a project, which are inverse.
+//! - `read`: a tree of values as a project.
+//! - `media`: the ids of the site's built-in media.
+//! - `check`: compiles every tab with Common in front, and Common alone.
+//! - `lint`: warnings about inputs.
+//! - `graph`: what renders the image.
+//! - `script`: files that describe the mouse and the keyboard over the frames of a run.
 
 mod check;
 mod compiled;

@@ -1,4 +1,14 @@
 //! Reports of the findings, for people and for programs: one file per format, each a function of the records.
+//!
+//! # Parts
+//!
+//! - `record`, `records`: the record of a check, and all records of a run, written one by one.
+//! - `terminal`, `csv`, `junit`, `sarif`, `gradescope`, `html`: the formats; `verdict.schema.json` is that of
+//!   `verdict.json`. `html` is one page that needs no network.
+//! - `hints`: redacts the hints that a report gives to the author of a wrong shader.
+//! - `rubric`: the marks of a shader; `class`: the table of a class.
+//! - `frames`: one record of all frames of an assignment.
+//! - `explanation`: the sections of `docs/guide/diagnostics.md` and `docs/guide/mistakes.md`, and terms.
 
 mod assigned;
 mod class;

@@ -14,6 +14,14 @@
 //! ```
 //!
 //! Lengths are in scene units, colors linear RGB. The camera looks along −z, y is up.
+//!
+//! # Parts
+//!
+//! - `film`, `shape`, `material`, `motion`: the model.
+//! - `file`: the scene file, with a diagnostic for every error; `template`: a scene to begin with.
+//! - `requirements`: the features that a scene uses.
+//! - `perturb`: scenes whose numbers are perturbed by a few units in the last place.
+//! - [`export`]: the shader that renders a scene, whose parts have names (slots).
 
 pub mod export;
 mod file;

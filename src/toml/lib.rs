@@ -11,6 +11,12 @@
 //! let errors = read(&FORMAT, &files, file, |table| table.required::<f64>("radius")).unwrap_err();
 //! assert!(errors.to_string().starts_with("a.toml:1:10: error[E0501]: `radius` must be a number"));
 //! ```
+//!
+//! # Parts
+//!
+//! - [`Table`]: the keys of a table, each read once, and what is wrong with them.
+//! - `value`: the types of values; `moment`: dates with a time and an offset from UTC.
+//! - `syntax`: errors in the syntax of TOML.
 
 mod moment;
 mod syntax;

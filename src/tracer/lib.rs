@@ -18,6 +18,20 @@
 //! `spheres`), whose results are bit-identical in every instruction set. [`Tracer::color_range`] gives the
 //! colors of a pixel under all legal epsilons of secondary rays. [`Tracer::is_quad_mixed`] reports pixel
 //! quads whose samples see different surfaces.
+//!
+//! # Parts
+//!
+//! - `camera`, `film`, `sampler`, `transfer`: camera rays, samples, and the color of a pixel.
+//! - `shape`, `spheres`, `ray`: intersections; `material`, `pattern`, `light`, `glass`: shading.
+//! - `real`: the number types; `lanes`: vectors of numbers in the best available instruction set.
+//! - `tile`: renders tiles, whose camera rays are traced in packets.
+//! - `world`: follows the samples of a packet from the first hit to the film, each in a lane of its own:
+//!   `points` (what the lanes hit), `queries`, and the integrators `whitted` and `path`.
+//! - `ray_epsilon`: the range of colors over the accepted offsets of secondary rays.
+//!
+//! In `spheres`, one formula serves `single_ray` (one ray and eight spheres), `packet` (64 camera rays and
+//! one sphere) and `lanes` (a ray in each lane and one sphere). `tree` is a bounding volume hierarchy for
+//! many spheres, which `collapse` makes of a `binary` one.
 
 mod adaptive;
 mod any_world;

@@ -50,6 +50,15 @@
 //! # Crashes
 //!
 //! naga may panic, and drivers may crash or hang. `toyproof_gpu` runs both in a worker process.
+//!
+//! # Parts
+//!
+//! - [`lower`](mod@lower): one pass for each construct that naga or a driver gets wrong.
+//! - `print`: the GLSL 450 that naga reads, with a map back to the author's spans ([`Lowered`]).
+//! - [`wgsl`]: the tree as WGSL that its author recognizes, for several kinds of host.
+//! - [`naga_ir`]: naga's parsers and its validator.
+//! - [`backend`]: SPIR-V, either strict or as naga writes it; WGSL, MSL, HLSL and GLSL.
+//! - `inexact`: the list of functions whose last bits are implementation-defined.
 
 pub mod backend;
 mod inexact;
