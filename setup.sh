@@ -14,11 +14,13 @@ packages_for() {
         build="make gcc libc6-dev"
         driver="mesa-vulkan-drivers libvulkan1"
         glslang=glslang-tools
+        script=bsdutils
     elif has dnf; then
         manager="dnf install -y"
         build="make gcc"
         driver="mesa-vulkan-drivers vulkan-loader"
         glslang=glslang
+        script=util-linux-script
     elif has pacman; then
         manager="pacman -S --needed --noconfirm"
         build="make gcc"
@@ -128,10 +130,9 @@ install_programs() {
     { has chromium || has chromium-browser || has google-chrome; } || missing="$missing chromium"
     has glslangValidator || missing="$missing ${glslang:-glslang}"
     has spirv-val || missing="$missing spirv-tools"
-    if [ -n "$missing" ]; then
-        install "what tests use" "${missing# }" || return 1
-    fi
-    has povray || install "the optional POV-Ray" povray || log "tests of POV-Ray are skipped"
+    has povray || missing="$missing povray"
+    has script || missing="$missing ${script:-util-linux}"
+    [ -z "$missing" ] || install "what tests use" "${missing# }"
 }
 
 case "${1:-}" in
