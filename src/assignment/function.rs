@@ -442,7 +442,7 @@ fn fits(tree: &Tree, ty: Type, literal: &Literal) -> bool {
     }
 }
 
-/// A value as an expression of a type; none if it cannot have the type.
+/// A value as an expression of a type; `None` if it cannot have the type.
 fn expression(tree: &Tree, ty: Type, literal: &Literal) -> Option<String> {
     if let Some(parts) = parts(tree, ty) {
         let Literal::List(list) = literal else {
@@ -478,8 +478,8 @@ fn expression(tree: &Tree, ty: Type, literal: &Literal) -> Option<String> {
     }
 }
 
-/// The parts of a type that is composed of others, each with the end of its path; none for scalars, and for types
-/// without values.
+/// The parts of a type that is composed of others, each with the end of its path; `None` for scalars, and for
+/// types without values.
 pub(super) fn parts(tree: &Tree, ty: Type) -> Option<Vec<(String, Type)>> {
     let indexed = |count: u32, part: Type| (0..count).map(|index| (format!("[{index}]"), part)).collect();
     match ty {

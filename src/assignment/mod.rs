@@ -61,7 +61,7 @@ pub struct Assignment {
 
 impl Assignment {
     /// Tests the functions of a shader, and checks its rules; adds the results to its record. `subject` is
-    /// none if the shader does not compile.
+    /// `None` if the shader does not compile.
     pub fn check_text(&self, subject: Option<&Subject>, record: &mut Record) {
         record.rules = self.rules.as_ref().map(|rules| match subject {
             Some(subject) => rules.check(subject.files, subject.checked, subject.text),
@@ -84,7 +84,7 @@ pub enum Reference {
     Given {
         /// The file.
         path: PathBuf,
-        /// The largest difference of a color, in 8-bit levels; none for the default.
+        /// The largest difference of a color, in 8-bit levels; `None` for the default.
         tolerance: Option<f64>,
     },
 }

@@ -79,8 +79,8 @@ fn rounded(value: f64) -> f64 {
     (value * scale).round() / scale
 }
 
-/// A value of a type with these components; none if there are too few, or one is not finite, or the type has no
-/// values.
+/// A value of a type with these components; `None` if there are too few, or one is not finite, or the type
+/// has no values.
 fn literal(tree: &Tree, ty: Type, components: &mut impl Iterator<Item = f64>) -> Option<Literal> {
     if let Some(parts) = parts(tree, ty) {
         let parts = parts.iter().map(|(_, ty)| literal(tree, *ty, components));

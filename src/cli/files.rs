@@ -60,7 +60,7 @@ pub(crate) enum ProjectTexts {
         toml: Option<File>,
         /// The tabs.
         tabs: Vec<(Tab, File)>,
-        /// The folder; none for a shader that is read as a project.
+        /// The folder; `None` for a shader that is read as a project.
         folder: Option<PathBuf>,
     },
 }
@@ -84,12 +84,12 @@ pub(crate) struct Input {
     pub source: InputSource,
     /// The path relative to the folder argument; the file name for a file argument.
     pub relative: PathBuf,
-    /// The folder argument that was searched; none for a file argument.
+    /// The folder argument that was searched; `None` for a file argument.
     pub folder: Option<PathBuf>,
 }
 
 impl Input {
-    /// The path of the file; none for a stream.
+    /// The path of the file; `None` for a stream.
     #[must_use]
     pub(crate) fn path(&self) -> Option<&Path> {
         match &self.source {

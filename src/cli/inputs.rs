@@ -310,7 +310,7 @@ impl DriverArgs {
         self.float.unwrap_or(Float::Strict).into()
     }
 
-    /// The mode that `--float` gives; none without the flag.
+    /// The mode that `--float` gives; `None` without the flag.
     pub(super) fn explicit_float(&self) -> Option<FloatMode> {
         self.float.map(FloatMode::from)
     }
@@ -325,7 +325,7 @@ impl DriverArgs {
         self.timeout.unwrap_or(MAX_TIME_LIMIT)
     }
 
-    /// Creates the worker that runs shaders on a GPU; none for `--device cpu`.
+    /// Creates the worker that runs shaders on a GPU; `None` for `--device cpu`.
     pub(super) fn worker(&self) -> Result<Option<Worker>, String> {
         self.worker_for(1)
     }

@@ -89,7 +89,7 @@ pub(super) struct Sequence {
 }
 
 impl Sequence {
-    /// The first frame to render; none if the files of all exist.
+    /// The first frame to render; `None` if the files of all exist.
     pub(super) fn first_missing(&self) -> Option<i32> {
         let mut missing = self.missing();
         missing.next().map(|one| one.frame)

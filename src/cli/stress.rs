@@ -182,7 +182,7 @@ fn examine(
     }
 }
 
-/// Creates a worker that has a driver; none where only the evaluator is available.
+/// Creates a worker that has a driver; `None` if only the evaluator is available.
 fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Exit> {
     let fail = |error: &dyn std::fmt::Display| {
         terminal.error(error);

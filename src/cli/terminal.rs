@@ -77,7 +77,7 @@ impl Terminal {
         self.write_failed.load(Ordering::Relaxed)
     }
 
-    /// The width of standard output in columns, at most [`MAX_WIDTH`]; none if it is not a terminal.
+    /// The width of standard output in columns, at most [`MAX_WIDTH`]; `None` if it is not a terminal.
     pub(super) fn width(&self) -> Option<usize> {
         let (width, _) = terminal_size_of(io::stdout())?;
         Some(usize::from(width.0).min(MAX_WIDTH))
@@ -364,7 +364,7 @@ pub(super) fn without_error_numbers(text: &str) -> String {
     short
 }
 
-/// The width of standard error in columns, at most [`MAX_WIDTH`]; none if it is not a terminal.
+/// The width of standard error in columns, at most [`MAX_WIDTH`]; `None` if it is not a terminal.
 fn stderr_width() -> Option<usize> {
     let (width, _) = terminal_size_of(io::stderr())?;
     Some(usize::from(width.0).min(MAX_WIDTH))

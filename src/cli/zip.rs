@@ -45,7 +45,7 @@ pub(super) enum FileTime {
 pub(super) struct Entry {
     /// The path in the archive, with `/` between components. It may be hostile.
     pub(super) name: String,
-    /// When it was last changed; none if the archive does not state it.
+    /// When it was last changed; `None` if the archive does not state it.
     pub(super) modified: Option<FileTime>,
     flags: u16,
     method: u16,
@@ -226,7 +226,7 @@ fn find_directory(input: &mut (impl Read + Seek)) -> io::Result<(u64, u64)> {
     Ok((offset, bytes))
 }
 
-/// Reads an entry of the directory; none if it is a folder.
+/// Reads an entry of the directory; `None` if it is a folder.
 fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
     if fields.u32()? != CENTRAL_HEADER {
         return Err(broken("its directory is damaged"));
@@ -268,7 +268,7 @@ fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
     }))
 }
 
-/// The seconds since 1970 of a date and a time of DOS; none for one that does not exist, and for the first
+/// The seconds since 1970 of a date and a time of DOS; `None` for one that does not exist, and for the first
 /// moment of the format, which programs write that state no time.
 fn dos_time(date: u16, time: u16) -> Option<i64> {
     const NONE: [u16; 2] = [0x21, 0];

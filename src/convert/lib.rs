@@ -58,7 +58,7 @@ impl Source<'_> {
 /// The settings of a conversion.
 #[derive(Debug, Clone, Copy)]
 pub struct Converter {
-    /// The language; none for the lowered GLSL that naga parses.
+    /// The language; `None` for the lowered GLSL that naga parses.
     pub target: Option<Target>,
     /// The kind of host that WGSL is written for.
     pub style: Style,
@@ -103,7 +103,7 @@ impl Written {
 pub struct Conversion {
     /// The file.
     pub written: Written,
-    /// The proof; none if none was requested.
+    /// The proof; `None` if none was requested.
     pub proof: Option<Result<Proved, Unproved>>,
     /// Why naga wrote the WGSL, which the author recognizes less well.
     pub fallback: Option<FallbackReason>,

@@ -86,7 +86,7 @@ impl Original {
     }
 
     /// Renders each pass and its conversion in a browser, in every frame from the textures that the original
-    /// read. Returns the browser's name and the comparison; none for languages that browsers do not run.
+    /// read. Returns the browser's name and the comparison; `None` for languages that browsers do not run.
     pub(super) fn compare_in_browser(
         &self,
         browser: &mut Chromium,

@@ -46,7 +46,7 @@ pub struct ReadGraph {
 pub struct PassesConversion {
     /// The file of each pass, and why naga wrote it, if our own writer could have.
     pub files: Vec<(Written, Option<FallbackReason>)>,
-    /// The proof; none if none was requested.
+    /// The proof; `None` if none was requested.
     pub proof: Option<Result<PassesProof, Unproved>>,
 }
 

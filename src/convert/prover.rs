@@ -371,7 +371,7 @@ pub(super) fn fully_undefined(by: Observed, files: &Files) -> Unproved {
 }
 
 /// Renders a conversion and its original in a browser: their 8-bit colors may differ by at most 1/255, except
-/// in the pixels of each frame that are undefined. Returns the browser's name and the comparison; none for
+/// in the pixels of each frame that are undefined. Returns the browser's name and the comparison; `None` for
 /// languages that browsers do not run.
 pub(super) fn in_browser(
     browser: &mut Chromium,

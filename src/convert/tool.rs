@@ -85,7 +85,8 @@ fn compiler_of(target: Target) -> Option<Tool> {
     })
 }
 
-/// Validates a file; returns the name and version of the tool that accepts it, or none if none is installed.
+/// Validates a file; returns the name and version of the tool that accepts it, or `None` if none is
+/// installed.
 ///
 /// # Errors
 /// The tool's first error message.
@@ -98,7 +99,7 @@ pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, T
     Ok(read.map(|()| tool.name_and_version()))
 }
 
-/// Compiles a file with glslang for Vulkan; returns the SPIR-V and the tool's name and version, or none if
+/// Compiles a file with glslang for Vulkan; returns the SPIR-V and the tool's name and version, or `None` if
 /// glslang is not installed or does not read the language.
 ///
 /// # Errors
@@ -139,7 +140,7 @@ impl Tool {
         written.map_err(|error| ToolError::Unwritable { tool, error })
     }
 
-    /// Runs the tool on a file; none if it is not installed.
+    /// Runs the tool on a file; `None` if it is not installed.
     fn read(&self, file: &NamedTempFile, more: &[&str]) -> Result<Option<()>, ToolError> {
         let output = run(Command::new(self.name)
             .args(self.arguments)

@@ -76,7 +76,7 @@ impl Deadline {
         }
     }
 
-    /// The remaining time; none without a deadline.
+    /// The remaining time; `None` without a deadline.
     #[must_use]
     pub fn left(&self) -> Option<Duration> {
         self.end.map(|end| end.saturating_duration_since(Instant::now()))

@@ -140,7 +140,7 @@ pub struct Diagnostic {
     pub code: Cow<'static, str>,
     /// One sentence without a full stop, in the terms of the file's language.
     pub message: String,
-    /// Its span; none if it concerns the whole file or no file.
+    /// Its span; `None` if it concerns the whole file or no file.
     pub span: Option<Span>,
     /// A short text at the caret.
     pub label: Option<String>,

@@ -97,8 +97,8 @@ fn placeholder(character: char) -> char {
     }
 }
 
-/// Replaces the control characters of a source text with placeholders of the same length; none if it contains
-/// none.
+/// Replaces the control characters of a source text with placeholders of the same length; `None` if it
+/// contains none.
 pub(super) fn mask_controls(text: &str) -> Option<String> {
     let is_masked =
         |character: char| is_layout_control(character) && !matches!(character, '\n' | '\r' | '\t');

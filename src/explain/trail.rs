@@ -193,7 +193,7 @@ struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    /// The channel and the texel from which most of the difference comes; none if most of it arises in the
+    /// The channel and the texel from which most of the difference comes; `None` if most of it arises in the
     /// pass.
     fn origin(
         &self,

@@ -15,7 +15,7 @@ use crate::tree::{
 const MAX_SCALARS: usize = 1 << 18;
 
 impl Tree {
-    /// The value of a constant expression; none if it is not constant or has no known value. Takes constant
+    /// The value of a constant expression; `None` if it is not constant or has no known value. Takes constant
     /// time for expressions cached by [`Self::cache_value`].
     #[must_use]
     pub fn value(&self, root: ExprId) -> Option<Constant> {
@@ -360,7 +360,7 @@ fn shift(op: BinaryOp, a: Value, b: Value) -> Option<Value> {
 
 // Built-in functions of constants (§8).
 
-/// Evaluates a call; none if it is undefined or not supported.
+/// Evaluates a call; `None` if it is undefined or not supported.
 fn call(function: BuiltIn, ty: Type, arguments: &[Constant]) -> Option<Vec<Value>> {
     if let Some(value) = geometric(function, arguments).or_else(|| matrix_function(function, arguments)) {
         return Some(value);

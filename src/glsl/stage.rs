@@ -39,7 +39,7 @@ impl Stage {
         }
     }
 
-    /// The function that the site calls; none for Common.
+    /// The function that the site calls; `None` for Common.
     pub(crate) fn entry(self) -> Option<Entry> {
         use Direction::{ConstIn, In, InOut, Out};
         const VEC2: Type = Type::Vector(Scalar::Float, 2);

@@ -51,7 +51,7 @@ pub(super) enum Job {
 }
 
 impl Job {
-    /// The number of pixels of the one image that it renders; none if it renders none, or several.
+    /// The number of pixels of the one image that it renders; `None` if it renders none, or several.
     pub(super) fn pixels(&self) -> Option<u64> {
         match self {
             Self::Draw(job) | Self::WatchLoops(job) => {

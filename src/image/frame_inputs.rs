@@ -8,7 +8,7 @@ use crate::{Frame, IDLE_MOUSE, Image, ImageError, Script, Texture, noise, read};
 /// The inputs of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameInputs {
-    /// `iResolution.xy`, in pixels; none for the size of what the frame is compared with.
+    /// `iResolution.xy`, in pixels; `None` for the size of what the frame is compared with.
     pub size: Option<[u32; 2]>,
     /// `iTime`, in seconds.
     pub time: f32,
@@ -20,7 +20,7 @@ pub struct FrameInputs {
     pub date: [f32; 4],
     /// The mouse and the keyboard over the frames of a run, in place of `mouse`.
     pub script: Option<Arc<Script>>,
-    /// The textures of `iChannel0` to `iChannel3`; none for black.
+    /// The textures of `iChannel0` to `iChannel3`; `None` for black.
     pub channels: [Option<Channel>; 4],
 }
 
@@ -61,7 +61,7 @@ impl Channel {
         }
     }
 
-    /// The path of the file; none for noise.
+    /// The path of the file; `None` for noise.
     #[must_use]
     pub fn file(&self) -> Option<&Path> {
         match self {

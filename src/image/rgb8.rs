@@ -48,7 +48,7 @@ impl Rgb8Image {
         self.pixels.extend(colors);
     }
 
-    /// The common color of all pixels; none if they differ.
+    /// The common color of all pixels; `None` if they differ.
     #[must_use]
     pub fn only_color(&self) -> Option<[u8; 3]> {
         let &first = self.pixels.first()?;

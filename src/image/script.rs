@@ -44,9 +44,9 @@ impl Script {
         events.map(move |&(at, event)| (at == frame, event))
     }
 
-    /// `iMouse` in a frame; none before the first click. As on `ShaderToy`, xy follows the mouse while the button
-    /// is down, and zw is where it was pressed: z is positive while it is down, and w in the frame of the click.
-    /// Positions are rounded down to whole pixels.
+    /// `iMouse` in a frame; `None` before the first click. As on `ShaderToy`, xy follows the mouse while the
+    /// button is down, and zw is where it was pressed: z is positive while it is down, and w in the frame of
+    /// the click. Positions are rounded down to whole pixels.
     #[must_use]
     pub fn mouse(&self, frame: i32) -> Option<[f32; 4]> {
         let mut mouse = None;

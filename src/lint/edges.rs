@@ -85,7 +85,7 @@ fn swapped(files: &Files, call: Span, [low, high, x]: [Span; 3]) -> Option<Fix> 
     })
 }
 
-/// The order of the edges; none if it is right, or not known.
+/// The order of the edges; `None` if it is right, or not known.
 fn order(program: &Program, low: ExprId, high: ExprId) -> Option<Order> {
     if let (Some(low), Some(high)) = (program.constant(low), program.constant(high)) {
         let pairs = low.components().iter().zip(high.components());
@@ -139,7 +139,7 @@ struct Term {
 }
 
 impl Sum {
-    /// Adds a multiple of an expression; none if it is too long, or has side effects.
+    /// Adds a multiple of an expression; `None` if it is too long, or has side effects.
     fn add(&mut self, program: &Program, expr: ExprId, factor: f64) -> Option<()> {
         let tree = program.tree;
         let mut pending = vec![(expr, factor)];

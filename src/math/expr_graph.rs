@@ -217,7 +217,7 @@ impl<'a> Term<'a> {
         Self::new(self.graph, Step::Select(self.id, yes.id, no.id), kind)
     }
 
-    /// The bits of a constant; none for other steps.
+    /// The bits of a constant; `None` for other steps.
     fn known(self) -> Option<u32> {
         match self.graph.step(self.id).0 {
             Step::Float(bits) | Step::Bits(bits) => Some(bits),

@@ -104,7 +104,7 @@ impl<R: Renderer> Player<R> {
         self.renderer
     }
 
-    /// What a pass rendered last: none before the first frame, and for buffers that are not used.
+    /// What a pass rendered last: `None` before the first frame, and for buffers that are not used.
     #[must_use]
     pub fn texture(&self, target: Target) -> Option<&R::Texture> {
         match target {
@@ -145,7 +145,7 @@ impl<R: Renderer> Player<R> {
         })
     }
 
-    /// The size of the textures: none before the first frame.
+    /// The size of the textures: `None` before the first frame.
     pub(crate) fn size(&self) -> Option<[u32; 2]> {
         self.size
     }

@@ -266,7 +266,7 @@ impl Tree<'_> {
     }
 }
 
-/// An integer in base 10; none if it is too large.
+/// An integer in base 10; `None` if it is too large.
 fn decimal(number: &DeInteger) -> Option<String> {
     if number.radix() == 10 {
         return Some(number.as_str().to_owned());

@@ -138,7 +138,7 @@ struct Media<'a> {
 }
 
 impl Media<'_> {
-    /// What an input reads in the graph; none for black.
+    /// What an input reads in the graph; `None` for black.
     fn source(&mut self, input: &Input, reader: (PassKind, usize)) -> Option<player::Source> {
         match input.source {
             Source::Buffer(buffer) => return Some(player::Source::Buffer(buffer as usize)),

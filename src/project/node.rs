@@ -12,7 +12,7 @@ pub(crate) const INVALID_VALUE: &str = "E0508";
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub(crate) value: Value,
-    /// Where it stands; none if it was not read from a file.
+    /// Where it stands; `None` if it was not read from a file.
     pub(crate) span: Option<Span>,
 }
 
@@ -81,7 +81,7 @@ impl Member {
 }
 
 impl Node {
-    /// The value of a key; none if there is no such key, or if this is not an object.
+    /// The value of a key; `None` if there is no such key, or if this is not an object.
     pub(crate) fn get(&self, key: &str) -> Option<&Self> {
         let Value::Object(members) = &self.value else {
             return None;
@@ -102,7 +102,7 @@ impl Node {
             .map(|member| &mut member.node)
     }
 
-    /// The members of an object; none for other values.
+    /// The members of an object; `None` for other values.
     pub(crate) fn members_mut(&mut self) -> Option<&mut Vec<Member>> {
         match &mut self.value {
             Value::Object(members) => Some(members),

@@ -12,7 +12,7 @@ use super::{Record, Records, Rubrics, Submitted};
 /// What a student has in one assignment.
 #[derive(Debug, Clone)]
 struct Cell {
-    /// The points; none without a rubric.
+    /// The points; `None` without a rubric.
     points: Option<f64>,
     verdict: toyproof_verify::Verdict,
     late: String,

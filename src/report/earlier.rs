@@ -77,7 +77,7 @@ impl Earlier {
         })
     }
 
-    /// How long a shader took; none if the report does not state it.
+    /// How long a shader took; `None` if the report does not state it.
     #[must_use]
     pub fn seconds(&self, shader: &str) -> Option<f64> {
         self.seconds.get(shader).copied()

@@ -57,7 +57,7 @@ impl Report {
         }
     }
 
-    /// The adapter and its driver; none if nothing ran on any.
+    /// The adapter and its driver; `None` if nothing ran on any.
     #[must_use]
     pub fn device(&self) -> Option<&str> {
         self.device.as_deref()

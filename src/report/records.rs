@@ -20,9 +20,9 @@ const MAX_IN_MEMORY: usize = MAX_PAGE_SHADERS;
 #[derive(Debug, Default)]
 pub struct Records {
     entries: Vec<Entry>,
-    /// The folder that all shaders are in, with its final separator; none before the first.
+    /// The folder that all shaders are in, with its final separator; `None` before the first.
     folder: Option<String>,
-    /// The folder of the temporary file; none for the system's.
+    /// The folder of the temporary file; `None` for the system's.
     temporary: Option<PathBuf>,
     /// The file, once there are more records than fit in memory.
     spill: Option<Mutex<File>>,
@@ -179,8 +179,8 @@ impl Records {
         }
     }
 
-    /// Writes a record to the end of the file. Without a file, for example on a full disk, none: a record is
-    /// never lost.
+    /// Writes a record to the end of the file. Without a file, for example on a full disk, `None`: a record
+    /// is never lost.
     fn spill(&mut self, record: &Record) -> Option<Place> {
         let place = self.try_spill(record);
         self.has_failed = place.is_err();

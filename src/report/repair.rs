@@ -41,9 +41,9 @@ pub struct Repair {
     /// The range of the first edit.
     #[serde(flatten)]
     pub range: SourceRange,
-    /// The replacement of the first edit; none where [`Hints`](super::Hints) hide the edits.
+    /// The replacement of the first edit; `None` if [`Hints`](super::Hints) hide the edits.
     pub replacement: Option<String>,
-    /// What to do, such as ``replace `b + c` with `b - c` ``; none where the edits are hidden.
+    /// What to do, such as ``replace `b + c` with `b - c` ``; `None` if the edits are hidden.
     pub text: Option<String>,
     /// The number of pixels that agree with the reference after the edits.
     pub agreeing: u64,
@@ -65,9 +65,9 @@ pub struct RepairEdit {
     /// The text to replace.
     #[serde(flatten)]
     pub range: SourceRange,
-    /// The replacement; none where the edits are hidden.
+    /// The replacement; `None` if the edits are hidden.
     pub replacement: Option<String>,
-    /// What to do; none where the edits are hidden.
+    /// What to do; `None` if the edits are hidden.
     pub text: Option<String>,
 }
 
@@ -92,7 +92,7 @@ impl RepairEdit {
 }
 
 impl Repair {
-    /// The first repair, with the others as its alternatives; none if there are none.
+    /// The first repair, with the others as its alternatives; `None` if there are none.
     pub(super) fn first_of(repairs: &[repair::Repair], files: &Files) -> Option<Self> {
         let mut repairs = repairs.iter().filter_map(|repair| Self::new(repair, files));
         let first = repairs.next()?;

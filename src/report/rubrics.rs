@@ -47,7 +47,7 @@ impl Rubrics {
         of_assignment.or(self.all.as_ref())
     }
 
-    /// The points of a shader and the maximum, rounded to hundredths; none without a rubric.
+    /// The points of a shader and the maximum, rounded to hundredths; `None` without a rubric.
     #[must_use]
     pub fn total(&self, record: &Record) -> Option<[f64; 2]> {
         let marks = self.of(record)?.marks(record);

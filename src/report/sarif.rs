@@ -346,7 +346,7 @@ impl Fix {
         Self::of_replacements(file, fix.message.clone(), vec![replacement])
     }
 
-    /// All edits of a repair; none where they are hidden.
+    /// All edits of a repair; `None` if they are hidden.
     fn of_repair(repair: &Repair) -> Option<Self> {
         let replacements = repair.edits.iter().map(|edit| {
             Some(Replacement {

@@ -52,7 +52,7 @@ impl fmt::Display for Late {
 }
 
 impl Record {
-    /// How late the submission is; none if it is not, or no class is checked.
+    /// How late the submission is; `None` if it is not, or no class is checked.
     #[must_use]
     pub fn late(&self) -> Option<Late> {
         self.submitted.as_ref()?.late

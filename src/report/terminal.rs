@@ -30,7 +30,7 @@ pub struct Layout {
     pub detail: Detail,
     /// The width of the column of names, in terminal columns.
     pub names: usize,
-    /// The width of the terminal in columns; none where lines are not wrapped, as in a file.
+    /// The width of the terminal in columns; `None` if lines are not wrapped, as in a file.
     pub width: Option<usize>,
     /// Whether errors, or the warnings of a shader without a good verdict, are listed below the shader, as
     /// they are where their source lines are not shown.

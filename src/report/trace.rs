@@ -97,7 +97,7 @@ pub struct TracedPixel<'a> {
     pub pixel: [u32; 2],
     /// The size of the frame in pixels.
     pub size: [u32; 2],
-    /// The color of the reference; none without one.
+    /// The color of the reference; `None` without one.
     pub expected: Option<[f64; 3]>,
 }
 

@@ -88,7 +88,7 @@ pub enum ToneMap {
 pub struct Camera {
     /// The pinhole, or the center of the plane in which parallel rays start.
     pub eye: Point,
-    /// The point at the center of the image; none for the direction −z.
+    /// The point at the center of the image; `None` for the direction −z.
     pub look_at: Option<Point>,
     /// The direction, of length 1, that is up in the image; not parallel to the viewing direction.
     pub up: Point,
@@ -113,7 +113,7 @@ impl Camera {
         (way / way.abs().max_element()).normalize().to_array()
     }
 
-    /// Returns the directions to the right, up and forward, orthonormal; none for those of a camera that is
+    /// Returns the directions to the right, up and forward, orthonormal; `None` for those of a camera that is
     /// not turned: x, y and −z.
     #[must_use]
     pub fn axes(&self) -> Option<[Point; 3]> {

@@ -88,7 +88,7 @@ pub struct Equation {
     pub q: [f64; 3],
     pub g: f64,
     pub k: f64,
-    /// The range of z; none for closed surfaces.
+    /// The range of z; `None` for closed surfaces.
     pub ends: Option<[f64; 2]>,
 }
 

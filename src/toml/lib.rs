@@ -259,7 +259,8 @@ impl<'r, 't> Table<'r, 't> {
         found
     }
 
-    /// Returns the value of a key that may be missing; none also if it has another type, which is reported.
+    /// Returns the value of a key that may be missing; `None`, also if it has another type, which is
+    /// reported.
     pub fn optional<T: Value>(&mut self, key: &'static str) -> Option<Located<T>> {
         if matches!(self.place, Place::Root) {
             self.reader.top_level.borrow_mut().push(key);
@@ -281,7 +282,7 @@ impl<'r, 't> Table<'r, 't> {
         }
     }
 
-    /// Returns the value of a key; none if it is missing or has another type, which is reported.
+    /// Returns the value of a key; `None` if it is missing or has another type, which is reported.
     pub fn required<T: Value>(&mut self, key: &'static str) -> Option<Located<T>> {
         let count = self.reader.error_count.get();
         let value = self.optional(key);
@@ -356,7 +357,7 @@ impl<'r, 't> Table<'r, 't> {
         None
     }
 
-    /// Returns the choice that the string of a required key names; none if it is missing or none of the
+    /// Returns the choice that the string of a required key names; `None` if it is missing or none of the
     /// choices, which is reported.
     pub fn required_choice<T: Copy>(
         &mut self,

@@ -17,7 +17,7 @@ use crate::spheres::{Origins, PACKET_RAYS, Packet};
 pub(super) struct Camera<T: Real> {
     eye: T::Vec3,
     forward: T::Vec3,
-    /// The directions to the right, up and forward; none for x, y and −z.
+    /// The directions to the right, up and forward; `None` for x, y and −z.
     axes: Option<[T::Vec3; 3]>,
     projection: ScreenProjection<T>,
     width: T,
@@ -199,7 +199,7 @@ struct PinholeDirections<'a, T> {
     x: &'a [T],
     y: &'a [T],
     screen_distance: T,
-    /// The directions to the right, up and forward; none for x, y and −z.
+    /// The directions to the right, up and forward; `None` for x, y and −z.
     axes: Option<[[T; 3]; 3]>,
     directions: [&'a mut [T]; 3],
 }

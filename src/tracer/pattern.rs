@@ -12,7 +12,7 @@ pub(super) struct Pattern<T: Real> {
     kind: Kind<T>,
     /// The side of a square, or the width of a stripe.
     size: T,
-    /// The coordinates of the surface; none for those of the scene.
+    /// The coordinates of the surface; `None` for those of the scene.
     frame: Option<Frame<T>>,
 }
 

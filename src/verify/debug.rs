@@ -15,7 +15,7 @@ use crate::compare::SEEN;
 pub struct Explanation<'a> {
     /// The schema of the events.
     pub schema: &'a TraceSchema,
-    /// The pixel's color in f32; none if it is discarded.
+    /// The pixel's color in f32; `None` if it is discarded.
     pub single: Option<[f64; 3]>,
     /// The same in f64.
     pub double: Option<[f64; 3]>,
@@ -103,9 +103,9 @@ pub struct Step {
     pub event: EventId,
     /// Its position in the execution.
     position: TracePosition,
-    /// Its values in f32; none if it did not occur there.
+    /// Its values in f32; `None` if it did not occur there.
     pub single: Option<Vec<TraceValue>>,
-    /// Its values in f64; none if it did not occur there.
+    /// Its values in f64; `None` if it did not occur there.
     pub double: Option<Vec<TraceValue>>,
 }
 
@@ -123,7 +123,7 @@ impl Step {
         both.map(|(&single, &double)| (single, double))
     }
 
-    /// The component that differs most: its index, and its values in f32 and in f64; none if the event
+    /// The component that differs most: its index, and its values in f32 and in f64; `None` if the event
     /// occurred in one trace only.
     #[must_use]
     pub fn worst(&self) -> Option<(usize, TraceValue, TraceValue)> {
@@ -136,7 +136,7 @@ impl Step {
         worst.map(|(at, (single, double))| (at, single, double))
     }
 
-    /// The largest distance of a float from its f64, in units in the last place of f32; none without floats
+    /// The largest distance of a float from its f64, in units in the last place of f32; `None` without floats
     /// in both.
     #[must_use]
     pub fn ulps(&self) -> Option<f64> {
@@ -290,7 +290,7 @@ fn diverges(schema: &TraceSchema, step: &Step, flushed: bool) -> bool {
 // bisection finds the last event from which it still differs, and the first value that diverges after it is
 // the cause.
 
-/// Returns the position of the cause; none if the colors do not differ visibly.
+/// Returns the position of the cause; `None` if the colors do not differ visibly.
 fn find_cause(
     doubles: &PixelDebugger<'_, f64>,
     pixel: [u32; 2],

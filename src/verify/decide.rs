@@ -144,7 +144,7 @@ pub enum Reason {
     OtherRandomNumbers {
         /// The pixels that differ.
         differing: Share,
-        /// The scene's sampler; none for other references.
+        /// The scene's sampler; `None` for other references.
         sampler: Option<Sampler>,
         /// What the comparison of the means shows.
         means: Means,
@@ -195,7 +195,7 @@ pub enum Means {
         within: f64,
         /// The number of pixels that were compared.
         pixels: u64,
-        /// The number of sets of random numbers that the shader was evaluated with; none for its one image.
+        /// The number of sets of random numbers that the shader was evaluated with; `None` for its one image.
         replicates: Option<usize>,
         /// The ratio of the variances, where it exceeds `MAX_VARIANCE_RATIO`.
         variance: Option<f64>,

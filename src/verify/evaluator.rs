@@ -35,7 +35,7 @@ const PERTURBED_TIME_FACTOR: u32 = 64;
 pub struct Evaluator<'a> {
     program: &'a Program,
     frame: &'a Frame,
-    /// The frame with what earlier frames render in double precision; none if it does not depend on them.
+    /// The frame with what earlier frames render in double precision; `None` if it does not depend on them.
     double_frame: Option<&'a Frame>,
     /// The largest number of loop iterations of a pixel.
     max_iterations: u32,
@@ -183,7 +183,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Renders some rows in f64 with every operation perturbed by a unit of the seed or not at all, at least
-    /// in the `wanted` pixels; none if a loop then does not end.
+    /// in the `wanted` pixels; `None` if a loop then does not end.
     ///
     /// # Errors
     /// If it takes much longer than the image did.
@@ -248,7 +248,7 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// Renders some rows with each substitute for undefined results; none if a loop then does not end.
+    /// Renders some rows with each substitute for undefined results; `None` if a loop then does not end.
     fn with_substitutes<N: Number>(
         &self,
         frame: &Frame,

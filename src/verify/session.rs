@@ -59,7 +59,7 @@ pub(super) struct VerifySession<'a, 'e> {
     trace: Duration,
 }
 
-/// Returns the next band that a GPU rendered; none if the GPU failed.
+/// Returns the next band that a GPU rendered; `None` if the GPU failed.
 pub(super) type NextBand<'a> = dyn FnMut() -> Result<Option<Image>, Failure> + 'a;
 
 impl<'a, 'e> VerifySession<'a, 'e> {

@@ -56,7 +56,7 @@ impl Spool {
         self.changed.notify_one();
     }
 
-    /// Waits for the next band; none if there is no other.
+    /// Waits for the next band; `None` if there is no other.
     ///
     /// # Errors
     /// The system's error if a band cannot be read from the temporary file.

@@ -530,8 +530,8 @@ fn image(shader: &Shader) -> Result<&Checked, Failure> {
     }
 }
 
-/// The media that a shader reads and that toyproof does not have: a sentence; none if it has all. An image that
-/// the user can bind does not count, nor what the author allows to be missing.
+/// The media that a shader reads and that toyproof does not have: a sentence; `None` if it has all. An image
+/// that the user can bind does not count, nor what the author allows to be missing.
 fn missing_media(shader: &Shader, frame: &Frame) -> Option<String> {
     let checked = shader.checked.as_ref().ok()?;
     let warned = unbound(checked, &shader.lints, frame);

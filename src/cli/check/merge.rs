@@ -74,7 +74,7 @@ impl From<String> for Problem {
     }
 }
 
-/// Merges the shards. The error is none if it has been printed.
+/// Merges the shards. The error is `None` if it has been printed.
 fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Problem>> {
     let program = shard::program()
         .map_err(|error| Problem::from(format!("the program's own file cannot be read: {error}")))?;

@@ -68,8 +68,8 @@ impl PreparedReference {
         self.given.shader().map(|(shader, _)| shader)
     }
 
-    /// A warning about pixels that depend on how the shader marches, once a comparison has needed it; none if it
-    /// has been given before.
+    /// A warning about pixels that depend on how the shader marches, once a comparison has needed it; `None`
+    /// if it has been given before.
     pub(super) fn march_warning(&self, expected: &Expected) -> Option<String> {
         let dependence = expected.used_march_dependence()?;
         let is_first = !self.is_march_told.swap(true, Relaxed);
@@ -117,7 +117,7 @@ impl References {
         }))
     }
 
-    /// Returns what a shader is compared with; none if it has no scene.
+    /// Returns what a shader is compared with; `None` if it has no scene.
     pub(super) fn find(&self, found: &Input) -> Option<Reference<'_>> {
         match self {
             Self::Scenes(scenes) => scenes.find(found).map(|scene| Reference::Scene(Box::new(scene))),
@@ -192,7 +192,7 @@ impl Scenes {
         }
     }
 
-    /// Parses the scene of a shader; none if it has none.
+    /// Parses the scene of a shader; `None` if it has none.
     pub(in crate::cli) fn find(&self, found: &Input) -> Option<SceneOfShader> {
         let (path, text) = self.text(found)?;
         let mut files = Files::default();
@@ -299,13 +299,13 @@ impl CachedReference {
         }
     }
 
-    /// How ill-conditioned a scene is, the first time that it is asked for; none if it is not.
+    /// How ill-conditioned a scene is, the first time that it is asked for; `None` if it is not.
     pub(super) fn conditioning(&self) -> Option<Conditioning> {
         let is_first = self.expected.kind() == ReferenceKind::Scene && !self.is_tested.swap(true, Relaxed);
         is_first.then(|| self.expected.conditioning())?
     }
 
-    /// The hypotheses that a wrong image is compared with; none without a scene.
+    /// The hypotheses that a wrong image is compared with; `None` without a scene.
     pub(super) fn hypotheses(&self, frame: &Frame) -> Option<&Hypotheses> {
         let hypotheses = || Hypotheses::of(self.expected.scene()?, frame);
         self.hypotheses.get_or_init(hypotheses).as_ref()

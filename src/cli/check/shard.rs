@@ -165,7 +165,7 @@ pub(super) struct Manifest {
 }
 
 impl Manifest {
-    /// Reads the description of the shard in a folder; none if the folder has none.
+    /// Reads the description of the shard in a folder; `None` if the folder has none.
     ///
     /// # Errors
     /// The file cannot be read or has another format.

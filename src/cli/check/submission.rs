@@ -18,9 +18,10 @@ use crate::report::Submitted;
 pub(super) struct Submission {
     pub(super) input: Result<Input, ReadError>,
     pub(super) name: String,
-    /// The path of its images without their suffixes; none without `--out`.
+    /// The path of its images without their suffixes; `None` without `--out`.
     pub(super) output_stem: Option<PathBuf>,
-    /// A hash of everything that its record depends on; none if its files cannot be read, or without `--out`.
+    /// A hash of everything that its record depends on; `None` if its files cannot be read, or without
+    /// `--out`.
     pub(super) key: Option<String>,
     /// The size of its text in bytes, where it has a key.
     pub(super) bytes: u64,

@@ -26,7 +26,7 @@ pub(super) struct Handed {
     pub(super) path: Vec<String>,
     pub(super) content: Result<Content, String>,
     time: Option<FileTime>,
-    /// Whether the system marks it as late; none if the system marks nothing in names.
+    /// Whether the system marks it as late; `None` if the system marks nothing in names.
     is_late: Option<bool>,
 }
 

@@ -13,7 +13,7 @@ pub(super) struct Submitted {
     pub(super) student: Student,
     /// Its path in the submission; empty for a folder.
     pub(super) path: Vec<String>,
-    /// Whether the system marks it as late; none if the system marks nothing in names.
+    /// Whether the system marks it as late; `None` if the system marks nothing in names.
     pub(super) is_late: Option<bool>,
 }
 
@@ -79,7 +79,7 @@ pub(super) fn is_of_system(name: &str) -> bool {
 /// What a name has.
 struct Named {
     student: Student,
-    /// The name that the student gave to the file; none for a folder.
+    /// The name that the student gave to the file; `None` for a folder.
     file: Option<String>,
     is_late: Option<bool>,
 }

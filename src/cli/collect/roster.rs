@@ -64,8 +64,8 @@ impl Entry {
 }
 
 impl Roster {
-    /// Reads the roster of a folder; none if it has none. In a folder that nobody collected, a student may have
-    /// a file or a folder of this name.
+    /// Reads the roster of a folder; `None` if it has none. In a folder that nobody collected, a student may
+    /// have a file or a folder of this name.
     ///
     /// # Errors
     /// The file is not a roster, and is ignored.
@@ -121,7 +121,7 @@ impl Owners {
         owners
     }
 
-    /// Whose an input is; none if it is nobody's.
+    /// Whose an input is; `None` if it is nobody's.
     pub(in crate::cli) fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
         let path = path_of(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))

@@ -121,7 +121,7 @@ struct Columns {
 }
 
 impl Columns {
-    /// The columns that a row names; none if it names no student's name.
+    /// The columns that a row names; `None` if it names no student's name.
     fn of(row: &[String]) -> Option<Self> {
         let names: Vec<String> = row.iter().map(|cell| cell.to_lowercase()).collect();
         let first = |known: &[&str]| names.iter().position(|name| known.contains(&name.as_str()));

@@ -54,7 +54,7 @@ pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
     }
 }
 
-/// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns none
+/// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns `None`
 /// for what has control characters, and the name of the encoding unless it is UTF-8.
 pub(super) fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
     let units = |from: fn([u8; 2]) -> u16| -> String {

@@ -26,7 +26,7 @@ pub(super) struct Settings<'a> {
     pub(super) to: To,
     pub(super) converter: Converter,
     pub(super) verify: bool,
-    /// The path of Chromium; none without `--browser`.
+    /// The path of Chromium; `None` without `--browser`.
     pub(super) browser: Option<PathBuf>,
     pub(super) language: &'a LanguageArgs,
     pub(super) driver: &'a DriverArgs,
@@ -35,7 +35,7 @@ pub(super) struct Settings<'a> {
 /// The processes and the thread pool that a thread owns.
 pub(super) struct WorkerContext {
     translator: Worker,
-    /// Runs the conversion; none for `--device cpu`.
+    /// Runs the conversion; `None` for `--device cpu`.
     runner: Option<Worker>,
     browser: Option<Chromium>,
     /// The evaluator's pool, if several threads convert.
@@ -52,7 +52,7 @@ pub(super) struct Conversion {
 
 /// A file to write.
 pub(super) struct OutputFile {
-    /// Its name in the folder of a project; none for the one file of a shader.
+    /// Its name in the folder of a project; `None` for the one file of a shader.
     pub(super) name: Option<String>,
     pub(super) bytes: Vec<u8>,
 }

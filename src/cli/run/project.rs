@@ -186,8 +186,8 @@ impl Run<'_> {
     }
 }
 
-/// The frame of a project whose image reads no other pass, with what its channels read; none if it depends on
-/// earlier frames.
+/// The frame of a project whose image reads no other pass, with what its channels read; `None` if it depends
+/// on earlier frames.
 fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let [image] = rendering.graph.passes() else {
         return None;
@@ -412,7 +412,7 @@ impl Runner<'_> {
         Exit::Error
     }
 
-    /// Compiles the passes for the driver; none if there is no driver and the evaluator takes its place.
+    /// Compiles the passes for the driver; `None` if there is no driver and the evaluator takes its place.
     fn open<'w>(
         &self,
         worker: &'w mut Worker,

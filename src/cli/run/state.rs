@@ -62,7 +62,7 @@ impl Owner {
         }
     }
 
-    /// Why a state of another owner does not fit, after the name of its file; none if it is the same owner.
+    /// Why a state of another owner does not fit, after the name of its file; `None` if it is the same owner.
     fn mismatch(&self, other: &Self) -> Option<String> {
         if other.project != self.project {
             return Some("is the state of a project with other texts, passes or inputs".to_owned());
@@ -80,7 +80,7 @@ impl Owner {
     }
 }
 
-/// Reads a state; none if there is no such file.
+/// Reads a state; `None` if there is no such file.
 ///
 /// # Errors
 /// Why it cannot be used.

@@ -49,7 +49,7 @@ const TIME_LIMIT: std::time::Duration = std::time::Duration::from_secs(10);
 /// A shader to compare.
 struct Subject {
     name: String,
-    /// The fingerprints of its tree; none if it does not compile.
+    /// The fingerprints of its tree; `None` if it does not compile.
     tree: Option<Fingerprints>,
     /// Those of its text.
     text: Fingerprints,

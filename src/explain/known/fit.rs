@@ -140,7 +140,7 @@ fn best_value(parameter: &Parameter, wrong_image: &WrongImage, correct: &Image) 
     golden_section_search(low, high, |value| Some(from(&render(value)?)))
 }
 
-/// Returns where a function with one minimum between two numbers is least; none where it has no value.
+/// Returns where a function with one minimum between two numbers is least; `None` if it has no value.
 fn golden_section_search(mut low: f64, mut high: f64, f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let ratio = 0.5 * (5.0f64.sqrt() - 1.0);
     let mut inner = [high - ratio * (high - low), low + ratio * (high - low)];

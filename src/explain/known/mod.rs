@@ -173,12 +173,12 @@ pub struct Hypotheses {
     wrong: Vec<Mutant>,
     /// The shader that renders the scene, as students write it, in each of the variants that matter.
     shaders: Vec<MarkedShader>,
-    /// The hypotheses for larger images, created when needed; none if these are large.
+    /// The hypotheses for larger images, created when needed; `None` if these are large.
     fine: Option<OnceLock<Box<Hypotheses>>>,
 }
 
 impl Hypotheses {
-    /// Creates the hypotheses for images of a frame; none if the scene is so expensive that no image worth
+    /// Creates the hypotheses for images of a frame; `None` if the scene is so expensive that no image worth
     /// comparing is small enough.
     #[must_use]
     pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {

@@ -24,7 +24,7 @@ pub(super) enum MutantSource {
 }
 
 impl MutantSource {
-    /// Renders a view; none if the shader is invalid or runs too many loop iterations.
+    /// Renders a view; `None` if the shader is invalid or runs too many loop iterations.
     pub(super) fn render(&self, view: &View) -> Option<Image> {
         match self {
             Self::Shader(shader) => {
@@ -68,7 +68,7 @@ impl Mutant {
         }
     }
 
-    /// Creates a mutant with one mistake of the catalogue in that shader; none where it does not apply.
+    /// Creates a mutant with one mistake of the catalogue in that shader; `None` if it does not apply.
     pub(super) fn edited(shader: &MarkedShader, mistake: &'static Mistake) -> Option<Self> {
         let source = MutantSource::Shader(mistake.apply(shader)?);
         Some(Self {
@@ -165,8 +165,8 @@ const ANY_SPHERE_SOFT: &[(Slot, &str)] = &[(
     return false;",
 )];
 
-/// Returns the shader whose reflected and refracted rays start on their surface and ignore nearer hits; none
-/// if it has no such rays and no quadrics, which a shadow ray may start on as well.
+/// Returns the shader whose reflected and refracted rays start on their surface and ignore nearer hits;
+/// `None` if it has no such rays and no quadrics, which a shadow ray may start on as well.
 fn with_min_t(shader: &MarkedShader) -> Option<MarkedShader> {
     let origins = [Slot::ReflectedOrigin, Slot::RefractedOrigin];
     if shader.has(Slot::ReflectedOrigin) && shader.has(Slot::SphereMinT) {

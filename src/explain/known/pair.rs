@@ -104,7 +104,7 @@ pub(super) fn likely<'a>(
         .collect()
 }
 
-/// Returns a mutant with both mistakes; none where they replace the same part, or both change the scene.
+/// Returns a mutant with both mistakes; `None` if they replace the same part, or both change the scene.
 pub(super) fn both(pair: [&Mutant; 2], frame_time: FrameTime) -> Option<Mutant> {
     let [one, other] = pair;
     [[one, other], [other, one]]

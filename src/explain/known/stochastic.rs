@@ -57,8 +57,8 @@ impl Hypotheses {
     }
 }
 
-/// Returns the share of the squared bias that remains after the mistake's change is subtracted; none if it is
-/// not that mistake.
+/// Returns the share of the squared bias that remains after the mistake's change is subtracted; `None` if it
+/// is not that mistake.
 fn remaining_bias(pixels: &[NoisyPixel], wrong: &Image, correct: &Image) -> Option<f64> {
     let [mut product, mut square, mut variance, mut bias, mut remaining] = [0.0; 5];
     for (at, pixel) in pixels.iter().enumerate() {

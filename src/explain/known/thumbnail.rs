@@ -184,7 +184,7 @@ pub(super) struct Thumbnail {
 }
 
 impl Thumbnail {
-    /// Renders a thumbnail of the student's shader; none if that fails.
+    /// Renders a thumbnail of the student's shader; `None` if that fails.
     pub(super) fn render(student: &Program, correct_images: &[Mutant], view: &View) -> Option<Self> {
         let view = View::of(&view.frame, THUMBNAIL_SIDE, u64::MAX);
         let image = render(student, &view)?;

@@ -153,7 +153,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// The text after all edits, which are sorted and do not overlap; none if they do.
+/// The text after all edits, which are sorted and do not overlap; `None` if they do.
 pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
     let mut text = String::with_capacity(source.len() + 64);
     let mut end = 0;
@@ -166,7 +166,7 @@ pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
     Some(text)
 }
 
-/// The edits of a text, and those of the text that they result in, as edits of the first; none if they
+/// The edits of a text, and those of the text that they result in, as edits of the first; `None` if they
 /// overlap.
 pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
     let mut edits = first.edits.clone();

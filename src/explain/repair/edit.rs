@@ -157,7 +157,7 @@ impl Candidate {
         }
     }
 
-    /// The edits of the text; none if it has no text that could be edited.
+    /// The edits of the text; `None` if it has no text that could be edited.
     pub(super) fn fix(&self, shader: &Shader) -> Option<Fix> {
         match &self.change {
             Change::Expression { site, term } => replacement(shader, *site, term),

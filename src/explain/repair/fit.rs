@@ -81,7 +81,7 @@ impl ErrorOf {
 }
 
 impl Secant {
-    /// The number to try next; none if the search has ended.
+    /// The number to try next; `None` if the search has ended.
     fn next(&self) -> Option<f64> {
         let ([a, b], [error_a, error_b]) = (self.at, self.errors);
         let next = b - error_b * (b - a) / (error_b - error_a);

@@ -11,7 +11,7 @@ use super::term::Numbers;
 /// A candidate, with its numbers, at some of the probes.
 #[derive(Debug, Clone)]
 pub(super) struct Run {
-    /// Its place in the group; none for the shader as it is.
+    /// Its place in the group; `None` for the shader as it is.
     pub(super) candidate: Option<usize>,
     pub(super) numbers: Numbers,
     pub(super) probes: Range<usize>,
@@ -29,7 +29,7 @@ impl<'a, 'e> Group<'a, 'e> {
         Self { evaluator, count }
     }
 
-    /// The colors of each run at its probes; none if a limit is exceeded there.
+    /// The colors of each run at its probes; `None` if a limit is exceeded there.
     pub(super) fn colors(&mut self, probes: &Probes, runs: &[Run]) -> Vec<Option<Vec<[f64; 3]>>> {
         let selections: Vec<Selection> = runs
             .iter()

@@ -44,7 +44,7 @@ const CHANGED: f64 = 1e-9;
 /// comparison, and for types that are not changed.
 const INHERITED: f64 = 0.9;
 
-/// The candidate that changes the value of a site; none if its type has no such change.
+/// The candidate that changes the value of a site; `None` if its type has no such change.
 pub(super) fn disturbed(shader: &Shader, site: usize, by: Disturbance) -> Option<Candidate> {
     let tree = shader.tree;
     let expr = shader.sites[site].exprs[0];

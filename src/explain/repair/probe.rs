@@ -149,7 +149,7 @@ impl Probes {
         Self::of(wrong.collect(), right.collect())
     }
 
-    /// The probes in their order; none if none is wrong.
+    /// The probes in their order; `None` if none is wrong.
     fn of(wrong: Vec<Probe>, right: Vec<Probe>) -> Option<Self> {
         let count = wrong.len();
         let (mut wrong, mut right) = (wrong.into_iter(), right.into_iter());
@@ -222,7 +222,7 @@ impl Probes {
         self.all.iter().any(|probe| probe.bias.is_some())
     }
 
-    /// The same probes for a shader that has these colors there; none if all are right. A single evaluation
+    /// The same probes for a shader that has these colors there; `None` if all are right. A single evaluation
     /// says nothing about means.
     pub(super) fn with_colors(&self, colors: &[[f64; 3]]) -> Option<Self> {
         if self.are_means() {
@@ -258,8 +258,8 @@ impl Probes {
         count.min(self.all.len())
     }
 
-    /// Tests an edit, whose colors at some of the probes are given by a function; none if that has none. `before`
-    /// are the colors without edits.
+    /// Tests an edit, whose colors at some of the probes are given by a function; `None` if that has none.
+    /// `before` are the colors without edits.
     pub(super) fn test(
         &self,
         before: &[[f64; 3]],
@@ -278,7 +278,7 @@ impl Probes {
         self.outcome(&all, before)
     }
 
-    /// What an edit does, by its colors at the first probes; none if their mean is not a number.
+    /// What an edit does, by its colors at the first probes; `None` if their mean is not a number.
     pub(super) fn outcome(&self, colors: &[[f64; 3]], before: &[[f64; 3]]) -> Option<Outcome> {
         if self.are_means() {
             return self.outcome_of_means(colors);
@@ -326,7 +326,7 @@ impl Probes {
     }
 
     /// The part of the shader's bias that some colors still have, by a single evaluation of each of the first
-    /// probes; none if they are not finite.
+    /// probes; `None` if they are not finite.
     pub(super) fn project(&self, colors: &[[f64; 3]]) -> Option<Projection> {
         let [mut product, mut square, mut variance, mut left, mut left_variance] = [0.0; 5];
         for (probe, color) in self.all.iter().zip(colors) {

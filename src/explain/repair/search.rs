@@ -160,7 +160,7 @@ struct Search<'a> {
     /// The work of confirmations, and the work after which no more alternatives are confirmed.
     confirmation_work: f64,
     confirmation_budget: f64,
-    /// The suspects of the last probes; none if the shader could not be evaluated at any.
+    /// The suspects of the last probes; `None` if the shader could not be evaluated at any.
     suspects: Option<Vec<Suspect>>,
     is_cut: bool,
 }

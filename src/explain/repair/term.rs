@@ -80,7 +80,7 @@ impl Term {
         Self::new(TermKind::Unary(op, Box::new(operand)), ty)
     }
 
-    /// A binary operation; none if the types do not fit.
+    /// A binary operation; `None` if the types do not fit.
     pub(super) fn binary(op: BinaryOp, left: Self, right: Self) -> Option<Self> {
         let ty = binary_type(op, left.ty, right.ty)?;
         Some(Self::new(
@@ -89,7 +89,7 @@ impl Term {
         ))
     }
 
-    /// A call of a built-in function; none if it does not accept the arguments.
+    /// A call of a built-in function; `None` if it does not accept the arguments.
     pub(super) fn call(function: BuiltIn, arguments: Vec<Self>) -> Option<Self> {
         let types: Vec<Type> = arguments.iter().map(|argument| argument.ty).collect();
         let ty = function.result(&types)?;
@@ -376,7 +376,7 @@ pub(super) fn context(tree: &Tree, user: ExprId, operand: ExprId) -> u8 {
     }
 }
 
-/// The type of a binary operation; none if it is invalid (GLSL ES 3.00.6 §5.9).
+/// The type of a binary operation; `None` if it is invalid (GLSL ES 3.00.6 §5.9).
 pub(super) fn binary_type(op: BinaryOp, left: Type, right: Type) -> Option<Type> {
     match op {
         BinaryOp::Multiply => product(left, right),

@@ -91,7 +91,7 @@ type Worked<T> = (Vec<T>, f64);
 
 impl<'a> ShaderUnderTest<'a> {
     /// Evaluates the shader at the probes, with at most so many loop iterations in a pixel, and measures how
-    /// suspicious its parts are; none if it cannot be evaluated, or is right at all probes.
+    /// suspicious its parts are; `None` if it cannot be evaluated, or is right at all probes.
     pub(super) fn new(
         case: &'a Case<'a>,
         shader: &'a Shader<'a>,

@@ -123,8 +123,8 @@ impl Rows {
     }
 }
 
-/// The colors of the samples of each pixel, in the order of the pixels; none if the reference has no color within
-/// pixels.
+/// The colors of the samples of each pixel, in the order of the pixels; `None` if the reference has no color
+/// within pixels.
 fn samples(expected: &Expected, rows: &Rows, offsets: &[f64]) -> Option<Vec<Vec<[f64; 3]>>> {
     let side = offsets.len();
     let rows = rows.0.par_iter().map(|(y, columns)| {
@@ -278,7 +278,7 @@ impl Statistics {
     }
 }
 
-/// Compares pixels with the colors within them; none if there are too many, or the reference has none.
+/// Compares pixels with the colors within them; `None` if there are too many, or the reference has none.
 fn within(wrong: &WrongShader, rows: &Rows) -> Option<Statistics> {
     let offsets: Vec<f64> = (0..WITHIN)
         .map(|at| f64::from(at) / f64::from(WITHIN - 1) - 0.5)

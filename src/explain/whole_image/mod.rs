@@ -42,7 +42,7 @@ pub(crate) struct Alternative {
     pub(crate) algorithm: CheckSummary,
 }
 
-/// Returns the difference other than a color curve that explains a wrong image; none if no single one does.
+/// Returns the difference other than a color curve that explains a wrong image; `None` if no single one does.
 pub(crate) fn find(wrong: &WrongShader, alternatives: &Alternatives) -> Option<Alternative> {
     if let Some(scenes) = alternatives.scenes
         && let Some(found) = scenes::find(wrong, scenes)

@@ -73,7 +73,7 @@ impl View {
         }
     }
 
-    /// The image of the pixels of a shader at these places; none if one runs too many loop iterations.
+    /// The image of the pixels of a shader at these places; `None` if one runs too many loop iterations.
     pub(super) fn image(&self, shader: &WrongShader, places: &Places) -> Option<Image> {
         let [x, y] = self.axes;
         if !self.is_transposed {

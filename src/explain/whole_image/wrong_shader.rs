@@ -51,7 +51,7 @@ pub(crate) struct WrongShader<'a> {
 }
 
 impl<'a> WrongShader<'a> {
-    /// Evaluates the images; none if they are too large.
+    /// Evaluates the images; `None` if they are too large.
     pub(crate) fn new(
         case: &'a Case<'a>,
         program: &'a Program,
@@ -86,7 +86,7 @@ impl<'a> WrongShader<'a> {
         })
     }
 
-    /// The colors of the shader at some places of a frame; none if one runs too many loop iterations.
+    /// The colors of the shader at some places of a frame; `None` if one runs too many loop iterations.
     pub(super) fn evaluate(&self, frame: &Frame, places: &Places) -> Option<Image> {
         evaluate_at(self.program, frame, places, self.max_iterations)
     }

@@ -325,7 +325,7 @@ impl Checker<'_> {
             .then(|| whole.to_owned())
     }
 
-    /// The source text of a short expression; none for longer ones.
+    /// The source text of a short expression; `None` for longer ones.
     fn source_text(&self, mut expr: ExprId) -> Option<String> {
         let mut after = String::new();
         loop {

@@ -235,7 +235,7 @@ impl Checker<'_> {
 
 impl Checker<'_> {
     /// Checks, once all functions are parsed, that every called function has a body and that none is
-    /// recursive (§6.1.2). Returns the entry point; none also for Common.
+    /// recursive (§6.1.2). Returns the entry point; `None` also for Common.
     pub(crate) fn finish(&mut self) -> Option<FunctionId> {
         self.find_late_declarations();
         // A missing definition may be in unparsable text.

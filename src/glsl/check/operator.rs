@@ -65,7 +65,7 @@ impl Checker<'_> {
         (to_right.unwrap_or(left), to_left.unwrap_or(right))
     }
 
-    /// The type of `a op b`; none if the operator does not accept the operands.
+    /// The type of `a op b`; `None` if the operator does not accept the operands.
     pub(super) fn binary_type(&self, op: BinaryOp, a: Type, b: Type) -> Option<Type> {
         match op {
             BinaryOp::Multiply => product(a, b),

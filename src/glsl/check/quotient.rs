@@ -11,7 +11,7 @@ const MAX_NODES: usize = 16;
 
 impl Checker<'_> {
     /// The fix of a constant expression with a division of integers, which converts the operands, or only advice
-    /// where a macro contains some of them; none for other expressions.
+    /// where a macro contains some of them; `None` for other expressions.
     pub(super) fn float_quotient(&self, expr: ExprId) -> Option<Result<Fix, String>> {
         if self.ty(expr) != Type::INT || !self.tree[expr].constant || !self.divides(expr) {
             return None;

@@ -21,7 +21,7 @@ impl BuiltIn {
         NAMES.get(name).copied()
     }
 
-    /// The type of its value for arguments of these types; none if no signature accepts exactly them.
+    /// The type of its value for arguments of these types; `None` if no signature accepts exactly them.
     #[must_use]
     pub fn result(self, arguments: &[Type]) -> Option<Type> {
         find(self, arguments, |given, wanted| given == wanted).map(|found| found.result)

@@ -94,7 +94,7 @@ impl Search<'_> {
         depth == 0
     }
 
-    /// The first fault, or none if the braces are balanced.
+    /// The first fault, or `None` if the braces are balanced.
     fn fault(&self) -> Option<Fault> {
         if self.is_paired() {
             return None;

@@ -151,7 +151,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// The text of a token; none for tokens without a text.
+    /// The text of a token; `None` for tokens without a text.
     fn spelling(&self, token: Token) -> Option<&'a str> {
         match token.kind {
             TokenKind::Word(symbol) | TokenKind::Number(symbol) => Some(self.interner.text(symbol)),

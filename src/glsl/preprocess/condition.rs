@@ -326,7 +326,7 @@ fn integer(text: &str, at: Place) -> Result<i64, Box<Diagnostic>> {
     value.or_else(|_| Code::BadCondition.refuse(at, format!("`{text}` is not an integer")))
 }
 
-/// Computes one operation; none for a division by zero.
+/// Computes one operation; `None` for a division by zero.
 fn compute(op: BinaryOp, a: i64, b: i64) -> Option<i64> {
     Some(match op {
         BinaryOp::Multiply => a.wrapping_mul(b),

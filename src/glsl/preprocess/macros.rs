@@ -16,7 +16,7 @@ use crate::tree::Place;
 /// A macro.
 #[derive(Debug, Clone)]
 pub(super) struct Macro {
-    /// The parameters of a function-like macro; none for an object-like macro.
+    /// The parameters of a function-like macro; `None` for an object-like macro.
     pub(super) parameters: Option<Vec<Symbol>>,
     pub(super) body: Body,
     /// The place of its name in its definition.
@@ -24,7 +24,7 @@ pub(super) struct Macro {
     /// The number of its active expansions; while there is one, the name is not expanded.
     pub(super) active_expansions: usize,
     pub(super) predefined: bool,
-    /// Its index in [`Expansions`](super::Expansions); none for a predefined macro.
+    /// Its index in [`Expansions`](super::Expansions); `None` for a predefined macro.
     pub(super) definition: Option<usize>,
 }
 

@@ -122,7 +122,7 @@ impl<'a> Candidates<'a> {
         near.map(|(&index, &distance)| (index, distance)).collect()
     }
 
-    /// The distance of a token from an error; none if it is far.
+    /// The distance of a token from an error; `None` if it is far.
     pub(super) fn distance(&self, index: usize) -> Option<usize> {
         self.near.get(&index).copied()
     }

@@ -42,7 +42,7 @@ const TIME_SHARE: u32 = 8;
 const MAX_DURATION: Duration = Duration::from_secs(2);
 
 /// Finds the most plausible single edit after which [`check`](crate::check) accepts the file, given the
-/// errors of a check with the same options. Returns none if none was found within the limits on work and
+/// errors of a check with the same options. Returns `None` if none was found within the limits on work and
 /// time.
 ///
 /// A renamed identifier counts as one edit at all its occurrences, and so do all fixes of one kind of error.

@@ -45,7 +45,7 @@ pub enum ExprKind {
     },
     /// `a = b`, `a += b`, …: the value is that of `target` after the assignment.
     Assign {
-        /// The operator of a compound assignment such as `+=`; none for `=`.
+        /// The operator of a compound assignment such as `+=`; `None` for `=`.
         op: Option<BinaryOp>,
         /// An lvalue; its indices are evaluated once.
         target: ExprId,
@@ -167,7 +167,7 @@ pub struct Swizzle {
 }
 
 impl Swizzle {
-    /// Makes a swizzle of one to four components; none for other counts or components over 3.
+    /// Makes a swizzle of one to four components; `None` for other counts or components over 3.
     #[must_use]
     pub fn new(components: &[u8]) -> Option<Self> {
         if components.is_empty() || components.len() > 4 || components.iter().any(|&c| c > 3) {

@@ -49,7 +49,7 @@ pub struct Variable {
     pub initializer: Option<ExprId>,
     /// The value of a constant.
     pub value: Option<Constant>,
-    /// The place of its name; none for built-in variables.
+    /// The place of its name; `None` for built-in variables.
     pub at: Option<Place>,
 }
 

@@ -133,7 +133,7 @@ impl Tree {
         order
     }
 
-    /// The variable that an lvalue is or is a part of; none for other expressions.
+    /// The variable that an lvalue is or is a part of; `None` for other expressions.
     #[must_use]
     pub fn root_variable(&self, mut lvalue: ExprId) -> Option<VariableId> {
         loop {

@@ -309,7 +309,7 @@ impl Constant {
         }
     }
 
-    /// The value of an `int` or `uint`; none for other types.
+    /// The value of an `int` or `uint`; `None` for other types.
     #[must_use]
     pub fn integer(&self) -> Option<i64> {
         match self.content {

@@ -45,7 +45,7 @@ impl SourceLimit {
 /// The marks of a line: the column and the length of the first, and the messages.
 struct Marked {
     column: usize,
-    /// In characters; none for the word that starts in the column.
+    /// In characters; `None` for the word that starts in the column.
     length: Option<usize>,
     /// The class of the line: a severity, or what else is reported there.
     class: String,

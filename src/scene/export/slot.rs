@@ -118,8 +118,8 @@ impl MarkedShader {
         self.ranges(slot).next().is_some()
     }
 
-    /// Replaces each of the parts by what its template expands to; none unless each occurs exactly once, and
-    /// outside of the others. Parts that enclose a replaced one lose their name.
+    /// Replaces each of the parts by what its template expands to; `None` unless each occurs exactly once,
+    /// and outside of the others. Parts that enclose a replaced one lose their name.
     ///
     /// # Panics
     /// If a template is malformed.
@@ -159,7 +159,7 @@ impl MarkedShader {
         ranges.next().filter(|_| ranges.next().is_none()).cloned()
     }
 
-    /// Replaces ranges of the text by templates; none if they overlap.
+    /// Replaces ranges of the text by templates; `None` if they overlap.
     fn rewritten(&self, mut edits: Vec<(Range<usize>, &str)>) -> Option<Self> {
         edits.sort_by_key(|(range, _)| range.start);
         let mut result = Self {
@@ -190,7 +190,7 @@ impl MarkedShader {
     }
 
     /// Appends a template, in which `…` is a range of the original shader and `«Name»` the only part of that
-    /// name in this range, or in the whole shader; none if there is no such part.
+    /// name in this range, or in the whole shader; `None` if there is no such part.
     fn expand(&mut self, template: &str, original: &Self, replaced: &Range<usize>) -> Option<()> {
         let mut open = Vec::new();
         let mut rest = template;

@@ -164,7 +164,7 @@ const OUTLINE_KEYS: [(&[&str], &[OutlineName], &str); 4] = [
     (&["center"], &[OutlineName::Disk, OutlineName::Heart], "disk"),
 ];
 
-/// Reads a figure; none if its outline is unknown, which is reported.
+/// Reads a figure; `None` if its outline is unknown, which is reported.
 pub(super) fn figure(table: &mut Table) -> Option<Figure> {
     let name = table.required_choice("outline", "outline", &OUTLINES);
     let color = table.color("color");

@@ -39,7 +39,7 @@ impl<T: Real> Cuboid<T> {
         self.axes.map(|axis| axis.dot(relative))
     }
 
-    /// Returns the interval of t within the box of the line o + t·d, in local coordinates; none if it is
+    /// Returns the interval of t within the box of the line o + t·d, in local coordinates; `None` if it is
     /// empty. A line in a face's plane only touches the box, and is outside.
     fn interval(&self, o: [T; 3], d: [T; 3]) -> Option<[T; 2]> {
         let (mut enter, mut leave) = (T::neg_infinity(), T::infinity());

@@ -216,7 +216,7 @@ impl Grid {
 }
 
 impl Split {
-    /// Finds the best split of a set, or none if all its centers are in one place.
+    /// Finds the best split of a set, or `None` if all its centers are in one place.
     fn best(set: &[Item], centers: Box3) -> Option<Self> {
         let bins = BINS.min(4 + set.len() / 8);
         let grid = Grid::new(centers, bins);

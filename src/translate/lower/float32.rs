@@ -22,7 +22,7 @@ pub(super) struct Float32Values {
 }
 
 impl Float32Values {
-    /// The value of an expression; none if it is not constant or has no known value.
+    /// The value of an expression; `None` if it is not constant or has no known value.
     pub(super) fn value(&mut self, tree: &Tree, root: ExprId) -> Option<Constant> {
         // A loop handles chains of any length.
         let mut pending = vec![(root, false)];
@@ -117,7 +117,7 @@ fn inexact_value(tree: &Tree, id: ExprId, operands: &[Option<Constant>]) -> Opti
 }
 
 /// The components of a function whose last bits are implementation-defined, by the evaluator's definition;
-/// none for other functions.
+/// `None` for other functions.
 pub(crate) fn function_of_floats(function: BuiltIn, ty: Type, arguments: &[Vec<f32>]) -> Option<Vec<f32>> {
     if !InexactFunction::of(function, arguments.len())?
         .definition

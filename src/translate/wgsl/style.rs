@@ -92,7 +92,7 @@ impl Style {
         }
     }
 
-    /// The code of a stand-in for the host, around the printed module; none if the module is complete.
+    /// The code of a stand-in for the host, around the printed module; `None` if the module is complete.
     fn host_template(self) -> Option<&'static str> {
         match self {
             Self::Plain => None,

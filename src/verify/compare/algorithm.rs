@@ -32,7 +32,8 @@ pub trait Reference: Sync {
 pub struct Undefined<'a> {
     /// Those of the shader.
     pub pixels: &'a [bool],
-    /// The shader's images with other results of its undefined operations; none if these have no substitutes.
+    /// The shader's images with other results of its undefined operations; `None` if these have no
+    /// substitutes.
     pub substituted: Option<&'a [Image]>,
     /// Those of the reference; empty if none is.
     pub in_reference: &'a [bool],

@@ -36,8 +36,8 @@ pub struct MarchDependence {
 }
 
 impl AcceptedColors {
-    /// The colors of a reference for the usual ray epsilons and for other marches; none for a large image, and
-    /// where no color depends on them.
+    /// The colors of a reference for the usual ray epsilons and for other marches; `None` for a large image,
+    /// and where no color depends on them.
     pub(super) fn of(reference: &ShaderReference) -> Option<Self> {
         if !is_cached(reference.frame.size) {
             return None;

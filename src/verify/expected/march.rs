@@ -378,7 +378,7 @@ fn comparisons(tree: &Tree, condition: ExprId, is_end: bool) -> Vec<Compared> {
 }
 
 /// The literals that determine a limit, which is a number, a constant, a variable with an initial value or a
-/// parameter; none if something else determines it.
+/// parameter; `None` if something else determines it.
 fn literals(tree: &Tree, function: FunctionId, limit: ExprId, calls: u32) -> Option<Vec<ExprId>> {
     let of = |expr: ExprId| literals(tree, function, expr, calls);
     match &tree[limit].kind {
@@ -402,8 +402,8 @@ fn literals(tree: &Tree, function: FunctionId, limit: ExprId, calls: u32) -> Opt
     }
 }
 
-/// The literals that determine an argument in the calls of a function; none if something else does in all of
-/// them.
+/// The literals that determine an argument in the calls of a function; `None` if something else does in all
+/// of them.
 fn arguments(tree: &Tree, function: FunctionId, place: usize, calls: u32) -> Option<Vec<ExprId>> {
     let mut found = Vec::new();
     for (caller, definition) in tree.functions.iter() {

@@ -238,7 +238,7 @@ fn bound(shader: &PassShader, frame: &Frame, buffer: impl Fn(usize) -> Option<Te
     bound
 }
 
-/// Compiles the passes for the driver in a strict run; none without a driver, which the check of the image
+/// Compiles the passes for the driver in a strict run; `None` without a driver, which the check of the image
 /// reports.
 fn open<'a>(
     renderers: Renderers<'a>,

@@ -51,7 +51,7 @@ pub struct FrameError {
     pub max_abs: f64,
     /// The pixels that differ visibly.
     pub differing: Share,
-    /// The pixel with the largest difference; none if none differs visibly.
+    /// The pixel with the largest difference; `None` if none differs visibly.
     pub worst: Option<[u32; 2]>,
 }
 
@@ -317,8 +317,8 @@ fn classify(frames: &Frames, single_distance: f64) -> Result<GrowthCause, Failur
     })
 }
 
-/// The number of frames in which errors double, from the frame n to 2n between which they grow most; none if
-/// they do not grow exponentially. The distance of each frame is given. Growth must last from n to 4n: the
+/// The number of frames in which errors double, from the frame n to 2n between which they grow most; `None`
+/// if they do not grow exponentially. The distance of each frame is given. Growth must last from n to 4n: the
 /// error of a value that all texels read may be zero by chance until one frame, and ordinary in the next.
 fn doubling(distances: &[f64]) -> Option<f64> {
     let amplification = |frame: usize| distances[2 * frame] / distances[frame];

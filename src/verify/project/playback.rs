@@ -108,7 +108,7 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
         self.player.render(frame)
     }
 
-    /// What a pass rendered last; none if the shader does not use it.
+    /// What a pass rendered last; `None` if the shader does not use it.
     #[must_use]
     pub fn texture(&self, target: Target) -> Option<&Texture> {
         self.player.texture(target)

@@ -55,7 +55,7 @@ pub(crate) trait Resampled: std::fmt::Debug + Sync {
     fn max_pixels(&self) -> u32 {
         MAX_PIXELS_OF_SHADERS
     }
-    /// Estimates the pixels at these places; none if the reference cannot be rendered with other random
+    /// Estimates the pixels at these places; `None` if the reference cannot be rendered with other random
     /// numbers.
     fn estimates(&self, places: &Places) -> Option<Arc<Estimates>>;
     /// Whether each of the pixels depends on random numbers.

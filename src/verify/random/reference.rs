@@ -33,7 +33,7 @@ const MIN_SMOOTHNESS: f64 = 0.6;
 type Colors = Vec<[f64; 3]>;
 
 impl ShaderReference {
-    /// How the random numbers can be changed; none if there are no random numbers, or nothing changes them
+    /// How the random numbers can be changed; `None` if there are no random numbers, or nothing changes them
     /// alone. Computed once.
     fn reseeding(&self) -> Option<Reseeding> {
         *self.reseeding.get_or_init(|| {
@@ -117,7 +117,7 @@ impl ShaderReference {
             .collect()
     }
 
-    /// Estimates pixels from several sets of random numbers; none if there are none.
+    /// Estimates pixels from several sets of random numbers; `None` if there are none.
     fn estimated(&self, places: &Places) -> Option<Estimates> {
         let reseeding = self.reseeding()?;
         let own = self.set(None, 0, places)?;

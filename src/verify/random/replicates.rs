@@ -397,7 +397,7 @@ impl ReplicatedShader<'_> {
         })
     }
 
-    /// The shader's own pixels and its replicates; none if the reseeding does not change the random numbers
+    /// The shader's own pixels and its replicates; `None` if the reseeding does not change the random numbers
     /// alone.
     fn replicates(
         &self,

@@ -20,7 +20,8 @@ pub(super) struct Mistake {
 }
 
 impl Mistake {
-    /// Returns the shader with this mistake; none if it lacks one of the parts, or has several of that name.
+    /// Returns the shader with this mistake; `None` if it lacks one of the parts, or has several of that
+    /// name.
     pub(super) fn apply(&self, shader: &MarkedShader) -> Option<MarkedShader> {
         shader.replaced(self.edits)
     }

@@ -124,7 +124,7 @@ fn operations(term: &Term) -> Vec<String> {
     all
 }
 
-/// An expression as a term, with holes for its names; none if it cannot be written in another shader.
+/// An expression as a term, with holes for its names; `None` if it cannot be written in another shader.
 fn translated(tree: &Tree, expr: ExprId) -> Option<(Term, Translation<'_>)> {
     let mut translation = Translation {
         tree,
@@ -151,7 +151,7 @@ struct Translation<'a> {
 }
 
 impl Translation<'_> {
-    /// The expression as a term; none if it cannot be written in another shader. `bound` are the values of
+    /// The expression as a term; `None` if it cannot be written in another shader. `bound` are the values of
     /// the parameters and variables of inlined functions.
     fn term(&mut self, expr: ExprId, bound: &HashMap<VariableId, Term>, depth: u32) -> Option<Term> {
         self.size += 1;
