@@ -116,7 +116,7 @@ fn permitted(document: &mut Table) -> Vec<Difference> {
     permitted
 }
 
-/// Reads what the shaders are compared with; `None` if no key gives it.
+/// Reads the reference of the shaders; `None` if no key gives it.
 fn reference(document: &mut Table, folder: &Path) -> Option<Reference> {
     let scene = path(document, "scene", folder);
     let given = path(document, "reference", folder);

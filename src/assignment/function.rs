@@ -44,7 +44,8 @@ pub enum FunctionCases {
 /// A call of a function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FunctionCase {
-    /// The values of the parameters that are not `out`. Lists stand for vectors, matrices, arrays and structures.
+    /// The values of the parameters that are not `out`. Lists represent vectors, matrices, arrays and
+    /// structures.
     pub arguments: Vec<Literal>,
     /// The expected result, if it is compared.
     pub result: Option<Literal>,
@@ -86,7 +87,7 @@ impl Subject<'_> {
 }
 
 impl FunctionTest {
-    /// What is recorded of a shader that does not compile.
+    /// The record of a shader that does not compile.
     #[must_use]
     pub fn untested(&self) -> FunctionRecord {
         FunctionRecord::untested(&self.name, self.points, "the shader does not compile")
@@ -241,7 +242,7 @@ fn flatten(literal: &Literal, into: &mut Vec<f64>) {
     }
 }
 
-/// The type that a value most likely stands for.
+/// The type that a value most likely has.
 fn type_of(literal: &Literal) -> String {
     match literal {
         Literal::Number { .. } => "float".to_owned(),

@@ -45,7 +45,7 @@ pub const MAX_FRAMES: usize = 64;
 /// An assignment.
 #[derive(Debug, Clone)]
 pub struct Assignment {
-    /// What the shaders are compared with.
+    /// The reference of the shaders.
     pub reference: Reference,
     /// The differences from the reference with which a shader is still correct.
     pub permitted: Vec<Difference>,
@@ -75,7 +75,7 @@ impl Assignment {
     }
 }
 
-/// What the shaders of an assignment are compared with.
+/// The reference of the shaders of an assignment.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
     /// The file of a scene.

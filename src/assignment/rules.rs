@@ -24,7 +24,7 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// What is recorded of a shader that does not compile.
+    /// The record of a shader that does not compile.
     #[must_use]
     pub fn unchecked(&self) -> RulesRecord {
         RulesRecord {
@@ -118,7 +118,7 @@ impl<'a> Calls<'a> {
     }
 }
 
-/// The number of lines with code: neither blank nor only comments.
+/// The number of lines with code, without blank lines and lines that only have comments.
 fn code_lines(text: &str) -> u64 {
     let mut lines = 0;
     let mut has_code = false;

@@ -7,7 +7,7 @@ use toyproof_toml::Literal;
 
 use super::function::{Call, FunctionCase, Subject, parts, text};
 
-/// The components of sample arguments, in turn.
+/// The components of sample arguments, repeated cyclically.
 const COMPONENTS: [f64; 4] = [1.0, 0.5, 0.25, 2.0];
 
 /// The number of decimals of a sample result.

@@ -14,7 +14,8 @@ const SIZE: [u32; 2] = [320, 180];
 /// The time of the frame that shows motion, in seconds: not a period of common animations.
 const TIME: f32 = 2.3;
 
-/// The example of a test of a function, where the model solution has none: a function that exported scenes have.
+/// The example of a test if the model solution has no suitable function: it tests a function of exported
+/// scenes.
 const SAMPLE: &str = "# [[function]]
 # name = \"intersectSphere\"
 # points = 2
@@ -24,7 +25,7 @@ const SAMPLE: &str = "# [[function]]
 # result = 4.5
 ";
 
-/// What a new assignment is made from.
+/// The source of a new assignment.
 #[derive(Debug, Clone, Copy)]
 pub enum Model<'a> {
     /// A model solution.

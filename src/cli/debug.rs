@@ -150,7 +150,7 @@ fn print_pass(
     print(args, &trace.after(&trail), terminal)
 }
 
-/// What the expected color comes from.
+/// The source of the expected color.
 struct Reference {
     scene: Option<Scene>,
     given: Option<GivenReference>,
@@ -196,7 +196,7 @@ fn expected_color(mut scene: Scene, frame: &Frame, [x, y]: [u32; 2]) -> [f64; 3]
     Tracer::<f64>::at(&scene, time).pixel(x, y)
 }
 
-/// Prints the trace of the pixel, beside that of a reference shader.
+/// Prints the trace of the pixel next to that of a reference shader.
 fn print_trace(
     args: &Args,
     shader: (&Shader, &Checked),

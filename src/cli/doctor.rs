@@ -28,7 +28,7 @@ pub(super) struct Args {
 /// The time limit for loading all drivers together, and then for each alone.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// What is known of the drivers of this machine.
+/// The drivers of this machine.
 #[derive(Debug, Serialize)]
 struct Report {
     tool: String,

@@ -613,7 +613,7 @@ impl Walk<'_> {
     }
 }
 
-/// Returns whether a file is an input of its own.
+/// Returns whether a file is an input by itself.
 fn is_input(path: &Path) -> bool {
     is_shader(path) && !is_tab(path) || is_project_json(path)
 }

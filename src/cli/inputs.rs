@@ -233,7 +233,7 @@ pub(super) struct DriverArgs {
     timeout: Option<Duration>,
 }
 
-/// What runs a shader.
+/// The device that runs a shader.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum DeviceSelector {
     /// The evaluator, in this process.

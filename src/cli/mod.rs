@@ -132,10 +132,10 @@ pub enum Exit {
 }
 
 /// The argument with which this program serves as the worker process of a command. It is not a command, so
-/// that it is neither listed nor suggested.
+/// that it is not listed or suggested.
 pub const WORKER: &str = "__worker";
 
-/// Runs the program with these arguments, of which the first is the program's name.
+/// Runs the program with these arguments; the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let arguments: Vec<_> = arguments.into_iter().collect();
     if arguments.get(1).is_some_and(|argument| argument == WORKER) {

@@ -44,9 +44,9 @@ pub(super) fn for_each<H, T: Send>(
     });
 }
 
-/// Creates a pool for the computations of one of `threads` threads, so that none waits for rows of another's
-/// shader; `None` for a single thread. Each pool has twice its share of the cores: the last one running then
-/// has more than its share, and until then the scheduler is fair.
+/// Creates a pool for the computations of one of `threads` threads, so that no thread waits for rows of
+/// another's shader; `None` for a single thread. Each pool has twice its share of the cores: the last one
+/// running then has more than its share, and until then the scheduler is fair.
 pub(super) fn thread_pool(threads: usize) -> Option<ThreadPool> {
     let share = (2 * rayon::current_num_threads() / threads.max(1)).max(1);
     let pool = || ThreadPoolBuilder::new().num_threads(share).build().ok();

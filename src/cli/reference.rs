@@ -200,7 +200,7 @@ impl GivenReference {
 }
 
 impl GivenReference {
-    /// Describes how far the image depends on the way in which a shader marches along its rays.
+    /// Describes how much the image depends on how a shader marches along its rays.
     pub(super) fn march_warning(&self, dependence: &MarchDependence) -> Option<String> {
         let (shader, _) = self.shader()?;
         let mut limits: Vec<&str> = dependence
@@ -242,7 +242,7 @@ struct Evaluation<'a> {
     name: &'a str,
     tolerance: f64,
     timeout: Duration,
-    /// What has been reported of earlier frames.
+    /// The diagnostics that have been reported for earlier frames.
     reported: Vec<Diagnostic>,
 }
 

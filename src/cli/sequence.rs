@@ -74,7 +74,7 @@ impl FrameEnd {
     }
 }
 
-/// A sequence in progress. A record beside the images holds the next frame, as long as frames are missing.
+/// A sequence in progress. A record next to the images holds the next frame until all frames exist.
 #[derive(Debug)]
 pub(super) struct Sequence {
     record: PathBuf,

@@ -63,7 +63,7 @@ impl Unusable {
 #[derive(Debug, Clone)]
 pub(super) struct Unreadable {
     pub(super) name: String,
-    /// What is wrong with it.
+    /// The fault of the shader.
     pub(super) reason: String,
 }
 
@@ -121,7 +121,7 @@ impl Shader {
         }
     }
 
-    /// The trees of all passes; none of a shader that cannot be used.
+    /// The trees of all passes; empty for a shader that cannot be used.
     pub(super) fn trees(&self) -> Vec<&Checked> {
         match &self.passes {
             Some(passes) => passes.checked.iter().collect(),
@@ -182,7 +182,7 @@ pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Inp
 }
 
 /// Finds shaders as [`find`] does. A folder in a searched one whose only shaders are in texts and archives has an
-/// error, so that nobody is overlooked.
+/// error, so that no student is overlooked.
 pub(super) fn find_submissions(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
     find_in(arguments, terminal, add_unread)
 }

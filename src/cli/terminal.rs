@@ -290,7 +290,7 @@ impl Terminal {
         spinner
     }
 
-    /// Returns the text as a progress bar can show it: without colors where standard error has none.
+    /// Returns the text as a progress bar can show it: without colors if standard error has no colors.
     pub(super) fn bar_text(&self, text: &impl Display) -> String {
         let text = text.to_string();
         match AutoStream::choice(&io::stderr()) {
@@ -344,7 +344,7 @@ impl Terminal {
 /// The handling of interrupts.
 #[derive(Debug, Default)]
 struct Interrupts {
-    /// What the program does before it ends; not set if it ends at once.
+    /// The message about the work before the program ends; not set if it ends at once.
     message: Arc<OnceLock<&'static str>>,
     /// Whether the user has interrupted the program.
     flag: Arc<AtomicBool>,

@@ -158,7 +158,7 @@ fn load_shader(path: &Path, args: &Args, deadline: &Deadline, terminal: &Termina
     }
 }
 
-/// Loads the shader beside a scene, else exports the scene, if possible.
+/// Loads the shader next to a scene, else exports the scene, if possible.
 fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) -> Option<Shader> {
     let shader = path.with_extension("glsl");
     if shader.is_file() {
@@ -179,7 +179,7 @@ fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &
     })
 }
 
-/// Loads the scene beside a shader.
+/// Loads the scene next to a shader.
 fn scene_for_shader(path: &Path) -> Option<Scene> {
     let found = files::find(path).inputs;
     let found = found.first()?.as_ref().ok()?;

@@ -51,11 +51,11 @@ struct PassEntry {
     /// `image`, or `buffer-a` to `buffer-d`.
     target: String,
     format: String,
-    /// What the target holds before the first frame. It is never cleared afterward.
+    /// The content of the target before the first frame. It is never cleared afterward.
     initial: Initial,
     /// Whether mipmaps of the target are made after the pass.
     mipmaps: bool,
-    /// What channels 0 to 3 read.
+    /// The inputs of channels 0 to 3.
     inputs: [Option<InputEntry>; 4],
 }
 
@@ -75,7 +75,7 @@ pub struct InputEntry {
     wrap: WrapName,
 }
 
-/// What a channel reads.
+/// The source of a channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "source", rename_all = "lowercase")]
 pub enum SourceEntry {
@@ -205,7 +205,7 @@ impl<'a> HostGraph<'a> {
         let number = if let Some(player::Source::Medium(number)) = source {
             number
         } else {
-            // Each has a size and content of its own, so that no two can be confused.
+            // Each has a different size and content, so that no two can be confused.
             let noise = Texture::from(toyproof_image::noise());
             let side = 255 - (self.media.len() as u32).min(127);
             let texture = noise.cropped([side, 256]);
@@ -496,7 +496,7 @@ mod tests {
         assert_eq!(read.graph, played.graph);
         let sampling: Vec<_> = checked.iter().map(|checked| checked.sampling).collect();
         assert_eq!(read.sampling, sampling);
-        // A photograph is not available, and replaced by noise of its own.
+        // A photograph is not available, and replaced by its own noise.
         let media = read.graph.passes()[2].inputs.map(|input| match input {
             Some(player::Source::Medium(number)) => Some(number),
             _ => None,

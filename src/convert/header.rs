@@ -95,7 +95,7 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
     head
 }
 
-/// Appends what it was compared with, in which frames, and how many pixels were left out.
+/// Appends the reference of the comparison, the frames, and the number of pixels that were left out.
 fn settings(head: &mut String, proof: &Proof) {
     let against = match proof.against {
         Against::Evaluator => "renders the same image as the original in toyproof's float32 evaluator",

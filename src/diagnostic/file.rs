@@ -18,7 +18,7 @@ pub struct File {
     /// The text with control characters masked, if it contains any.
     display_text: Option<String>,
     line_starts: Vec<usize>,
-    /// The files that the text is made of, for a joined file: each with the byte at which it starts.
+    /// The parts of a joined file, each with the byte at which it starts.
     parts: Vec<(FileId, u32)>,
 }
 
@@ -128,7 +128,8 @@ impl Files {
         self.files.len() > 1
     }
 
-    /// Adds a file that consists of others, each on lines of its own. Spans in it are reported as spans of those files.
+    /// Adds a file that consists of others, each beginning on a new line. Spans in it are reported as spans
+    /// of those files.
     pub fn join(&mut self, name: impl AsRef<str>, parts: &[FileId]) -> FileId {
         let mut text = String::new();
         let mut starts = Vec::with_capacity(parts.len());

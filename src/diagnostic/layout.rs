@@ -2,7 +2,7 @@
 
 use textwrap::{Options, WordSeparator, WordSplitter, core};
 
-/// The number of terminal columns of a text of one line; ANSI sequences take none.
+/// The number of terminal columns of a text of one line; ANSI sequences have no width.
 #[must_use]
 pub fn display_width(text: &str) -> usize {
     core::display_width(text)
@@ -29,7 +29,7 @@ pub fn wrap(prefix: &str, indent: usize, text: &str, width: Option<usize>) -> St
 }
 
 /// Aligns the cells of a table; the columns of the indices `right` are aligned to the right. Each line starts with
-/// `indent`, and none ends with spaces.
+/// `indent` and does not end with spaces.
 #[must_use]
 pub fn columns(indent: &str, rows: &[Vec<String>], right: &[usize]) -> Vec<String> {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);

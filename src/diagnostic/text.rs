@@ -68,7 +68,7 @@ fn is_invisible(character: char) -> bool {
 }
 
 /// Whether a character starts a formula: `=`, `+`, `-` or `@`, or a form of them in another width or place,
-/// which some locales read alike.
+/// which some locales read in the same way.
 fn is_formula_start(character: char) -> bool {
     matches!(
         character,
@@ -97,8 +97,8 @@ fn placeholder(character: char) -> char {
     }
 }
 
-/// Replaces the control characters of a source text with placeholders of the same length; `None` if it
-/// contains none.
+/// Replaces the control characters of a source text with placeholders of the same length; `None` if there
+/// are none.
 pub(super) fn mask_controls(text: &str) -> Option<String> {
     let is_masked =
         |character: char| is_layout_control(character) && !matches!(character, '\n' | '\r' | '\t');
@@ -117,9 +117,9 @@ pub(super) fn mask_controls(text: &str) -> Option<String> {
 /// Maximum length of names for which similar ones are searched.
 const MAX_COMPARED_LETTERS: usize = 64;
 
-/// The candidate of which a name is most likely a misspelling, if any is likely; the first of equally likely
-/// ones. The distance is the number of swapped, missing, added and changed letters, up to a third of the
-/// name. Case hardly counts: `smoothStep` is `smoothstep`.
+/// The candidate that a name most likely misspells, if any is likely; the first of equally likely ones. The
+/// distance is the number of swapped, missing, added and changed letters, up to a third of the name. Case
+/// hardly counts: `smoothStep` is `smoothstep`.
 pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     // Names of up to two letters get no suggestion but another case.
     let limit = name.chars().count() / 3;

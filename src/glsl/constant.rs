@@ -3,7 +3,7 @@
 //!
 //! Floats are computed in double precision, integers in 32 wrapping bits. Operations that the specification
 //! leaves undefined (integer division by zero, too large a shift, a float out of an integer's range) have no
-//! value, nor have the built-in functions on matrices and packed floats.
+//! value. The built-in functions on matrices and packed floats have no value either.
 
 use toyproof_math::{Matrix, determinant, inverse, outer_product};
 
@@ -72,7 +72,7 @@ impl Tree {
         self.values.clear();
     }
 
-    /// The cached value; none if it was not cached.
+    /// The cached value; `None` if it was not cached.
     #[expect(
         clippy::option_option,
         reason = "a value that is not known, and one that there is not"
@@ -328,7 +328,7 @@ fn scalars(op: BinaryOp, a: Value, b: Value) -> Option<Value> {
     })
 }
 
-/// Compares two values; none if their types are not ordered; the inner option is none if one is NaN.
+/// Compares two values; `None` if their types are not ordered; the inner option is `None` if one is NaN.
 #[expect(
     clippy::option_option,
     reason = "a comparison that is wrong, and one that is false"

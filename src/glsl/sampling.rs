@@ -5,7 +5,7 @@
 pub struct Sampling {
     /// The filter.
     pub filter: Filter,
-    /// What lies outside of the texture.
+    /// The values outside of the texture.
     pub wrap: Wrap,
 }
 
@@ -30,7 +30,7 @@ pub enum Filter {
     Mipmap,
 }
 
-/// What lies outside of a texture.
+/// The values outside of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Its edge.

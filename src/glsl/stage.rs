@@ -2,13 +2,13 @@
 
 use crate::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
 
-/// What a text is compiled as: a tab of ShaderToy's editor.
+/// The kind of program that a text is compiled as: a tab of ShaderToy's editor.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// The image, with `mainImage`. Its alpha is 1.
     #[default]
     Image,
-    /// A buffer, with `mainImage`. Its alpha is what the shader writes.
+    /// A buffer, with `mainImage`. The shader writes its alpha.
     Buffer,
     /// A cube map, with `mainCubemap`.
     Cubemap,
@@ -89,7 +89,7 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
-    /// The number of the form that a function has: 0 is preferred. None if it has none of them.
+    /// The number of the form that a function has: 0 is preferred. `None` if it has another form.
     pub(crate) fn form(&self, function: &Function, tree: &Tree) -> Option<usize> {
         let fits = |&(ty, directions): &Parameter, variable: &crate::tree::Variable| {
             let direction = match variable.kind {

@@ -293,7 +293,7 @@ fn is_software_selected(manifests: &[PathBuf]) -> bool {
     has_lavapipe || !manifests.is_empty() && manifests.iter().all(is_swiftshader)
 }
 
-/// What the name of lavapipe's manifest begins with.
+/// The start of the name of lavapipe's manifest.
 const LAVAPIPE_MANIFEST: &str = "lvp_icd.";
 
 fn choose_lavapipe(manifests: Vec<PathBuf>) -> Option<PathBuf> {

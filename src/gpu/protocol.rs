@@ -51,7 +51,7 @@ pub(super) enum Job {
 }
 
 impl Job {
-    /// The number of pixels of the one image that it renders; `None` if it renders none, or several.
+    /// The number of pixels of the one image that it renders; `None` if it renders no image, or several.
     pub(super) fn pixels(&self) -> Option<u64> {
         match self {
             Self::Draw(job) | Self::WatchLoops(job) => {
@@ -82,7 +82,7 @@ pub(super) struct PlayJob {
     pub(super) graph: Graph,
     /// The textures that do not change.
     pub(super) media: Vec<Texture>,
-    /// Where to go on.
+    /// The state to continue from.
     pub(super) state: Option<State>,
     pub(super) selector: AdapterSelector,
 }
@@ -152,7 +152,7 @@ pub(super) enum Output {
     Sandbox(Sandbox),
 }
 
-/// The pixels of an image as the bytes that memory holds, which are copied at once.
+/// The pixels of an image as the bytes in memory, which are copied at once.
 mod raw_pixels {
     use std::fmt;
 

@@ -342,8 +342,8 @@ impl Worker {
     }
 
     /// Compiles the passes of a shader, in the order of their graph, with the samplers of each and the
-    /// textures that do not change, and goes on from a state, if there is one. Returns the name of the device.
-    /// [`Self::play`] then renders the frames, until another job follows.
+    /// textures that do not change, and continues from a state, if there is one. Returns the name of the
+    /// device. [`Self::play`] then renders the frames, until another job follows.
     ///
     /// # Errors
     /// Why the passes cannot be rendered.
@@ -374,7 +374,7 @@ impl Worker {
         }
     }
 
-    /// Lets the passes that were opened go on from a state.
+    /// Resumes the opened passes from a saved state.
     ///
     /// # Errors
     /// Why the state's textures cannot be made.
@@ -427,7 +427,7 @@ impl Worker {
         output
     }
 
-    /// Runs a job. If plain code exceeds the time limit, it runs again with optimized code.
+    /// Runs a job. If unoptimized code exceeds the time limit, the job runs again with optimized code.
     fn run_job(&mut self, job: &Job, mut on_band: impl FnMut(Image)) -> Result<Output, Failure> {
         let is_plain = self.plain_code.applies_to(job.pixels());
         let running = match self.running.take() {
@@ -520,8 +520,8 @@ impl Worker {
         }
     }
 
-    /// Returns the manifest of the one driver that suffices if no other is selected: loading it instead of
-    /// all takes 20 ms instead of 170 ms.
+    /// Returns the manifest of the default driver if no other is selected: loading it alone takes 20 ms,
+    /// loading all drivers 170 ms.
     fn default_manifest(&self) -> Option<PathBuf> {
         let suffices = matches!(self.selector, AdapterSelector::Auto | AdapterSelector::Lavapipe);
         (suffices && self.uses_driver && !self.all_drivers && !device::is_pinned_by_user())
@@ -529,7 +529,8 @@ impl Worker {
             .flatten()
     }
 
-    /// Starts a process, whose code is plain if this is wanted and can be had.
+    /// Starts a process. If `is_plain`, its driver compiles without optimizations, unless the user has set
+    /// the compiler's flags.
     fn start(&self, is_plain: bool) -> Result<RunningWorker, Failure> {
         if self.uses_driver {
             sandbox::create_caches();
@@ -560,7 +561,7 @@ impl Worker {
         let errors = child.stderr.take().ok_or_else(missing)?;
         #[cfg(target_os = "linux")]
         {
-            // If the system refuses, messages take more turns.
+            // If the system refuses, messages are read in more pieces.
             let _ = rustix::pipe::fcntl_setpipe_size(&output, PIPE_BYTES);
         }
         let setup = Setup {

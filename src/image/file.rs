@@ -309,7 +309,8 @@ mod tests {
             let pixels = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
             let image = Rgb8Image::new(size, size, pixels);
             let bytes = encode_shown(&image, Path::new("a.png")).unwrap();
-            // What encloses the parts of a stored image is less than a hundredth of it, and 22 bytes at the end.
+            // The framing of the parts of a stored image takes less than a hundredth of it, and 22 bytes at
+            // the end.
             let most = stored_size(image.size()) * 101 / 100 + 22;
             assert!(bytes.len() <= most, "{size}: {} above {most}", bytes.len());
             let read = image::load_from_memory(&bytes).unwrap().into_rgb8();

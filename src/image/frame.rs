@@ -27,7 +27,7 @@ pub struct Frame {
     pub date: [f32; 4],
     /// The keyboard.
     pub keys: Keys,
-    /// What the user does over the frames of a run, of which the mouse and the keyboard of this one follow.
+    /// The user's actions over the frames of a run, which determine the mouse and the keyboard of this frame.
     #[serde(skip)]
     pub script: Option<Arc<Script>>,
     /// The textures of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.

@@ -1,4 +1,4 @@
-//! Opening of files that somebody else may have put there.
+//! Opening of files that other users may have created.
 
 use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, Read};

@@ -30,7 +30,7 @@ pub struct Keys {
     pub held: KeySet,
     /// Those that were pressed since the previous frame.
     pub pressed: KeySet,
-    /// Those that were pressed an odd number of times so far.
+    /// The keys that have been pressed an odd number of times.
     pub toggled: KeySet,
 }
 

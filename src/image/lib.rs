@@ -76,7 +76,7 @@ impl<T: Copy> Image<T> {
         }
     }
 
-    /// Whether it has as many pixels as its size says: one that was read from a file may not.
+    /// Whether the number of pixels agrees with the size, which may be false after reading from a file.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.pixels.len() as u64 == u64::from(self.width) * u64::from(self.height)

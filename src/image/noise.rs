@@ -7,7 +7,7 @@ use crate::{Image, pcg};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Noise {
     /// 256×256 pixels. Green is red moved by 37 pixels to the right and 17 downwards, and alpha is blue moved
-    /// alike, so that one lookup gives two layers of volume noise.
+    /// in the same way, so that one lookup gives two layers of volume noise.
     RgbaMedium,
     /// 64×64 pixels of independent components.
     RgbaSmall,
@@ -21,7 +21,7 @@ pub enum Noise {
     Blue,
 }
 
-/// By how many pixels a component of [`Noise::RgbaMedium`] is moved to the right and downwards.
+/// The number of pixels by which a component of [`Noise::RgbaMedium`] is moved to the right and downwards.
 const SHIFT: [u32; 2] = [37, 17];
 
 impl Noise {
@@ -34,7 +34,7 @@ impl Noise {
             Self::Bayer => 8,
             Self::Blue => 1024,
         };
-        // Each texture has numbers of its own.
+        // Each texture has different numbers.
         let seed = (self as u32) << 24;
         let value =
             |x: u32, y: u32, component: u32| pcg(seed + 4 * ((y % side) * side + x % side) + component) as u8;

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::path_name;
 
 /// Writes a file that the user named: under a temporary name in the same folder, then renames it, so that
-/// neither a crash nor a reader ever sees a partial file. Missing folders are created. Symbolic links are
-/// followed. A special file (`/dev/null`, `/dev/stdout`, a named pipe) is written to, since a rename would
-/// replace it.
+/// a crash leaves no partial file, and a reader never sees one. Missing folders are created. Symbolic links
+/// are followed. A special file (`/dev/null`, `/dev/stdout`, a named pipe) is written to, since a rename
+/// would replace it.
 ///
 /// # Errors
 /// The system's error, prefixed with the path.

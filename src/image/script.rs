@@ -1,4 +1,4 @@
-//! What a user does with the mouse and the keyboard over the frames of a run.
+//! The user's actions with the mouse and the keyboard over the frames of a run.
 
 use crate::Keys;
 

@@ -37,7 +37,7 @@ impl Texture {
         }
     }
 
-    /// Whether it has this size, one level, and all its texels: one that was read from a file may not.
+    /// Whether it has this size, one level, and all its texels, which may be false after reading from a file.
     #[must_use]
     pub fn is_whole(&self, size: [u32; 2]) -> bool {
         match self {

@@ -241,7 +241,7 @@ pub fn atan2<F: Float>(y: F, x: F) -> F {
     let quarter = angle_minus(FRAC_PI_2, t, series);
     let past_quarter = angle_minus(FRAC_PI_2, -t, -series);
     let half = angle_minus(PI, t, series);
-    // x = −0 counts as left, too.
+    // x = −0 also counts as left.
     let left = negate_if(x.literal(1.0), x.to_bits()).less(x.literal(0.0));
     let value = F::select(
         steep,

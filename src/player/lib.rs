@@ -76,13 +76,13 @@ pub struct Graph {
 /// A pass: what it renders, and what it reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pass {
-    /// What it renders.
+    /// The target that it renders.
     pub target: Target,
     /// The inputs of `iChannel0` to `iChannel3`.
     pub inputs: [Option<Source>; 4],
 }
 
-/// What a pass renders.
+/// The target of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Target {
     /// The buffer with this number, from 0.
@@ -100,7 +100,7 @@ impl fmt::Display for Target {
     }
 }
 
-/// What an input reads.
+/// The source of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// The buffer with this number, from 0.
@@ -112,7 +112,7 @@ pub enum Source {
 }
 
 impl Graph {
-    /// A graph of these passes; `mipmaps` says of which buffers mipmaps are made.
+    /// Creates a graph of these passes; `mipmaps` selects the buffers with mipmaps.
     ///
     /// # Panics
     /// If a pass other than the last renders the image, the last does not, or a buffer has a number of 4 or more.

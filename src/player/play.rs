@@ -37,7 +37,7 @@ pub trait Renderer {
     fn resized(&mut self, texture: Self::Texture, size: [u32; 2]) -> Result<Self::Texture, Self::Error>;
 }
 
-/// What a channel of a pass reads.
+/// The content of a channel of a pass.
 #[derive(Debug)]
 pub enum Channel<'a, T> {
     /// Nothing: opaque black.
@@ -130,7 +130,7 @@ impl<R: Renderer> Player<R> {
         Some([last?, other?])
     }
 
-    /// What a pass read in the last frame.
+    /// The channels of a pass in the last frame.
     ///
     /// # Panics
     /// If there is no such pass.
@@ -239,7 +239,7 @@ impl<R: Renderer> Player<R> {
     }
 }
 
-/// What a pass reads, where `texture` returns the texture of a buffer.
+/// The channels of a pass; `texture` returns the texture of a buffer.
 fn channels<'t, T>(
     graph: &Graph,
     pass: usize,

@@ -1,11 +1,11 @@
-//! What a frame depends on besides its inputs.
+//! The state that a frame depends on besides its inputs.
 
 use serde::{Deserialize, Serialize};
 use toyproof_image::Texture;
 
 use crate::{BUFFERS, Graph, Player, Renderer, Target};
 
-/// The textures between two frames, so that a run can go on later.
+/// The textures between two frames, so that a run can continue later.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// The number of the frame that was rendered last.

@@ -20,9 +20,9 @@ pub struct CheckedProject {
 /// A pass without errors.
 #[derive(Debug)]
 pub struct CheckedPass {
-    /// What it renders.
+    /// The kind of pass.
     pub kind: PassKind,
-    /// Its tree. The text that its spans are of is joined from those of the tabs.
+    /// Its tree, whose spans refer to the joined text of the tabs.
     pub checked: Checked,
     /// The lints' findings.
     pub lints: Lints,
@@ -145,10 +145,10 @@ fn channels(project: &Project, pass: &Pass) -> [Option<SamplerShape>; 4] {
     })
 }
 
-/// What stands before an Image tab that uses `st_assert`. The site declares these functions in this tab only.
+/// The text before an Image tab that uses `st_assert`. The site declares these functions in this tab only.
 const ASSERTIONS: &str = include_str!("st_assert.glsl");
 
-/// What follows such a tab: a failed assertion replaces the color.
+/// The text after such a tab: a failed assertion replaces the color.
 const ASSERTED: &str = include_str!("st_asserted.glsl");
 
 /// Adds the text that is compiled for a pass: Common, a line feed, and the tab.

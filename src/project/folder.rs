@@ -17,7 +17,7 @@ use crate::pass::{Buffer, PassKind, SourceType, Tab};
 use crate::project::{Document, Project};
 use crate::read::{Renderpass, default_sampler, read};
 
-/// The name of the file beside the tabs.
+/// The name of the file next to the tabs.
 pub const PROJECT_FILE: &str = "project.toml";
 
 impl Project {
@@ -148,7 +148,7 @@ fn inline(node: &Node) -> String {
             format!("{{ {} }}", list(members.collect()))
         }
         Value::Array(nodes) => format!("[{}]", list(nodes.iter().map(inline).collect())),
-        // Numbers and strings are written alike in both languages.
+        // Numbers and strings have the same form in both languages.
         Value::Bool(_) | Value::Number(_) | Value::String(_) => json::write_compact(node),
     }
 }

@@ -1,4 +1,4 @@
-//! What is rendered of a project: its passes in the site's order, the textures that they read, and how they
+//! The rendered parts of a project: its passes in the site's order, the textures that they read, and how they
 //! sample them.
 
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use toyproof_player::{self as player, BUFFERS, Graph, Target};
 use crate::pass::{Buffer, Input, Pass, PassKind, Source, SourceType};
 use crate::project::Project;
 
-/// What renders the image of a project.
+/// The passes that render the image of a project.
 #[derive(Debug, Clone)]
 pub struct Rendering {
     /// The order of the passes, and what they read.
@@ -26,7 +26,7 @@ pub struct Rendering {
 /// An input whose medium is not available.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Replaced {
-    /// What would be read.
+    /// The source that would be read.
     pub source: Source,
     /// Whether a texture with the same properties takes its place; otherwise the channel is black.
     pub has_stand_in: bool,
@@ -115,7 +115,7 @@ impl Project {
         let readers = self
             .rendered_inputs()
             .filter(|input| input.source == Source::Buffer(buffer));
-        // Without spans, the inputs are assumed, and alike.
+        // Inputs without spans are assumed, and all the same.
         let last = readers.max_by_key(|input| input.span.map(|span| span.start));
         last.map_or(Wrap::Clamp, |input| input.sampler.wrap)
     }
@@ -138,7 +138,7 @@ struct Media<'a> {
 }
 
 impl Media<'_> {
-    /// What an input reads in the graph; `None` for black.
+    /// The source of an input in the graph; `None` for black.
     fn source(&mut self, input: &Input, reader: (PassKind, usize)) -> Option<player::Source> {
         match input.source {
             Source::Buffer(buffer) => return Some(player::Source::Buffer(buffer as usize)),

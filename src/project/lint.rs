@@ -1,4 +1,4 @@
-//! Warnings about the inputs of a project: what its author probably does not expect of the site.
+//! Warnings about the inputs of a project that the site probably treats differently than the author expects.
 
 use toyproof_diagnostic::Diagnostic;
 use toyproof_glsl::tree::{ExprKind, Input as Uniform, VariableKind};

@@ -93,7 +93,7 @@ const MEDIA: &[Medium] = &[
     medium("4dfGzn", "Ourpithyator", SourceType::Music, "ec8a6ea755d34600547a5353f21f0a453f9f55ff95514383b2d80b8d71283eda.mp3", [512, 2, 1], 1),
 ];
 
-/// What an input reads, as the site's JSON names it.
+/// The source of an input, as the site's JSON names it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Name {
     /// The name in `project.toml`: `buffer-a`, `keyboard`, or the name of a built-in medium.

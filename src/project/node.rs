@@ -1,4 +1,4 @@
-//! Trees of values that know where they stand: what JSON and `project.toml` have in common. Objects keep the order
+//! Trees of values with their places: the common form of JSON and `project.toml`. Objects keep the order
 //! of their keys, and numbers their digits, so that a tree is written as it was read.
 
 use toyproof_diagnostic::{Diagnostic, Span};
@@ -12,7 +12,7 @@ pub(crate) const INVALID_VALUE: &str = "E0508";
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub(crate) value: Value,
-    /// Where it stands; `None` if it was not read from a file.
+    /// Its place; `None` if it was not read from a file.
     pub(crate) span: Option<Span>,
 }
 
@@ -155,7 +155,7 @@ impl Node {
         }
     }
 
-    /// What it is, for messages: "a string".
+    /// Its type, for messages: "a string".
     pub(crate) fn describe(&self) -> &'static str {
         match &self.value {
             Value::Null => "null",

@@ -137,7 +137,7 @@ fn code(pass: &mut Node) -> Result<String, Box<Diagnostic>> {
 }
 const _: () = assert!(MAX_TAB_BYTES == 1 << 20);
 
-/// What `renderpass` holds.
+/// The contents of `renderpass`.
 pub(crate) struct Renderpass {
     pub(crate) common: Option<FileId>,
     pub(crate) passes: Vec<Pass>,

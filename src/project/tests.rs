@@ -285,7 +285,7 @@ fn a_folder_without_a_project_file_reads_buffers_by_index() {
     assert_eq!(sources(PassKind::Image), buffers);
     assert_eq!(sources(PassKind::Buffer(Buffer::C)), buffers);
     assert_eq!(sources(PassKind::Sound), [const { None }; 4]);
-    // What is exported is complete, and is read as the same project.
+    // The exported JSON is complete, and is read as the same project.
     let json = project.to_json(&files);
     let again = from_json(&mut files, &json).unwrap();
     assert_eq!(again.to_json(&files), json);

@@ -1,4 +1,4 @@
-//! What an assignment requires besides the image: rules, and tests of functions.
+//! The requirements of an assignment besides the image: rules, and tests of functions.
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{grouped, plural};
@@ -20,7 +20,7 @@ pub struct RulesRecord {
 pub struct Violation {
     /// The rule's key in the assignment, such as `must_not_call`.
     pub rule: String,
-    /// What is wrong, in one sentence.
+    /// The violation, in one sentence.
     pub message: String,
     /// Where; null if the whole shader is meant.
     pub at: Option<Position>,
@@ -48,7 +48,7 @@ pub struct FunctionRecord {
     pub cases: u64,
     /// The number of cases in which it is right.
     pub right: u64,
-    /// What is wrong, in one sentence; empty if nothing is.
+    /// The fault, in one sentence; empty if there is none.
     pub message: String,
     /// Where the function is defined; null if it is missing.
     pub at: Option<Position>,

@@ -9,7 +9,7 @@ use toyproof_diagnostic::spreadsheet_text;
 use super::csv::table;
 use super::{Record, Records, Rubrics, Submitted};
 
-/// What a student has in one assignment.
+/// The result of a student in one assignment.
 #[derive(Debug, Clone)]
 struct Cell {
     /// The points; `None` without a rubric.

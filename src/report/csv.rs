@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(lines.collect::<Vec<_>>(), [""]);
     }
 
-    /// Another reader gets the cells, none of which acts on a terminal or a spreadsheet.
+    /// Another reader gets the cells, and no cell acts on a terminal or a spreadsheet.
     #[test]
     fn hostile_texts_stay_in_their_cells() {
         let texts = [

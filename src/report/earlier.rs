@@ -17,7 +17,7 @@ pub struct Earlier {
     seconds: BTreeMap<String, f64>,
 }
 
-/// A shader whose verdict differs between two reports; none where a report does not have the shader.
+/// A shader whose verdict differs between two reports; `None` if a report does not have the shader.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Change {
     /// The shader's name.

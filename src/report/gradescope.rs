@@ -55,7 +55,7 @@ enum Status {
     Failed,
 }
 
-/// The images that students see beside their marks.
+/// The images that students see next to their marks.
 #[derive(Debug, Default)]
 pub struct Thumbnails(Vec<ShaderThumbnails>);
 
@@ -80,7 +80,7 @@ impl Thumbnails {
         images.map(|(_, png)| png.len()).sum()
     }
 
-    /// Formats the images as HTML that needs neither a style sheet nor a script.
+    /// Formats the images as HTML without a style sheet or a script.
     fn html(&self) -> String {
         let mut html = String::new();
         for ShaderThumbnails { shader, images } in self.0.iter().filter(|shader| !shader.images.is_empty()) {

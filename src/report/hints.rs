@@ -2,7 +2,7 @@
 
 use super::Record;
 
-/// What a report shows of the mistake in a wrong shader. Errors and warnings are always shown.
+/// How much of the mistake in a wrong shader a report shows. Errors and warnings are always shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Hints {
     /// Neither the likely mistake nor lines nor edits.

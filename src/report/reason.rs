@@ -40,7 +40,7 @@ impl Statement {
     }
 }
 
-/// States why a verdict was reached, with what the images show beside it. `files` are those of the shader.
+/// States why a verdict was reached, and what the images show in addition. `files` are those of the shader.
 #[must_use]
 pub fn state(findings: &Findings, files: &Files) -> Statement {
     let mut statement = state_reason(&findings.reason, files);
@@ -414,7 +414,7 @@ fn first_error(diagnostics: &[Diagnostic], files: &Files) -> String {
     }
 }
 
-/// The message on a shader of which the driver truncated the loops of `pixels` pixels.
+/// The message on a shader whose loops the driver truncated in `pixels` pixels.
 #[must_use]
 pub fn loop_truncated(pixels: u64) -> String {
     format!(

@@ -19,7 +19,7 @@ use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRec
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
 
-/// What a record states if no fix was searched for.
+/// The statement of a record if no fix was searched for.
 const UNSEARCHED: &str = "fixes are not searched for in shaders of several passes";
 
 /// All shaders of one run.
@@ -139,8 +139,8 @@ pub struct Record {
     /// frame.
     #[serde(default)]
     pub growth: Option<GrowthRecord>,
-    /// The results in the frames of an assignment, of which the first with the worst verdict gives everything
-    /// above; null without an assignment.
+    /// The results in the frames of an assignment; the first frame with the worst verdict gives everything
+    /// above. Null without an assignment.
     #[serde(default)]
     pub frames: Option<Vec<FrameRecord>>,
     /// The rules of an assignment; null if it has none.
@@ -149,7 +149,7 @@ pub struct Record {
     /// The tests of functions that an assignment has.
     #[serde(default)]
     pub functions: Vec<FunctionRecord>,
-    /// Whose submission it is; null if no class is checked.
+    /// The student and the assignment; null if no class is checked.
     #[serde(default)]
     pub submitted: Option<Submitted>,
     /// The diagnostics on the shader and its scene.
@@ -262,7 +262,7 @@ impl Record {
         self.set_statement(state_reason(&because, files));
     }
 
-    /// What it was compared with: the name of the scene, or of the reference.
+    /// The name of the scene or of the reference that it was compared with.
     pub(super) fn compared_with(&self) -> Option<&str> {
         self.scene.as_deref().or(self.reference.as_deref())
     }
@@ -344,7 +344,7 @@ impl Mistake {
         self.is_symptom || !self.alternatives.is_empty()
     }
 
-    /// What to call it in a report.
+    /// Its name in a report.
     pub(super) fn label(&self) -> &'static str {
         if self.is_symptom {
             "symptom"
@@ -381,7 +381,7 @@ pub struct Seconds {
 }
 
 impl Seconds {
-    /// The sum of all stages, some of which ran in parallel.
+    /// The sum of all stages; some of them ran in parallel.
     #[must_use]
     pub fn total(&self) -> f64 {
         let parts = [self.translate, self.gpu, self.eval, self.trace];
@@ -425,7 +425,7 @@ pub(super) mod samples {
         }
     }
 
-    /// An answer over 1,000 pixels, of which the given numbers differ, are undecided and are undefined.
+    /// A summary of 1,000 pixels: the numbers that differ, are ill-conditioned and are undefined.
     pub(in crate::report) fn question([differing, ill_conditioned, undefined]: [u64; 3]) -> CheckSummary {
         CheckSummary {
             pixels: 1000,

@@ -30,7 +30,7 @@ pub struct Rubric {
     late: Option<LateDeduction>,
     /// Who sees the marks, and when.
     pub visibility: Visibility,
-    /// The images that students see beside their marks.
+    /// The images that students see next to their marks.
     pub images: StudentImages,
 }
 
@@ -39,7 +39,7 @@ pub struct Rubric {
 struct CheckPoints {
     points: f64,
     /// The share of agreeing pixels up to which nothing is earned, in [0, 1); from there points grow
-    /// linearly. None: no partial points.
+    /// linearly. `None`: no partial points.
     partial_from: Option<f64>,
 }
 
@@ -47,7 +47,7 @@ struct CheckPoints {
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
-    /// Students, at once.
+    /// Students, immediately.
     #[default]
     Visible,
     /// Teachers alone.
@@ -58,7 +58,7 @@ pub enum Visibility {
     AfterPublished,
 }
 
-/// The images that students see beside their marks.
+/// The images that students see next to their marks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum StudentImages {
     /// Their own, the reference, and the difference.
@@ -70,7 +70,7 @@ pub enum StudentImages {
     None,
 }
 
-/// What a late submission loses.
+/// The deduction for a late submission.
 #[derive(Debug, Clone, Copy)]
 struct LateDeduction {
     /// The share of the maximum points for each day, in percent; the last day may have only begun.
@@ -321,7 +321,7 @@ fn algorithm(check: CheckPoints, record: &Record) -> Mark {
     })
 }
 
-/// Ill-conditioned pixels count as lost to the precision check, too.
+/// Ill-conditioned pixels also count as lost to the precision check.
 fn precision(check: CheckPoints, record: &Record) -> Mark {
     let name = "precision";
     lowest(check, name, record, |frame| {

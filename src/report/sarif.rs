@@ -104,7 +104,7 @@ impl Serialize for Results<'_> {
     }
 }
 
-/// What prevented the verdicts of records.
+/// The errors that prevented the verdicts of records.
 struct Notifications<'a> {
     records: &'a Records,
 }

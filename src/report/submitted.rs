@@ -28,7 +28,7 @@ pub struct Late {
 }
 
 impl Late {
-    /// The number of days, of which the last may have only begun; 1 if the download does not state it.
+    /// The number of days, including the day that has begun; 1 if the download does not state it.
     #[must_use]
     pub fn days(self) -> u64 {
         self.seconds.map_or(1, |seconds| seconds.div_ceil(86_400).max(1))

@@ -99,7 +99,7 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
     let reason = match errors.len() {
         0 => record.reason.clone(),
         _ if layout.detail == Detail::Short => record.reason.clone(),
-        // The errors themselves are beside this line.
+        // The errors themselves are next to this line.
         1 => "1 error".to_owned(),
         count => format!("{} errors", grouped(count as u64)),
     };
@@ -197,7 +197,7 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
         return vec![layout.below(&format!("{label}: "), &mistake.text)];
     }
     let others = mistake.alternatives.iter().map(|other| &other.text);
-    // A symptom is no mistake among others: it is what they cause.
+    // A symptom is not one of several mistakes, but their effect.
     let first = (!mistake.is_symptom).then_some(&mistake.text);
     let ranked = first
         .into_iter()
@@ -232,11 +232,11 @@ fn suspect_texts(record: &Record, layout: &Layout) -> Vec<String> {
     suspects.collect()
 }
 
-/// What is stated of a search that found no fix and was not complete.
+/// The statement on a search that found no fix and was not complete.
 pub(super) const CUT_SEARCH: &str =
     "the search for a fix reached its limit; a larger --search tries more edits";
 
-/// What a record states if what explains the verdict was cut by its time limit.
+/// The statement of a record if its time limit cut the explanation of the verdict.
 pub(super) const CUT_BY_TIME: &str =
     "the search for an explanation exceeded its time limit; another run on an idle machine may find more";
 
@@ -428,7 +428,7 @@ impl fmt::Display for Tally {
     }
 }
 
-/// The color of a verdict; none where nothing was compared.
+/// The style of a verdict; without a color if nothing was compared.
 fn style(verdict: Verdict) -> Style {
     let color = match verdict {
         Verdict::Ok => None,
@@ -487,7 +487,7 @@ mod tests {
         };
         let name = " ".repeat("wrong        mai/homework2.glsl  ".len());
         assert_eq!(second_line(80), format!("{name}reference (16.4 %)"));
-        // There is too little room beside the name.
+        // There is too little room next to the name.
         assert_eq!(
             second_line(70).trim_start(),
             "9,423 of 57,600 pixels differ from the reference (16.4 %)"

@@ -528,7 +528,7 @@ impl TraceStep {
 
 struct Writer {
     text: String,
-    /// Whether components that are the same in f32 and f64 have rows of their own.
+    /// Whether components that are the same in f32 and f64 have their own rows.
     whole: bool,
     /// The line, the calls and the iterations of the last heading.
     last: Option<(usize, Vec<usize>, Vec<u32>)>,

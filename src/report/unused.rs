@@ -1,4 +1,4 @@
-//! What the reference of a wrong shader uses, and the shader does not.
+//! The inputs and functions that the reference of a wrong shader uses, and the shader does not.
 
 use toyproof_diagnostic::Files;
 use toyproof_explain::unused::Unused;

@@ -73,7 +73,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The scatters, and which of the objects are theirs.
     pub scatters: Vec<Scattered>,
-    /// The motions of lights and surfaces, each within an earlier one or none.
+    /// The motions of lights and surfaces, each alone or within an earlier one.
     pub motions: Vec<Motion>,
 }
 

@@ -35,7 +35,7 @@ pub use self::syntax::diagnostic as syntax_error;
 use self::value::describe;
 pub use self::value::{Literal, Value};
 
-/// What is particular to one kind of file.
+/// The properties of one kind of file.
 #[derive(Debug)]
 pub struct Format {
     /// The code of errors in the syntax, in keys and in types.

@@ -22,13 +22,13 @@ pub fn diagnostic(code: &'static str, error: &toml::de::Error, text: &str, file:
 /// Where an error is.
 struct Site<'t> {
     text: &'t str,
-    /// What the parser marks.
+    /// The range that the parser marks.
     bytes: Range<usize>,
     /// The line with the mark, without white space around it.
     line: Range<usize>,
 }
 
-/// What precedes each item of a value.
+/// The characters that precede each item of a value.
 const SEPARATORS: [char; 5] = ['=', ',', '[', '{', '('];
 
 impl<'t> Site<'t> {

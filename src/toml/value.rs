@@ -10,7 +10,7 @@ use toml::de::{DeInteger, DeValue};
 pub struct Mismatch {
     /// Where it stands.
     pub(super) bytes: Range<usize>,
-    /// What it is.
+    /// A description of the value that was found.
     pub(super) found: String,
     /// Whether it would be right without its quotes.
     pub(super) is_number_in_quotes: bool,
@@ -61,7 +61,7 @@ pub(super) fn describe(value: &DeValue) -> String {
 
 /// A type of values in a file.
 pub trait Value: Sized {
-    /// What the type is called in messages.
+    /// The name of the type in messages.
     const EXPECTED: &'static str;
     /// A value as it is written.
     const EXAMPLE: &'static str;

@@ -85,7 +85,7 @@ pub(super) fn spherical_direction<T: Real, S: Lanes<T>>(
     a * (sine * c) + b * (sine * s) + w * cosine
 }
 
-/// What the camera sees at one point of the screen.
+/// The surface that the camera sees at one point of the screen.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum PrimaryHit<T: Real> {
     /// A screen-space figure, by its index in the scene.

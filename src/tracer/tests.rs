@@ -121,7 +121,7 @@ fn mirrors_reflect_up_to_max_depth() {
 
 #[test]
 fn rays_inside_a_mirror_sphere_hit_only_far_sides() {
-    // From the center ahead and back: the ray neither escapes nor hits its own start.
+    // From the center ahead and back: the ray does not escape and does not hit its own start.
     let text = "[film]\nsize = [1, 1]\nmax_depth = 4\n[background]\ncolor = [1, 1, 1]\n".to_owned()
         + &ball("[0, 0, 0]", "2", "{ model = \"mirror\", color = [1, 1, 1] }")
         + &ball("[0, 0, 1.5]", "0.25", "{ model = \"facing\", color = [0, 0, 1] }");

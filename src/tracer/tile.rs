@@ -62,7 +62,7 @@ struct PacketSamples {
     pixels: [usize; PACKET_RAYS],
     /// The index of each ray among the samples of its pixel, which increases within the packet.
     indices: [u32; PACKET_RAYS],
-    /// Whether each ray is of the pixel with its own index.
+    /// Whether ray i belongs to pixel i.
     is_in_order: bool,
 }
 

@@ -1,5 +1,5 @@
-//! The functions whose last bits are implementation-defined: one list, from which both expansions derive, that
-//! of the tree (`lower::polyfill`) and that of SPIR-V (`backend::spirv`).
+//! The functions whose last bits are implementation-defined: one list for both expansions, in the
+//! tree (`lower::polyfill`) and in SPIR-V (`backend::spirv`).
 
 use ::spirv::{GlslStd450Op as Ext, Op};
 use toyproof_glsl::tree::BuiltIn;

@@ -178,7 +178,7 @@ impl<'a> Batch<'a> {
             }
             self.failed = true;
         } else if self.args.search > 0.0 && self.args.shard.is_none() {
-            // What repairs a shader may be in another shard; `merge` searches.
+            // The expression that repairs a shader may be in another shard; `merge` searches.
             self.search_again(submissions, checkers, &stop);
         }
     }

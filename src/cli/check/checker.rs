@@ -78,7 +78,7 @@ pub(super) struct Checker<'a> {
     /// Whether the missing driver has been reported.
     fell_back: AtomicBool,
     scenes: SceneCache,
-    /// What shaders may render instead of their own scenes.
+    /// The scenes that shaders may render instead of their own.
     other_scenes: OtherScenes,
 }
 
@@ -113,7 +113,7 @@ impl<'a> Checker<'a> {
             record.set_failure(panic.into(), &Files::default());
             Outcome::known(record)
         });
-        // What cannot be read is not kept for `merge`, which reads it again; its report does not change.
+        // Unreadable inputs are not kept for `merge`, which reads them again; its report does not change.
         if submission.key.is_some() {
             outcome.record.seconds.all = Some(start.elapsed().as_secs_f64());
         }
@@ -157,7 +157,7 @@ impl<'a> Checker<'a> {
         outcome
     }
 
-    /// Checks a shader in all frames, up to one of which there is no image. Returns the findings in the first
+    /// Checks a shader in all frames, up to the first without an image. Returns the findings in the first
     /// frame with the worst verdict, which the record then has as well.
     fn check_frames(
         &self,
@@ -172,7 +172,7 @@ impl<'a> Checker<'a> {
         for (index, PlannedFrame { inputs, frame }) in self.plan.frames.iter().enumerate() {
             let mut frame = frame.clone();
             outcome.record = start.clone();
-            // What explains the first wrong image is reported.
+            // The explanation of the first wrong image is reported.
             let explains = !checked.iter().any(|frame| frame.record.verdict == Verdict::Wrong);
             let findings = self.verify(context, outcome, shader, reference, (index, &mut frame), explains);
             let findings = match (findings, reference) {
@@ -486,8 +486,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a shader is compared with in the planned frame with this index, which gets its size. A project
-    /// that depends on earlier frames, and so `has_history`, has accumulated a sample in each of them.
+    /// The reference of a shader in the planned frame with this index; sets the size of the frame. If the
+    /// image `has_history`, because it depends on earlier frames, it has accumulated a sample in each of
+    /// them.
     fn cached(
         &self,
         reference: &Reference,
@@ -530,8 +531,8 @@ fn image(shader: &Shader) -> Result<&Checked, Failure> {
     }
 }
 
-/// The media that a shader reads and that toyproof does not have: a sentence; `None` if it has all. An image
-/// that the user can bind does not count, nor what the author allows to be missing.
+/// A sentence about the media that a shader reads and that toyproof does not have; `None` if it has all. An
+/// image that the user can bind does not count, and neither does one that the author allows to be missing.
 fn missing_media(shader: &Shader, frame: &Frame) -> Option<String> {
     let checked = shader.checked.as_ref().ok()?;
     let warned = unbound(checked, &shader.lints, frame);

@@ -1,5 +1,5 @@
-//! The second search of a batch: a wrong shader that no edit of its own repairs is searched for places where an
-//! expression of a correct shader repairs it.
+//! The second search of a batch: if no edit repairs a wrong shader, expressions of correct shaders are tried
+//! in its places.
 
 use std::collections::HashMap;
 use std::io;

@@ -104,7 +104,7 @@ pub(super) fn keep(
     }
 }
 
-// What the report page shows of each shader: its text, and the images that were written.
+// The parts of a shader on the report page: its text, and the images that were written.
 
 /// Builds the gallery of the shaders of a page, subsampling the images until it fits [`MAX_IMAGE_BYTES`].
 pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
@@ -175,7 +175,7 @@ fn subsampled_png(path: &Path, step: u32, size: [u32; 2]) -> Result<Vec<u8>, Ima
     image::encode_shown(&subsample(step, &image::read_shown(path)?, size), path)
 }
 
-// What students see beside their marks.
+// The images that students see next to their marks.
 
 /// The largest number of shaders whose images are shown: those of one student, not of a class.
 const MAX_SHADERS_OF_STUDENT: usize = 4;
@@ -184,7 +184,7 @@ const MAX_SHADERS_OF_STUDENT: usize = 4;
 const MAX_THUMBNAIL_WIDTH: u32 = 320;
 
 /// The largest size of all PNGs, in bytes, which base64 enlarges by a third. The format states no limit; a page
-/// of this size opens at once.
+/// of this size opens quickly.
 const MAX_THUMBNAIL_BYTES: usize = 400_000;
 
 /// The images of a student's shaders, subsampled until they fit.

@@ -119,7 +119,7 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
     Ok(work.check(&check, Some(results), earlier, terminal))
 }
 
-/// Reads what the folders say of their shards, all of which have to be of one batch, and of this program.
+/// Reads the manifests of the shards, which must belong to one batch and to this program.
 fn read_folders(args: &MergeArgs, program: &str) -> Result<Vec<(PathBuf, Manifest)>, Problem> {
     let mut folders: Vec<(PathBuf, Manifest)> = Vec::new();
     for folder in &args.shards {

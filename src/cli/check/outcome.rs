@@ -83,7 +83,7 @@ impl Outcome {
     pub(super) fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
         let json = diagnostics.iter().map(|one| diagnostic::json(one, files));
         self.record.diagnostics.extend(json);
-        // What is the same in several frames is printed once.
+        // Diagnostics that are the same in several frames are printed once.
         let is_new = |diagnostic: &Diagnostic| {
             !self.messages.iter().any(|message| match message {
                 Message::Diagnostics(known, _) => known.contains(diagnostic),

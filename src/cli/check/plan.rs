@@ -1,4 +1,4 @@
-//! What shaders are checked against: what the arguments name, or an assignment.
+//! The requirements on shaders: those that the arguments name, or an assignment.
 
 use std::path::{Path, PathBuf};
 
@@ -15,13 +15,13 @@ use crate::cli::reference::ReferenceArgs;
 use crate::cli::shader::Unusable;
 use crate::report::Rubric;
 
-/// What shaders are checked against.
+/// The requirements on shaders.
 pub(super) struct Plan {
-    /// What they are compared with.
+    /// Their reference.
     pub(super) reference: ReferenceArgs,
     /// The frames, at least one.
     pub(super) frames: Vec<PlannedFrame>,
-    /// The differences with which they are still correct.
+    /// The differences from the reference with which they are still correct.
     pub(super) permitted: Vec<Difference>,
     pub(super) rubric: Option<Rubric>,
     /// The assignment and its text, if there is one.

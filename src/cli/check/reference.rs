@@ -1,4 +1,4 @@
-//! What shaders are compared with, and what is computed once for it.
+//! The reference of shaders, and the results that are computed once for it.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ pub(in crate::cli) struct Scenes {
     named: Option<(PathBuf, Result<File, String>)>,
 }
 
-/// What a shader is compared with.
+/// The reference of a shader.
 pub(super) enum Reference<'a> {
     /// A scene, its own or the one that `--scene` names.
     Scene(Box<SceneOfShader>),
@@ -56,7 +56,7 @@ impl Reference<'_> {
 /// A reference shader or image, rendered in the frames of all shaders.
 pub(super) struct PreparedReference {
     given: GivenReference,
-    /// Whether a warning has told how far the image depends on the way in which the shader marches.
+    /// Whether a warning has stated how much the image depends on how the shader marches.
     is_march_told: AtomicBool,
     /// One for each frame.
     pub(super) cached: Vec<Arc<CachedReference>>,
@@ -117,7 +117,7 @@ impl References {
         }))
     }
 
-    /// Returns what a shader is compared with; `None` if it has no scene.
+    /// Returns the reference of a shader; `None` if it has no scene.
     pub(super) fn find(&self, found: &Input) -> Option<Reference<'_>> {
         match self {
             Self::Scenes(scenes) => scenes.find(found).map(|scene| Reference::Scene(Box::new(scene))),
@@ -172,7 +172,7 @@ impl Scenes {
     }
 
     /// The path of a shader's scene, and its text or the error: the scene that `--scene` names, else the one
-    /// beside the shader, unless that is a link that leads out of the folder.
+    /// next to the shader, unless that is a link that leads out of the folder.
     fn text(&self, found: &Input) -> Option<(PathBuf, Result<File, String>)> {
         match (&self.named, &found.source) {
             (Some(named), _) => Some(named.clone()),
@@ -208,7 +208,7 @@ impl Scenes {
     }
 }
 
-/// The largest number of scene files beside a given one that are read.
+/// The largest number of scene files in the folder of a given one that are read.
 const MAX_NEIGHBORS: usize = 32;
 
 /// The scenes that a shader may render instead of its own: the built-in ones, and those in the folder of the scene
@@ -268,7 +268,7 @@ pub(super) fn unused_scene(shader: &Path) -> Option<PathBuf> {
     (scenes.next().is_none()).then(|| shader.with_file_name(name))
 }
 
-/// Checks whether the scene beside a shader is a link that leads out of the searched folder, or else of the
+/// Checks whether the scene next to a shader is a link that leads out of the searched folder, or else of the
 /// shader's own folder.
 fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> {
     let folder = found.folder.as_deref().or(shader.parent())?;
@@ -299,7 +299,7 @@ impl CachedReference {
         }
     }
 
-    /// How ill-conditioned a scene is, the first time that it is asked for; `None` if it is not.
+    /// How ill-conditioned a scene is, the first time that it is requested; `None` if it is not.
     pub(super) fn conditioning(&self) -> Option<Conditioning> {
         let is_first = self.expected.kind() == ReferenceKind::Scene && !self.is_tested.swap(true, Relaxed);
         is_first.then(|| self.expected.conditioning())?

@@ -1,4 +1,4 @@
-//! The reports that `--out` gets beside the images.
+//! The reports that are written to `--out` in addition to the images.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -24,10 +24,10 @@ const MAX_SHARDS: u32 = 10_000;
 /// others come and go.
 const SLACK: f64 = 0.05;
 
-/// What every shader costs beside its length, in bytes of shader: rendering and comparing it.
+/// Fixed cost of a shader, for rendering and comparing it, in equivalent bytes of source.
 const BASE_COST: u64 = 4096;
 
-/// What every shader costs beside its measured time, in microseconds: reading and reporting it.
+/// Fixed cost of a shader in addition to its measured time, for reading and reporting it, in microseconds.
 const BASE_MICROSECONDS: u64 = 1000;
 
 /// A part of a batch: number `number` of `of`, counted from 1.
@@ -85,7 +85,7 @@ fn hash(text: &str) -> u64 {
     hash.first_chunk().copied().map_or(0, u64::from_be_bytes)
 }
 
-/// What is distributed.
+/// An item of the distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Item {
     /// Expensive items are placed first, cheap ones fill the gaps.
@@ -125,7 +125,7 @@ fn mix(bits: u64) -> u64 {
     bits ^ (bits >> 31)
 }
 
-// What a shard's folder says of the batch.
+// The description of the batch in a shard's folder.
 
 /// Identifies the program by its content, on any machine: the SHA-256 of its file.
 ///
@@ -137,8 +137,8 @@ pub(super) fn program() -> io::Result<String> {
     Ok(format!("{:x}", hash.finalize()))
 }
 
-/// Identifies the shaders of a batch, their references and the flags, by their keys, and the times by which
-/// they are distributed.
+/// Identifies the shaders of a batch, their references and the flags, by their keys, and the times that
+/// balance the shards.
 pub(super) fn inputs(submissions: &[Submission]) -> String {
     let mut hash = Sha256::new();
     for submission in submissions {
@@ -251,7 +251,7 @@ mod tests {
         }
     }
 
-    /// 400 items, of which every tenth is 20 times as expensive as others.
+    /// 400 items; every tenth is 20 times as expensive as the others.
     fn items() -> Vec<Item> {
         let cost = |at: u64| 1000 + at % 7 + if at.is_multiple_of(10) { 19_000 } else { 0 };
         (0..400)

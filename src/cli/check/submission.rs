@@ -25,11 +25,11 @@ pub(super) struct Submission {
     pub(super) key: Option<String>,
     /// The size of its text in bytes, where it has a key.
     pub(super) bytes: u64,
-    /// How long an earlier check of it took, if one is named that states it.
+    /// Seconds of an earlier check, if `--costs` names a report that has them.
     pub(super) seconds: Option<f64>,
-    /// The index of what it is checked against.
+    /// The index of its task.
     pub(super) task: usize,
-    /// Whose it is, of a class.
+    /// The student and the assignment, for a class.
     pub(super) submitted: Option<Submitted>,
 }
 

@@ -26,13 +26,13 @@ pub(super) struct Work {
     pub(super) submissions: Vec<Submission>,
 }
 
-/// What some of the shaders are checked against.
+/// The plan of some of the shaders, and their references.
 struct Task {
     plan: Plan,
     references: References,
 }
 
-/// The shaders of one assignment, and what they are checked against; without a class, all shaders.
+/// The shaders of one assignment, and the requirements on them; without a class, all shaders.
 pub(super) struct TaskInputs {
     /// The name of the assignment in a class.
     name: Option<String>,

@@ -48,7 +48,7 @@ pub(super) struct ClassAssignment {
     pub(super) deadline: Option<Moment>,
 }
 
-/// What the class is read for.
+/// The purpose of reading the class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Purpose {
     /// Collecting submissions.
@@ -67,11 +67,11 @@ impl ClassAssignment {
     }
 }
 
-/// Whether a text matches a pattern, in which `*` stands for any characters, and `?` for one.
+/// Whether a text matches a pattern, in which `*` matches any characters, and `?` one.
 fn matches(pattern: &str, text: &str) -> bool {
     let (pattern, text): (Vec<char>, Vec<char>) = (pattern.chars().collect(), text.chars().collect());
     let (mut at, mut of) = (0, 0);
-    // The last `*`, and the end of what it stands for.
+    // The last `*`, and the end of the text that it matches.
     let mut star = None;
     while at < text.len() {
         match pattern.get(of) {

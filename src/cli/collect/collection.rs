@@ -56,7 +56,7 @@ pub(super) enum Lateness {
 }
 
 impl Submission {
-    /// How late the shaders of an assignment are; of all assignments without one.
+    /// How late the shaders of an assignment are, or those of all assignments.
     pub(super) fn lateness(&self, assignment: Option<&ClassAssignment>) -> Lateness {
         let belongs = |file: &&Handed| {
             let path = file.original_path();

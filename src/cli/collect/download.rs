@@ -42,9 +42,9 @@ pub(super) struct Found {
     /// Its path in the download; archives in it are components that end with `.zip`. The last component of an
     /// empty folder is empty.
     pub(super) path: Vec<String>,
-    /// What it is, or why it cannot be read.
+    /// The content, or why it cannot be read.
     pub(super) content: Result<Content, String>,
-    /// When it was last changed; of a file in an archive of the student, when that was.
+    /// When it was last changed; for a file in an archive of the student, when the archive was.
     pub(super) time: Option<FileTime>,
 }
 
@@ -80,7 +80,7 @@ pub(super) fn read(download: &Path) -> io::Result<Vec<Found>> {
     Ok(reader.found)
 }
 
-/// What an archive is read from.
+/// The source of an archive.
 trait Input: Read + Seek {}
 
 impl<T: Read + Seek> Input for T {}
@@ -88,7 +88,7 @@ impl<T: Read + Seek> Input for T {}
 /// The names in a folder or an archive.
 struct Tree {
     items: Vec<Item>,
-    /// The archive; none of a folder.
+    /// The archive; `None` for a folder.
     archive: Option<Archive<Box<dyn Input>>>,
 }
 
@@ -250,7 +250,7 @@ fn unreadable(error: &io::Error) -> String {
     format!("it cannot be read: {error}")
 }
 
-/// What has been read of a student.
+/// The files of a student that have been read.
 #[derive(Debug, Default)]
 struct Used {
     files: usize,

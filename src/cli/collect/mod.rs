@@ -107,7 +107,7 @@ fn collect(args: &Args, class: &Class, terminal: &Terminal) -> Result<(), String
     Ok(())
 }
 
-/// Writes a folder for each assignment of a class, and reports files that belong to none.
+/// Writes a folder for each assignment of a class, and reports files that belong to no assignment.
 fn write_class(
     folder: &Path,
     collection: &Collection,

@@ -76,7 +76,7 @@ pub(super) fn is_of_system(name: &str) -> bool {
     moodle(name).or_else(|| canvas(name)).is_some()
 }
 
-/// What a name has.
+/// The parts of a name.
 struct Named {
     student: Student,
     /// The name that the student gave to the file; `None` for a folder.
@@ -177,7 +177,7 @@ fn is_device(name: &str) -> bool {
     matches!(stem.as_str(), "CON" | "PRN" | "AUX" | "NUL") || is_numbered("COM") || is_numbered("LPT")
 }
 
-/// Unique paths of files below a folder, of which none is the folder of another. Case does not distinguish
+/// Unique paths of files below a folder; no path is the folder of another. Case does not distinguish
 /// them: some file systems store names that differ only in case in one file.
 #[derive(Debug, Default)]
 pub(super) struct Paths {

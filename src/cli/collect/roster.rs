@@ -51,7 +51,7 @@ pub(super) struct Skipped {
 }
 
 impl Entry {
-    /// What was submitted instead of a shader, in parentheses; empty if nothing was.
+    /// The files submitted instead of a shader, in parentheses; empty if there are none.
     fn instead(&self) -> String {
         let list =
             |skipped: &Skipped| printable(&format!("{}: {}", skipped.file, skipped.reason)).into_owned();
@@ -83,7 +83,7 @@ impl Roster {
     }
 }
 
-/// Whose shaders the inputs are, by the folders of students.
+/// The owners of inputs, by the folders of students.
 #[derive(Debug, Default)]
 pub(in crate::cli) struct Owners {
     students: HashMap<PathBuf, Submitted>,
@@ -121,7 +121,7 @@ impl Owners {
         owners
     }
 
-    /// Whose an input is; `None` if it is nobody's.
+    /// The student who submitted an input, if any.
     pub(in crate::cli) fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
         let path = path_of(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))

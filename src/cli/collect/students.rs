@@ -20,7 +20,7 @@ impl Students {
     /// Without a row that names the columns, the first column has the number or the name of the download, and
     /// the second the name to show.
     pub(super) fn parse(text: &str) -> Self {
-        // Excel may state the separator in a line of its own.
+        // Excel may state the separator in a separate line.
         let text = match text.split_once('\n') {
             Some((first, rest)) if first.to_lowercase().starts_with("sep=") => rest,
             _ => text,
@@ -51,7 +51,8 @@ impl Students {
         students
     }
 
-    /// Adds a student with all numbers or names in downloads, of which the first is shown, and the name to show.
+    /// Adds a student. `keys` are all numbers or names in downloads, and the first is shown; `name` is the
+    /// name to show.
     fn add(&mut self, mut keys: Vec<String>, mut name: String) {
         keys.retain(|key| !key.is_empty());
         let mut id = keys.first().cloned();
@@ -177,7 +178,7 @@ fn rows(text: &str, separator: u8) -> Vec<Vec<String>> {
         .delimiter(separator)
         .from_reader(text.as_bytes());
     let cell = |cell: &str| cell.split_whitespace().collect::<Vec<_>>().join(" ");
-    // A text is UTF-8, and rows may have any length, so that none is an error.
+    // The text is UTF-8 and rows may have any length, so no record is an error.
     let records = reader.records().flatten();
     records.map(|record| record.iter().map(cell).collect()).collect()
 }
@@ -198,7 +199,7 @@ fn key(text: &str) -> String {
     text.trim().nfc().collect::<String>().to_lowercase()
 }
 
-/// The names by which downloads may name a student: `Smith, Anna` and `Anna Smith` for Moodle, and `smithanna`
+/// The names of a student in downloads: `Smith, Anna` and `Anna Smith` for Moodle, and `smithanna`
 /// for Canvas.
 fn keys_of(name: &str) -> Vec<String> {
     let name = key(name);
@@ -293,7 +294,7 @@ mod tests {
             assert_eq!(found[one], *one, "{at}");
         }
         assert_eq!(places, HashSet::from([0, 1, 2]));
-        // Which of the two listed ones it is, nobody knows.
+        // It is unknown which of the two listed ones it is.
         let (found, places) = students.find(&download[..1]);
         assert_eq!((&found[&download[0]], places.len()), (&download[0], 0));
         // Numbers of the list do distinguish them.

@@ -6,7 +6,7 @@ use toyproof_project::Project;
 
 use crate::cli::files::{MAX_BYTES, is_json, is_shader};
 
-/// What a file of a submission is.
+/// The kind of a file of a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Content {
     /// A shader, or a file of a project.
@@ -21,7 +21,7 @@ pub(super) enum Content {
     Other(&'static str),
 }
 
-/// What a file is, by its name and its content, of which at most one byte more than [`MAX_BYTES`] is given. A
+/// The kind of a file, by its name and its content; at most one byte more than [`MAX_BYTES`] is given. A
 /// file with the extension of a shader is one, other text is one if it has a `mainImage`.
 pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
     let path = Path::new(name);

@@ -18,12 +18,12 @@ use crate::report::{Detail, Layout};
 /// The largest number of skipped files of a student that are printed.
 const MAX_NOTES: usize = 10;
 
-/// What is printed of each student.
+/// The output for each student.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Listing {
     /// A line on standard output, and below it what happened to the files.
     Everyone,
-    /// What happened to the files, on standard error.
+    /// Notes on the files, on standard error.
     Notes,
 }
 
@@ -126,7 +126,7 @@ impl Writer<'_> {
                     let path = self.folder.join(folder).join(&file);
                     match output::write_inside(self.folder, &path, text.as_bytes()) {
                         Ok(()) => {}
-                        // What a path does wrong, another path may do right.
+                        // The path is invalid; another one may be valid.
                         Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
                             skip("its path is too long for this file system");
                             continue;
@@ -202,7 +202,7 @@ fn output_name(name: &str, is_renamed: bool) -> String {
 /// Removes what an earlier run collected into the folders of assignments in a folder; other files stay.
 ///
 /// # Errors
-/// The folder has other files only, so nobody collected them.
+/// The folder only has other files, which `collect` did not write.
 pub(super) fn remove_earlier(folder: &Path) -> Result<(), String> {
     let with_path = |error| format!("{}: {error}", path_name(folder));
     let entries = match fs::read_dir(folder) {
@@ -225,7 +225,7 @@ pub(super) fn remove_earlier(folder: &Path) -> Result<(), String> {
                 continue;
             }
             for file in student.files.iter().filter(|file| is_inside(file.as_ref())) {
-                // What cannot be removed is written again, or reported as a shader of nobody.
+                // A file that cannot be removed is written again, or reported as a shader without a student.
                 let _ = fs::remove_file(own.join(file));
             }
             let _ = fs::remove_dir(own);

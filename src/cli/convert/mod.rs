@@ -337,7 +337,8 @@ fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// Returns the output that the arguments name, or its default; prints an error if several shaders have none.
+/// Returns the output that the arguments name, or its default; prints an error if several shaders have no
+/// output.
 fn output(args: &Args, written: Written, terminal: &Terminal) -> Option<PathBuf> {
     match &args.output {
         Some(output) => Some(output.clone()),
@@ -349,7 +350,7 @@ fn output(args: &Args, written: Written, terminal: &Terminal) -> Option<PathBuf>
     }
 }
 
-/// What is written.
+/// The kind of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Written {
     /// A shader, as one file.
@@ -423,7 +424,7 @@ struct Row {
     /// The file; null if none was written.
     output: Option<String>,
     status: Status,
-    /// What was proved, or why nothing was.
+    /// The result of the proof, or why nothing was proved.
     message: String,
     diagnostics: Vec<diagnostic::Json>,
 }
@@ -432,7 +433,7 @@ struct Row {
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Status {
-    /// Written, without a proof, since none was requested.
+    /// Written without a proof, because no proof was requested.
     Converted,
     Proved,
     Unproved,
@@ -476,7 +477,7 @@ impl Batch<'_> {
             |context, index| settings.convert(context, &jobs[index].input),
             |index, (shader, mut converted)| {
                 bar.inc(1);
-                // The file is written at once; its messages wait for their turn.
+                // The file is written at once; its messages are printed in the order of the inputs.
                 let written = self.write(&jobs[index], &mut converted);
                 for (index, done) in order.take(index, (index, (shader, converted, written))) {
                     self.finish(&jobs[index], done);
@@ -617,10 +618,10 @@ impl Batch<'_> {
     fn print_row(&self, status: Status, written: bool, job: &Job, message: &str) {
         let row = self.layout.row(status.label(), &job.name(), message);
         match status {
-            // The error about the file stands for itself.
+            // The error about the file has been reported.
             Status::Converted if !written || self.output == Path::new("-") => {}
             Status::Converted => self.terminal.note(&format!("{row} → {}", path_name(&job.path))),
-            // Without a table of proofs, an error stands for itself.
+            // Without a table of proofs, an error is reported alone.
             Status::Refused if !self.args.verify => self
                 .terminal
                 .error(format_args!("{} was not converted: {message}", job.name())),

@@ -110,7 +110,7 @@ impl Playback<'_> {
         }
     }
 
-    /// What renders: a driver, or the CPU.
+    /// The device that renders: a driver, or the CPU.
     fn device(&self) -> String {
         match self {
             Self::Device(playback) => playback.device().to_owned(),
@@ -186,8 +186,8 @@ impl Run<'_> {
     }
 }
 
-/// The frame of a project whose image reads no other pass, with what its channels read; `None` if it depends
-/// on earlier frames.
+/// The frame of a project whose image reads no other pass, with the sources of its channels; `None` if it
+/// depends on earlier frames.
 fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let [image] = rendering.graph.passes() else {
         return None;
@@ -308,7 +308,7 @@ impl Runner<'_> {
         Ok(exit.max(saved))
     }
 
-    /// Unwraps the programs of the passes; prints why there are none.
+    /// Unwraps the programs of the passes, or prints why they are missing.
     fn programs(
         &self,
         result: Result<Vec<Program>, (usize, eval::Refusal)>,

@@ -20,7 +20,7 @@ const MAX_HEAD_BYTES: u64 = 1024;
 /// the image.
 const MAX_PIXEL_BYTES: u64 = 32 * (2 * BUFFERS as u64 + 1);
 
-/// What a state belongs to.
+/// The owner of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Owner {
     /// A digest of the texts of the passes, of what they read, and of how they sample it.

@@ -123,7 +123,7 @@ fn winnow(hashes: &[u64]) -> Vec<usize> {
     places
 }
 
-/// What is left of an expression or a statement without names and numbers.
+/// The kind of an expression or a statement, without names and numbers.
 #[derive(Hash)]
 enum Kind<T> {
     /// A number, also if it has a name, or any variable.
@@ -249,7 +249,7 @@ impl Flat<'_> {
         }
     }
 
-    /// Adds an expression and its operands, with a stack of its own: chains of operators are long.
+    /// Adds an expression and its operands, with an explicit stack: chains of operators are long.
     fn expression(&mut self, root: ExprId) {
         let mut pending = vec![root];
         while let Some(id) = pending.pop() {

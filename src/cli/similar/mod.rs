@@ -61,7 +61,7 @@ impl Subject {
         self.tree.as_ref().unwrap_or(&self.text)
     }
 
-    /// What both have: trees, or else texts.
+    /// The common fingerprints: of trees, or else of texts.
     fn comparable<'a>(&'a self, other: &'a Self) -> [&'a Fingerprints; 2] {
         match (&self.tree, &other.tree) {
             (Some(one), Some(other)) => [one, other],

@@ -8,7 +8,7 @@ const KEYWORDS: [&str; 20] = [
     "discard", "struct", "const", "in", "out", "inout", "true", "false", "void",
 ];
 
-/// What is left of a token.
+/// The kind of a token, without its name or number.
 #[derive(Hash)]
 enum Token<'a> {
     Keyword(&'a str),

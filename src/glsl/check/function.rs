@@ -71,7 +71,7 @@ impl Checker<'_> {
             Some(Entity::Functions(overloads)) => overloads.clone(),
             _ => Vec::new(),
         };
-        // The body of a function that cannot be declared is checked all the same.
+        // The body of a function that cannot be declared is still checked.
         let mut allowed = true;
         for &old in &overloads {
             if self.takes_exactly(old, parameters) {
@@ -104,7 +104,7 @@ impl Checker<'_> {
     }
 
     /// Checks that a function does not redefine a built-in one (§6.1); variables and structures may hide it.
-    /// Desktop GLSL allows functions, too.
+    /// Desktop GLSL also allows functions.
     fn check_not_built_in_function(&mut self, name: Symbol, at: Place) -> bool {
         let text = self.text(name);
         let allowed = self.lenient || BuiltIn::named(text).is_none();
@@ -138,7 +138,7 @@ impl Checker<'_> {
                 .all(|(&old, new)| self.tree[old].ty == new.ty)
     }
 
-    /// Checks that a second header with the same parameter types is otherwise the same, too.
+    /// Checks that a second header with the same parameter types is otherwise the same.
     fn same_header(
         &mut self,
         old: FunctionId,
@@ -234,8 +234,8 @@ impl Checker<'_> {
 // Checks of the whole program: calls of functions without a body, recursion, and `mainImage` (§6.1).
 
 impl Checker<'_> {
-    /// Checks, once all functions are parsed, that every called function has a body and that none is
-    /// recursive (§6.1.2). Returns the entry point; `None` also for Common.
+    /// Checks, once all functions are parsed, that every called function has a body and that no function
+    /// is recursive (§6.1.2). Returns the entry point; `None` if it is missing, and for Common.
     pub(crate) fn finish(&mut self) -> Option<FunctionId> {
         self.find_late_declarations();
         // A missing definition may be in unparsable text.

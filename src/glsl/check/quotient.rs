@@ -1,5 +1,5 @@
-//! The fix of a division of integers where a float is needed: `1 / 3` is 0, and `float(1 / 3)`, too, so that its
-//! operands are converted, not its result.
+//! The fix of a division of integers where a float is needed: `1 / 3` and `float(1 / 3)` are 0, so the fix
+//! converts the operands, not the result.
 
 use toyproof_diagnostic::{Edit, Fix};
 

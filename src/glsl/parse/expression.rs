@@ -35,7 +35,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Parses `a ? b : c`, which is right-associative; constant expressions are of this form, too.
+    /// Parses `a ? b : c`, which is right-associative. Constant expressions also have this form.
     pub(super) fn conditional(&mut self) -> Parsed<ExprId> {
         let condition = self.binary(1)?;
         if !self.eat(Punctuator::Question) {

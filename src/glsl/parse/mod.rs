@@ -225,7 +225,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reports an error and gives up the current recovery unit. Other errors of the unit may follow from this
+    /// Reports an error and abandons the current recovery unit. Other errors of the unit may follow from this
     /// one and are dropped.
     fn halt<T>(&mut self, code: Code, at: Place, message: impl Into<String>) -> Parsed<T> {
         self.halt_with(code.at(at, message))

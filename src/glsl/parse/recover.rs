@@ -291,8 +291,8 @@ impl Parser<'_> {
         self.end_unit();
     }
 
-    /// The decimal number that two integers with a comma but no space between them probably stand for, and their
-    /// span.
+    /// The decimal number that is probably meant by two integers with a comma but no space between them, and
+    /// their span.
     fn decimal_comma(&self, comma: usize) -> Option<(String, Span)> {
         let three = self.tokens.get(comma.checked_sub(1)?..comma + 2)?;
         let adjoin = |pair: &[Token]| pair[0].at.spelling.end == pair[1].at.spelling.start;

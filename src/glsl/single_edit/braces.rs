@@ -86,7 +86,7 @@ fn missing_close(candidates: &mut Candidates) {
     }
 }
 
-/// Whether a statement or a block ends before the first token of a line that is neither a label nor a
+/// Whether a statement or a block ends before the first token of a line that is not a label or a
 /// directive.
 fn is_end_of_statement(candidates: &Candidates, index: usize) -> bool {
     let source = candidates.source;
@@ -94,7 +94,7 @@ fn is_end_of_statement(candidates: &Candidates, index: usize) -> bool {
     !is_label && !source.is_in_directive(index) && source.follows_statement(index)
 }
 
-/// Adds the insertion of the `}` of a block before a line: on a line of its own, unless the block is on one
+/// Adds the insertion of the `}` of a block before a line: on a separate line, unless the block is on one
 /// line.
 fn insert_close(candidates: &mut Candidates, cost: usize, index: usize, block: &Open) {
     let source = candidates.source;
@@ -123,7 +123,7 @@ fn insert_close(candidates: &mut Candidates, cost: usize, index: usize, block: &
     candidates.add(cost, Span::new(source.file, at, at), &text);
 }
 
-/// Removes a `{` that follows neither a head nor a statement.
+/// Removes a `{` that does not follow a head or a statement.
 fn additional_open(candidates: &mut Candidates) {
     let source = candidates.source;
     let is_open = |index: &usize| source.is(*index, Punctuator::LeftBrace);
@@ -213,7 +213,7 @@ fn additional_close(candidates: &mut Candidates) {
     }
 }
 
-/// Whether a block may follow the token, and none does.
+/// Whether a block may follow the token, but does not.
 fn is_bare_head(candidates: &Candidates, index: usize) -> bool {
     let source = candidates.source;
     let has_body = matches!(

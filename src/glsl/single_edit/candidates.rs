@@ -31,7 +31,7 @@ const TOKENS_AFTER: usize = 40;
 struct Candidate {
     cost: usize,
     edits: Vec<Edit>,
-    /// What to do, if not evident from the edit.
+    /// The advice, if not evident from the edit.
     message: Option<String>,
 }
 
@@ -256,7 +256,7 @@ fn may_balance(source: &Source, edits: &[Edit], is_unbalanced: bool) -> bool {
     is_changed == is_unbalanced || (is_unbalanced && edits.iter().any(touches))
 }
 
-/// What to do to make an edit.
+/// The advice to make an edit.
 fn describe(source: &Source, edit: &Edit) -> String {
     let old = source.slice(edit.span);
     let new = edit.replacement.trim();

@@ -101,8 +101,8 @@ pub fn single_edit(files: &Files, file: FileId, errors: &Diagnostics, options: &
 }
 
 /// The errors of a check, with the [`single_edit`] after which the file compiles as the fix of the first
-/// error. It replaces fixes of that error, none of which suffices. Nothing changes if the errors carry that
-/// edit.
+/// error. It replaces the fixes of that error, which are not sufficient. Nothing changes if the errors carry
+/// that edit.
 #[must_use]
 pub fn with_single_edit(
     files: &Files,

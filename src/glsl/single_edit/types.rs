@@ -86,7 +86,7 @@ pub(super) fn collect(candidates: &mut Candidates, errors: &Diagnostics) {
     }
 }
 
-/// What the messages of the errors mention.
+/// The names that the messages of the errors mention.
 struct Mentioned<'a> {
     /// The names of types.
     types: Vec<&'a str>,

@@ -286,7 +286,7 @@ pub enum StepOp {
     Decrement,
 }
 
-/// The binary operators; `=` and `,` have expressions of their own.
+/// The binary operators; `=` and `,` are separate expressions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BinaryOp {
     /// `a * b`: also the linear-algebraic product of matrices and vectors (§5.9).

@@ -158,7 +158,7 @@ pub enum StatementKind {
     Declare(VariableId),
     /// Declares a structure inside a function.
     Struct(StructId),
-    /// `{ … }`: a scope of its own.
+    /// `{ … }`, which is a scope.
     Block(Block),
     /// `if (a) … else if (b) … else …`.
     If {

@@ -6,7 +6,7 @@ use spirv::Op;
 
 use toyproof_translate::backend::spirv::{has_type, instructions, opcode};
 
-/// What a compiler may know of a value.
+/// A fact that a compiler may know about a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Known {
     /// A literal without zeros.
@@ -17,7 +17,7 @@ pub(super) enum Known {
     Folded,
 }
 
-/// What is known of the value of an id; `None` if it depends on the pixel.
+/// Returns the fact about the value of an id; `None` if it depends on the pixel.
 pub(super) type Operands<'a> = dyn Fn(u32) -> Option<Known> + 'a;
 
 /// The values of a module that may be constants after variables are replaced by their values, calls by the
@@ -30,7 +30,7 @@ pub(super) struct Foldable {
     roots: HashMap<u32, u32>,
     /// Parameters that are pointers.
     references: HashSet<u32>,
-    /// The constants that variables without a value of their own are initialized with.
+    /// The constants with which variables without an initializer are initialized.
     nulls: HashSet<u32>,
     /// The parameters of functions.
     parameters: HashMap<u32, Vec<u32>>,
@@ -60,7 +60,7 @@ impl Foldable {
         }
     }
 
-    /// What may be known of a value.
+    /// Returns the fact that a compiler may know about a value.
     pub(super) fn known(&self, id: u32) -> Option<Known> {
         self.known.get(&id).copied()
     }
@@ -106,7 +106,7 @@ impl Foldable {
         self.known.insert(id, joined) != Some(joined)
     }
 
-    /// What an instruction makes known.
+    /// The values that become known by an instruction.
     fn effects(&self, op: Op, instruction: &[u32], function: u32, hidden: &[usize]) -> Vec<(u32, Known)> {
         let operand = |at: usize| {
             let id = *instruction.get(at)?;
@@ -133,7 +133,7 @@ impl Foldable {
                 let parts = instruction[3..].iter();
                 result(parts.filter_map(|&part| self.known(part)).max())
             }
-            // What is read before it is written is rarely multiplied.
+            // A value that is read before it is written is rarely multiplied.
             Op::Variable if instruction.get(4).is_some_and(|id| self.nulls.contains(id)) => Vec::new(),
             Op::Variable => result(operand(4)),
             Op::Load => result(self.known(self.root(instruction[3]))),
@@ -147,7 +147,7 @@ impl Foldable {
                 let parameters = self.parameters.get(&instruction[3]);
                 for (at, &parameter) in (4..instruction.len()).zip(parameters.into_iter().flatten()) {
                     if self.references.contains(&parameter) {
-                        // What either function stores is known in both.
+                        // A value that either function stores is known in both.
                         let root = self.root(instruction[at]);
                         effects.extend(self.known(parameter).map(|known| (root, known)));
                         effects.extend(self.known(root).map(|known| (parameter, known)));
@@ -183,7 +183,7 @@ mod tests {
     use super::super::opaque::words_of;
     use super::*;
 
-    /// What is known of the operand of `exp`, whose number in GLSL's instructions is 27.
+    /// Returns the fact about the operand of `exp`, instruction 27 of GLSL's extended instructions.
     fn known(body: &str) -> Option<Known> {
         let words = words_of(&format!(
             "void set(out float x) {{ x = 2.0; }}

@@ -1,5 +1,5 @@
-//! The number of iterations after which a driver silently terminates the loops of a pixel, and the pixels of
-//! which it did: see [`LOOP_CAP`](super::LOOP_CAP).
+//! The number of iterations after which a driver silently terminates the loops of a pixel, and the
+//! pixels whose loops it terminated: see [`LOOP_CAP`](super::LOOP_CAP).
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{File, Files};

@@ -9,8 +9,8 @@ use super::opaque::{Opaque, push};
 /// Adds an exit that is never taken to the head of each loop that may assign a variable before its first exit.
 ///
 /// Mesa promotes variables to values. A value of a loop's body that is also used after the loop must be kept
-/// for a pixel that leaves while others, computed beside it, continue. Mesa 22.3 keeps it only if the exits
-/// of the loop disagree about the value, and so need a variable of its own; if all exits come after the
+/// for a pixel that leaves while others, computed together with it, continue. Mesa 22.3 keeps it only if the
+/// exits of the loop disagree about the value, and so need a separate variable; if all exits come after the
 /// assignment, the next iteration overwrites it. At the added exit, every variable has its value from before
 /// the assignment.
 ///

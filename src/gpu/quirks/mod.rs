@@ -55,11 +55,11 @@ pub struct Quirk {
     pub driver: DriverKind,
     /// The affected versions, as far as they are known.
     pub versions: &'static str,
-    /// What goes wrong without the workaround.
+    /// The fault without the workaround.
     pub symptom: &'static str,
-    /// What is done.
+    /// The workaround, in one sentence.
     pub workaround: &'static str,
-    /// The file that does it, from the root of the repository.
+    /// The file that applies it, relative to the root of the repository.
     pub source: &'static str,
     /// When it can be removed.
     pub removal: &'static str,

@@ -23,7 +23,7 @@ use super::opaque::{Opaque, push};
 ///   quotient, for zero even if it is NaN, and a quotient by it for anything, regardless of decorations.
 /// - Constants whose operations Mesa folds otherwise than the processor computes them: it does not flush
 ///   denormal products and bit patterns, and it takes all derivatives of constants for 0.
-/// - Denormal constants, which neither Mesa nor `SwiftShader` takes for zeros where they fold them.
+/// - Denormal constants, which Mesa and `SwiftShader` do not treat as zeros when they fold them.
 /// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs
 ///   through by its step, and −2³¹ / −1 terminates the process.
 #[must_use]

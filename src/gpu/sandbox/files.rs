@@ -16,8 +16,9 @@ use crate::device::PIN_VARIABLES;
 /// The newest version of Landlock whose restrictions are requested; older kernels enforce what they know.
 const NEWEST: ABI = ABI::V6;
 
-/// What any driver may read: programs and their libraries, the settings of the dynamic linker and of drivers,
-/// and the kernel's descriptions of devices. Not home folders, temporary files, or the keys in `/etc`.
+/// The files that any driver may read: programs and their libraries, the settings of the dynamic linker and
+/// of drivers, and the kernel's descriptions of devices. Not home folders, temporary files, or the keys in
+/// `/etc`.
 const READABLE: [&str; 28] = [
     "/usr",
     "/lib",
@@ -65,7 +66,7 @@ const OTHER_CACHES: [&str; 3] = ["mesa_shader_cache_sf", "nvidia", "AMDVLK"];
 /// Reads a variable of the environment.
 type Environment<'a> = &'a dyn Fn(&str) -> Option<OsString>;
 
-/// What a worker may access; nothing by default.
+/// The files that a worker may access; none by default.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Allowed {
     /// Files, and folders with all that they contain.
@@ -77,7 +78,7 @@ pub(super) struct Allowed {
 }
 
 impl Allowed {
-    /// What drivers need in this environment.
+    /// The files that drivers need in this environment.
     pub(super) fn of(environment: Environment) -> Self {
         let mut read: Vec<PathBuf> = READABLE.iter().map(PathBuf::from).collect();
         let listed = |name: &str| -> Vec<PathBuf> {

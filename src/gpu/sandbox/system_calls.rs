@@ -140,7 +140,7 @@ pub(super) fn restrict() -> Result<(), String> {
     Ok(())
 }
 
-/// The filters for a process with that id, all of which the kernel obeys.
+/// The filters for a process with that id. The kernel applies all of them.
 fn programs(process: u32) -> Result<Vec<BpfProgram>, BackendError> {
     // A C library that is refused `clone3` calls `clone`, whose flags can be tested.
     let refused = Rules::from([(libc::SYS_clone3, Vec::new())]);
@@ -168,7 +168,7 @@ fn without_x32() -> BpfProgram {
     ]
 }
 
-/// The program by which these calls fail with an error; all others are allowed.
+/// A program that makes these calls fail with an error and allows all others.
 fn filter(rules: Rules, error: i32) -> Result<BpfProgram, BackendError> {
     let architecture = TargetArch::try_from(std::env::consts::ARCH)?;
     let fails = SeccompAction::Errno(error.unsigned_abs());
@@ -208,8 +208,8 @@ mod tests {
 
     const PROCESS: u32 = 4321;
 
-    /// What the filters return for a call: the kernel's `struct seccomp_data` is the number, the architecture,
-    /// the instruction pointer and six arguments.
+    /// The results of the filters for a call: the kernel's `struct seccomp_data` is the number, the
+    /// architecture, the instruction pointer and six arguments.
     fn results(architecture: u32, call: i64, arguments: [u64; 6]) -> Vec<u32> {
         let mut data = Vec::new();
         data.extend((call as u32).to_le_bytes());

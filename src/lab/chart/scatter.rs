@@ -14,7 +14,7 @@ use super::{FAINT, GRAY, INK, PAPER, text_style, text_width, tick};
 pub struct Point {
     /// Must be positive.
     pub x: f64,
-    /// Must not be negative; zero has a line of its own below the scale.
+    /// Must not be negative; zero has a separate line below the scale.
     pub y: f64,
     /// The name, which the legend lists for points on the Pareto front.
     pub name: String,
@@ -226,15 +226,16 @@ struct Scale {
     zero: Option<f64>,
 }
 
-/// The most decades of a scale with ticks at 1, 2 and 5 times powers of ten; with up to one, 3 and 7, too.
+/// The most decades of a scale with ticks at 1, 2 and 5 times powers of ten; up to one decade also has 3 and
+/// 7.
 const MAX_DECADES_WITH_FINE_TICKS: f64 = 2.6;
-/// The least decades of a scale: values that are nearly equal look so.
+/// The minimum number of decades of a scale, so that nearly equal values look nearly equal.
 const MIN_DECADES: f64 = 0.8;
 /// The part of a scale that is empty at each end.
 const MARGIN: f64 = 0.06;
 
 impl Scale {
-    /// A scale for positive values; others are ignored. `has_zero`: whether zero has a place, too.
+    /// A scale for positive values; others are ignored. `has_zero`: whether zero also has a place.
     fn new(values: impl Iterator<Item = f64>, has_zero: bool) -> Self {
         let positive = values.filter(|value| *value > 0.0 && value.is_finite());
         let logarithms = positive.map(libm::log10);

@@ -1,5 +1,5 @@
 //! Schedules the runs of all methods within the time budget. Runs are interleaved, so that a temporary
-//! slowdown of the machine affects all methods alike.
+//! slowdown of the machine affects all methods equally.
 
 use serde::Serialize;
 

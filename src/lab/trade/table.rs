@@ -92,7 +92,7 @@ impl Report {
         }
     }
 
-    /// What was measured, the fastest configuration for each error limit, and what f64 costs.
+    /// Summarizes the measurement: the fastest configuration for each error limit, and the cost of f64.
     #[must_use]
     pub fn summary(&self) -> Vec<String> {
         let [width, height] = self.size;

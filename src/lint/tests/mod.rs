@@ -45,8 +45,8 @@ fn shader(functions: &str, statements: &str) -> String {
 }
 
 /// Checks a table with one case per line: the expected codes, `-` for none, then functions, `|`, and the
-/// statements of `mainImage`. Of a variable that may be uninitialized, W0004 is expected although only a run
-/// that observes it reports it.
+/// statements of `mainImage`. W0004 is expected for a variable that may be uninitialized,
+/// although only a run that observes the read reports it.
 fn cases(table: &str) {
     let mut wrong = Vec::new();
     for line in table.lines().map(str::trim).filter(|line| !line.is_empty()) {

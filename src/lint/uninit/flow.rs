@@ -14,7 +14,7 @@ use crate::program::{Program, direction};
 /// A `switch` with more labels than this, and no `default`, is taken to have a label for each value.
 const MAX_PARTIAL_LABELS: usize = 2;
 
-/// What callers must know of a parameter.
+/// The effect of a function on a parameter, for its callers.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ParameterSummary {
     /// The parts of the argument that are read before the function assigns them on any path.
@@ -110,7 +110,7 @@ struct Analysis<'a> {
 
 impl Analysis<'_> {
     /// Collects the variables, and declares the parameters. An argument that is passed in counts as
-    /// unassigned, too, so that the summary contains what is read of it.
+    /// unassigned, too, so that the summary contains the parts that are read.
     fn begin(&mut self, function: FunctionId, body: &Block) {
         let tree = self.program.tree;
         let mut variables = tree[function].parameters.clone();
@@ -506,7 +506,7 @@ impl Analysis<'_> {
                 continue;
             };
             self.indices(argument, pending);
-            // The parts of a whole variable are the parameter's; of a part of a variable, all count as one.
+            // A whole variable has the parts of the parameter; a part of a variable counts as one.
             let of_argument = |parts: Parts| match tree[argument].kind {
                 ExprKind::Variable(_) => part.parts & parts,
                 _ if parts == 0 => 0,

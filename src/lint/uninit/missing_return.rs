@@ -27,8 +27,8 @@ pub(super) fn report(program: &Program, function: FunctionId, findings: &mut Fin
     }
 }
 
-/// Collects the conditions of the `if`s that a block ends with, of which none that leaves the function holds at
-/// its end. Returns whether the whole block consists of such statements.
+/// Collects the conditions of the `if`s that a block ends with. At its end, no condition whose `if` leaves
+/// the function holds. Returns whether the whole block consists of such statements.
 fn last_conditions(block: &Block, conditions: &mut Vec<ExprId>) -> bool {
     block.iter().rev().all(|statement| match &statement.kind {
         StatementKind::If { arms, otherwise } => {
@@ -56,7 +56,7 @@ fn is_list_of_cases(program: &Program, conditions: &[ExprId]) -> bool {
     })
 }
 
-/// What a condition's comparisons compare: a value that is tested for one case, or two values.
+/// The operands of a condition's comparisons: a value that is tested for one case, or two values.
 fn subjects(program: &Program, condition: ExprId) -> Vec<(Shape, Option<Shape>)> {
     let tree = program.tree;
     let mut found = Vec::new();

@@ -86,7 +86,7 @@ fn report_reads(tree: &Tree, layout: &Layout, flow: &Flow, findings: &mut Findin
 /// The maximum number of further reads that a warning names.
 const MAX_OTHER_READS: usize = 3;
 
-/// Adds the declaration, by which an observed read is known to be of this variable.
+/// Adds the declaration, which identifies this variable in an observed read.
 fn declared(tree: &Tree, variable: VariableId, diagnostic: Diagnostic) -> Diagnostic {
     match tree[variable].at {
         Some(at) => diagnostic.related(at.span, "declared here without an initializer"),
@@ -118,7 +118,7 @@ impl GlobalAccesses {
         self.reads.extend_from_slice(&flow.global_reads);
     }
 
-    /// Reports globals of which a part is read that nothing writes.
+    /// Reports globals with a part that is read but never written.
     fn report(self, program: &Program, layout: &Layout, findings: &mut Findings) {
         let tree = program.tree;
         let mut reported = BTreeSet::new();

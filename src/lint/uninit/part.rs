@@ -80,7 +80,7 @@ impl<'a> Layout<'a> {
         let mut one_of = false;
         for &step in chain.iter().rev() {
             match &tree[step].kind {
-                // A single bit stands for the whole variable.
+                // A single bit represents the whole variable.
                 _ if bits.len() == 1 => {}
                 ExprKind::Swizzle { components, .. } => {
                     bits = components

@@ -29,7 +29,7 @@ fn other_pow(x: f64, y: f64) -> f64 {
     if x < 0.0 { f64::NAN } else { libm::pow(x, y) }
 }
 
-/// Whether it is none for which libm has simpler formulas with other bits, nor huge.
+/// Returns false for exponents that libm special-cases (±1, 2, ½) and for |y| ≥ 2³¹.
 #[inline(always)]
 fn is_regular_exponent(y: f64) -> bool {
     const MAX: f64 = (1_u64 << 31) as f64;

@@ -73,7 +73,7 @@ fn floats() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Angles, of which many are large or almost multiples of π/2.
+/// Angles, many of them large or almost multiples of π/2.
 fn angles() -> impl Strategy<Value = f64> {
     let multiples = (any::<i32>(), 0..40_u32, -2..3_i64).prop_map(|(n, shift, units)| {
         let angle = f64::from(n >> (shift % 32)) * std::f64::consts::FRAC_PI_2;
@@ -178,7 +178,7 @@ fn large_angles_are_reduced_exactly() {
 }
 
 /// The bits differ from libm's where its reduction is less accurate, and for small angles, where it has a
-/// formula of its own.
+/// separate formula.
 #[test]
 fn most_sines_and_cosines_have_the_bits_of_libm() {
     let angles: Vec<f64> = (0..80_000)

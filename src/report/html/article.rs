@@ -11,7 +11,7 @@ use crate::report::repair::suspect_lines;
 use crate::report::terminal::{CUT_BY_TIME, CUT_SEARCH};
 use crate::report::{Mistake, Record, Repair, Rubrics};
 
-/// What the article of a shader shows.
+/// The contents of the article of a shader.
 pub(super) struct Article<'a> {
     pub(super) record: &'a Record,
     /// The short name.
@@ -159,7 +159,7 @@ impl Article<'_> {
         } = self.record;
         let mut html = String::new();
         if let Some(fix) = fix {
-            // The explanation of the likely mistake is beside it.
+            // The explanation of the likely mistake is next to it.
             let mistake = self.record.mistake.as_ref().map(|mistake| mistake.id.as_str());
             let explained = |repair: &Repair, text: &str| {
                 let new = Some(repair.id.as_str()).filter(|id| Some(*id) != mistake);
@@ -257,7 +257,7 @@ fn points(rubrics: &Rubrics, record: &Record) -> String {
     let marks = rubric.marks(record).into_iter();
     let marks: Vec<_> = marks
         .map(|mark| match mark.of {
-            // What is deducted has no maximum.
+            // Deductions have no maximum.
             0.0 => format!("{} {}", mark.name, mark.points),
             of => format!("{} {} of {of}", mark.name, mark.points),
         })

@@ -6,10 +6,11 @@ use sha2::{Digest, Sha256};
 use toyproof_image::Rgb8Image;
 
 /// The maximum size of all PNGs of a page, in bytes. Base64 adds a third, and the rest of a page for 500
-/// shaders, half of which are sources, is less than 4 MB, so that the page stays below 20 MB.
+/// shaders, half of it sources, is less than 4 MB, so that the page stays below 20 MB.
 pub const MAX_IMAGE_BYTES: usize = 12_000_000;
 
-/// The material shown of a shader beside its record. Images are indices into the gallery.
+/// The images and the source that are shown together with the record of a shader. Images are indices into the
+/// gallery.
 #[derive(Debug, Default)]
 pub struct Exhibit {
     /// The shader's source text.

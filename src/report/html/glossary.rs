@@ -41,7 +41,7 @@ impl Glossary {
         }
     }
 
-    /// Formats links to the explanations of a mistake, of which there may be several.
+    /// Formats links to the explanations of a mistake, which may be several.
     pub(super) fn mistake_links(&self, id: &str) -> Option<String> {
         let known = mistake_ids(id).filter(|id| self.0.contains_key(id));
         let links: Vec<_> = known.map(|id| self.link(id)).collect();

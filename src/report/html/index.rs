@@ -20,10 +20,10 @@ const SCRIPT: &str = include_str!("index.js");
 /// this size.
 pub const MAX_PAGE_SHADERS: usize = 500;
 
-/// The largest number of shaders of a report whose pages have images, of which they are a second copy.
+/// The largest number of shaders of a report whose pages contain copies of the images.
 pub const MAX_SHADERS_WITH_IMAGES: usize = 10_000;
 
-/// The folder of the parts, beside the table.
+/// The folder of the parts, next to the table.
 pub const PARTS: &str = "report";
 
 /// The number of rows that are shown at a time.

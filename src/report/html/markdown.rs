@@ -87,7 +87,7 @@ fn code(text: &str) -> String {
     format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", Text(text))
 }
 
-/// Converts inline code, strong emphasis and links, of which the text remains.
+/// Converts inline code, strong emphasis and links; only the text of a link remains.
 fn inline(text: &str) -> String {
     let mut html = String::new();
     for (index, part) in text.split('`').enumerate() {

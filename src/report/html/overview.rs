@@ -151,13 +151,13 @@ fn breakable(name: &str) -> String {
         .replace('_', "_<wbr>")
 }
 
-/// Whose submission a shader is, below its name.
+/// The owner of a submission, below the name of the shader.
 pub(super) fn student(record: &Record) -> String {
     let student = owner(record).map(|owner| format!("<br><span class=\"more\">{}</span>", Text(owner)));
     student.unwrap_or_default()
 }
 
-/// Whose submission a shader is, and of which assignment.
+/// The owner of a submission, and its assignment.
 pub(super) fn owner(record: &Record) -> Option<String> {
     let submitted = record.submitted.as_ref()?;
     let assignment = submitted.assignment.iter().map(|name| format!(", {name}"));

@@ -3,7 +3,7 @@
 use super::expression::{moved_direction, moved_point, number, vector};
 use crate::{Object, Pattern, PatternKind, Point, Scene, Shape, Space};
 
-/// What the shader's code for patterns depends on.
+/// The properties that the shader's code for patterns depends on.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Patterns {
     None,
@@ -111,7 +111,7 @@ impl Patterns {
         format!(", Pattern({})", used(&values))
     }
 
-    /// Returns the statements and arguments by which the sphere of a grid gets the values of these members.
+    /// Returns the statements and arguments that give these members of the sphere of a grid their values.
     /// The second color of a grid without a pattern is that of the sphere.
     pub(super) fn of_cell(self, has_plain_grid: bool) -> [&'static str; 2] {
         match (self, has_plain_grid) {

@@ -5,7 +5,7 @@ use toyproof_toml::{Table, Value};
 
 use super::super::{Color, Point};
 
-/// What a message requires of numbers.
+/// The requirement on numbers in a message.
 const FINITE: &str = "must be finite";
 const POSITIVE: &str = "must be greater than 0";
 

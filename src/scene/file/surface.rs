@@ -241,7 +241,7 @@ const MODEL_KEYS: [(&[&str], ModelName, &str); 3] = [
 
 const FRESNEL: [(&str, Fresnel); 2] = [("exact", Fresnel::Exact), ("schlick", Fresnel::Schlick)];
 
-/// What stands for a material that is missing or in error.
+/// The substitute for a material that is missing or in error.
 const PLACEHOLDER: Material = Material {
     model: Model::Facing,
     color: [1.0; 3],

@@ -300,7 +300,7 @@ fn rays_hit_boxes_from_outside_and_from_inside() {
     assert_eq!(hit([0.5, 0.5, 9.0], [0.0, 0.0, -1.0]), Some(6.0));
     assert_eq!(hit([0.5, 0.5, 1.0], [0.0, 0.0, -1.0]), Some(4.0));
     assert_eq!(hit([0.5, 0.5, 9.0], [0.0, 0.0, 1.0]), None);
-    // Components of 0 with either sign, within and beside the other slabs.
+    // Components of 0 with either sign, inside and outside of the other slabs.
     for zero in [0.0, -0.0] {
         assert_eq!(hit([-5.0, 1.9, 2.9], [1.0, zero, zero]), Some(4.0));
         assert_eq!(hit([-5.0, 2.1, 2.9], [1.0, zero, zero]), None);

@@ -64,7 +64,7 @@ struct Node {
 #[derive(Debug)]
 pub(super) struct BinaryTree {
     nodes: Vec<Node>,
-    /// The indices of the spheres, by which each node has a range of its own.
+    /// The indices of the spheres, in an order in which each node has a contiguous range.
     order: Vec<u32>,
 }
 

@@ -20,8 +20,8 @@ use crate::spheres::{LaneHits, LaneRays, NO_SURFACE};
 struct BrdfSamples<T, S: Lanes<T>> {
     density: Wide<T, S>,
     from: Wide3<T, S>,
-    /// The lanes that have one; there is none at the camera and after mirrors, where light sampling is
-    /// impossible.
+    /// The lanes that have one. Rays from the camera and from mirrors have none, because light sampling is
+    /// impossible there.
     lanes: u32,
 }
 

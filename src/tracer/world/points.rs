@@ -1,4 +1,4 @@
-//! What rays in lanes hit: points, normals and colors.
+//! The hits of rays in lanes: points, normals and colors.
 
 use super::World;
 use crate::lanes::{Columns, Lanes, MAX_LANES, Wide, Wide3, lanes_of};

@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{
 
 use crate::lower::context::LoweringContext;
 
-/// Ends each case of a `switch` in a `break` of its own.
+/// Ends each case of a `switch` in its own `break`.
 ///
 /// naga treats every case whose last statement is not a plain `break` as a fall-through, even `{ …; break; }`
 /// and `return x;`, and cannot write a fall-through as WGSL (gfx-rs/wgpu #4415, #9625). Cases that fall into

@@ -42,7 +42,7 @@ pub fn lower(checked: &Checked) -> Lowered {
 }
 
 /// Lowers a shader whose operations must have the same bits on every driver: operations that drivers compute
-/// differently are expanded into ones that they compute alike ([`toyproof_math`]).
+/// differently are expanded into ones that they compute in the same way ([`toyproof_math`]).
 #[must_use]
 pub fn lower_strict(checked: &Checked) -> Lowered {
     lower_with(checked, Passes::strict())

@@ -125,7 +125,7 @@ pub(super) fn lower_short_circuit(cx: &mut LoweringContext) {
     });
 }
 
-/// Rewrites `-x` of unsigned integers as `0u - x`, which wraps the same way.
+/// Rewrites `-x` of unsigned integers as `0u - x`, which wraps in the same way.
 ///
 /// naga's validator refuses the negation.
 pub(super) fn lower_negation(cx: &mut LoweringContext) {

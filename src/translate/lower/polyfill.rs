@@ -1,8 +1,8 @@
 //! Expansion of the functions whose last bits depend on the driver, into operations that all drivers compute
-//! alike: for strict shaders only.
+//! in the same way: for strict shaders only.
 //!
-//! Each is generated once (`toyproof_math`); a function of vectors calls that of their components. Matrix
-//! products are expanded late, when the indices of targets have no side effects any more.
+//! Each is generated once (`toyproof_math`); a function of vectors calls the function of their components.
+//! Matrix products are expanded late, when the indices of targets have no side effects any more.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;

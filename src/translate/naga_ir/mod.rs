@@ -27,10 +27,10 @@ pub struct ValidModule {
     fetches: Fetches,
 }
 
-/// What a fetch of a texel beyond its texture returns.
+/// The result of fetching a texel beyond its texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fetches {
-    /// There is none, since the shader checks its texels or fetches none.
+    /// Does not occur: the shader checks the coordinates, or fetches nothing.
     Checked,
     /// Zeros, as in browsers.
     Zeros,
@@ -51,7 +51,7 @@ impl ValidModule {
         &self.info
     }
 
-    /// What a fetch of a texel beyond its texture returns.
+    /// The result of fetching a texel beyond its texture.
     pub(crate) fn fetches(&self) -> Fetches {
         self.fetches
     }

@@ -195,7 +195,7 @@ impl Writer<'_> {
             format!("{direction}{} {}", tree.type_name(variable.ty), variable.name)
         });
         let parameters: Vec<_> = parameters.collect();
-        // A comment for helpers whose names are not sufficient.
+        // A comment for helpers whose names do not say enough.
         let about = if function.name.ends_with("_remainder") {
             "// `a % b` of GLSL as Mesa and SwiftShader round it, down: WGSL's rounds towards zero.\n"
         } else {

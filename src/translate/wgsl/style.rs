@@ -1,8 +1,8 @@
 //! The code around a shader: entry point, bindings and direction of y for each kind of host, and stand-ins
 //! for the hosts to run the result here. `docs/guide/converting.md` cites the hosts' documentation.
 //!
-//! The code is in `styles/`, as WGSL with two additions: `$name` stands for a value ([`fill`]), and a line that
-//! ends in `//? a b` is only printed if condition `a` or `b` holds.
+//! The code is in `styles/`, as WGSL with two additions: `$name` is replaced by a value ([`fill`]), and a
+//! line that ends in `//? a b` is only printed if condition `a` or `b` holds.
 
 use std::collections::{BTreeMap, BTreeSet};
 

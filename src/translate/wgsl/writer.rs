@@ -35,7 +35,7 @@ pub(super) struct Writer<'a> {
     pub(super) deferred_steps: HashSet<ExprId>,
     /// Whether expressions need lines before their value, as far as determined.
     pub(super) hoisting: HashMap<ExprId, bool>,
-    /// The constant declarations for macros that stand for a literal, by name.
+    /// The constant declarations for macros that expand to a literal, by name.
     pub(super) macros: BTreeMap<String, String>,
     /// Helper functions that are called, by name.
     pub(super) helpers: BTreeMap<String, String>,

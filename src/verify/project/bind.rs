@@ -46,7 +46,7 @@ pub struct PassDifference {
     pub pixels: usize,
 }
 
-/// What the frames before one contribute to its image.
+/// A frame with the contributions of earlier frames.
 #[derive(Debug)]
 pub struct BoundFrame {
     /// The frame with what its channels read after double precision in all frames.

@@ -11,7 +11,7 @@ use crate::stress::tally::Outcome;
 pub struct Mistake {
     /// Its identifier.
     pub name: &'static str,
-    /// What the function does, as text to follow its name.
+    /// The behavior of the function, as text to follow its name.
     pub description: &'static str,
     /// Whether the function is right for callers that keep to its precondition.
     pub recoverable: bool,

@@ -1,5 +1,5 @@
 //! Expansion of instructions that drivers compute differently, such as `sin` and matrix products, into
-//! operations that they compute alike, in SPIR-V of any producer.
+//! operations that they compute in the same way, in SPIR-V of any producer.
 //!
 //! A module that still contains the author's functions can then be compared bit by bit with the evaluator's
 //! image. The expansions come from a library: a generated shader in strict form (`crate::lower_strict`), whose
