@@ -1,9 +1,10 @@
 //! Converts shaders, and proves that a conversion is equivalent to the original: the written file is read
 //! again, run, and compared with the shader.
 //!
-//! The file calls `sin` and the like, whose last bits WGSL and its relatives leave to the implementation. For
-//! the proof, the evaluator's definitions replace them in what naga parsed; everything else is the file's. So
-//! no tolerance is needed: a conversion is proved if every pixel has the evaluator's bits.
+//! The file calls functions such as `sin`, whose last bits WGSL and other languages leave to the
+//! implementation. For the proof, the evaluator's definitions replace them in what naga parsed; everything
+//! else is the file's. So no tolerance is needed: a conversion is proved if every pixel has the evaluator's
+//! bits.
 //!
 //! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves what is [`Written`], on a
 //! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
@@ -81,7 +82,7 @@ pub enum Written {
         target: Target,
         /// The file.
         bytes: Vec<u8>,
-        /// What naga wrote it from.
+        /// The source from which naga wrote it.
         lowered: Lowered,
     },
 }
@@ -103,7 +104,7 @@ impl Written {
 pub struct Conversion {
     /// The file.
     pub written: Written,
-    /// The proof; `None` if none was requested.
+    /// The proof; `None` if no proof was requested.
     pub proof: Option<Result<Proved, Unproved>>,
     /// Why naga wrote the WGSL, which the author recognizes less well.
     pub fallback: Option<FallbackReason>,
@@ -148,7 +149,7 @@ pub enum ConvertError {
     /// naga or its worker failed.
     #[error(transparent)]
     Worker(#[from] gpu::Failure),
-    /// It cannot be written as WGSL for this kind of host, and naga writes for none but the plain one.
+    /// It cannot be written as WGSL for this kind of host, and naga only writes for the plain one.
     #[error(transparent)]
     Unwritable(WgslError),
 }

@@ -153,7 +153,7 @@ impl Original {
 }
 
 impl PlayedFrame {
-    /// What a pass rendered.
+    /// The texture that a pass rendered.
     pub(super) fn texture(&self, target: Target) -> Arc<Image> {
         let texture = match target {
             Target::Image => self.state.image.as_ref(),
@@ -201,7 +201,7 @@ fn inputs(size: [u32; 2]) -> impl Iterator<Item = Frame> {
     })
 }
 
-/// What the evaluator found of all passes and frames.
+/// The observations of the evaluator in all passes and frames.
 struct Observations {
     /// Each pass in every frame, with the textures that it reads.
     drawn: Vec<Vec<Frame>>,
@@ -271,7 +271,7 @@ struct Observer<'a> {
     media: &'a [Texture],
     /// The time limit of an image.
     limit: Duration,
-    /// What the driver rendered in this frame, for each pass.
+    /// The images of the driver in this frame, for each pass.
     rendered: Vec<Arc<Image>>,
     /// The undefined pixels of each pass of this frame.
     undefined: Vec<Vec<bool>>,

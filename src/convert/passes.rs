@@ -1,6 +1,6 @@
 //! Conversions of shaders with several passes, and their proofs: the written files are played for some frames,
-//! in the order and with the samplers of the written graph, beside the original shader, and the bits of all
-//! passes are compared.
+//! in the order and with the samplers of the written graph, together with the original shader, and the bits
+//! of all passes are compared.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ pub struct PassSources<'a> {
     pub media: &'a [Texture],
 }
 
-/// What a written graph says, with the media of the original.
+/// The contents of a written graph, with the media of the original.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadGraph {
     /// The order of the passes, and what they read.
@@ -46,19 +46,19 @@ pub struct ReadGraph {
 pub struct PassesConversion {
     /// The file of each pass, and why naga wrote it, if our own writer could have.
     pub files: Vec<(Written, Option<FallbackReason>)>,
-    /// The proof; `None` if none was requested.
+    /// The proof; `None` if no proof was requested.
     pub proof: Option<Result<PassesProof, Unproved>>,
 }
 
-/// The result of playing converted passes beside their original.
+/// The result of playing converted passes and their original.
 #[derive(Debug, Clone)]
 pub struct PassesProof {
     /// One comparison for each texture that is rendered, over all frames.
     pub passes: Vec<PassComparison>,
     /// The device that rendered them.
     pub device: String,
-    /// The readers whose results were played; none if no reader reads the language, so that what the files
-    /// were written from was played.
+    /// The readers whose results were played; empty if no reader reads the language, so that the source of
+    /// the files was played.
     pub readers: Vec<Reader>,
     /// The name and version of the validator that accepts the files.
     pub validator: Option<String>,
@@ -69,7 +69,7 @@ pub struct PassesProof {
 /// The comparison of a pass with its original, over all frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PassComparison {
-    /// What the pass renders.
+    /// The target of the pass.
     pub target: Target,
     /// The number of pixels of all frames.
     pub pixels: u64,
@@ -135,7 +135,7 @@ impl PassesProof {
 
 impl Converter {
     /// Converts the passes of a shader; `translator` runs naga. With a prover, the conversion is proved too, as
-    /// `graph` says how it is played. If plain WGSL is not proved, naga writes all passes.
+    /// `graph` determines how it is played. If plain WGSL is not proved, naga writes all passes.
     ///
     /// # Errors
     /// The number of the first pass that cannot be converted, and why.
@@ -186,7 +186,7 @@ impl Converter {
 impl Prover<'_> {
     /// Proves that written passes, played as the graph says, render the same textures as the shader: to the
     /// bit in [`PASS_FRAMES`] frames of each of [`PASS_SIZES`], except in pixels that depend on undefined
-    /// behavior. After a frame in which such a pixel differs, the conversion goes on from the original's
+    /// behavior. After a frame in which such a pixel differs, the conversion continues from the original's
     /// textures.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, join, within};
 
 use super::prover::Unproved;
 
-/// What runs a converted shader.
+/// The device that runs a converted shader.
 #[derive(Debug)]
 pub enum Runner<'a> {
     /// A Vulkan driver, in a worker process.

@@ -26,13 +26,13 @@ use toyproof_verify::Failure;
 /// Proves conversions.
 #[derive(Debug)]
 pub struct Prover<'a> {
-    /// What runs the conversion.
+    /// The device that runs the conversion.
     pub runner: Runner<'a>,
     /// A browser that must also render WGSL and GLSL like the original.
     pub browser: Option<&'a mut Chromium>,
     /// The time limit of an image.
     pub timeout: Duration,
-    /// The evaluator's thread pool; rayon's global pool if none.
+    /// The evaluator's thread pool; rayon's global pool if `None`.
     pub pool: Option<&'a ThreadPool>,
 }
 
@@ -248,7 +248,7 @@ impl Prover<'_> {
         ))
     }
 
-    /// What each available reader reads of a file.
+    /// The results of all available readers of a file.
     pub(super) fn readings(
         &self,
         checked: &Checked,

@@ -85,7 +85,7 @@ fn compiler_of(target: Target) -> Option<Tool> {
     })
 }
 
-/// Validates a file; returns the name and version of the tool that accepts it, or `None` if none is
+/// Validates a file; returns the name and version of the tool that accepts it, or `None` if no tool is
 /// installed.
 ///
 /// # Errors

@@ -22,18 +22,18 @@ pub struct Hop {
     pub frame: i32,
     /// The pixel, from the left and from the bottom.
     pub pixel: [u32; 2],
-    /// What float32 renders there, from the first frame on.
+    /// The color there in float32, from the first frame on.
     pub single: [f64; 4],
-    /// What double precision renders there, from the first frame on.
+    /// The color there in double precision, from the first frame on.
     pub double: [f64; 4],
 }
 
-/// The way of a difference.
+/// The path of a difference back through passes and frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trail {
-    /// The last frame as the pass that was asked for read it, in float32.
+    /// The last frame, with the inputs of the requested pass, in float32.
     pub frame: Frame,
-    /// From the pixel that was asked for back to the earliest one.
+    /// From the requested pixel back to the earliest one.
     pub hops: Vec<Hop>,
     /// Whether the difference comes from a frame that was not kept, before the last of them.
     pub is_cut: bool,
@@ -48,9 +48,9 @@ const TEXEL_BYTES: usize = 16 + 32;
 /// A frame that was rendered.
 struct Rendered {
     number: i32,
-    /// What each pass read, in float32 and in double precision.
+    /// The inputs of each pass, in float32 and in double precision.
     bound: Vec<[Frame; 2]>,
-    /// What each pass rendered.
+    /// The texture of each pass.
     textures: Vec<[Texture; 2]>,
 }
 
@@ -186,7 +186,7 @@ fn render(frames: &Frames) -> Result<VecDeque<Rendered>, Failure> {
 /// A pixel of a pass, evaluated in double precision with various inputs.
 struct Probe<'a> {
     program: &'a Program,
-    /// What the pass read in float32 and in double precision.
+    /// The inputs of the pass, in float32 and in double precision.
     bound: &'a [Frame; 2],
     pixel: [u32; 2],
     deadline: Instant,

@@ -8,7 +8,7 @@ use toyproof_glsl::tree::{ExprKind, VariableKind};
 
 use toyproof_verify::random::reachable_expressions;
 
-/// What a reference uses and a shader does not.
+/// The inputs and functions that a reference uses and a shader does not.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Unused {
     /// The names of the inputs that only the reference reads, such as `iMouse`.
@@ -36,7 +36,7 @@ impl Unused {
     }
 }
 
-/// What the passes of a shader use.
+/// The inputs and functions that the passes of a shader use.
 #[derive(Default)]
 struct Uses {
     inputs: BTreeSet<String>,

@@ -1,5 +1,5 @@
-//! What bounds the search for an explanation: loop iterations, which are counted, so that the result does not
-//! depend on the load of the machine; and a deadline that only a hang exceeds.
+//! The bounds of the search for an explanation: loop iterations are counted, so that the result does not
+//! depend on the load of the machine; only a hang exceeds the deadline.
 
 use std::time::{Duration, Instant};
 

@@ -10,9 +10,9 @@ use thiserror::Error;
 /// A part of the work whose failure must cost nothing but itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// A whole command: the program ends, with an exit code of its own.
+    /// A whole command: the program ends, with a special exit code.
     Command,
-    /// All that is done for one shader of a batch.
+    /// All work on one shader of a batch.
     Shader,
     /// The search for the mistake that explains a wrong image.
     Mistake,

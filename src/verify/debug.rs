@@ -204,7 +204,7 @@ impl PositionTracker<'_> {
     }
 }
 
-/// Merges two traces, both of which are in the order of their positions.
+/// Merges two traces that are both in the order of their positions.
 fn merge(schema: &TraceSchema, single: &ExecutionTrace, double: &ExecutionTrace) -> Vec<Step> {
     let (mut singles, mut doubles) = (with_positions(schema, single), with_positions(schema, double));
     let mut steps = Vec::new();

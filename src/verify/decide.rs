@@ -127,15 +127,15 @@ pub enum Reason {
         /// The number of pixels in which rounding decides the color of the reference itself, such as where an
         /// edge of a scene passes through the sample.
         tied: u64,
-        /// The number of pixels in which float32 is not precise enough, neither for the shader nor for the
-        /// reference shader, if they are many.
+        /// The number of pixels in which float32 is precise enough for neither the shader nor the reference
+        /// shader, if they are many.
         imprecise_reference: u64,
     },
     /// Without a difference that is permitted, the shader agrees with its reference: `correct`.
     Permitted {
         /// The difference.
         difference: Difference,
-        /// What it is in this shader.
+        /// The mistake in this shader.
         text: String,
         /// The pixels that differ besides, which are few.
         differing: Share,
@@ -146,20 +146,20 @@ pub enum Reason {
         differing: Share,
         /// The scene's sampler; `None` for other references.
         sampler: Option<Sampler>,
-        /// What the comparison of the means shows.
+        /// The result of the comparison of the means.
         means: Means,
     },
 }
 
 impl Reason {
-    /// Whether the means were compared, because the shader has random numbers of its own.
+    /// Whether the means were compared, because the shader has its own random numbers.
     #[must_use]
     pub fn compares_means(&self) -> bool {
         matches!(self, Self::OtherRandomNumbers { .. })
     }
 }
 
-/// What the comparison of the means of a shader and its reference shows.
+/// The result of comparing the means of a shader and its reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Means {
     /// They differ: `wrong`.
@@ -558,7 +558,8 @@ mod tests {
         assert!(matches!(reason, Reason::AlgorithmDiffers { .. }), "{reason:?}");
     }
 
-    /// A shader with other random numbers than its scene, of which the other pixels are `other_pixels`.
+    /// A shader with other random numbers than its scene; `other_pixels` are the pixels without random
+    /// numbers.
     fn random(means: MeanComparison, other_pixels: Checks) -> (Verdict, Reason) {
         decided(CheckEvidence {
             checks: checks([5_000, 0, 0], 0, SAME),

@@ -22,8 +22,8 @@ pub fn evaluate_at(program: &Program, frame: &Frame, places: &Places, max_iterat
     program.at(frame, places, &settings).ok()
 }
 
-/// The time limit of the evaluations that a comparison needs beside the images, as a multiple of an image's. They
-/// decide what a pixel's difference means, so that only a hang may exceed it.
+/// The time limit of the evaluations that a comparison needs in addition to the images, as a multiple of an
+/// image's. They decide what a pixel's difference means, so that only a hang may exceed it.
 const OTHER_TIME_FACTOR: u32 = 4;
 /// The same as a multiple of the time that the image in f64 took: up to [`PERTURBATIONS`] images, each of which takes
 /// about eight times as long.

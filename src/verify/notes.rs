@@ -93,7 +93,7 @@ pub fn driver_failure(failure: &Failure) -> Diagnostic {
         return Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message)
             .note("use a longer `--timeout`; shorter functions and smaller arrays compile faster");
     }
-    // What naga rejects it states itself.
+    // naga's message states what it rejects.
     let stated = failure
         .diagnostics()
         .first()
@@ -106,7 +106,7 @@ pub fn driver_failure(failure: &Failure) -> Diagnostic {
     Diagnostic::warning(Code::DriverFailure.as_str(), message).note(NOT_THE_SHADER)
 }
 
-/// Whose fault a failure or a difference of the toolchain is.
+/// The note on a failure or a difference of the toolchain.
 const NOT_THE_SHADER: &str = "naga, the driver or toyproof is at fault, not the shader";
 
 /// Reports that the driver's image visibly differs from the evaluator's, if it does.

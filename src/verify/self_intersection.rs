@@ -12,9 +12,9 @@ use crate::limits::MAX_UNSTABLE;
 /// The largest number of pixels that are examined.
 const MAX_PIXELS: usize = 64;
 
-/// The share of them that must be what the tracer renders with rays that hit their own surface. It is below 1
-/// because a ray between mirrors may do so more often than is traced. In double precision, rounding decides
-/// nothing else in so many pixels.
+/// The share of them that must have the color that the tracer renders with rays that hit their own surface.
+/// It is below 1 because a ray between mirrors may do so more often than is traced. In double precision, no
+/// other effect of rounding reaches this share.
 const MIN_EXPLAINED_SHARE: f64 = 0.4;
 const MIN_EXPLAINED_SHARE_IN_DOUBLE: f64 = 0.3;
 
@@ -69,7 +69,7 @@ pub(super) fn detect(
         })
 }
 
-/// Returns ill-conditioned pixels spread over the image, or differing ones if there are none, among those
+/// Returns ill-conditioned pixels spread over the image, or else differing ones, among those
 /// whose colors are kept.
 fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
     let is_ill_conditioned = check.statuses.contains(&PixelStatus::IllConditioned);

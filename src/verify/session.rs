@@ -39,7 +39,7 @@ pub(super) struct VerifySession<'a, 'e> {
     /// The evaluator, or why it failed.
     pub(super) evaluator: Result<Evaluator<'e>, eval::Failure>,
     counts: Option<Sender<IterationCount>>,
-    /// What the evaluator observed in f32.
+    /// The observations of the evaluator in f32.
     pub(super) observed: Observations,
     excludes_pixels: bool,
     algorithm: CheckResult,
@@ -53,7 +53,7 @@ pub(super) struct VerifySession<'a, 'e> {
     /// Why double precision could not be evaluated, from some band on; the shader is then compared with its
     /// reference in float32.
     double_failure: Option<eval::Failure>,
-    /// What is recorded to compare means, for a reference that may be stochastic.
+    /// The record for comparing means, for a reference that may be stochastic.
     stochastic: Option<Stochastic<'a>>,
     eval: Duration,
     trace: Duration,
@@ -100,7 +100,7 @@ impl<'a, 'e> VerifySession<'a, 'e> {
     }
 
     /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, the evaluator
-    /// goes on alone, and there is no toolchain check.
+    /// continues alone, and there is no toolchain check.
     ///
     /// # Errors
     /// Returns why there is no image, where no GPU renders one, and the errors of `gpu`.

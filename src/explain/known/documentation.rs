@@ -41,7 +41,7 @@ fn known_mistakes() -> Vec<KnownMistake> {
     all
 }
 
-/// Whether a text has a form in which each “…” stands for any text.
+/// Whether a text has a form in which each “…” matches any text.
 fn has_form(text: &str, form: &str) -> bool {
     let Some((start, rest)) = form.split_once('…') else {
         return text == form;

@@ -114,7 +114,7 @@ fn distance(one: &Image, other: &Image) -> f64 {
 }
 
 /// Returns the value that minimizes the distance to the image: first among the multiples, then between the
-/// neighbors of the best. None where the number is unrelated to too many of the wrong pixels: none of the
+/// neighbors of the best. `None` if the number is unrelated to too many of the wrong pixels: none of the
 /// multiples changes them.
 fn best_value(parameter: &Parameter, wrong_image: &WrongImage, correct: &Image) -> Option<f64> {
     let render = |value| (parameter.source)(value)?.render(wrong_image.view);
@@ -188,7 +188,7 @@ const BRIGHTNESS: Describe = |what, value, _| format!("{what} is {value} times a
 struct SceneNumber {
     /// The id of the mistake of having another value.
     id: &'static str,
-    /// What the number is called.
+    /// The name of the number.
     what: String,
     describe: Describe,
     value: f64,

@@ -74,7 +74,7 @@ pub(crate) fn self_intersection() -> KnownMistake {
 pub struct Diagnosis {
     /// The mistake, or two that were made at once; never empty.
     pub mistakes: Vec<KnownMistake>,
-    /// Other mistakes each of which alone renders the same image, the most likely first.
+    /// Other mistakes that alone render the same image, the most likely first.
     pub alternatives: Vec<KnownMistake>,
 }
 
@@ -148,7 +148,7 @@ const FINE_FACTOR: u32 = 3;
 const MIN_WRONG_PIXELS: u64 = 8;
 
 /// The largest number of mistakes, besides the first, that render the same image; with more, there are too
-/// many explanations and none is reported.
+/// many explanations and no mistake is reported.
 const MAX_OTHER_MISTAKES: usize = 3;
 
 /// The smallest number of pixels that a mistake must explain, all of them, and the largest number that are
@@ -344,8 +344,8 @@ impl Hypotheses {
         explains(mutant) || explains_with_other_epsilons()
     }
 
-    /// Returns what explains a few pixels in which the `student`'s shader has a wrong color, and
-    /// no others; none with fewer than `MIN_EXPLAINED_PIXELS` pixels.
+    /// Returns the mistake that explains a few pixels in which the `student`'s shader has a wrong color, and
+    /// no others; `None` with fewer than `MIN_EXPLAINED_PIXELS` pixels.
     #[must_use]
     pub fn explaining(&self, student: &Program, pixels: &[[u32; 2]]) -> Option<Diagnosis> {
         if pixels.len() < MIN_EXPLAINED_PIXELS {

@@ -14,7 +14,7 @@ use toyproof_tracer::Tracer;
 use toyproof_verify::bounds::MAX_ITERATIONS;
 use toyproof_verify::evaluator::evaluate_at;
 
-/// What a mutant renders.
+/// The subject that a mutant renders.
 #[derive(Debug, Clone)]
 pub(super) enum MutantSource {
     /// A shader, rendered by the evaluator.
@@ -102,7 +102,7 @@ impl Mutant {
         self.image.get()?.as_ref()
     }
 
-    /// The shader of this mutant, as students write it; none at another time.
+    /// The shader of this mutant, as students write it; `None` at another time.
     pub(super) fn shader(&self, frame_time: FrameTime) -> Option<MarkedShader> {
         match &self.source {
             MutantSource::Shader(shader) => Some(shader.clone()),
@@ -112,8 +112,8 @@ impl Mutant {
     }
 }
 
-/// Returns the shader of a scene as students write it, in each of the variants that matter; none if it cannot
-/// be exported. Correct variants render the same image; with a mistake in them they may not.
+/// Returns the shader of a scene as students write it, in each of the variants that matter; empty if it
+/// cannot be exported. Correct variants render the same image; with a mistake in them they may not.
 pub(super) fn variants(scene: &Scene) -> Vec<MarkedShader> {
     let Ok(mut shader) = export::marked_shader(scene) else {
         return Vec::new();

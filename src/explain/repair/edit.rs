@@ -147,7 +147,7 @@ impl Candidate {
         all
     }
 
-    /// What kind of mistake it repairs; in the head of a loop, the loop is what is wrong.
+    /// The kind of mistake that it repairs; in the head of a loop, the loop is what is wrong.
     pub(super) fn kind(&self, shader: &Shader) -> EditKind {
         let is_head = shader.statements[self.statement(shader)].kind == Shape::Loop;
         if is_head && matches!(self.change, Change::Expression { .. }) {

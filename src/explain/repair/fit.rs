@@ -51,7 +51,7 @@ struct Secant {
     errors: [f64; 2],
 }
 
-/// What a number should make zero.
+/// The quantity that a number should make zero.
 #[derive(Debug, Clone, Copy)]
 enum ErrorOf {
     /// The distance of a component of the color of a probe from its target.

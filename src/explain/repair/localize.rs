@@ -117,8 +117,8 @@ pub(super) fn suspicion(probes: &[Probe], before: &[[f64; 3]], after: &[[f64; 3]
     }
 }
 
-/// The suspicion of each site: measured, or that of the expression that uses its value. `measured` is none
-/// where a site was not changed.
+/// The suspicion of each site: measured, or that of the expression that uses its value. `measured` is `None`
+/// if a site was not changed.
 pub(super) fn suspicions(shader: &Shader, measured: &[Option<Suspicion>]) -> Vec<Suspicion> {
     let tree = shader.tree;
     let mut suspicions: Vec<Suspicion> = measured.iter().map(|own| own.unwrap_or_default()).collect();
@@ -138,7 +138,7 @@ pub(super) fn suspicions(shader: &Shader, measured: &[Option<Suspicion>]) -> Vec
             suspicions[at] = suspicions[at].max(suspicions[*user].scaled(INHERITED));
         }
     }
-    // What is stored is as suspicious as the value that is stored.
+    // A store is as suspicious as the stored value.
     for at in 0..shader.sites.len() {
         if let ExprKind::Assign { value, .. } = tree[shader.sites[at].exprs[0]].kind
             && let Some(&value) = places.get(&value)

@@ -29,7 +29,7 @@ pub(crate) fn mistakes() -> impl Iterator<Item = KnownMistake> {
     edit::EditKind::ALL.iter().map(|kind| kind.mistake())
 }
 
-/// What a search needs besides the shader and its reference.
+/// The options of a search.
 #[derive(Debug, Clone, Copy)]
 pub struct SearchOptions<'a> {
     /// The text of the shader's file.
@@ -63,13 +63,13 @@ pub const DEFAULT_BUDGET: f64 = 5.0;
 pub struct Repair {
     /// The edits, with a sentence such as ``replace `tca + thc` with `tca - thc` ``.
     pub fix: Fix,
-    /// What is wrong with the shader, named by the kind of the edit.
+    /// The mistake of the shader, named by the kind of the edit.
     pub mistake: KnownMistake,
     /// The number of pixels that agree with the reference after the edit.
     pub agreeing: u64,
     /// The number of pixels that were compared.
     pub pixels: u64,
-    /// Whether their means agree, because the shader has random numbers of its own.
+    /// Whether their means agree, because the shader has its own random numbers.
     pub by_means: bool,
     /// The image after the edit, as displayed.
     pub image: Rgb8Image,
@@ -84,7 +84,7 @@ pub struct Suspect {
     pub score: f64,
 }
 
-/// What the search found.
+/// The results of the search.
 #[derive(Debug, Clone, Default)]
 pub struct SearchResult {
     /// At most three repairs, the most likely first. Each alone repairs the image.

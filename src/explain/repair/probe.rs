@@ -1,7 +1,7 @@
-//! Probes: a few pixels that stand for the whole image, wrong ones of every kind and right ones. A candidate
-//! is evaluated at them, most telling first, and rejected as soon as too many are wrong.
+//! Probes: a few pixels that represent the whole image, wrong ones of every kind and right ones. A candidate
+//! is evaluated at them, the most significant first, and rejected as soon as too many are wrong.
 //!
-//! Where a shader has random numbers of its own, no pixel has an exact color. Then the difference of a
+//! If a shader has its own random numbers, no pixel has an exact color. Then the difference of a
 //! candidate from the expected means is projected onto the shader's own bias ([`Bias`]).
 
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ const MAX_RIGHT: usize = 120;
 const FIRST: usize = 16;
 const FIRST_WRONG: usize = 12;
 
-/// The numbers of wrong and of right pixels that follow in turn.
+/// The numbers of wrong and of right pixels that follow alternately.
 const MIXED_WRONG: usize = 5;
 const MIXED_RIGHT: usize = 3;
 
@@ -64,11 +64,11 @@ pub(super) struct Probe {
     /// The pixel's center.
     pub(super) point: [f64; 2],
     range: ColorRange,
-    /// How far the shader's mean is from the expected one, if it has random numbers of its own.
+    /// How far the shader's mean is from the expected one, if it has its own random numbers.
     bias: Option<Bias>,
     /// Whether the shader is wrong there.
     pub(super) is_wrong: bool,
-    /// The share of the image's pixels for which it stands.
+    /// The share of the image's pixels that it represents.
     share: f64,
 }
 
@@ -89,7 +89,7 @@ pub(super) struct Probes {
     pub(super) all: Vec<Probe>,
 }
 
-/// What a candidate does at the probes.
+/// The effect of a candidate at the probes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Outcome {
     /// The number of wrong pixels that it repairs.
@@ -149,7 +149,7 @@ impl Probes {
         Self::of(wrong.collect(), right.collect())
     }
 
-    /// The probes in their order; `None` if none is wrong.
+    /// The probes in their order; `None` if no probe is wrong.
     fn of(wrong: Vec<Probe>, right: Vec<Probe>) -> Option<Self> {
         let count = wrong.len();
         let (mut wrong, mut right) = (wrong.into_iter(), right.into_iter());
@@ -217,7 +217,7 @@ impl Probes {
         }
     }
 
-    /// Whether the shader has random numbers of its own.
+    /// Whether the shader has its own random numbers.
     pub(super) fn are_means(&self) -> bool {
         self.all.iter().any(|probe| probe.bias.is_some())
     }
@@ -258,8 +258,8 @@ impl Probes {
         count.min(self.all.len())
     }
 
-    /// Tests an edit, whose colors at some of the probes are given by a function; `None` if that has none.
-    /// `before` are the colors without edits.
+    /// Tests an edit. `colors` returns its colors at some of the probes; if it returns `None`, so does this
+    /// function. `before` are the colors without edits.
     pub(super) fn test(
         &self,
         before: &[[f64; 3]],
@@ -278,7 +278,7 @@ impl Probes {
         self.outcome(&all, before)
     }
 
-    /// What an edit does, by its colors at the first probes; `None` if their mean is not a number.
+    /// The effect of an edit, by its colors at the first probes; `None` if their mean is not a number.
     pub(super) fn outcome(&self, colors: &[[f64; 3]], before: &[[f64; 3]]) -> Option<Outcome> {
         if self.are_means() {
             return self.outcome_of_means(colors);
@@ -312,7 +312,7 @@ impl Probes {
         Some(outcome)
     }
 
-    /// What an edit of a stochastic shader does, by a single evaluation of each of the first probes.
+    /// The effect of an edit of a stochastic shader, by a single evaluation of each of the first probes.
     fn outcome_of_means(&self, colors: &[[f64; 3]]) -> Option<Outcome> {
         let projection = self.project(colors)?;
         let is_unbiased = projection.amplitude.abs() <= MAX_AMPLITUDE + MAX_DEVIATIONS * projection.deviation;
@@ -405,8 +405,8 @@ fn kind(colors: &[[f64; 3]]) -> u32 {
     levels.fold(0, |kind, level| kind * 4 + level)
 }
 
-/// Selects pixels of all kinds, one of each in turn, and within a kind evenly spread. Each has the share of the pixels
-/// for which it stands.
+/// Selects pixels of all kinds, alternately, and within a kind evenly spread. Each has the share of the
+/// pixels that it represents.
 fn spread(pixels: &[usize], most: usize, kind: impl Fn(usize) -> u32) -> Vec<(usize, f64)> {
     let mut kinds: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for &pixel in pixels {

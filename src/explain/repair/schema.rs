@@ -25,7 +25,7 @@ const NUMBERS: usize = std::mem::size_of::<Numbers>() / std::mem::size_of::<f64>
 pub(super) struct Selection(Vec<f64>);
 
 impl Selection {
-    /// Selects an edit, or none, of a program with `count` edits.
+    /// Selects an edit of a program with `count` edits, or no edit.
     pub(super) fn of(count: usize, selected: Option<usize>, numbers: &Numbers) -> Self {
         let mut values = vec![0.0; count];
         if let Some(at) = selected {

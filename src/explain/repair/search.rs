@@ -59,10 +59,10 @@ const MAX_FIRSTS_OF_STATEMENT: usize = 2;
 /// The work of a unit of the budget: about a second of one core.
 const WORK_PER_UNIT: f64 = 3e8;
 
-/// Searches for the repairs of a wrong shader. None if there is nothing to search for. `means` renders some
-/// pixels of a shader that has random numbers, if it has any and so has its reference. It has other numbers
-/// than the reference if its means were compared, though its mistake may be there. Work is counted; at the
-/// `deadline`, which only a hang exceeds, the search ends.
+/// Searches for the repairs of a wrong shader; `None` if there is nothing to search for. `means` evaluates
+/// pixel means; it returns `None` unless shader and reference are both stochastic. If means were compared,
+/// their seeds differ, possibly because of the bug. Work is counted; the search also ends at the `deadline`,
+/// which only a hang exceeds.
 pub(crate) fn search(
     case: &Case,
     options: SearchOptions,
@@ -123,7 +123,7 @@ pub(crate) fn search(
     })
 }
 
-/// What is known of the shader before any edit.
+/// The results of the shader before any edit.
 #[derive(Clone, Copy)]
 pub(crate) struct Before<'a> {
     /// The algorithm check.
@@ -134,7 +134,7 @@ pub(crate) struct Before<'a> {
     pub(crate) compares_means: bool,
 }
 
-/// Some pixels of a shader that has random numbers of its own.
+/// Some pixels of a shader that has its own random numbers.
 pub(crate) struct NoisyImage {
     pub(crate) pixels: Vec<NoisyPixel>,
     pub(crate) places: Places,

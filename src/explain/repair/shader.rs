@@ -41,7 +41,7 @@ pub(super) struct Site {
 /// A statement, or a declaration at global scope.
 #[derive(Debug)]
 pub(super) struct StatementSite {
-    /// Its function and its number in it, in pre-order; none at global scope.
+    /// Its function and its number in it, in pre-order; `None` at global scope.
     pub(super) at: Option<StatementId>,
     /// Its first line, up to the end of the statement or of its head.
     pub(super) span: Span,
@@ -54,7 +54,7 @@ pub(super) struct StatementSite {
     pub(super) is_expanded: bool,
 }
 
-/// What an edit needs to know about a statement.
+/// The facts about a statement that edits depend on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Shape {
     Declaration(VariableId),

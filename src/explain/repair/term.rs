@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{
     Tree, Type, UnaryOp, Value, VariableId,
 };
 
-/// The fitted numbers of an edit; most have none or one.
+/// The fitted numbers of an edit; most edits have at most one.
 pub(super) type Numbers = [f64; 3];
 
 /// An expression with its type.

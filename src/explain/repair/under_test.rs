@@ -26,8 +26,8 @@ const REPAIR_PLACE_WEIGHT: f64 = 5.0;
 /// The cost of leaving the whole difference.
 const REMAINING_WEIGHT: f64 = 20.0;
 
-/// The largest number of candidates that are compiled together, and of such groups between two decisions on how to
-/// go on.
+/// The largest number of candidates that are compiled together, and of such groups between two decisions on
+/// how to continue.
 const GROUP: usize = 32;
 const GROUPS: usize = 8;
 
@@ -75,7 +75,7 @@ pub(super) struct ShaderUnderTest<'a> {
     budget: f64,
     /// The colors of the shader at the probes.
     before: Vec<[f64; 3]>,
-    /// The number of loop iterations after which an edited pixel is given up.
+    /// The number of loop iterations after which an edited pixel is abandoned.
     pub(super) max_iterations: u32,
     /// The suspicion of each site and of each statement.
     sites: Vec<Suspicion>,
@@ -90,7 +90,7 @@ pub(super) struct ShaderUnderTest<'a> {
 type Worked<T> = (Vec<T>, f64);
 
 impl<'a> ShaderUnderTest<'a> {
-    /// Evaluates the shader at the probes, with at most so many loop iterations in a pixel, and measures how
+    /// Evaluates the shader at the probes, with at most `max_iterations` per pixel, and measures how
     /// suspicious its parts are; `None` if it cannot be evaluated, or is right at all probes.
     pub(super) fn new(
         case: &'a Case<'a>,
@@ -199,21 +199,22 @@ impl<'a> ShaderUnderTest<'a> {
         Instant::now() >= self.deadline
     }
 
-    /// The number of candidates between two decisions on how to go on, if each takes the work of this many probes.
+    /// The number of candidates between two decisions on how to continue, if each takes the work of this many
+    /// probes.
     fn wave_of(&self, probes: f64) -> usize {
         let affordable = WAVE_SHARE * self.budget / (probes * self.probe_work);
         (affordable as usize).clamp(MIN_WAVE, GROUPS * GROUP)
     }
 
-    /// The number of candidates that are tried between two decisions on how to go on.
+    /// The number of candidates that are tried between two decisions on how to continue.
     pub(super) fn wave(&self) -> usize {
         self.wave_of(TRIAL_PROBES)
     }
 
     // Suspicion.
 
-    /// Measures how suspicious each site and each statement is, at that number of probes. What the budget
-    /// does not suffice for is not suspicious.
+    /// Measures how suspicious each site and each statement is, at that number of probes. Sites beyond
+    /// the budget get suspicion 0.
     fn localize(&mut self, count: usize, budget: f64) {
         let count = count.min(self.probes.all.len());
         let mut measured: Vec<Option<Suspicion>> = vec![None; self.shader.sites.len()];

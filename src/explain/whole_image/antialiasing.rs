@@ -58,7 +58,7 @@ const MIN_EFFECTIVE_SAMPLES: f64 = 2.0;
 /// centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are equal.
 const MAX_UNEXPLAINED: f64 = 0.4;
 
-/// The smallest share of edge pixels whose color is neither end of the range within them.
+/// The smallest share of edge pixels with an intermediate color.
 const MIN_INTERMEDIATE: f64 = 0.3;
 
 /// Finds the samples of each pixel that explain the image.
@@ -217,13 +217,13 @@ fn compared(
     )
 }
 
-/// How the colors of pixels lie among those within them, of which the middle one is that of the center.
+/// Where each pixel's color lies in the range of its sub-pixel colors; the middle sample is the center.
 #[derive(Default)]
 struct Statistics {
     pixels: usize,
     /// The pixels whose color is within.
     within: Vec<[u32; 2]>,
-    /// The pixels with an edge, and those of them whose color is neither end of the range.
+    /// The pixels with an edge, and those with an intermediate color.
     edges: u64,
     intermediate: u64,
     /// The sums of the variances within pixels, and of the squared distances to the means and to the centers.

@@ -56,7 +56,7 @@ struct Sample {
     hue: [u8; 4],
 }
 
-/// The levels by which colors are told apart: those of an image of 8 bits.
+/// The levels that distinguish colors: those of an image of 8 bits.
 const LEVELS: f64 = 255.0;
 
 /// The smallest number of levels that a usual curve must change and explain. It has no parameter, so that

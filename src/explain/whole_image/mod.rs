@@ -22,16 +22,16 @@ pub(crate) use self::wrong_shader::WrongShader;
 use crate::known::KnownMistake;
 use toyproof_verify::compare::CheckSummary;
 
-/// What a wrong shader is compared with besides its reference.
+/// The alternatives to the reference with which a wrong shader is compared.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Alternatives<'a> {
     /// The differences with which a shader is still correct.
     pub permitted: &'a [Difference],
-    /// Other scenes, one of which a shader may render instead of its own.
+    /// Other scenes that a shader may render instead of its own.
     pub scenes: Option<&'a OtherScenes>,
 }
 
-/// Scenes with their names, read on first use: correct shaders need none.
+/// Scenes with their names, read on first use: correct shaders do not need them.
 pub type OtherScenes = LazyLock<Vec<(String, Scene)>, Box<dyn FnOnce() -> Vec<(String, Scene)> + Send>>;
 
 /// How a wrong image differs as a whole from the expected one.

@@ -8,7 +8,7 @@ use super::{Alternative, OtherScenes};
 use crate::known::KnownMistake;
 use toyproof_verify::Expected;
 
-/// Finds what a shader renders instead of its own scene.
+/// Finds the scene that a shader renders instead of its own.
 pub(super) fn find(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {
     default_shader(wrong).or_else(|| other_scene(wrong, scenes))
 }

@@ -156,11 +156,11 @@ const MAX_CONFIRMED: usize = 3;
 /// A convention for a screen coordinate, relative to the reference's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Convention {
-    /// What the coordinate is multiplied by.
+    /// The factor of the coordinate.
     factor: Factor,
     /// Whether it is 0 in the lower left corner, as `fragCoord` is, and not in the center.
     is_from_corner: bool,
-    /// What is added to `fragCoord`, in pixels.
+    /// The shift of `fragCoord`, in pixels.
     shift: f64,
 }
 

@@ -35,7 +35,7 @@ pub struct Undefined<'a> {
     /// The shader's images with other results of its undefined operations; `None` if these have no
     /// substitutes.
     pub substituted: Option<&'a [Image]>,
-    /// Those of the reference; empty if none is.
+    /// Those of the reference; empty if there are none.
     pub in_reference: &'a [bool],
 }
 
@@ -111,9 +111,10 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 /// A pixel agrees if no component is farther than the tolerance from the reference's color, or from those that
 /// it has for other ray epsilons. A pixel that depends on undefined behavior is excluded, unless it is outside
 /// whatever the undefined operations return. A pixel outside is excluded if it lies on an
-/// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is excluded, too,
-/// if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's own color
-/// changes by more than the tolerance in one of the images of `perturbed`, see `changed_by_rounding`.
+/// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is also
+/// excluded if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's
+/// own color changes by more than the tolerance in one of the images of `perturbed`, see
+/// `changed_by_rounding`.
 ///
 /// # Panics
 /// If the sizes differ.

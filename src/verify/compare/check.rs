@@ -52,11 +52,12 @@ pub struct CheckSummary {
     /// The largest absolute difference of a component of colors clamped to [0, 1], over all pixels that are
     /// not undefined.
     pub max_abs: f64,
-    /// The first differing pixel: lowest y, then lowest x; if none differs, the first ill-conditioned one.
+    /// The first differing pixel: lowest y, then lowest x; if no pixel differs, the first ill-conditioned
+    /// one.
     pub first: Option<Pixel>,
     /// The one with the largest difference among those.
     pub worst: Option<Pixel>,
-    /// The regions of the differing pixels; none before they were found.
+    /// The regions of the differing pixels; empty before they were found.
     #[serde(default)]
     pub regions: Regions,
     /// The largest compact region of the pixels that depend on undefined behavior.

@@ -125,7 +125,7 @@ pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>
     compare_by(reference, actual, |pixel| pixel.difference() > TOLERANCE)
 }
 
-/// Like [`compare`] for images of which one has 8 bits only: pixels differ if they do by more than one level,
+/// Like [`compare`] if one of the images has only 8 bits: pixels differ if they do by more than one level,
 /// which is rounding.
 ///
 /// # Panics

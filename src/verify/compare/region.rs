@@ -1,5 +1,5 @@
-//! Connected regions of pixels, such as differing ones: an object that is missing is one, rays that graze edges
-//! are none.
+//! Connected regions of pixels, such as differing ones: a missing object is one, rays that graze edges
+//! are not.
 
 use std::collections::VecDeque;
 

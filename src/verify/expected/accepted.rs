@@ -15,7 +15,7 @@ use crate::bounds::MAX_ITERATIONS;
 use crate::compare::{Pixel, Share};
 
 /// The largest share of pixels that may change with a variation. A number on which more of the image depends
-/// is no matter of style.
+/// is not a matter of style.
 const MAX_CHANGED_SHARE: f64 = 0.05;
 
 /// The range of the colors of each pixel, bottom row first.
@@ -68,7 +68,7 @@ impl AcceptedColors {
                 extend(range, color);
             }
             if let Subject::March(varied) = &variation.subject {
-                // What the limits change together, beyond what each of them does.
+                // Limits are reported if they change pixels that no earlier variation changes.
                 if changed.iter().any(|&at| !marched[at]) {
                     limits.extend(varied);
                 }

@@ -18,7 +18,7 @@ pub struct ReferenceBand {
     pub undefined: Vec<bool>,
 }
 
-/// The bands by their first rows; none of an image that is too large.
+/// The bands by their first rows; empty for an image that is too large.
 #[derive(Debug, Default)]
 pub(super) struct Bands(HashMap<u32, OnceLock<Arc<ReferenceBand>>>);
 

@@ -1,5 +1,5 @@
-//! How well-conditioned a reference is: in how many pixels rounding decides its own color, and which edit of a
-//! scene prevents it.
+//! The conditioning of a reference: the number of pixels in which rounding decides its own color, and the
+//! edit of a scene that prevents it.
 
 use std::collections::BTreeSet;
 

@@ -1,6 +1,6 @@
-//! Marches of a reference shader along its rays: loops that advance by what a function of the place, such as the
-//! distance to the nearest surface, returns. How far they go, in how many steps, and which part of the distance
-//! a step is, are a matter of style; the pixels that depend on them are mostly at the horizon and at edges.
+//! Marches of a reference shader along its rays: loops that advance by the result of a function of the place,
+//! such as the distance to the nearest surface. How far they go, in how many steps, and by which part of the
+//! distance, is a matter of style; the pixels that depend on them are mostly at the horizon and at edges.
 
 use std::collections::HashSet;
 
@@ -27,9 +27,9 @@ const MAX_CALLS: u32 = 3;
 /// A loop that marches.
 #[derive(Debug, Clone, PartialEq)]
 struct March {
-    /// What it compares its steps and the distance with.
+    /// The limits of its steps and of the distance.
     limits: Vec<Limit>,
-    /// What it adds to the distance, or to the place.
+    /// The expressions that it adds to the distance, or to the place.
     advances: Vec<ExprId>,
 }
 
@@ -154,9 +154,9 @@ fn tested(tree: &Tree, condition: Option<Condition>) -> Option<ExprId> {
     }
 }
 
-/// What a loop writes.
+/// The writes of a loop.
 struct Writes {
-    /// The written variables with what is assigned or added to them.
+    /// The written variables with the values that are assigned or added to them.
     values: Vec<(VariableId, ExprId)>,
     /// The variables that a sum is added to: `t += d`, `t = t + d`; with the summand.
     sums: Vec<(VariableId, ExprId)>,
@@ -217,8 +217,8 @@ impl Writes {
         }
     }
 
-    /// The variable by which the loop marches: what is added to it depends on what a function of the place that
-    /// it determines returns.
+    /// The variable by which the loop marches: it determines a place, and its increment depends on the result
+    /// of a function of this place.
     fn marched(&self, tree: &Tree) -> Option<Marched> {
         self.sums.iter().find_map(|&(variable, _)| {
             let placed = self.dependent(tree, |value| walk::mentions(tree, value, variable));
@@ -244,7 +244,7 @@ impl Writes {
             if own.is_empty() {
                 return None;
             }
-            // The distance beside the place, as in `p += d * ray; t += d;`.
+            // The distance in addition to the place, as in `p += d * ray; t += d;`.
             let beside = self.sums.iter().filter(|&&(sum, summand)| {
                 sum != variable && tree[sum].ty == Type::FLOAT && is_plain(tree, summand, &distances)
             });
@@ -274,7 +274,7 @@ impl Writes {
     }
 }
 
-/// What a loop adds to a variable by an assignment: `t += d`, `t = t + d`, `t = d + t`.
+/// The summand that a loop adds to a variable by an assignment: `t += d`, `t = t + d`, `t = d + t`.
 fn summand(
     tree: &Tree,
     variable: VariableId,
@@ -340,7 +340,7 @@ struct Marched {
 }
 
 impl Marched {
-    /// Whether an expression is how far the loop has marched: `t`, `length(p - origin)`.
+    /// Whether an expression is the distance that the loop has marched: `t`, `length(p - origin)`.
     fn measures(&self, tree: &Tree, expr: ExprId) -> bool {
         tree[expr].ty == Type::FLOAT && mentions_any(tree, expr, &self.travelled)
     }

@@ -1,4 +1,4 @@
-//! What shaders are compared with in one frame: a scene, another shader or an image. Its results are cached
+//! The reference of shaders in one frame: a scene, another shader or an image. Its results are cached
 //! from one shader to the next.
 
 mod accepted;
@@ -33,7 +33,7 @@ use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
 use crate::evaluator::evaluate_at;
 use crate::random::estimates::Resampled;
 
-/// What shaders are compared with in one frame. Results are computed on first use, from any thread: the
+/// The reference of shaders in one frame. Results are computed on first use, from any thread: the
 /// reference of many shaders is rendered once, unless it is too large for the cache.
 #[derive(Debug)]
 pub enum Expected {
@@ -41,7 +41,7 @@ pub enum Expected {
     Scene(Box<SceneReference>),
     /// A shader, evaluated in f64.
     Shader(Box<ShaderReference>),
-    /// An image, of which nothing else is known.
+    /// An image, without anything else.
     Image(ImageReference),
 }
 
@@ -247,8 +247,8 @@ impl Expected {
         }
     }
 
-    /// The pixels whose color depends on how a reference shader marches along its rays; none of an image that
-    /// is too large to be rendered again and again.
+    /// The pixels whose color depends on how a reference shader marches along its rays; `None` for an image
+    /// that is too large to be rendered again and again.
     #[must_use]
     pub fn march_dependence(&self) -> Option<&MarchDependence> {
         match self {

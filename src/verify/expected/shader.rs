@@ -48,7 +48,7 @@ pub struct ShaderReference {
     pub(crate) estimates: OnceLock<(Places, Option<Arc<Estimates>>)>,
 }
 
-/// What the evaluation of a reference shader showed.
+/// The results of evaluating a reference shader.
 #[derive(Debug)]
 pub struct ReferenceFindings {
     /// Undefined operations, uninitialized reads and colors that are not finite, with their lines.

@@ -12,7 +12,7 @@ use crate::debug::explain;
 use crate::project::frames::Frames;
 use crate::project::playback::{CpuPlayback, PassShader};
 
-/// What the buffers held in the frames so far, in float32.
+/// The contents of the buffers in the frames so far, in float32.
 pub(super) struct BufferLints<'a> {
     shader: &'a PassShader<'a>,
     buffers: [BufferTexels; BUFFERS],

@@ -1,6 +1,6 @@
 //! Rounding errors over the frames of a shader whose passes read earlier frames.
 //!
-//! Float32 and double precision each render all frames, with buffers of their own. Where their images differ
+//! Float32 and double precision each render all frames, with their own buffers. Where their images differ
 //! visibly in the end, the frames are rendered again to find out why: because one frame of float32 is
 //! imprecise, because the shader is chaotic, or because small errors add up.
 
@@ -51,7 +51,7 @@ pub struct FrameError {
     pub max_abs: f64,
     /// The pixels that differ visibly.
     pub differing: Share,
-    /// The pixel with the largest difference; `None` if none differs visibly.
+    /// The pixel with the largest difference; `None` if no pixel differs visibly.
     pub worst: Option<[u32; 2]>,
 }
 
@@ -84,7 +84,7 @@ pub enum GrowthCause {
     Chaos {
         /// The number of frames in which errors double, from the frame n to 2n between which they grow most.
         doubling: f64,
-        /// Whether the last frame differs visibly in double precision, too, if its roundings are perturbed.
+        /// Whether the last frame also differs visibly in double precision if its roundings are perturbed.
         in_double: bool,
     },
     /// Errors add up, or decide a comparison.
@@ -119,7 +119,7 @@ impl VisibleGrowth {
         }
     }
 
-    /// What follows from it, in sentences.
+    /// The conclusions, in sentences.
     #[must_use]
     pub fn consequences(&self) -> Vec<String> {
         let mut sentences = vec![format!("the difference is visible from frame {} on", self.since)];
@@ -284,7 +284,7 @@ const EXPONENTIAL: f64 = 16.0;
 /// differently, an error jumps, whatever made it.
 const JUMP: f64 = 1.0 / 1024.0;
 
-/// The ratio of the errors of float32 and of double precision where both are amplified alike: that of their
+/// The ratio of the errors of float32 and of double precision where both are amplified equally: that of their
 /// units in the last place.
 const UNIT_RATIO: f64 = (1_u64 << (f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS)) as f64;
 

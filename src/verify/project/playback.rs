@@ -40,7 +40,7 @@ impl PassShader<'_> {
         trees.any(|tree| tree.exprs.iter().any(|(_, expr)| is_filter(&expr.kind)))
     }
 
-    /// Compiles all passes for the evaluator, each in so much time at most.
+    /// Compiles all passes for the evaluator, each within `timeout`.
     ///
     /// # Errors
     /// The number of the first pass that is too large, and why.
@@ -97,7 +97,7 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
         Self { player, timeout }
     }
 
-    /// Renders the next frame, whose channels do not count.
+    /// Renders the next frame; its channels are ignored.
     ///
     /// # Errors
     /// If a pass fails.
@@ -108,7 +108,7 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
         self.player.render(frame)
     }
 
-    /// What a pass rendered last; `None` if the shader does not use it.
+    /// The last image of a pass; `None` if the shader does not use it.
     #[must_use]
     pub fn texture(&self, target: Target) -> Option<&Texture> {
         self.player.texture(target)
@@ -198,7 +198,8 @@ impl<'a> DevicePlayback<'a> {
         &self.device
     }
 
-    /// Renders the next frame, whose channels do not count, and returns what these passes rendered.
+    /// Renders the next frame and returns the images of the `wanted` passes; the channels of `frame` are
+    /// ignored.
     ///
     /// # Errors
     /// If the driver fails; the playback is then over.
@@ -207,7 +208,7 @@ impl<'a> DevicePlayback<'a> {
         self.driver.play(Some(frame), &wanted)
     }
 
-    /// Goes on from a state.
+    /// Continues from a state.
     ///
     /// # Errors
     /// If the driver fails; the playback is then over.

@@ -51,7 +51,7 @@ pub(crate) trait Resampled: std::fmt::Debug + Sync {
     fn samples(&self) -> Option<u32> {
         None
     }
-    /// The largest number of pixels of which many replicates are affordable.
+    /// The largest number of pixels for which many replicates are affordable.
     fn max_pixels(&self) -> u32 {
         MAX_PIXELS_OF_SHADERS
     }

@@ -1,4 +1,4 @@
-//! Reference shaders with other random numbers, and images, which have none.
+//! Reference shaders with other random numbers, and reference images, which have no random numbers.
 
 use std::sync::Arc;
 
@@ -19,8 +19,8 @@ use crate::random::reseed::{Reseeding, is_deterministic};
 /// The number of sets of random numbers that show whether a reseeding changes the random numbers alone.
 const TRIED_SETS: u32 = 4;
 
-/// The largest ratio of the squared distances from the mean of n sets of an image that is none of them and of
-/// the sets themselves, whose expectation is (n + 1)/(n − 1).
+/// Upper limit of d²(image)/d²(set), each measured from the mean of n sets. For an independent image the
+/// expected ratio is (n + 1)/(n − 1).
 const MAX_RATIO: f64 = MAX_DISTANCE_RATIO * (TRIED_SETS + 1) as f64 / (TRIED_SETS - 1) as f64;
 
 /// The largest variance of correlated noise as a share of the variance of the image's pixels.
@@ -117,7 +117,7 @@ impl ShaderReference {
             .collect()
     }
 
-    /// Estimates pixels from several sets of random numbers; `None` if there are none.
+    /// Estimates pixels from several sets of random numbers; `None` if there are no random numbers.
     fn estimated(&self, places: &Places) -> Option<Estimates> {
         let reseeding = self.reseeding()?;
         let own = self.set(None, 0, places)?;

@@ -8,7 +8,7 @@ use toyproof_glsl::tree::{
 const MAX_RATIO_ERROR: f64 = 0.15;
 
 /// Returns the number of samples of a shader whose noise has `ratio` times the variance expected for
-/// `samples`, if one of its loops has the number of iterations that explains the ratio, and none has
+/// `samples`, if one of its loops has the number of iterations that explains the ratio, and no loop has
 /// `samples` or more.
 pub(super) fn fewer_samples(tree: &Tree, samples: u32, ratio: f64) -> Option<u32> {
     let mut counts = Vec::new();

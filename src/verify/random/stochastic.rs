@@ -281,7 +281,7 @@ impl<'a> SampledRows<'a> {
         }
     }
 
-    /// Pairs of neighbors, at least one of which is random, with the tracer's means. Each square of four
+    /// Pairs of neighbors with at least one random pixel, with the tracer's means. Each square of four
     /// pixels has two: along an edge rather than across it, where shared random numbers cause the same noise.
     fn pairs(&self, algorithm: &CheckResult) -> Vec<[RandomPixel; 2]> {
         let width = self.size[0] as usize;

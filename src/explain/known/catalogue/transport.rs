@@ -1,4 +1,4 @@
-//! Mistakes where rays go on from a surface: mirrors, glass, and path tracing.
+//! Mistakes in secondary rays: mirrors, glass, and path tracing.
 
 use super::geometry::TEXTBOOK;
 use super::{Mistake, mistakes};

@@ -1,5 +1,5 @@
 //! Donors: expressions of the shader that renders the scene, or of other correct shaders, with the names of the
-//! author's shader in place of their own. They repair what no small edit does.
+//! author's shader in place of their own. They repair mistakes that no small edit repairs.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
@@ -220,7 +220,7 @@ impl Translation<'_> {
             return Some(term.clone());
         }
         match (tree[variable].kind, tree[variable].initializer) {
-            // The number that a constant stands for.
+            // The number that a constant has.
             (VariableKind::Const, Some(initializer)) => self.term(initializer, &HashMap::new(), depth),
             (VariableKind::Local | VariableKind::Parameter(_) | VariableKind::Input(_), _) => {
                 self.named(tree[variable].name.clone(), tree[variable].ty)

@@ -28,13 +28,13 @@ const VARIABLE: u32 = 16;
 /// The largest difference of the last digit.
 const MAX_STEPS: u32 = 5;
 
-/// The largest number that an edit writes: larger ones stand for infinity.
+/// The largest number that an edit writes: larger ones are used as infinity.
 const MAX_NUMBER: f64 = 1e6;
 
 /// The smallest factor of a hash, such as `43758.5453123`.
 const MIN_HASH_FACTOR: f64 = 1000.0;
 
-/// What the reference shader, or the one that renders the scene, consists of: its numbers, vectors, shapes of
+/// The parts of the reference shader, or of the one that renders the scene: its numbers, vectors, shapes of
 /// operations, and donors.
 #[derive(Debug, Default)]
 pub(in crate::repair) struct Constants {
@@ -48,7 +48,7 @@ pub(in crate::repair) struct Constants {
 }
 
 impl Constants {
-    /// Collects the numbers of a reference; none if it has no shader.
+    /// Collects the numbers of a reference; empty if it has no shader.
     pub(in crate::repair) fn of(expected: &Expected) -> Self {
         match (expected.shader(), expected.scene()) {
             (Some(shader), _) => Self::in_tree(&shader.tree),
@@ -123,8 +123,8 @@ fn add<T: PartialEq>(all: &mut Vec<T>, value: T) {
     }
 }
 
-/// The numbers of a shader's hashes, as bits: large ones, but neither round ones nor powers of 2, by which
-/// integers are made floats.
+/// The numbers of a shader's hashes, as bits: large constants, except round ones and the powers of 2 that
+/// scale integers to floats.
 fn hash_numbers(tree: &Tree) -> Vec<u64> {
     let number = |expr: &Expr| match &expr.kind {
         ExprKind::Literal(Literal { value, .. }) => match *value {
@@ -322,7 +322,7 @@ impl Writer<'_> {
             Term::new(TermKind::Construct(Constructor::Vector, arguments), ty)
         };
         for vector in &self.constants.vectors {
-            // Single numbers are edits of their own.
+            // Single numbers are separate edits.
             let changed = vector.iter().zip(&old).filter(|(new, old)| new != old).count();
             if vector.len() == old.len() && (changed > 1 || (is_splat && changed > 0)) {
                 self.replace(site, EditKind::Number, VECTOR, construct(vector));

@@ -10,12 +10,12 @@ use super::super::shader::Shader;
 use super::super::term::{Term, TermKind};
 use super::number::{Constants, number};
 
-/// What an edit gains by writing a vector or a number of the scene, or loses by removing one.
+/// The gain of an edit that writes a vector or a number of the scene, and the loss of one that removes it.
 const VECTOR: i32 = 5;
 const NUMBER: i32 = 4;
 
-/// What it gains or loses for each enclosing operation that has, or had, a shape of the scene's shader; and
-/// the largest gain or loss.
+/// The gain or loss for each enclosing operation that has, or had, a shape of the scene's shader; and the
+/// largest gain or loss.
 const SHAPE: i32 = 2;
 const MAX_SHAPES: i32 = 2;
 
@@ -163,7 +163,7 @@ impl Judge<'_> {
             }
             whole = self.user(part);
         }
-        // What an insertion encloses keeps its shape.
+        // The expression that an insertion encloses keeps its shape.
         let least = if term.keeps(expr) { 0 } else { -MAX_SHAPES };
         SHAPE * gain.clamp(least, MAX_SHAPES)
     }
@@ -235,7 +235,7 @@ fn shape(tree: &Tree, expr: ExprId, depth: u32, edit: Option<(ExprId, &Term)>) -
     if let Some((own, term)) = edit
         && own == expr
     {
-        // What a term keeps is the shader's own.
+        // The expression that a term keeps is the shader's own.
         return term_shape(tree, term, depth);
     }
     let part = |operand: ExprId| shape(tree, operand, depth - 1, edit);
