@@ -44,7 +44,7 @@
 //! # Example
 //!
 //! ```
-//! use toyproof::diagnostic::{Deadline, File, Files};
+//! use toyproof::diagnostic::{Code, Deadline, File, Files};
 //! use toyproof::glsl::{Options, check};
 //! use toyproof::lint::lint;
 //!
@@ -55,7 +55,7 @@
 //!     // The error of an invalid shader displays each message with its position.
 //!     let checked = check(&files, file, &Options::default())?;
 //!     let lints = lint(&files, &checked, &Deadline::default());
-//!     assert_eq!(lints.warnings[0].code, "W0003");
+//!     assert_eq!(lints.warnings[0].code, Code::Unwritten);
 //!     Ok(())
 //! }
 //! ```

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{Diagnostics, FileId, Files, nearest};
+use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_project::{PassKind, Tab};
 use toyproof_toml::{Format, Literal, Located, Table};
@@ -15,8 +15,8 @@ use super::{
 use crate::report::{Rubric, optional_points};
 
 static FORMAT: Format = Format {
-    form_code: "E0505",
-    value_code: "E0506",
+    form_code: Code::AssignmentSyntax,
+    value_code: Code::AssignmentValue,
     aliases: &[],
 };
 

@@ -8,7 +8,7 @@ use std::fs::File as OsFile;
 use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{Diagnostic, File, Files, Span, path_name};
+use toyproof_diagnostic::{Code, Diagnostic, File, Files, Span, path_name};
 use toyproof_image::input;
 use toyproof_project::{PROJECT_FILE, PassKind, Project, Tab};
 use walkdir::{DirEntry, WalkDir};
@@ -634,7 +634,7 @@ pub(super) fn is_hidden(name: &OsStr) -> bool {
 pub(crate) fn content_diagnostic(error: ReadError, files: &mut Files) -> Result<Diagnostic, ReadError> {
     let mut of = |message, file, start: usize, end: usize| {
         let id = files.add(file);
-        Diagnostic::error("E0500", message).at(Span::new(id, start as u32, end as u32))
+        Diagnostic::new(Code::UnreadableFile, message).at(Span::new(id, start as u32, end as u32))
     };
     match error {
         ReadError::TooLarge { name } => Ok(of(TOO_LARGE, File::new(name, ""), 0, 0)),
@@ -648,8 +648,9 @@ pub(crate) fn content_diagnostic(error: ReadError, files: &mut Files) -> Result<
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::fs;
+
+    use super::*;
 
     #[test]
     fn folders_yield_their_shaders_in_order_with_relative_paths() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::ValueEnum;
-use toyproof_diagnostic::{Deadline, Files, human, path_name};
+use toyproof_diagnostic::{Code, Deadline, Files, Severity, human, path_name};
 use toyproof_glsl as glsl;
 use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
@@ -248,14 +248,14 @@ pub(super) enum Deny {
     /// All.
     Warnings,
     /// Warnings with this code.
-    Code(glsl::Code),
+    Code(Code),
 }
 
 impl Deny {
-    pub(super) fn includes(self, code: &str) -> bool {
+    pub(super) fn includes(self, code: Code) -> bool {
         match self {
             Self::Warnings => true,
-            Self::Code(denied) => denied.as_str() == code,
+            Self::Code(denied) => denied == code,
         }
     }
 }
@@ -461,10 +461,8 @@ fn parse_deny(text: &str) -> Result<Deny, String> {
     if text == "warnings" {
         return Ok(Deny::Warnings);
     }
-    let code = glsl::Code::ALL
-        .iter()
-        .find(|code| code.as_str().starts_with('W') && code.as_str().eq_ignore_ascii_case(text));
-    code.map(|&code| Deny::Code(code))
+    let code = Code::parse(text).filter(|code| code.severity() != Severity::Error);
+    code.map(Deny::Code)
         .ok_or_else(|| "expected `warnings` or the code of a warning, such as W0005".to_owned())
 }
 
@@ -514,7 +512,7 @@ mod tests {
             Ok(DeviceSelector::Gpu(AdapterSelector::Auto))
         );
         assert_eq!(parse_deny("warnings"), Ok(Deny::Warnings));
-        assert_eq!(parse_deny("w0005"), Ok(Deny::Code(glsl::Code::SineHash)));
+        assert_eq!(parse_deny("w0005"), Ok(Deny::Code(Code::SineHash)));
         assert!(parse_deny("E0001").is_err() && parse_deny("errors").is_err());
         for bad in ["640", "0x0", "ax3", "100000x100000", "1x-1"] {
             assert!(parse_size(bad).is_err(), "{bad}");

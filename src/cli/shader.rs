@@ -139,7 +139,7 @@ impl Shader {
 /// Removes the warnings that count as errors, and returns them as errors.
 pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Diagnostic> {
     let (mut errors, rest): (Vec<_>, Vec<_>) = std::mem::take(warnings).into_iter().partition(|warning| {
-        let includes = |denied: &Deny| denied.includes(&warning.code);
+        let includes = |denied: &Deny| denied.includes(warning.code);
         warning.severity == Severity::Warning && denied.iter().any(includes)
     });
     *warnings = rest;

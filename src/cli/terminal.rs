@@ -13,7 +13,7 @@ use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use terminal_size::terminal_size_of;
-use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Severity, path_name, wrap};
+use toyproof_diagnostic::{self as diagnostic, Code, Diagnostic, Files, Severity, path_name, wrap};
 use toyproof_image::output;
 use toyproof_verify::contain;
 
@@ -203,10 +203,10 @@ impl Terminal {
     /// counted.
     pub(super) fn diagnostics(&self, diagnostics: &[Diagnostic], files: &Files) {
         let mut text = String::new();
-        let mut warnings: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut warnings: BTreeMap<Code, usize> = BTreeMap::new();
         for diagnostic in diagnostics {
             if diagnostic.severity == Severity::Warning && !self.verbose {
-                let shown = warnings.entry(&diagnostic.code).or_default();
+                let shown = warnings.entry(diagnostic.code).or_default();
                 *shown += 1;
                 if *shown > WARNINGS_SHOWN {
                     continue;

@@ -14,7 +14,6 @@ use toyproof_image::{self as image, Frame, Image};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::roundtrip;
 use toyproof_translate::naga_ir::ValidModule;
-
 use toyproof_verify::compare::{self, CheckSummary};
 use toyproof_verify::evaluator::{Evaluated, Evaluator};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, join, within};

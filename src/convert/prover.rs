@@ -16,12 +16,12 @@ use toyproof_translate::FloatMode;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
+use toyproof_verify::Failure;
 
 use super::passes::PassComparison;
 use super::proof::{Against, Proof, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy};
 use super::tool::{self, ToolError};
 use super::{Source, Written};
-use toyproof_verify::Failure;
 
 /// Proves conversions.
 #[derive(Debug)]

@@ -9,10 +9,10 @@ use toyproof_translate::backend::{Target, emit};
 use toyproof_translate::lower;
 use toyproof_translate::naga_ir::ValidModule;
 use toyproof_translate::wgsl::{Style, wgsl};
+use toyproof_verify::Failure;
 
 use super::proof::evaluate;
 use super::{Proved, Prover, Runner, Source, Unproved, Written, frames};
-use toyproof_verify::Failure;
 
 const TIME_LIMIT: Duration = Duration::from_secs(60);
 

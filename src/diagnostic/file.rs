@@ -1,4 +1,4 @@
-//! Source files, byte spans, and the mapping from bytes to lines and columns.
+//! Source files, byte spans, places through macros, and the mapping from bytes to lines and columns.
 
 use std::ops::Range;
 
@@ -263,6 +263,46 @@ impl Span {
             start: self.start.min(other.start),
             end: self.end.max(other.end),
         }
+    }
+}
+
+/// The place of a token or node in the source text: where it is used and where its characters are.
+///
+/// The two differ for text from a macro's body: then `span` is the use of the outermost macro (`F(x)` in the
+/// file) and `spelling` is in the body of a `#define`. For macro arguments, which are text of the file, they
+/// are equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// The span in the file outside macro bodies, which diagnostics use for line numbers.
+    pub span: Span,
+    /// The span of the characters.
+    pub spelling: Span,
+}
+
+impl Place {
+    /// Makes a place of text outside of any macro.
+    #[must_use]
+    pub fn plain(span: Span) -> Self {
+        Self { span, spelling: span }
+    }
+
+    /// The place from `self` to `other`. If it does not lie within one macro expansion, `spelling` is the
+    /// same as `span`.
+    #[must_use]
+    pub fn to(self, other: Self) -> Self {
+        let span = self.span.to(other.span);
+        let spelling = if self.span == other.span && self.is_expanded() && other.is_expanded() {
+            self.spelling.to(other.spelling)
+        } else {
+            span
+        };
+        Self { span, spelling }
+    }
+
+    /// Whether the characters are in the body of a macro.
+    #[must_use]
+    pub fn is_expanded(self) -> bool {
+        self.span != self.spelling
     }
 }
 

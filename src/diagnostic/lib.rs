@@ -2,12 +2,12 @@
 //! Independent of any language.
 //!
 //! ```
-//! use toyproof_diagnostic::{Diagnostic, File, Files, Span, short};
+//! use toyproof_diagnostic::{Code, Diagnostic, File, Files, Span, short};
 //!
 //! let mut files = Files::default();
 //! let file = files.add(File::new("wave.glsl", "float wave = sine(x);\n"));
-//! let unknown = Diagnostic::error("E0201", "unknown function `sine`").at(Span::new(file, 13, 17));
-//! assert_eq!(short(&unknown, &files), "wave.glsl:1:14: error[E0201]: unknown function `sine`");
+//! let unknown = Diagnostic::new(Code::Undeclared, "unknown function `sine`").at(Span::new(file, 13, 17));
+//! assert_eq!(short(&unknown, &files), "wave.glsl:1:14: error[E0200]: unknown function `sine`");
 //! ```
 //!
 //! # Parts
@@ -18,6 +18,7 @@
 //! - `layout`: display width, wrapping and aligned columns.
 //! - `deadline`: [`Deadline`], which loops over a shader poll, and which rarely reads the clock.
 
+mod code;
 mod date;
 mod deadline;
 mod file;
@@ -25,14 +26,14 @@ mod layout;
 mod render;
 mod text;
 
-use std::borrow::Cow;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+pub use self::code::{Code, IN_MACRO};
 pub use self::date::Date;
 pub use self::deadline::{Deadline, Overdue};
-pub use self::file::{File, FileId, Files, Position, Span};
+pub use self::file::{File, FileId, Files, Place, Position, Span};
 pub use self::layout::{columns, display_width, wrap};
 pub use self::render::{Json, JsonFix, human, json, short};
 pub use self::text::{
@@ -136,8 +137,8 @@ impl Fix {
 pub struct Diagnostic {
     /// The severity.
     pub severity: Severity,
-    /// A stable code: `E` and four digits for errors, `W` for warnings.
-    pub code: Cow<'static, str>,
+    /// The kind, whose string form is stable: `E` and four digits for errors, `W` for warnings and notes.
+    pub code: Code,
     /// One sentence without a full stop, in the terms of the file's language.
     pub message: String,
     /// Its span; `None` if it concerns the whole file or no file.
@@ -155,11 +156,11 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Makes a diagnostic of that severity.
-    pub fn new(severity: Severity, code: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
+    /// Makes a diagnostic with the severity of its code.
+    pub fn new(code: Code, message: impl Into<String>) -> Self {
         Self {
-            severity,
-            code: code.into(),
+            severity: code.severity(),
+            code,
             message: one_line(message),
             span: None,
             label: None,
@@ -168,16 +169,6 @@ impl Diagnostic {
             notes: Vec::new(),
             helps: Vec::new(),
         }
-    }
-
-    /// Makes an error.
-    pub fn error(code: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
-        Self::new(Severity::Error, code, message)
-    }
-
-    /// Makes a warning.
-    pub fn warning(code: impl Into<Cow<'static, str>>, message: impl Into<String>) -> Self {
-        Self::new(Severity::Warning, code, message)
     }
 
     /// Sets the span.
@@ -338,8 +329,8 @@ mod tests {
         let mut files = Files::default();
         let file = files.add(File::new("a.glsl", "x\ny z"));
         let all = vec![
-            Diagnostic::error("E0001", "no y").at(Span::new(file, 2, 3)),
-            Diagnostic::warning("W0002", "no file"),
+            Diagnostic::new(Code::UnknownCharacter, "no y").at(Span::new(file, 2, 3)),
+            Diagnostic::new(Code::UnknownExtension, "no file"),
         ];
         let error: Box<dyn std::error::Error> = Diagnostics::new(all.clone(), &files).into();
         let lines = "a.glsl:2:1: error[E0001]: no y\nwarning[W0002]: no file";
@@ -354,7 +345,7 @@ mod tests {
 
     #[test]
     fn long_messages_are_truncated_in_the_middle() {
-        let message = |text: &str| Diagnostic::error("E0001", text).message;
+        let message = |text: &str| Diagnostic::new(Code::UnknownCharacter, text).message;
         assert_eq!(
             message(&"é".repeat(MAX_MESSAGE_BYTES / 2)),
             "é".repeat(MAX_MESSAGE_BYTES / 2)
@@ -365,7 +356,7 @@ mod tests {
             "{cut}"
         );
         assert!(cut.contains(" … ") && cut.len() < MAX_MESSAGE_BYTES + 10, "{cut}");
-        let note = Diagnostic::error("E0001", "").note("x".repeat(1 << 20));
+        let note = Diagnostic::new(Code::UnknownCharacter, "").note("x".repeat(1 << 20));
         assert!(note.notes[0].len() < MAX_MESSAGE_BYTES + 10);
     }
 }

@@ -63,7 +63,7 @@ pub fn human(diagnostic: &Diagnostic, files: &Files, width: Option<usize>, color
         .map(|(span, text)| Label::secondary(span.file, range(span)).with_message(text));
     let labels = primary.into_iter().chain(secondary).collect();
     let report = Report::new(level)
-        .with_code(diagnostic.code.as_ref())
+        .with_code(diagnostic.code.as_str())
         .with_message(&diagnostic.message)
         .with_labels(labels)
         .with_notes(footer(diagnostic, width).collect());
@@ -217,12 +217,12 @@ fn json_fix(diagnostic: &Diagnostic, files: &Files) -> Option<JsonFix> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::File;
+    use crate::{Code, File};
 
     fn example() -> (Diagnostic, Files) {
         let mut files = Files::default();
         let id = files.add(File::new("a.glsl", "void f() {\n  é = 1;\n}\n"));
-        let diagnostic = Diagnostic::error("E0100", "unknown variable `é`")
+        let diagnostic = Diagnostic::new(Code::Syntax, "unknown variable `é`")
             .at(Span::new(id, 13, 15))
             .label("not declared")
             .note("names are case-sensitive")
@@ -277,7 +277,7 @@ mod tests {
         let span = |start, end| Span::new(id, start, end);
         let fix =
             Fix::new("write `clamp(x, 0.0, 1.0)`", span(5, 13), "clamp").and(span(15, 15), ", 0.0, 1.0");
-        let diagnostic = Diagnostic::error("E0200", "unknown function `saturate`")
+        let diagnostic = Diagnostic::new(Code::Undeclared, "unknown function `saturate`")
             .at(span(5, 13))
             .fix(fix);
         let text = human(&diagnostic, &files, None, false);
@@ -292,7 +292,7 @@ mod tests {
             end_column: 15,
         };
         assert_eq!(json(&diagnostic, &files).fix, Some(merged));
-        let named = Diagnostic::error("E0200", "unknown name `a`; did you mean `b`?").at(span(13, 14));
+        let named = Diagnostic::new(Code::Undeclared, "unknown name `a`; did you mean `b`?").at(span(13, 14));
         let named = named.fix(Fix::new("did you mean `b`?", span(13, 14), "b"));
         assert_eq!(
             human(&named, &files, None, false).matches("did you mean").count(),
@@ -309,7 +309,7 @@ mod tests {
     fn too_long_lines_are_not_shown() {
         let mut files = Files::default();
         let id = files.add(File::new("a.glsl", "x".repeat(20_000)));
-        let diagnostic = Diagnostic::error("E0100", "no")
+        let diagnostic = Diagnostic::new(Code::Syntax, "no")
             .at(Span::new(id, 9_000, 9_001))
             .help("break it");
         assert_eq!(

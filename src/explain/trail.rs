@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use toyproof_eval::{Program, Settings, UndefinedPolicy};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Source, Target};
-
 use toyproof_verify::Failure;
 use toyproof_verify::project::bind::{clock, programs};
 use toyproof_verify::project::frames::Frames;

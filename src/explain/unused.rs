@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use toyproof_diagnostic::Span;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, VariableKind};
-
 use toyproof_verify::random::reachable_expressions;
 
 /// The inputs and functions that a reference uses and a shader does not.

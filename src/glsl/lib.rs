@@ -64,12 +64,12 @@
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
 
 mod check;
-mod codes;
 mod constant;
 mod foreign;
 mod keywords;
 mod parse;
 mod preprocess;
+mod reporting;
 mod sampling;
 mod single_edit;
 mod stage;
@@ -78,8 +78,8 @@ pub mod tree;
 
 use std::collections::HashSet;
 
-pub use codes::{Code, IN_MACRO, MAX_REPORTED, overdue};
 pub use preprocess::{ControlComment, Expansions};
+pub use reporting::{MAX_REPORTED, overdue};
 pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
 pub use stage::Stage;
@@ -228,7 +228,7 @@ struct Text {
 
 fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnostics> {
     let deadline = &options.deadline;
-    let too_slow = |overdue| Diagnostics::from(vec![codes::overdue(overdue)]);
+    let too_slow = |late| Diagnostics::from(vec![overdue(late)]);
     let mut text = preprocess::preprocess(files, file, options.stage, deadline);
     deadline.check().map_err(too_slow)?;
     if text.incomplete {
@@ -281,7 +281,7 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
                     == (&diagnostic.message, &diagnostic.notes, &diagnostic.related)
             };
             if !(is_in_macro && reported.iter().any(again)) {
-                codes::push_limited(&mut reported, diagnostic);
+                reporting::push_limited(&mut reported, diagnostic);
             }
         }
         return Err(Diagnostics::new(reported, files));

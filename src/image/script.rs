@@ -116,8 +116,9 @@ struct Mouse {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use InputEvent::{KeyPress, KeyRelease, MouseMove, MousePress, MouseRelease};
+
+    use super::*;
 
     #[test]
     fn the_mouse_has_the_signs_of_the_site() {

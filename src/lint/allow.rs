@@ -3,9 +3,9 @@
 //! At the end of a line, an `allow` covers that line; on a line of its own, the next statement, declaration
 //! or directive; before all code, the whole file. Text after the `)` is the author's reason.
 
-use toyproof_diagnostic::{Diagnostic, Files, Span};
+use toyproof_diagnostic::{Code, Diagnostic, Files, IN_MACRO, Span};
+use toyproof_glsl::ControlComment;
 use toyproof_glsl::tree::{Block, Item, Tree, walk};
-use toyproof_glsl::{Code, ControlComment, IN_MACRO};
 
 /// The `allow`s of a shader.
 #[derive(Debug, Default)]
@@ -68,8 +68,8 @@ impl Allows {
         let unused = self.all.iter().zip(&used);
         let unused = unused.filter(|(allow, used)| !**used && !allow.code.is_of_runs());
         let unused = unused.map(|(allow, _)| {
-            let message = format!("unused `allow({})`", allow.code.as_str());
-            let diagnostic = Diagnostic::warning(Code::UnusedAllow.as_str(), message).at(allow.name);
+            let message = format!("unused `allow({})`", allow.code);
+            let diagnostic = Diagnostic::new(Code::UnusedAllow, message).at(allow.name);
             diagnostic.help("remove it")
         });
         let left = found.into_iter().zip(allowed).filter(|(_, allowed)| !allowed);
@@ -95,7 +95,7 @@ impl Allows {
             }
             open.retain(|&allow| place < self.all[allow].scope.end);
             for &allow in &open {
-                if self.all[allow].code.as_str() == found[index].code {
+                if self.all[allow].code == found[index].code {
                     used[allow] = true;
                     allowed[index] = true;
                 }
@@ -106,7 +106,7 @@ impl Allows {
 }
 
 fn invalid_comment(at: Span, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::warning(Code::BadAllow.as_str(), message)
+    Diagnostic::new(Code::BadAllow, message)
         .at(at)
         .help("write `// toyproof: allow(W0005)`, with commas between several codes")
 }

@@ -7,7 +7,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, StructId, Type, UnaryOp, Value};
 
 use super::Findings;

@@ -3,8 +3,7 @@
 //! Reports only where the order of the edges is certain: both are constants, or their difference is a sum of
 //! constants and of values that are never negative, such as `fwidth(d)` and `2.0 / iResolution.y`.
 
-use toyproof_diagnostic::{Files, Fix, Span};
-use toyproof_glsl::Code;
+use toyproof_diagnostic::{Code, Files, Fix, Span};
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, Input, Type, UnaryOp, Value, VariableKind};
 
 use super::program::{Program, Shape};

@@ -1,7 +1,6 @@
 //! `float(1 / 3)`, which is 0: a division of integers drops the fraction before the conversion.
 
-use toyproof_diagnostic::Fix;
-use toyproof_glsl::Code;
+use toyproof_diagnostic::{Code, Fix};
 use toyproof_glsl::tree::{BinaryOp, ExprId, ExprKind, Literal, Value};
 
 use super::Findings;

@@ -5,7 +5,7 @@
 
 use std::collections::HashSet;
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{
     BinaryOp, Block, BuiltIn, Condition, ExprId, ExprKind, Input, Place, Statement, StatementKind, StepOp,
     Type, Value, VariableId, VariableKind, walk,

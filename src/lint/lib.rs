@@ -2,14 +2,14 @@
 //! per lint. [`lint`] takes the front end's result, and does not depend on later stages.
 //!
 //! ```
-//! use toyproof_diagnostic::{Deadline, File, Files};
+//! use toyproof_diagnostic::{Code, Deadline, File, Files};
 //!
 //! let mut files = Files::default();
 //! let text = "void mainImage(out vec4 c, in vec2 p) { float shade; c = vec4(shade); }";
 //! let file = files.add(File::new("shade.glsl", text));
 //! let checked = toyproof_glsl::check(&files, file, &Default::default()).unwrap();
 //! let lints = toyproof_lint::lint(&files, &checked, &Deadline::default());
-//! assert_eq!(lints.warnings[0].code, "W0003");
+//! assert_eq!(lints.warnings[0].code, Code::Unwritten);
 //! ```
 //!
 //! False warnings teach users to ignore all warnings, so each analysis reports only what it is sure of. Only
@@ -44,9 +44,9 @@ use std::collections::HashSet;
 
 use allow::Allows;
 use program::Program;
-use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue, Severity, Span};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files, Overdue, Span};
 use toyproof_glsl::tree::Place;
-use toyproof_glsl::{Checked, Code, MAX_REPORTED};
+use toyproof_glsl::{Checked, MAX_REPORTED};
 
 /// The lints' findings about a valid shader.
 #[derive(Debug, Clone, Default)]
@@ -71,7 +71,7 @@ impl Lints {
                 .is_none_or(|at| at.file == scope.file && (scope.start..scope.end).contains(&at.start))
         };
         let mut allowed = self.allowed.iter();
-        allowed.any(|(code, scope)| code.as_str() == finding.code && holds(scope))
+        allowed.any(|(code, scope)| *code == finding.code && holds(scope))
     }
 }
 
@@ -106,7 +106,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let mut warnings = allows.filter(all);
     warnings.append(&mut allow_warnings);
     if let Err(overdue) = within_deadline {
-        warnings.retain(|diagnostic| diagnostic.code != Code::UnusedAllow.as_str());
+        warnings.retain(|diagnostic| diagnostic.code != Code::UnusedAllow);
         warnings.push(lint_timeout(overdue));
     }
     warnings.sort_by_key(|diagnostic| diagnostic.span.map(|span| span.start));
@@ -127,8 +127,7 @@ fn lint_timeout(overdue: Overdue) -> Diagnostic {
         "lints exceeded their time limit of {} s and were skipped",
         overdue.limit.as_secs_f64()
     );
-    Diagnostic::new(Severity::Note, Code::LintTimeout.as_str(), message)
-        .help("raise `--timeout`, or shorten the functions")
+    Diagnostic::new(Code::LintTimeout, message).help("raise `--timeout`, or shorten the functions")
 }
 
 /// The findings so far.

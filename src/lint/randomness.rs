@@ -1,6 +1,6 @@
 //! `fract(sin(x) * 43758.5453)`: the low-order digits of a sine differ between drivers.
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, UnaryOp, Value};
 
 use super::program::{Definition, Program};

@@ -6,9 +6,9 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use toyproof_diagnostic::Files;
+use toyproof_diagnostic::{Code, Files};
+use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{FunctionId, Item};
-use toyproof_glsl::{Checked, Code};
 
 use super::Findings;
 use super::program::{Program, callee};

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{
     BinaryOp, Block, BuiltIn, BuiltInVariable, Condition, Direction, ExprId, ExprKind, FunctionId, Statement,
     StatementKind, Tree, Value, VariableId, VariableKind,

@@ -1,7 +1,7 @@
 //! Uniforms and varyings that the shader declares. ShaderToy sets only its own, so these are zero. Samplers
 //! read a channel.
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{ExprKind, VariableKind};
 
 use super::Findings;

@@ -2,8 +2,7 @@
 
 use std::collections::HashSet;
 
-use toyproof_diagnostic::{Fix, Span};
-use toyproof_glsl::Code;
+use toyproof_diagnostic::{Code, Fix, Span};
 use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprId, ExprKind, StatementKind, Tree, Type, VariableKind, walk,
 };

@@ -1,8 +1,8 @@
 //! Compiles all tabs of a project, as the site does: every pass with Common in front, and Common alone.
 
-use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files};
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_glsl::{self as glsl, Checked, Code, Options, Stage};
+use toyproof_glsl::{self as glsl, Checked, Options, Stage};
 use toyproof_lint::{Lints, lint};
 
 use crate::pass::{Pass, PassKind, SourceType, Tab};
@@ -82,7 +82,7 @@ pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<
     // An `allow` in Common may serve the warning of one pass only.
     let is_used_elsewhere = |warning: &Diagnostic| {
         let is_in_common = warning.span.is_some_and(|span| Some(span.file) == common);
-        let is_unused = warning.code == Code::UnusedAllow.as_str();
+        let is_unused = warning.code == Code::UnusedAllow;
         is_unused && is_in_common && !warnings.iter().all(|of_pass| of_pass.contains(warning))
     };
     for warning in warnings

@@ -5,14 +5,14 @@ use std::collections::HashMap;
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
-use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, Span, nearest};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest};
 use toyproof_glsl::{Filter, Wrap};
 use toyproof_toml::list_of;
 
 use crate::format::{Format, Wrapper};
 use crate::json;
 use crate::media;
-use crate::node::{INVALID_SYNTAX, Member, Node, Value};
+use crate::node::{Member, Node, Value};
 use crate::pass::{Buffer, PassKind, SourceType, Tab};
 use crate::project::{Document, Project};
 use crate::read::{Renderpass, default_sampler, read};
@@ -172,7 +172,12 @@ fn parse(files: &Files, file: FileId, errors: &mut Vec<Diagnostic>) -> Option<No
     match DeTable::parse(text) {
         Ok(document) => Some(Tree { file, errors }.object(document.into_inner(), None)),
         Err(error) => {
-            errors.push(toyproof_toml::syntax_error(INVALID_SYNTAX, &error, text, file));
+            errors.push(toyproof_toml::syntax_error(
+                Code::ProjectSyntax,
+                &error,
+                text,
+                file,
+            ));
             None
         }
     }

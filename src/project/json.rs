@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use toyproof_diagnostic::{Diagnostic, FileId, Files, Span, grouped};
+use toyproof_diagnostic::{Code, Diagnostic, FileId, Files, Span, grouped};
 
-use crate::node::{INVALID_SYNTAX, Member, Node, Value};
+use crate::node::{Member, Node, Value};
 
 /// The maximum nesting depth; ShaderToy's JSON has seven levels.
 const MAX_NESTING: usize = 64;
@@ -74,7 +74,7 @@ impl Parser<'_> {
         let next = self.text[self.at..].chars().next();
         let end = self.at + next.map_or(0, char::len_utf8);
         let span = Span::new(self.file, self.at as u32, end as u32);
-        let error = Diagnostic::error(INVALID_SYNTAX, message).at(span);
+        let error = Diagnostic::new(Code::ProjectSyntax, message).at(span);
         Box::new(if next.is_none() {
             error.help("the file seems to be cut off; save it again")
         } else if help.is_empty() {
@@ -131,7 +131,7 @@ impl Parser<'_> {
             }
             let key = self.string()?;
             if members.iter().any(|member| member.key == key) {
-                let error = Diagnostic::error(INVALID_SYNTAX, format!("duplicate key `{key}`"));
+                let error = Diagnostic::new(Code::ProjectSyntax, format!("duplicate key `{key}`"));
                 return Err(Box::new(
                     error.at(self.span_from(start)).help("remove one of the two"),
                 ));
@@ -264,7 +264,7 @@ impl Parser<'_> {
                 });
                 let Some(Ok(c)) = char::decode_utf16(units).next() else {
                     let message = "an escape sequence that is not a character";
-                    let error = Diagnostic::error(INVALID_SYNTAX, message).at(self.span_from(start));
+                    let error = Diagnostic::new(Code::ProjectSyntax, message).at(self.span_from(start));
                     return Err(Box::new(
                         error.help("write four hexadecimal digits, or the character itself"),
                     ));

@@ -1,8 +1,8 @@
 //! Warnings about the inputs of a project that the site probably treats differently than the author expects.
 
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Code, Diagnostic};
+use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input as Uniform, VariableKind};
-use toyproof_glsl::{Checked, Code};
 
 use crate::check::CheckedPass;
 use crate::pass::{Buffer, Input, PassKind, Source};
@@ -61,7 +61,7 @@ fn used_channels(checked: &Checked) -> [bool; 4] {
 
 impl Read<'_> {
     fn warning(&self, code: Code, message: String) -> Diagnostic {
-        let warning = Diagnostic::warning(code.as_str(), message);
+        let warning = Diagnostic::new(code, message);
         match self.input.span {
             Some(span) => warning.at(span),
             None => warning,

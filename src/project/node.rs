@@ -1,12 +1,7 @@
 //! Trees of values with their places: the common form of JSON and `project.toml`. Objects keep the order
 //! of their keys, and numbers their digits, so that a tree is written as it was read.
 
-use toyproof_diagnostic::{Diagnostic, Span};
-
-/// The code of errors in the syntax of a project's JSON or TOML.
-pub(crate) const INVALID_SYNTAX: &str = "E0507";
-/// The code of errors in the content of a project's JSON or TOML.
-pub(crate) const INVALID_VALUE: &str = "E0508";
+use toyproof_diagnostic::{Code, Diagnostic, Span};
 
 /// A value and its place.
 #[derive(Debug, Clone)]
@@ -169,7 +164,7 @@ impl Node {
 
     /// An error about this value.
     pub(crate) fn error(&self, message: impl Into<String>) -> Diagnostic {
-        let error = Diagnostic::error(INVALID_VALUE, message);
+        let error = Diagnostic::new(Code::ProjectValue, message);
         match self.span {
             Some(span) => error.at(span),
             None => error,

@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::{Diagnostic, FileId};
+use toyproof_diagnostic::{Code, Diagnostic, FileId};
 use toyproof_image::Image;
 
 use crate::format::{Format, Wrapper};
-use crate::node::{INVALID_VALUE, Node};
+use crate::node::Node;
 use crate::pass::{Input, Pass, PassKind, Tab};
 
 /// A project: Common, and passes with their inputs.
@@ -83,7 +83,7 @@ impl Project {
                     images.insert(path.to_owned(), image);
                 }
                 Err(reason) => {
-                    let error = Diagnostic::error(INVALID_VALUE, reason);
+                    let error = Diagnostic::new(Code::ProjectValue, reason);
                     errors.push(match input.span {
                         Some(span) => error.at(span),
                         None => error,

@@ -1,12 +1,12 @@
 //! Files that describe what a user does with the mouse and the keyboard over the frames of a run.
 
-use toyproof_diagnostic::{Diagnostics, FileId, Files, nearest};
+use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
 use toyproof_image::{InputEvent, Script};
 use toyproof_toml::{Format, Located, Table};
 
 static FORMAT: Format = Format {
-    form_code: "E0509",
-    value_code: "E0510",
+    form_code: Code::ScriptSyntax,
+    value_code: Code::ScriptValue,
     aliases: &[],
 };
 
@@ -137,8 +137,9 @@ fn code(name: &str) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use toyproof_diagnostic::File;
+
+    use super::*;
 
     fn parsed(text: &str) -> Result<Script, Vec<String>> {
         let mut files = Files::default();

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use serde::Serialize;
-use toyproof_diagnostic::{Diagnostics, FileId, Files, grouped};
+use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, grouped};
 use toyproof_toml::{Format, Located, Table};
 use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
@@ -16,8 +16,8 @@ const MAX_POINTS: u32 = 1_000_000;
 
 /// Rubrics.
 static FORMAT: Format = Format {
-    form_code: "E0503",
-    value_code: "E0504",
+    form_code: Code::RubricSyntax,
+    value_code: Code::RubricValue,
     aliases: &[],
 };
 

@@ -2,10 +2,10 @@
 //! terms of the file, and advice.
 //!
 //! ```
-//! use toyproof_diagnostic::{File, Files};
+//! use toyproof_diagnostic::{Code, File, Files};
 //! use toyproof_toml::{Format, read};
 //!
-//! static FORMAT: Format = Format { form_code: "E0501", value_code: "E0502", aliases: &[] };
+//! static FORMAT: Format = Format { form_code: Code::SceneSyntax, value_code: Code::SceneValue, aliases: &[] };
 //! let mut files = Files::default();
 //! let file = files.add(File::new("a.toml", "radius = \"1\""));
 //! let errors = read(&FORMAT, &files, file, |table| table.required::<f64>("radius")).unwrap_err();
@@ -27,7 +27,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-use toyproof_diagnostic::{Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
 use toyproof_image::{MAX_PIXELS, MAX_SIDE, check_size};
 
 pub use self::moment::Moment;
@@ -39,9 +39,9 @@ pub use self::value::{Literal, Value};
 #[derive(Debug)]
 pub struct Format {
     /// The code of errors in the syntax, in keys and in types.
-    pub form_code: &'static str,
+    pub form_code: Code,
     /// The code of errors in values.
-    pub value_code: &'static str,
+    pub value_code: Code,
     /// Accepted spellings of keys: the alias, and the key.
     pub aliases: &'static [(&'static str, &'static str)],
 }
@@ -127,8 +127,8 @@ impl Reader<'_> {
         text.lines().next().unwrap_or_default()
     }
 
-    fn report(&self, code: &'static str, span: Span, message: String, help: &str) {
-        let mut error = Diagnostic::error(code, message).at(span);
+    fn report(&self, code: Code, span: Span, message: String, help: &str) {
+        let mut error = Diagnostic::new(code, message).at(span);
         if !help.is_empty() {
             error = error.help(help);
         }

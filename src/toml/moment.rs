@@ -57,14 +57,14 @@ impl Value for Moment {
 
 #[cfg(test)]
 mod tests {
-    use toyproof_diagnostic::{File, Files};
+    use toyproof_diagnostic::{Code, File, Files};
 
     use super::*;
     use crate::{Format, read};
 
     static FORMAT: Format = Format {
-        form_code: "E0501",
-        value_code: "E0502",
+        form_code: Code::SceneSyntax,
+        value_code: Code::SceneValue,
         aliases: &[],
     };
 

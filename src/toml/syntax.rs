@@ -2,16 +2,15 @@
 
 use std::ops::Range;
 
-use toyproof_diagnostic::{Diagnostic, FileId, Span};
+use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 
 /// Returns the diagnostic for an error of the TOML parser.
 #[must_use]
-pub fn diagnostic(code: &'static str, error: &toml::de::Error, text: &str, file: FileId) -> Diagnostic {
+pub fn diagnostic(code: Code, error: &toml::de::Error, text: &str, file: FileId) -> Diagnostic {
     let bytes = error.span().unwrap_or_default();
     let bytes = bytes.start.min(text.len())..bytes.end.min(text.len());
     let (bytes, message, help) = Site::of(text, bytes).explain(error.message());
-    let diagnostic =
-        Diagnostic::error(code, message).at(Span::new(file, bytes.start as u32, bytes.end as u32));
+    let diagnostic = Diagnostic::new(code, message).at(Span::new(file, bytes.start as u32, bytes.end as u32));
     if help.is_empty() {
         diagnostic
     } else {

@@ -3,9 +3,8 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_eval as eval;
-use toyproof_glsl::Code;
 use toyproof_scene::Sampler;
 
 use crate::compare::{Region, Regions, Share};
@@ -240,8 +239,8 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
 fn without_image(failure: &Failure) -> Verdict {
     use eval::Failure::{Interrupted, Refused, TimeUp, Timeout, TooOften};
     let is_late = |diagnostics: &[Diagnostic]| {
-        let code = Code::TooSlow.as_str();
-        diagnostics.iter().any(|diagnostic| diagnostic.code == code)
+        let mut codes = diagnostics.iter().map(|diagnostic| diagnostic.code);
+        codes.any(|code| code == Code::TooSlow)
     };
     match failure {
         Failure::Missing(_) => Verdict::Missing,
@@ -648,14 +647,14 @@ mod tests {
     #[test]
     fn without_an_image_the_failure_decides() {
         let of = |failure| decide(Evidence::NoImage(failure)).0;
-        let error = |code: &'static str| vec![Diagnostic::error(code, "x")];
+        let error = |code| vec![Diagnostic::new(code, "x")];
         assert_eq!(of(Failure::Missing("no shader".to_owned())), Verdict::Missing);
-        assert_eq!(of(Failure::Invalid(error("E0201"))), Verdict::Invalid);
+        assert_eq!(of(Failure::Invalid(error(Code::Redeclared))), Verdict::Invalid);
+        assert_eq!(of(Failure::Invalid(error(Code::TooSlow))), Verdict::Timeout);
         assert_eq!(
-            of(Failure::Invalid(error(Code::TooSlow.as_str()))),
-            Verdict::Timeout
+            of(Failure::InvalidScene(error(Code::SceneSyntax))),
+            Verdict::Error
         );
-        assert_eq!(of(Failure::InvalidScene(error("E0501"))), Verdict::Error);
         assert_eq!(of(Failure::LoopTruncated(1)), Verdict::Timeout);
         assert_eq!(
             of(Failure::Unrendered("buffers".to_owned())),

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use toyproof_diagnostic::Code;
 use toyproof_diagnostic::{Diagnostic, Span, grouped, plural};
 use toyproof_eval::{EventKind, Program, TraceValue};
-use toyproof_glsl::Code;
 use toyproof_image::{Frame, Image};
 
 use crate::bounds::MAX_TRACED_ITERATIONS;
@@ -90,7 +90,7 @@ impl NotFinite {
         );
         let span = explained.schema.event(step.event).at.span;
         Some(
-            Diagnostic::warning(Code::NotFinite.as_str(), message)
+            Diagnostic::new(Code::NotFinite, message)
                 .at(span)
                 .note(hint([x, y])),
         )
@@ -124,7 +124,7 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
     let span = event.at.span;
     Some((
         span,
-        Diagnostic::warning(Code::LostDigits.as_str(), message)
+        Diagnostic::new(Code::LostDigits, message)
             .at(span)
             .note(hint([x, y])),
     ))

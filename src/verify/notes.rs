@@ -1,9 +1,10 @@
 //! Diagnostics about a run: what the evaluator observed, what is not bound, and what the driver rendered.
 
-use toyproof_diagnostic::{Diagnostic, Severity, Span, grouped, plural};
+use toyproof_diagnostic::Code;
+use toyproof_diagnostic::{Diagnostic, Span, grouped, plural};
 use toyproof_eval::{self as eval, Fault, MESA_CAP, Observations, Observed};
+use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
-use toyproof_glsl::{Checked, Code};
 use toyproof_image::Frame;
 use toyproof_lint::Lints;
 use toyproof_player::{DriverFailure, Phase};
@@ -26,7 +27,7 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
     let is_warned = lints
         .warnings
         .iter()
-        .any(|warning| warning.code == Code::LongLoop.as_str());
+        .any(|warning| warning.code == Code::LongLoop);
     if observed.beyond_cap > 0 && !is_warned {
         let message = format!(
             "the loops of {} {} run more than {} iterations, the limit of Mesa before 23",
@@ -34,7 +35,7 @@ pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lint
             plural(observed.beyond_cap, "pixel", "pixels"),
             grouped(u64::from(MESA_CAP))
         );
-        notes.push(Diagnostic::warning(Code::LongRun.as_str(), message));
+        notes.push(Diagnostic::new(Code::LongRun, message));
     }
     notes
 }
@@ -52,7 +53,7 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
             _ => "cube maps, volumes and arrays cannot be bound".to_owned(),
         };
         let message = format!("`iChannel{channel}` is black: no image is bound to it");
-        let diagnostic = Diagnostic::warning(Code::UnboundChannel.as_str(), message);
+        let diagnostic = Diagnostic::new(Code::UnboundChannel, message);
         diagnostic.at(span).note(note)
     });
     unbound.filter(|note| !lints.allows(note)).collect()
@@ -90,7 +91,7 @@ pub fn driver_failure(failure: &Failure) -> Diagnostic {
              without the toolchain check",
             after.as_secs_f64()
         );
-        return Diagnostic::new(Severity::Note, Code::SlowCompilation.as_str(), message)
+        return Diagnostic::new(Code::SlowCompilation, message)
             .note("use a longer `--timeout`; shorter functions and smaller arrays compile faster");
     }
     // naga's message states what it rejects.
@@ -103,7 +104,7 @@ pub fn driver_failure(failure: &Failure) -> Diagnostic {
          toolchain check",
         stated.unwrap_or_default()
     );
-    Diagnostic::warning(Code::DriverFailure.as_str(), message).note(NOT_THE_SHADER)
+    Diagnostic::new(Code::DriverFailure, message).note(NOT_THE_SHADER)
 }
 
 /// The note on a failure or a difference of the toolchain.
@@ -123,7 +124,7 @@ pub(super) fn toolchain_difference(toolchain: &CheckSummary) -> Option<Diagnosti
         first.x,
         first.y
     );
-    let diagnostic = Diagnostic::warning(Code::ToolchainDifference.as_str(), message);
+    let diagnostic = Diagnostic::new(Code::ToolchainDifference, message);
     Some(diagnostic.note(NOT_THE_SHADER))
 }
 
@@ -133,7 +134,7 @@ pub(super) fn only_single(failure: &eval::Failure) -> Diagnostic {
         "the shader cannot be evaluated in double precision: {failure}; it was compared in float32, without the \
          precision check"
     );
-    let diagnostic = Diagnostic::warning(Code::OnlySingle.as_str(), message);
+    let diagnostic = Diagnostic::new(Code::OnlySingle, message);
     match failure {
         eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at } => diagnostic.at(at.span),
         _ => diagnostic,
@@ -146,8 +147,7 @@ fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
         observed.site.fault.words(),
         pixels(observed)
     );
-    let diagnostic =
-        Diagnostic::warning(Code::UndefinedOperation.as_str(), message).at(observed.site.at.span);
+    let diagnostic = Diagnostic::new(Code::UndefinedOperation, message).at(observed.site.at.span);
     if excludes_pixels {
         diagnostic
     } else {
@@ -161,7 +161,7 @@ fn never_written(observed: &Observed, lints: &Lints) -> Option<Diagnostic> {
     let declared = observed.site.at.span;
     let is_same = |warning: &&Diagnostic| warning.related.iter().any(|(span, _)| *span == declared);
     let mut warnings = lints.warnings.iter();
-    if warnings.any(|warning| warning.code == Code::Unwritten.as_str() && is_same(&warning)) {
+    if warnings.any(|warning| warning.code == Code::Unwritten && is_same(&warning)) {
         return None;
     }
     let message = format!("in {}", pixels(observed));
@@ -169,7 +169,7 @@ fn never_written(observed: &Observed, lints: &Lints) -> Option<Diagnostic> {
         return Some(suspected.clone().note(format!("observed {message}")));
     }
     let message = format!("read before it is written {message}; it is zero in WebGL and undefined elsewhere");
-    let diagnostic = Diagnostic::warning(Code::NeverWritten.as_str(), message).at(declared);
+    let diagnostic = Diagnostic::new(Code::NeverWritten, message).at(declared);
     Some(diagnostic.note("initialize it in its declaration"))
 }
 

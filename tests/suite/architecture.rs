@@ -109,6 +109,32 @@ fn files_are_opened_by_one_function() {
     assert_eq!(found, OWN.map(|path| format!("src/{path}")));
 }
 
+/// Diagnostics name their codes by the variants of one table.
+#[test]
+fn codes_are_written_in_one_table() {
+    let is_code = |word: &str| {
+        word.strip_prefix("E0")
+            .or_else(|| word.strip_prefix("W0"))
+            .is_some_and(|digits| digits.len() == 3 && digits.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    let mut in_table = 0;
+    for path in sources(Path::new("src")) {
+        if path.iter().any(|part| part == "tests" || part == "tests.rs") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let mut codes = code.split('"').filter(|word| is_code(word));
+        if path.starts_with("src/diagnostic/code") || path == Path::new("src/diagnostic/code.rs") {
+            in_table += codes.count();
+        } else {
+            let found = codes.next();
+            assert_eq!(found, None, "{}", toyproof::diagnostic::path_name(&path));
+        }
+    }
+    assert_eq!(in_table, toyproof::diagnostic::Code::ALL.len());
+}
+
 #[test]
 fn only_the_command_line_prints_or_exits() {
     for path in sources(Path::new("src")) {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use std::{fs, thread};
 
 use serde_json::Value;
-use toyproof::diagnostic::{File, Files};
+use toyproof::diagnostic::{Code, File, Files};
 use toyproof::eval;
 use toyproof::explain::{self, Findings};
 use toyproof::glsl::Checked;
@@ -175,7 +175,11 @@ fn the_evaluator_checks_shaders_that_the_driver_cannot_compile_in_time() {
             && findings.results.precision.is_some()
             && findings.results.gpu_run.is_none()
     );
-    let note = findings.notes.iter().find(|note| note.code == "W0606").unwrap();
+    let note = findings
+        .notes
+        .iter()
+        .find(|note| note.code == Code::SlowCompilation)
+        .unwrap();
     assert!(
         note.message.contains("takes longer than 0.3 s to compile"),
         "{note:?}"
@@ -234,7 +238,11 @@ fn a_drivers_fault_takes_no_verdict_away() {
                 findings.results.toolchain.is_none() && findings.results.gpu_run.is_none(),
                 "{script}"
             );
-            let note = findings.notes.iter().find(|note| note.code == "W0610").unwrap();
+            let note = findings
+                .notes
+                .iter()
+                .find(|note| note.code == Code::DriverFailure)
+                .unwrap();
             assert!(note.message.contains(wanted), "{script}: {note:?}");
         }
         // Without a reference, the driver is what is checked; how long it takes shows nothing.

@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use toyproof::diagnostic::Code;
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::Checked;
 use toyproof::gpu::{AdapterSelector, Failure, Worker};
@@ -248,7 +249,7 @@ fn too_deep_nesting_is_not_run_on_a_driver() {
         let lowered = lowered(&deep);
         let reported = lowered.too_deep().expect(name);
         assert!(
-            reported.code == "E0411" && reported.span.is_some(),
+            reported.code == Code::TooDeepToRun && reported.span.is_some(),
             "{reported:?}"
         );
         // No process is started for it.

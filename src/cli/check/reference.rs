@@ -349,9 +349,10 @@ impl SceneCache {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use toyproof_diagnostic::{File, Files};
     use toyproof_scene as scene;
+
+    use super::*;
 
     fn scene(title: &str) -> Scene {
         let mut files = Files::default();

@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{Diagnostics, FileId, Files};
+use toyproof_diagnostic::{Code, Diagnostics, FileId, Files};
 use toyproof_toml::{Format, Located, Moment, Table};
 
 use super::naming::file_name;
 use super::students::Students;
 
 static FORMAT: Format = Format {
-    form_code: "E0505",
-    value_code: "E0506",
+    form_code: Code::AssignmentSyntax,
+    value_code: Code::AssignmentValue,
     aliases: &[],
 };
 

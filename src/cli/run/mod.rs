@@ -3,8 +3,6 @@
 mod project;
 mod state;
 
-pub(in crate::cli) use project::parse_pass;
-
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,10 +10,11 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
+pub(in crate::cli) use project::parse_pass;
 use serde::Serialize;
-use toyproof_diagnostic::{Deadline, grouped, path_name, plural};
+use toyproof_diagnostic::{Code, Deadline, grouped, path_name, plural};
 use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
-use toyproof_glsl::{self as glsl, Checked, Code};
+use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_player::Clock;
@@ -291,8 +290,8 @@ impl Runner<'_> {
     /// Reports how many warnings there are: those about the image in full, the others by their number.
     fn report_warnings(&self, shader: &Shader) {
         let warnings = shader.lints.warnings.iter().cloned();
-        let (shown, counted): (Vec<_>, Vec<_>) = warnings
-            .partition(|warning| self.terminal.is_verbose() || warning.code == Code::UnsetUniform.as_str());
+        let (shown, counted): (Vec<_>, Vec<_>) =
+            warnings.partition(|warning| self.terminal.is_verbose() || warning.code == Code::UnsetUniform);
         if !self.terminal.is_quiet() {
             self.terminal.diagnostics(&shown, &shader.files);
         }

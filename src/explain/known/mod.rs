@@ -21,12 +21,12 @@ use toyproof_eval::{Places, Program};
 use toyproof_image::Frame;
 use toyproof_scene::export::MarkedShader;
 use toyproof_scene::{FrameTime, Scene};
+use toyproof_verify::MAX_DIFFERING;
 
 use crate::known::mutant::{Mutant, MutantSource, render};
 use crate::known::thumbnail::{
     Thumbnail, View, WrongImage, cost_per_pixel, differing, max_unexplained, pixels,
 };
-use toyproof_verify::MAX_DIFFERING;
 
 /// A mistake that a shader may have, or a symptom of many mistakes.
 #[derive(Debug, Clone, PartialEq, Eq)]

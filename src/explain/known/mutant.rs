@@ -1,9 +1,7 @@
 //! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a mistake.
 
-use crate::known::KnownMistake;
-use crate::known::catalogue::Mistake;
-use crate::known::thumbnail::View;
 use std::sync::OnceLock;
+
 use toyproof_diagnostic::{File, Files};
 use toyproof_eval::{Program, UndefinedPolicy};
 use toyproof_glsl as glsl;
@@ -13,6 +11,10 @@ use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 use toyproof_verify::bounds::MAX_ITERATIONS;
 use toyproof_verify::evaluator::evaluate_at;
+
+use crate::known::KnownMistake;
+use crate::known::catalogue::Mistake;
+use crate::known::thumbnail::View;
 
 /// The subject that a mutant renders.
 #[derive(Debug, Clone)]

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use toyproof_eval::{Places, Program};
 use toyproof_image::{Frame, Image};
 use toyproof_scene::{Integrator, Scene};
+use toyproof_verify::compare::Pixel;
 
 use crate::known::mutant::{Mutant, render};
-use toyproof_verify::compare::Pixel;
 
 // Views.
 

@@ -9,13 +9,13 @@ use toyproof_eval::Fault;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
 use toyproof_lint::Lints;
+use toyproof_verify::bounds::MIN_IMAGE_ITERATIONS;
+use toyproof_verify::{Case, CheckResults, Expected, Ruling, Verdict, verify_within};
 
 use super::edit::EditKind;
 use super::search::Before;
 use super::{Repair, SearchOptions};
 use crate::known::KnownMistake;
-use toyproof_verify::bounds::MIN_IMAGE_ITERATIONS;
-use toyproof_verify::{Case, CheckResults, Expected, Ruling, Verdict, verify_within};
 
 /// The second frame: another size and shape of the image, and another time if the scene moves.
 const OTHER_SIZE: [u32; 2] = [132, 100];
@@ -216,8 +216,9 @@ fn mistake(kinds: &[EditKind]) -> KnownMistake {
 mod tests {
     use std::time::Duration;
 
-    use super::*;
     use toyproof_verify::{DEFAULT_TOLERANCE, ShaderReference, verify};
+
+    use super::*;
 
     fn fix(edits: &[(u32, u32, &str)]) -> Fix {
         let file = Files::default().add(File::new("a", ""));

@@ -9,7 +9,6 @@ use std::ops::Range;
 
 use toyproof_eval::Places;
 use toyproof_tracer::ColorRange;
-
 use toyproof_verify::MAX_DIFFERING;
 use toyproof_verify::compare::{EXACT_TOLERANCE, PixelStatus};
 use toyproof_verify::random::MEAN_SETS;

@@ -5,6 +5,8 @@ use std::time::Instant;
 
 use toyproof_diagnostic::Fix;
 use toyproof_eval::{Fault, Places};
+use toyproof_verify::random::NoisyPixel;
+use toyproof_verify::{Case, CheckResult};
 
 use super::confirm::{Judge, compose};
 use super::edit::{Candidate, EditKind};
@@ -14,8 +16,6 @@ use super::shader::Shader;
 use super::trials::Trial;
 use super::under_test::{ShaderUnderTest, UNLIMITED};
 use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
-use toyproof_verify::random::NoisyPixel;
-use toyproof_verify::{Case, CheckResult};
 
 /// How much a candidate may cost more than the first repair to be tried as an alternative.
 const ALTERNATIVE_MARGIN: f64 = 5.0;

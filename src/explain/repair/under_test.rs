@@ -4,6 +4,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use toyproof_eval::{ParametricProgram, Refusal, Settings};
+use toyproof_verify::Case;
+use toyproof_verify::bounds::iterations_of_edited;
 
 use super::Suspect;
 use super::edit::{Candidate, Change};
@@ -14,8 +16,6 @@ use super::schema::compile;
 use super::shader::Shader;
 use super::term::Numbers;
 use super::trials::{Trial, try_group};
-use toyproof_verify::Case;
-use toyproof_verify::bounds::iterations_of_edited;
 
 /// How much the cost of an edit in the least suspicious place exceeds that in the most suspicious one, when
 /// edits are tried and when they are reported; and the cost of a place on which no wrong pixel depends.

@@ -6,14 +6,13 @@
 
 use rayon::prelude::*;
 use toyproof_eval::Places;
-
 use toyproof_verify::Difference;
+use toyproof_verify::Expected;
+use toyproof_verify::compare::PixelStatus;
 
 use super::Alternative;
 use super::wrong_shader::WrongShader;
 use crate::known::KnownMistake;
-use toyproof_verify::Expected;
-use toyproof_verify::compare::PixelStatus;
 
 /// The usual numbers of samples along each axis.
 const SIDES: [u32; 6] = [2, 3, 4, 5, 6, 8];

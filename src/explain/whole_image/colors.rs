@@ -3,14 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use toyproof_image::Image;
-
 use toyproof_verify::Difference;
+use toyproof_verify::compare::{EXACT_TOLERANCE, Pixel, PixelStatus, TOLERANCE};
 
 use super::Alternative;
 use super::curve::{Curve, Isotonic, usual};
 use super::wrong_shader::WrongShader;
 use crate::known::KnownMistake;
-use toyproof_verify::compare::{EXACT_TOLERANCE, Pixel, PixelStatus, TOLERANCE};
 
 /// The orders of red, green and blue, other than their own.
 const ORDERS: [([usize; 3], &str); 5] = [

@@ -5,7 +5,6 @@ use toyproof_eval::Places;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, Value};
 use toyproof_image::{FRAME_RATE, Frame};
-
 use toyproof_verify::Difference;
 
 use super::Alternative;

@@ -17,10 +17,10 @@ use std::sync::LazyLock;
 
 use toyproof_scene::Scene;
 use toyproof_verify::Difference;
+use toyproof_verify::compare::CheckSummary;
 
 pub(crate) use self::wrong_shader::WrongShader;
 use crate::known::KnownMistake;
-use toyproof_verify::compare::CheckSummary;
 
 /// The alternatives to the reference with which a wrong shader is compared.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,12 +1,12 @@
 //! Shaders that render another scene than was asked for, or ShaderToy's default shader.
 
 use toyproof_image::{Frame, Image};
+use toyproof_verify::Expected;
 
 use super::view::View;
 use super::wrong_shader::WrongShader;
 use super::{Alternative, OtherScenes};
 use crate::known::KnownMistake;
-use toyproof_verify::Expected;
 
 /// Finds the scene that a shader renders instead of its own.
 pub(super) fn find(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {

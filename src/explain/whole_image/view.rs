@@ -2,7 +2,6 @@
 
 use toyproof_eval::Places;
 use toyproof_image::{Frame, Image};
-
 use toyproof_verify::Difference;
 
 use super::Alternative;

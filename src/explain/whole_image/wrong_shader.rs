@@ -2,10 +2,6 @@
 
 use toyproof_eval::{Places, Program, Settings, UndefinedPolicy};
 use toyproof_image::{Frame, Image};
-
-use super::Alternative;
-use super::view::View;
-use crate::known::KnownMistake;
 use toyproof_verify::BandReference;
 use toyproof_verify::NumberType;
 use toyproof_verify::bounds::iterations_of_image;
@@ -15,6 +11,10 @@ use toyproof_verify::compare::{
 use toyproof_verify::evaluator::evaluate_at;
 use toyproof_verify::{Case, CheckResult, Expected};
 use toyproof_verify::{CheckEvidence, Checks, Verdict, decide};
+
+use super::Alternative;
+use super::view::View;
+use crate::known::KnownMistake;
 
 /// The largest number of pixels of an image that is compared: it is kept as a whole.
 const MAX_PIXELS: u32 = 1 << 21;

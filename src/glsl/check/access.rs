@@ -1,10 +1,9 @@
 //! Names, members, swizzles and indices (§5.5–§5.7).
 
-use toyproof_diagnostic::{nearest, plural};
+use toyproof_diagnostic::{Code, nearest, plural};
 
 use super::Checker;
 use super::scope::{Entity, did_you_mean};
-use crate::codes::Code;
 use crate::token::Symbol;
 use crate::tree::{
     BuiltIn, ExprId, ExprKind, Input, Place, Scalar, StructId, Swizzle, Type, Variable, VariableId,

@@ -1,12 +1,12 @@
 //! Calls and constructors: overload resolution (§6.1, §5.4).
 
-use toyproof_diagnostic::{Diagnostic, Fix, plural};
+use toyproof_diagnostic::{Code, Diagnostic, Fix, plural};
 
 use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
 use super::signature::{self, Match};
 use super::{Checker, Specifier, is_desktop_conversion};
-use crate::codes::{Code, given};
+use crate::reporting::given;
 use crate::token::Symbol;
 use crate::tree::{
     BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, StructId, Type, Value,

@@ -2,12 +2,11 @@
 //! `uniform struct { sampler2D sampler; vec3 size; float time; int loaded; } iCh0;`. Only their members can be
 //! used, and these are the other inputs.
 
-use toyproof_diagnostic::nearest;
+use toyproof_diagnostic::{Code, nearest};
 
 use super::Checker;
 use super::scope::did_you_mean;
 use crate::Stage;
-use crate::codes::Code;
 use crate::token::Symbol;
 use crate::tree::{BinaryOp, ExprId, ExprKind, Input, Literal, Place, Value, VariableKind};
 

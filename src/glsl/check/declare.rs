@@ -1,9 +1,11 @@
 //! Declarations of variables and constants, and their qualifiers (§4.2, §4.3).
 
+use toyproof_diagnostic::Code;
+
 use super::scope::Entity;
 use super::{Checker, Size, Specifier, is_desktop_conversion};
-use crate::codes::{Code, push_limited};
 use crate::keywords::Keyword;
+use crate::reporting::push_limited;
 use crate::token::Symbol;
 use crate::tree::{BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
 

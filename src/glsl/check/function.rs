@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
+use toyproof_diagnostic::Code;
+
 use super::scope::Entity;
 use super::{Checker, Specifier};
 use crate::Stage;
-use crate::codes::Code;
 use crate::stage::Entry;
 use crate::token::Symbol;
 use crate::tree::{

@@ -19,7 +19,7 @@ mod types;
 
 use std::collections::HashSet;
 
-use toyproof_diagnostic::{Deadline, Diagnostic, Fix};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Fix, IN_MACRO};
 
 pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
 use self::function::Context;
@@ -30,10 +30,10 @@ pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
 use crate::Options;
-use crate::codes::{Code, IN_MACRO, MAX_REPORTED, push_limited};
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
 use crate::preprocess::Preprocessed;
+use crate::reporting::{MAX_REPORTED, push_limited};
 use crate::stage::Stage;
 use crate::token::Symbol;
 use crate::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};

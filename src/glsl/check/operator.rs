@@ -1,7 +1,8 @@
 //! Operators (§5.9), `?:`, `,`, and assignments (§5.8).
 
+use toyproof_diagnostic::Code;
+
 use super::{Checker, is_desktop_conversion};
-use crate::codes::Code;
 use crate::tree::{
     BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Input, Place, Scalar, StepOp, Type, UnaryOp,
     VariableKind,

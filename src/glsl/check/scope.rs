@@ -2,10 +2,9 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::{Diagnostic, Fix, Span, nearest};
+use toyproof_diagnostic::{Code, Diagnostic, Fix, Span, nearest};
 
 use super::Checker;
-use crate::codes::Code;
 use crate::foreign::Foreign;
 use crate::keywords::Word;
 use crate::stage::Stage;
@@ -223,7 +222,7 @@ impl Checker<'_> {
             let reported = self
                 .errors
                 .iter_mut()
-                .find(|error| error.span == Some(at.span) && error.code == Code::Undeclared.as_str());
+                .find(|error| error.span == Some(at.span) && error.code == Code::Undeclared);
             let Some(reported) = reported else {
                 continue;
             };

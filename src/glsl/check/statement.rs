@@ -2,10 +2,9 @@
 
 use std::collections::HashSet;
 
-use toyproof_diagnostic::grouped;
+use toyproof_diagnostic::{Code, grouped};
 
 use super::Checker;
-use crate::codes::Code;
 use crate::tree::{ExprId, Label, Place, Type};
 
 /// Maximum number of labels of a `switch`: lavapipe loses the device at 50,000.

@@ -2,12 +2,11 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::grouped;
+use toyproof_diagnostic::{Code, grouped};
 
 use super::Checker;
 use super::scope::Entity;
 use crate::MAX_NESTING;
-use crate::codes::Code;
 use crate::token::Symbol;
 use crate::tree::{ExprId, ExprKind, Member, Place, Struct, StructId, Type, VariableKind};
 

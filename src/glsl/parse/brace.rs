@@ -1,11 +1,10 @@
 //! Unbalanced braces. The grammar cannot determine which brace is at fault, but the indentation of the lines
 //! often can.
 
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Code, Diagnostic};
 
 use super::bracket::{missing, stray};
 use super::recover::Layout;
-use crate::codes::Code;
 use crate::keywords::{Interner, Keyword, Word};
 use crate::token::{Punctuator, Token, TokenKind};
 

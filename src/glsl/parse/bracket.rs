@@ -1,12 +1,12 @@
 //! Unbalanced parentheses and square brackets: reported and repaired, so that the rest can be parsed.
 
-use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
+use toyproof_diagnostic::{Code, Diagnostic, File, Fix, Span};
 
 use super::brace;
 use super::recover::Layout;
-use crate::codes::{Code, push_limited};
 use crate::keywords::{Interner, Keyword, Word};
 use crate::preprocess::Preprocessed;
+use crate::reporting::push_limited;
 use crate::token::{Punctuator, Token, TokenKind};
 use crate::tree::Place;
 

@@ -1,8 +1,9 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
+use toyproof_diagnostic::Code;
+
 use super::{Halt, Parsed, Parser};
 use crate::check::{Declarator, Members, Parameter, Qualifiers, Size, Specifier, Storage};
-use crate::codes::Code;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::{Direction, Item, Place, Type, VariableId};

@@ -1,8 +1,9 @@
 //! Expressions (§5.1): one function for each kind of operator; chains are loops. Also numeric literals.
 
+use toyproof_diagnostic::Code;
+
 use super::{Parsed, Parser};
 use crate::check::Specifier;
-use crate::codes::Code;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, TokenKind};
 use crate::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};

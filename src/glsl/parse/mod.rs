@@ -11,14 +11,13 @@ mod expression;
 mod recover;
 mod statement;
 
-use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
+use toyproof_diagnostic::{Code, Diagnostic, File, Fix, Span};
 
 pub(super) use self::bracket::balance;
 pub(crate) use self::expression::LiteralError;
 pub(crate) use self::recover::Layout;
 use crate::MAX_NESTING;
 use crate::check::Checker;
-use crate::codes::Code;
 use crate::foreign::Foreign;
 use crate::keywords::{Interner, Keyword, Word};
 use crate::preprocess::Preprocessed;

@@ -1,10 +1,9 @@
 //! Error recovery: skipping text that cannot be parsed, source layout, and hints about foreign syntax.
 
-use toyproof_diagnostic::{Diagnostic, File, Fix, Span};
+use toyproof_diagnostic::{Code, Diagnostic, File, Fix, Span};
 
 use super::bracket::closing;
 use super::{Halt, Parsed, Parser};
-use crate::codes::Code;
 use crate::foreign::Foreign;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Token, TokenKind};

@@ -1,8 +1,9 @@
 //! Statements and control flow (§6).
 
+use toyproof_diagnostic::Code;
+
 use super::{Parsed, Parser};
 use crate::check::Labels;
-use crate::codes::Code;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Token, TokenKind};
 use crate::tree::{Arm, Block, Case, Condition, Label, Place, Statement, StatementKind};

@@ -1,10 +1,9 @@
 //! Conditional directives: `#if` groups, and the integer expressions that control them.
 
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Code, Diagnostic};
 
 use super::macros::expect_end_of_directive;
 use super::{PpToken, Preprocessor};
-use crate::codes::Code;
 use crate::token::{Punctuator, TokenKind};
 use crate::tree::{BinaryOp, Place, UnaryOp};
 

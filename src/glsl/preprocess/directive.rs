@@ -1,10 +1,9 @@
 //! Directives: the lines that begin with `#`.
 
-use toyproof_diagnostic::{Diagnostic, Fix, Span, nearest};
+use toyproof_diagnostic::{Code, Diagnostic, Fix, Span, nearest};
 
 use super::macros::expect_end_of_directive;
 use super::{PpToken, Preprocessor, Seen};
-use crate::codes::Code;
 use crate::token::TokenKind;
 use crate::tree::Place;
 

@@ -1,10 +1,10 @@
 //! Macro expansion (C++98 §16.3).
 
-use toyproof_diagnostic::plural;
+use toyproof_diagnostic::{Code, plural};
 
 use super::macros::Body;
 use super::{PpToken, Preprocessor};
-use crate::codes::{Code, given};
+use crate::reporting::given;
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
 

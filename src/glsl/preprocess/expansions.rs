@@ -2,10 +2,9 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::{Diagnostic, Files, Span};
+use toyproof_diagnostic::{Diagnostic, Files, IN_MACRO, Span};
 
 use super::PpToken;
-use crate::codes::IN_MACRO;
 
 /// The macros of a text, and their uses.
 #[derive(Debug, Clone, Default)]

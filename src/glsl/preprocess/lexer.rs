@@ -1,8 +1,7 @@
 //! The lexer (GLSL ES 3.00.6 §3.1–3.4): line continuations, comments, words, numbers, punctuators.
 
-use toyproof_diagnostic::{Diagnostic, FileId, Span};
+use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 
-use crate::codes::Code;
 use crate::keywords::Interner;
 use crate::token::{Punctuator, TokenKind};
 use crate::tree::Place;

@@ -4,11 +4,10 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::rc::Rc;
 
-use toyproof_diagnostic::{Diagnostic, FileId, Span};
+use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 
 use super::{PpToken, Preprocessor};
 use crate::Stage;
-use crate::codes::Code;
 use crate::keywords::Interner;
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;

@@ -13,7 +13,7 @@ mod macros;
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_diagnostic::{Deadline, Diagnostic, FileId, Files, Fix, grouped};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, FileId, Files, Fix, grouped};
 
 use self::condition::Group;
 pub(crate) use self::directive::DIRECTIVES;
@@ -22,10 +22,10 @@ pub use self::expansions::Expansions;
 pub use self::lexer::ControlComment;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
-use super::codes::{Code, push_limited};
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use crate::Stage;
 use crate::keywords::Interner;
+use crate::reporting::push_limited;
 
 /// Maximum length of a name in bytes (WebGL 2, §4.3.1).
 const MAX_NAME_BYTES: usize = 1024;
@@ -124,11 +124,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId, stage: Stage, deadline: &D
     }
     let diagnostics = preprocessor.diagnostics;
     let any_of = |codes: &[Code]| {
-        let reported = |code: &Code| {
-            diagnostics
-                .iter()
-                .any(|diagnostic| diagnostic.code == code.as_str())
-        };
+        let reported = |code: &Code| diagnostics.iter().any(|diagnostic| diagnostic.code == *code);
         codes.iter().any(reported)
     };
     Preprocessed {

@@ -2,10 +2,9 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use toyproof_diagnostic::{Diagnostic, Diagnostics, Edit, Fix, Severity, Span};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, Edit, Fix, Severity, Span};
 
 use super::source::Source;
-use crate::codes::Code;
 
 /// Number of errors, from the first one, around which edits are tried.
 const MAX_ERRORS: usize = 4;
@@ -41,7 +40,7 @@ pub(super) struct Candidates<'a> {
     /// The tokens near errors, and their distances from the nearest of them in tokens.
     near: BTreeMap<usize, usize>,
     /// The codes of the errors.
-    codes: HashSet<&'a str>,
+    codes: HashSet<Code>,
     found: Vec<Candidate>,
 }
 
@@ -51,7 +50,7 @@ impl<'a> Candidates<'a> {
         let mut candidates = Self {
             source,
             near: BTreeMap::new(),
-            codes: errors().map(|error| &*error.code).collect(),
+            codes: errors().map(|error| error.code).collect(),
             found: Vec::new(),
         };
         for (rank, error) in errors().take(MAX_ERRORS).enumerate() {
@@ -65,7 +64,7 @@ impl<'a> Candidates<'a> {
 
     /// Whether one of the codes is reported.
     pub(super) fn has(&self, codes: &[Code]) -> bool {
-        codes.iter().any(|code| self.codes.contains(code.as_str()))
+        codes.iter().any(|code| self.codes.contains(code))
     }
 
     /// Whether a violation of the grammar is reported, not only of the rules for names and types.
@@ -176,7 +175,7 @@ impl<'a> Candidates<'a> {
         let errors: Vec<_> = errors
             .iter()
             .filter(|error| error.severity == Severity::Error)
-            .map(|error| (&error.code, of(error)))
+            .map(|error| (error.code, of(error)))
             .collect();
         let mut kinds: Vec<_> = errors.iter().map(|(code, _)| *code).collect();
         kinds.sort_unstable();

@@ -14,11 +14,10 @@ mod types;
 
 use std::time::Duration;
 
-use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, File, FileId, Files, Fix, Severity};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, File, FileId, Files, Fix, Severity};
 
 use self::candidates::{Candidates, edited};
 use self::source::Source;
-use crate::codes::Code;
 use crate::preprocess::preprocess;
 use crate::{Options, check};
 
@@ -62,7 +61,7 @@ const MAX_DURATION: Duration = Duration::from_secs(2);
 #[must_use]
 pub fn single_edit(files: &Files, file: FileId, errors: &Diagnostics, options: &Options) -> Option<Fix> {
     let text = files.get(file).text();
-    let is_overdue = errors.iter().any(|error| error.code == Code::TooSlow.as_str());
+    let is_overdue = errors.iter().any(|error| error.code == Code::TooSlow);
     if text.len() > MAX_TEXT_BYTES || is_overdue {
         return None;
     }

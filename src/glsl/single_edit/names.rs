@@ -2,11 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use toyproof_diagnostic::{Diagnostic, Diagnostics, Edit, Span, similar};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, Edit, Span, similar};
 
 use super::candidates::Candidates;
 use super::source::Source;
-use crate::codes::Code;
 use crate::foreign::Foreign;
 use crate::keywords::{Keyword, Word};
 use crate::preprocess::DIRECTIVES;
@@ -49,10 +48,7 @@ pub(super) fn collect(candidates: &mut Candidates, errors: &Diagnostics) {
             misspelling(candidates, &names, index, cost);
         }
     }
-    if errors
-        .iter()
-        .any(|error| error.code == Code::NoMainImage.as_str())
-    {
+    if errors.iter().any(|error| error.code == Code::NoMainImage) {
         main_image(candidates);
     }
 }
@@ -141,7 +137,7 @@ fn undeclared(source: &Source, errors: &Diagnostics) -> Vec<usize> {
     ];
     let reported = errors
         .iter()
-        .filter(|error| codes.iter().any(|code| error.code == code.as_str()));
+        .filter(|error| codes.iter().any(|code| error.code == *code));
     let indices = reported.flat_map(|error| {
         // In a macro, the related span has the name.
         let related = error.related.iter().map(|(span, _)| *span);
@@ -245,7 +241,7 @@ fn foreign(candidates: &mut Candidates, index: usize, distance: usize) {
             Span::new(source.file, start, start)
         });
         let at = crate::tree::Place::plain(source.span(index));
-        let advised = foreign.advise(Diagnostic::error("", ""), at, end);
+        let advised = foreign.advise(Diagnostic::new(Code::Undeclared, ""), at, end);
         advised.fixes.into_iter().flat_map(|fix| fix.edits).collect()
     };
     let message = format!("use {}", foreign.replacement());

@@ -2,11 +2,10 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::{Diagnostics, Span};
+use toyproof_diagnostic::{Code, Diagnostics, Span};
 
 use super::candidates::Candidates;
 use super::source::Source;
-use crate::codes::Code;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Symbol};
 
@@ -78,10 +77,7 @@ pub(super) fn collect(candidates: &mut Candidates, errors: &Diagnostics) {
         }
     }
     mentioned.change_members(candidates);
-    if errors
-        .iter()
-        .any(|error| error.code == Code::NoMainImage.as_str())
-    {
+    if errors.iter().any(|error| error.code == Code::NoMainImage) {
         main_image(candidates, &mentioned);
     }
 }

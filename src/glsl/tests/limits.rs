@@ -3,6 +3,8 @@
 
 use std::collections::HashSet;
 
+use toyproof_diagnostic::{Code, Severity};
+
 use super::{MAIN, check_text};
 use crate::tree::{
     self, Block, Condition, ExprId, ExprKind, Item, Label, Place, StatementKind, Tree, Type, VariableId,
@@ -46,7 +48,7 @@ fn too_deep_nesting_is_reported() {
         for depth in [50_000, 300] {
             let text = text(depth);
             let errors = with_small_stack(|| check_text(&text, &Options::default()).unwrap_err());
-            assert_eq!(errors[0].code, "E0101", "{open} {depth}");
+            assert_eq!(errors[0].code, Code::TooDeep, "{open} {depth}");
         }
         let shallow = text(20);
         with_small_stack(|| check_text(&shallow, &Options::default())).unwrap();
@@ -111,10 +113,13 @@ fn nested_structures_take_linear_time() {
         lenient: true,
         ..Options::default()
     };
-    assert_eq!(check_text(&text, &lenient).unwrap_err()[0].code, "E0305");
+    assert_eq!(
+        check_text(&text, &lenient).unwrap_err()[0].code,
+        Code::BadArraySize
+    );
     assert_eq!(
         check_text(&text, &Options::default()).unwrap_err()[0].code,
-        "E0101"
+        Code::TooDeep
     );
     let deep = |line| format!("struct S0 {{ float a; }};\n{}{MAIN}", each(1..20_000, line));
     let texts = [
@@ -124,7 +129,7 @@ fn nested_structures_take_linear_time() {
     ];
     for text in texts {
         let errors = with_small_stack(|| check_text(&text, &lenient).unwrap_err());
-        assert_eq!(errors[0].code, "E0101");
+        assert_eq!(errors[0].code, Code::TooDeep);
     }
 }
 
@@ -133,7 +138,7 @@ fn variable_size_is_limited() {
     let text = |size| format!("struct S {{ vec4 a[1024]; }}; S s[{size}]; {MAIN}");
     assert!(check_text(&text(1024), &Options::default()).is_ok());
     let errors = check_text(&text(1025), &Options::default()).unwrap_err();
-    assert_eq!(errors[0].code, "E0305");
+    assert_eq!(errors[0].code, Code::BadArraySize);
 }
 
 #[test]
@@ -143,7 +148,9 @@ fn number_of_reported_errors_is_limited() {
         let reported = check_text(&text, &Options::default()).unwrap_err();
         assert!(reported.len() <= 100, "{line}");
         assert!(
-            reported.iter().any(|diagnostic| diagnostic.code.starts_with('E')),
+            reported
+                .iter()
+                .any(|diagnostic| diagnostic.severity == Severity::Error),
             "{line}"
         );
     }
@@ -232,7 +239,7 @@ fn every_stage_stops_at_its_deadline() {
     let text = format!("float f(float x) {{ return x == x + .1 ? 1. : 2.; }} {MAIN}");
     let errors = check_text(&text, &late).unwrap_err();
     assert_eq!(errors.len(), 1, "{errors:?}");
-    assert_eq!(errors[0].code, "E0410");
+    assert_eq!(errors[0].code, Code::TooSlow);
     assert_eq!(errors[0].message, "compilation exceeded the time limit of 0 s");
 
     let mut files = Files::default();

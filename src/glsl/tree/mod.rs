@@ -25,7 +25,7 @@ use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
-use toyproof_diagnostic::Span;
+pub use toyproof_diagnostic::Place;
 
 pub use self::builtin::BuiltIn;
 pub use self::expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
@@ -307,48 +307,6 @@ impl<T> Index<Id<T>> for Arena<T> {
 impl<T> IndexMut<Id<T>> for Arena<T> {
     fn index_mut(&mut self, id: Id<T>) -> &mut T {
         &mut self.nodes[id.index()]
-    }
-}
-
-// Source places, through macros.
-
-/// The place of a node in the source text: where it is used and where its characters are.
-///
-/// The two differ for text from a macro's body: then `span` is the use of the outermost macro (`F(x)` in the
-/// file) and `spelling` is in the body of a `#define`. For macro arguments, which are text of the file, they
-/// are equal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Place {
-    /// The span in the file outside macro bodies, which diagnostics use for line numbers.
-    pub span: Span,
-    /// The span of the characters.
-    pub spelling: Span,
-}
-
-impl Place {
-    /// Makes a place of text outside of any macro.
-    #[must_use]
-    pub fn plain(span: Span) -> Self {
-        Self { span, spelling: span }
-    }
-
-    /// The place from `self` to `other`. If it does not lie within one macro expansion, `spelling` is the
-    /// same as `span`.
-    #[must_use]
-    pub fn to(self, other: Self) -> Self {
-        let span = self.span.to(other.span);
-        let spelling = if self.span == other.span && self.is_expanded() && other.is_expanded() {
-            self.spelling.to(other.spelling)
-        } else {
-            span
-        };
-        Self { span, spelling }
-    }
-
-    /// Whether the characters are in the body of a macro.
-    #[must_use]
-    pub fn is_expanded(self) -> bool {
-        self.span != self.spelling
     }
 }
 

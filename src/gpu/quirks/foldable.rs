@@ -3,7 +3,6 @@
 use std::collections::{HashMap, HashSet};
 
 use spirv::Op;
-
 use toyproof_translate::backend::spirv::{has_type, instructions, opcode};
 
 /// A fact that a compiler may know about a value.

@@ -1,7 +1,6 @@
 //! Variables that Mesa 22.3 overwrites in pixels that have left a loop: see [`LOOP_EXITS`](super::LOOP_EXITS).
 
 use spirv::Op;
-
 use toyproof_translate::backend::spirv::{instructions, opcode};
 
 use super::opaque::{Opaque, push};

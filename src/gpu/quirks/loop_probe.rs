@@ -6,7 +6,6 @@ use naga::{
     Arena, BinaryOperator, Block, Expression, Function, GlobalVariable, Handle, Literal, Module, Range,
     Scalar, ScalarKind, Span, Statement, Type, TypeInner,
 };
-
 use toyproof_translate::TranslateError;
 use toyproof_translate::naga_ir::ValidModule;
 

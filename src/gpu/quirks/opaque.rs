@@ -4,7 +4,6 @@
 use std::collections::HashMap;
 
 use spirv::{BuiltIn, Decoration, Op};
-
 use toyproof_translate::backend::spirv::{BOUND, instructions, opcode};
 
 /// The ids of a module that computing such zeros takes, and the types that are added for it.

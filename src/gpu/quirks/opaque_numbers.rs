@@ -3,7 +3,6 @@
 use std::collections::{HashMap, HashSet};
 
 use spirv::{GlslStd450Op, Op, StorageClass};
-
 use toyproof_translate::backend::spirv::{has_type, instructions, is_product, opcode};
 
 use super::foldable::{Foldable, Known, Operands};

@@ -1,6 +1,7 @@
 //! The summary of a study as text: where each formula stops being right, and which one is recommended.
 
 use std::fmt::Write as _;
+
 use toyproof_diagnostic::{columns, grouped, plural};
 
 use super::axis::{Axis, EasySteps, Kind, Step, axes};

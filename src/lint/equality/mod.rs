@@ -9,7 +9,7 @@ mod origin;
 use std::collections::HashSet;
 
 use origin::{Origin, Origins};
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, FunctionId, Value};
 
 use super::Findings;

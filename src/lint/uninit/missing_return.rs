@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{
     BinaryOp, Block, Constant, ExprId, ExprKind, FunctionId, StatementKind, Value, walk,
 };

@@ -14,8 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use flow::{Flow, analyze};
 use part::{Layout, Part, Parts};
-use toyproof_diagnostic::Diagnostic;
-use toyproof_glsl::Code;
+use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::tree::{ExprId, Tree, Type, VariableId, VariableKind};
 
 use super::Findings;

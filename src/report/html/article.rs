@@ -1,6 +1,7 @@
 //! One shader on the page: its verdict, the likely mistake, the fix, its images, its checks and its source.
 
 use std::fmt::Write as _;
+
 use toyproof_diagnostic::{color_difference, grouped};
 use toyproof_verify::compare::{CheckSummary, Pixel};
 
@@ -349,12 +350,13 @@ fn place(name: &str, pixel: &Pixel) -> String {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_verify::Verdict;
+
     use super::*;
     use crate::report::Alternative;
     use crate::report::Hints;
     use crate::report::record::samples::{correct, question, record};
     use crate::report::repair::samples::{SOURCE, repaired, suspected};
-    use toyproof_verify::Verdict;
 
     fn article(record: &Record) -> String {
         let article = Article {

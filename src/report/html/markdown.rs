@@ -1,8 +1,9 @@
 //! The subset of Markdown of the explanations: paragraphs, fenced and indented code, lists, tables as text,
 //! inline code and strong emphasis. All text is escaped.
 
-use super::Text;
 use std::fmt::Write as _;
+
+use super::Text;
 
 /// Converts Markdown to HTML.
 pub(super) fn html(text: &str) -> String {

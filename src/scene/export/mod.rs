@@ -11,6 +11,7 @@ mod shading;
 mod slot;
 mod structure;
 
+pub use slot::{MarkedShader, Slot};
 use thiserror::Error;
 
 use self::expression::{motion_functions, vector};
@@ -19,7 +20,6 @@ use self::intersection::quadric_functions;
 use self::parts::{GLASS, Kind, Parts, is_emitter};
 use self::shading::DISNEY_STRUCTURE;
 use crate::{Requirements, Sampler, Scene};
-pub use slot::{MarkedShader, Slot};
 
 /// A feature of a scene that exported shaders do not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]

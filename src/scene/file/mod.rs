@@ -6,7 +6,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-use toyproof_diagnostic::{Diagnostics, FileId, Files, Span};
+use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, Span};
 use toyproof_toml::{Format, Table};
 
 use self::checks::Checks;
@@ -16,8 +16,8 @@ use super::{Background, Film, Integrator, Light, Model, Object, Scattered, Scene
 
 /// Scene files.
 static FORMAT: Format = Format {
-    form_code: "E0501",
-    value_code: "E0502",
+    form_code: Code::SceneSyntax,
+    value_code: Code::SceneValue,
     aliases: &[("centre", "center"), ("colour", "color")],
 };
 

@@ -8,7 +8,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::Code;
+use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{
     BinaryOp, Block, ExprId, ExprKind, FunctionId, Place, Scalar, Statement, StatementKind, Tree, Type,
     UnaryOp, VariableId, walk,

@@ -4,7 +4,7 @@ use naga::front::glsl::{Frontend, Options};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::{Diagnostic, Diagnostics};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics};
 
 use crate::{Lowered, TranslateError};
 
@@ -66,7 +66,9 @@ impl ValidModule {
             .map_err(|errors| {
                 let errors = errors.errors.iter();
                 errors
-                    .map(|error| naga_diagnostic("E0900", &error.kind.to_string(), error.meta, lowered))
+                    .map(|error| {
+                        naga_diagnostic(Code::NagaParse, &error.kind.to_string(), error.meta, lowered)
+                    })
                     .collect::<Vec<_>>()
             })?;
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
@@ -85,7 +87,13 @@ impl ValidModule {
                     .is_some_and(|range| lowered.origin(range).is_some())
             };
             let span = spans.find(is_authors).unwrap_or(naga::Span::UNDEFINED);
-            vec![naga_diagnostic("E0901", &chain(error.as_inner()), span, lowered)].into()
+            vec![naga_diagnostic(
+                Code::NagaValidation,
+                &chain(error.as_inner()),
+                span,
+                lowered,
+            )]
+            .into()
         })
     }
 
@@ -151,8 +159,8 @@ fn has_fetches(module: &Module) -> bool {
     })
 }
 
-fn naga_diagnostic(code: &'static str, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {
-    let diagnostic = Diagnostic::error(code, format!("naga cannot translate this: {message}"));
+fn naga_diagnostic(code: Code, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {
+    let diagnostic = Diagnostic::new(code, format!("naga cannot translate this: {message}"));
     match span.to_range().and_then(|range| lowered.origin(range)) {
         Some(span) => diagnostic.at(span),
         None => diagnostic.note("the place is in code that toyproof generates, or naga does not name it"),

@@ -10,11 +10,10 @@ mod names;
 mod order;
 mod statement;
 
-pub(super) use names::Numbering;
-pub(super) use order::Order;
-
 use std::ops::Range;
 
+pub(super) use names::Numbering;
+pub(super) use order::Order;
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
 use toyproof_glsl::Stage;

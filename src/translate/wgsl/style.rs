@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::Diagnostic;
+use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, Input, Place, Sampler, SamplerShape, Swizzle, Type, VariableId, VariableKind,
@@ -303,7 +303,7 @@ impl Writer<'_> {
     fn not_provided(&self, what: &str, at: Option<Place>) -> Unprintable {
         let style = self.style.name();
         let message = format!("{what} is not available in the style `{style}`");
-        let diagnostic = Diagnostic::error("E0902", message);
+        let diagnostic = Diagnostic::new(Code::UnsupportedByTarget, message);
         let diagnostic = match at {
             Some(at) => diagnostic.at(at.span),
             None => diagnostic,

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use toyproof_diagnostic::{Deadline, Diagnostic, Files};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, Type, VariableId, VariableKind, walk,
 };
@@ -158,7 +158,7 @@ impl<'a> Writer<'a> {
                 let style = self.style.name();
                 let message = format!("{what} is not supported in the style `{style}`");
                 Unprintable::Host(Box::new(
-                    Diagnostic::error("E0902", message)
+                    Diagnostic::new(Code::UnsupportedByTarget, message)
                         .at(at.span)
                         .help("use `--style plain`, which supports it"),
                 ))

@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use toyproof_diagnostic::{Diagnostic, Span, grouped, plural};
+use toyproof_diagnostic::{Code, Diagnostic, Span, grouped, plural};
+use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
-use toyproof_glsl::{Checked, Code};
 use toyproof_image::{Frame, Texture};
 use toyproof_player::{BUFFERS, Source, Target};
 
@@ -114,7 +114,7 @@ impl<'a> BufferLints<'a> {
             plural(first.texels, "becomes", "become"),
             first.inputs.frame
         );
-        let warning = Diagnostic::warning(Code::NanInBuffer.as_str(), message).note(format!(
+        let warning = Diagnostic::new(Code::NanInBuffer, message).note(format!(
             "NaN spreads to whatever reads it: in frame {}, {} of {} are NaN",
             frames.last,
             pixels(buffer.nan),
@@ -151,7 +151,7 @@ impl<'a> BufferLints<'a> {
                 pass.target
             );
             Some(
-                Diagnostic::warning(Code::NeverInitialized.as_str(), message)
+                Diagnostic::new(Code::NeverInitialized, message)
                     .at(span)
                     .note("buffers are zero before the first frame")
                     .help("write initial values where `iFrame == 0`"),

@@ -4,9 +4,9 @@
 //! visibly in the end, the frames are rendered again to find out why: because one frame of float32 is
 //! imprecise, because the shader is chaotic, or because small errors add up.
 
+use toyproof_diagnostic::Code;
 use toyproof_diagnostic::{Diagnostic, grouped, plural};
 use toyproof_eval::{Number, PassFailure, RandomRounding, Seed};
-use toyproof_glsl::Code;
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{BUFFERS, Target};
 
@@ -133,7 +133,7 @@ impl VisibleGrowth {
     }
 
     fn diagnostic(&self) -> Diagnostic {
-        let warning = Diagnostic::warning(Code::VisibleGrowth.as_str(), self.sentence());
+        let warning = Diagnostic::new(Code::VisibleGrowth, self.sentence());
         let [x, y] = self.worst;
         let hint =
             format!("`toyproof debug` with `--pixel {x},{y}` follows the difference back to where it arises");

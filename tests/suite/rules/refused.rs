@@ -23,7 +23,7 @@ fn wrong(program: &Program, code: Option<&str>, lines: &[usize]) -> Option<Strin
         .collect();
     found.dedup();
     let placed = found == lines && (!lines.is_empty() || reported.len() == 1);
-    let coded = code.is_none_or(|code| reported.iter().all(|error| error.code == code));
+    let coded = code.is_none_or(|code| reported.iter().all(|error| error.code.as_str() == code));
     let output: Vec<_> = reported.iter().map(|error| short(error, &files)).collect();
     (!placed || !coded).then(|| output.join("\n    "))
 }

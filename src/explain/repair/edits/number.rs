@@ -6,6 +6,7 @@ use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::tree::{Constructor, Expr, ExprId, ExprKind, Literal, Scalar, Tree, Type, UnaryOp, Value};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_scene::{Scene, export};
+use toyproof_verify::Expected;
 
 use super::super::edit::{EditKind, Trials};
 use super::super::fit::rounded;
@@ -13,7 +14,6 @@ use super::super::term::{Term, TermKind};
 use super::Writer;
 use super::donor::{Donor, donors};
 use super::plausibility::Shapes;
-use toyproof_verify::Expected;
 
 /// The costs: numbers of the scene that are missing in the shader, and that it has, others, vectors of the
 /// scene, numbers with another last digit, fitted numbers, and variables.

@@ -9,15 +9,14 @@ mod signature;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use serde::Serialize;
-use toyproof_eval::{Program, UndefinedPolicy};
-use toyproof_glsl as glsl;
-
 pub use mistake::Mistake;
 pub use replace::replacements;
 pub use role::Role;
+use serde::Serialize;
 pub(super) use signature::clear_misses;
 pub use signature::{MissConvention, RoleMap, Signature, Unrecognized};
+use toyproof_eval::{Program, UndefinedPolicy};
+use toyproof_glsl as glsl;
 use toyproof_gpu::Worker;
 
 use super::axis::{Axis, Case, Kind, RaySphere, Step, axes};

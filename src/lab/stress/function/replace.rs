@@ -244,8 +244,9 @@ fn body(text: &str, checked: &Checked, name: &str) -> Option<Range<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use toyproof_diagnostic::{File, Files};
+
+    use super::*;
 
     fn checked(text: &str) -> Checked {
         let mut files = Files::default();

@@ -1,22 +1,24 @@
-//! The stable codes of the front end's diagnostics.
+//! The codes of all diagnostics of the program.
 
-use toyproof_diagnostic::{Diagnostic, Overdue, plural};
+use std::fmt;
 
-use super::tree::Place;
+use serde::{Deserialize, Serialize};
+
+use crate::{Diagnostic, Place, Severity};
 
 macro_rules! codes {
-    ($($variant:ident $code:literal $doc:literal,)*) => {
-        /// The kind of error or warning. The codes are stable: never renumber one.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    ($($variant:ident $code:literal $title:literal,)*) => {
+        /// The kind of a diagnostic. The codes are stable: never renumber one.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         pub enum Code {
-            $(#[doc = concat!($code, ": ", $doc)] $variant,)*
+            $(#[doc = concat!($code, ": ", $title)] #[serde(rename = $code)] $variant,)*
         }
 
         impl Code {
             /// All codes, in numerical order.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// `E` or `W` and four digits.
+            /// `E` (errors) or `W` (warnings and notes) and four digits.
             #[must_use]
             pub fn as_str(self) -> &'static str {
                 match self {
@@ -26,9 +28,9 @@ macro_rules! codes {
 
             /// A one-line description.
             #[must_use]
-            pub fn about(self) -> &'static str {
+            pub fn title(self) -> &'static str {
                 match self {
-                    $(Self::$variant => $doc,)*
+                    $(Self::$variant => $title,)*
                 }
             }
         }
@@ -86,6 +88,22 @@ codes! {
     TooSlow "E0410" "A shader that takes too long to compile",
     TooDeepToRun "E0411" "Control flow nested too deeply for drivers",
     InputOfOtherTab "E0412" "An input that the tab of a project does not have",
+    // Files other than shaders.
+    UnreadableFile "E0500" "A file that is not text, or too large",
+    SceneSyntax "E0501" "A scene file with a syntax error or an unknown key",
+    SceneValue "E0502" "A scene with an invalid value",
+    RubricSyntax "E0503" "A rubric file with a syntax error or an unknown key",
+    RubricValue "E0504" "A rubric with an invalid value",
+    AssignmentSyntax "E0505" "An assignment file with a syntax error or an unknown key",
+    AssignmentValue "E0506" "An assignment with an invalid value",
+    ProjectSyntax "E0507" "A project file with a syntax error",
+    ProjectValue "E0508" "A project with an invalid value",
+    ScriptSyntax "E0509" "An invalid script of the mouse and the keyboard",
+    ScriptValue "E0510" "A script of the mouse and the keyboard with an invalid value",
+    // Translation.
+    NagaParse "E0900" "An internal error: naga cannot parse the translated shader",
+    NagaValidation "E0901" "An internal error: naga cannot validate the translated shader",
+    UnsupportedByTarget "E0902" "A feature that the target of the conversion does not provide",
     // Warnings.
     ReservedName "W0001" "A reserved name",
     UnknownExtension "W0002" "An unsupported extension that is enabled",
@@ -131,35 +149,24 @@ codes! {
     OnlySingle "W0612" "A shader that cannot be evaluated in double precision",
 }
 
-/// The error about a shader that takes too long to compile, in any stage.
-#[must_use]
-pub fn overdue(overdue: Overdue) -> Diagnostic {
-    Diagnostic::error(Code::TooSlow.as_str(), overdue.to_string())
-        .help("shorten the longest expressions, arrays and functions, or raise `--timeout` (for `trade`, `--budget`)")
-}
-
-/// Maximum number of reported errors of one file, and of warnings.
-pub const MAX_REPORTED: usize = 50;
-
-/// Adds a diagnostic unless the limit for its severity is reached.
-pub(crate) fn push_limited(reported: &mut Vec<Diagnostic>, diagnostic: Diagnostic) {
-    let alike = reported
-        .iter()
-        .filter(|other| other.severity == diagnostic.severity);
-    if alike.count() < MAX_REPORTED {
-        reported.push(diagnostic);
-    }
-}
-
-/// Formats a number of arguments or elements: `1 was given`, `3 were given`.
-pub(crate) fn given(count: usize) -> String {
-    format!("{count} {} given", plural(count as u64, "was", "were"))
-}
-
-/// The text at the spelling location of characters from a macro.
-pub const IN_MACRO: &str = "in the definition of this macro";
-
 impl Code {
+    /// Returns the code with this string form, in any case.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut codes = Self::ALL.iter().copied();
+        codes.find(|code| code.as_str().eq_ignore_ascii_case(text))
+    }
+
+    /// The severity of its diagnostics, unless the user denies the warning.
+    #[must_use]
+    pub fn severity(self) -> Severity {
+        match self {
+            Self::LintTimeout | Self::SlowCompilation => Severity::Note,
+            _ if self.as_str().starts_with('W') => Severity::Warning,
+            _ => Severity::Error,
+        }
+    }
+
     /// Whether `// toyproof: allow(…)` may suppress it.
     #[must_use]
     pub fn can_be_allowed(self) -> bool {
@@ -175,12 +182,7 @@ impl Code {
     /// Makes a diagnostic of this kind at the place of use and, for text from a macro, at the spelling
     /// location.
     pub fn at(self, place: Place, message: impl Into<String>) -> Diagnostic {
-        let diagnostic = if self.as_str().starts_with('W') {
-            Diagnostic::warning(self.as_str(), message)
-        } else {
-            Diagnostic::error(self.as_str(), message)
-        };
-        let diagnostic = diagnostic.at(place.span);
+        let diagnostic = Diagnostic::new(self, message).at(place.span);
         if place.is_expanded() {
             diagnostic.related(place.spelling, IN_MACRO)
         } else {
@@ -189,10 +191,22 @@ impl Code {
     }
 
     /// Returns such a diagnostic as an `Err`.
-    pub(crate) fn refuse<T>(self, place: Place, message: impl Into<String>) -> Result<T, Box<Diagnostic>> {
+    ///
+    /// # Errors
+    /// Always.
+    pub fn refuse<T>(self, place: Place, message: impl Into<String>) -> Result<T, Box<Diagnostic>> {
         Err(Box::new(self.at(place, message)))
     }
 }
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// The text at the spelling location of characters from a macro.
+pub const IN_MACRO: &str = "in the definition of this macro";
 
 #[cfg(test)]
 mod tests {
@@ -202,5 +216,13 @@ mod tests {
     fn codes_are_sorted_and_unique() {
         let codes: Vec<_> = Code::ALL.iter().map(|code| code.as_str()).collect();
         assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
+    }
+
+    #[test]
+    fn codes_are_read_as_they_are_written() {
+        for &code in Code::ALL {
+            assert_eq!(Code::parse(&code.as_str().to_lowercase()), Some(code));
+        }
+        assert_eq!(Code::parse("W06"), None);
     }
 }
