@@ -1,4 +1,4 @@
-//! Assignments: what the shaders of a class are checked against, described by one TOML file.
+//! Assignments: the requirements on the shaders of a class, described by one TOML file.
 //!
 //! ```
 //! use std::path::Path;

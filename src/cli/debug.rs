@@ -104,7 +104,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
 }
 
-/// Prints the trace of the pixel of a pass of a project, and where its difference comes from.
+/// Prints the trace of the pixel of a pass of a project, and the origin of its difference.
 fn print_pass(
     args: &Args,
     (shader, passes): (&Shader, &CompiledProject),

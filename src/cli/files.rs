@@ -397,7 +397,7 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     read_limited(opened, path, MAX_BYTES)
 }
 
-/// Reads all bytes of what was opened, but at most one more than the maximum.
+/// Reads all bytes of an opened file, but at most one more than the maximum.
 fn read_limited(opened: io::Result<impl Read>, path: &Path, limit: u64) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     let read = opened.and_then(|input| input.take(limit + 1).read_to_end(&mut bytes));
@@ -630,7 +630,7 @@ pub(super) fn is_hidden(name: &OsStr) -> bool {
 /// shown.
 ///
 /// # Errors
-/// The same error, if not the content but the path or the operating system is at fault.
+/// The same error, if the path or the operating system causes it, not the content.
 pub(crate) fn content_diagnostic(error: ReadError, files: &mut Files) -> Result<Diagnostic, ReadError> {
     let mut of = |message, file, start: usize, end: usize| {
         let id = files.add(file);

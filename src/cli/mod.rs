@@ -150,7 +150,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     match parsed {
         Ok(cli) => cli.run(),
         Err(error) => {
-            // Help and the version are no errors; if they cannot be printed, nothing can.
+            // Help and the version are not errors; if they cannot be printed, nothing can.
             let _ = error.print();
             if error.use_stderr() {
                 Exit::Error

@@ -9,7 +9,7 @@ use std::thread;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Calls `work` for each of `todo` on `threads` threads, and `on_result` for each result as it arrives. Once
-/// `stop` is set, no work is started; what was started is finished.
+/// `stop` is set, no work is started; work in progress is finished.
 pub(super) fn for_each<H, T: Send>(
     todo: &[usize],
     threads: usize,

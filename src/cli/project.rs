@@ -193,7 +193,7 @@ pub(super) fn create(folder: &Path, files: &[(PathBuf, String)], terminal: &Term
         .all(|(path, text)| terminal.write_output(folder, path, text.as_bytes()))
 }
 
-/// Reads a project, or a shader as a project of one tab; prints what is wrong with it.
+/// Reads a project, or a shader as a project of one tab; prints its errors.
 fn load(path: &Path, files: &mut Files, terminal: &Terminal) -> Option<Project> {
     let found = match &files::find(path).inputs.into_iter().next()? {
         Err(error) => {

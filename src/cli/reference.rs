@@ -107,7 +107,7 @@ enum Content {
 }
 
 impl GivenReference {
-    /// Reads what `--reference` names, if anything; prints what is wrong with it.
+    /// Reads the reference that `--reference` names, if any; prints its errors.
     ///
     /// # Errors
     /// It is unusable.
@@ -172,7 +172,7 @@ impl GivenReference {
         Ok(())
     }
 
-    /// Renders the reference in some frames, which have the size of an image; prints what is wrong with it.
+    /// Renders the reference in some frames, which have the size of an image; prints its errors.
     ///
     /// # Errors
     /// Shaders cannot be compared with it.
@@ -247,7 +247,7 @@ struct Evaluation<'a> {
 }
 
 impl Evaluation<'_> {
-    /// Evaluates the shader in a frame, and reports what is undefined in it.
+    /// Evaluates the shader in a frame, and reports its undefined operations.
     fn run(
         &mut self,
         shader: &Shader,

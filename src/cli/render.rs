@@ -134,7 +134,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             false
         }
         Some(frames) => {
-            // Identifies what is rendered: a record of a different scene or settings is ignored.
+            // Identifies the rendering: a record of a different scene or settings is ignored.
             let fingerprint = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
             let sequence = Sequence::resume(frames, &output, &fingerprint, terminal);
             sequence.render(terminal, |one, _| {

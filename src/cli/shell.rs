@@ -1,4 +1,4 @@
-//! `toyproof completions` and `toyproof man`: what a shell and `man` show of the command line.
+//! `toyproof completions` and `toyproof man`: the command line for a shell and for `man`.
 
 use std::fs;
 use std::path::PathBuf;

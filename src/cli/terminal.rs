@@ -102,7 +102,7 @@ impl Terminal {
         self.stream(|stdout| stdout.write_all(bytes))
     }
 
-    /// Writes what a function writes to standard output; returns whether that succeeded.
+    /// Writes the output of a function to standard output; returns whether that succeeded.
     pub(super) fn stream(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> bool {
         let written = self.bars.suspend(|| {
             let mut stdout = BufWriter::new(io::stdout().lock());
@@ -129,7 +129,7 @@ impl Terminal {
         }
     }
 
-    /// Prints on standard error, beside the progress bars.
+    /// Prints on standard error without disturbing the progress bars.
     fn message(&self, text: &str) {
         self.bars.suspend(|| {
             let _ = writeln!(anstream::stderr().lock(), "{text}");
@@ -258,7 +258,7 @@ impl Terminal {
         written.is_ok()
     }
 
-    /// Shows a progress bar with a label that names what is counted, on a terminal only.
+    /// Shows a progress bar with a label that names the counted items, on a terminal only.
     pub(super) fn bar(&self, steps: u64, label: &str) -> ProgressBar {
         self.handle_interrupts();
         let bar = self.bars.add(ProgressBar::new(steps));

@@ -34,9 +34,9 @@ const UTF8: u16 = 1 << 11;
 /// When a file was last changed, in seconds since 1970-01-01 00:00.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FileTime {
-    /// Of UTC.
+    /// In UTC.
     Utc(i64),
-    /// Of the clock where the archive was written, to two seconds.
+    /// In the time zone of the machine that wrote the archive, to two seconds.
     Local(i64),
 }
 

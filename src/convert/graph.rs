@@ -376,7 +376,7 @@ fn uniforms() -> Uniforms {
     }
 }
 
-/// Whether a pass after these reads what a buffer's pass renders in this frame.
+/// Whether a pass after these reads the texture that a buffer's pass renders in this frame.
 fn frame_of(before: &[player::Pass], buffer: Target) -> FrameName {
     if before.iter().any(|pass| pass.target == buffer) {
         FrameName::This

@@ -1,4 +1,4 @@
-//! The comment at the head of a converted file: its source, and what was proved of it.
+//! The comment at the head of a converted file: its source and its proof.
 
 use std::fmt::Write as _;
 
@@ -114,7 +114,7 @@ fn settings(head: &mut String, proof: &Proof) {
     head.push_str("// Functions with implementation-defined precision, such as sin, were replaced by the evaluator's.\n");
 }
 
-/// Appends what a browser rendered, if one did.
+/// Appends the result in a browser, if there is one.
 fn in_browser(head: &mut String, browser: Option<&(String, Rgb8Comparison)>) {
     if let Some((name, shown)) = browser {
         let _ = writeln!(
@@ -125,7 +125,7 @@ fn in_browser(head: &mut String, browser: Option<&(String, Rgb8Comparison)>) {
     }
 }
 
-/// Appends what was proved of the passes of a project.
+/// Appends the proof of the passes of a project.
 fn passes(head: &mut String, proof: &PassesProof) {
     let readers: Vec<_> = proof.readers.iter().map(ToString::to_string).collect();
     if readers.is_empty() {

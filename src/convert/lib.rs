@@ -2,12 +2,12 @@
 //! again, run, and compared with the shader.
 //!
 //! The file calls functions such as `sin`, whose last bits WGSL and other languages leave to the
-//! implementation. For the proof, the evaluator's definitions replace them in what naga parsed; everything
+//! implementation. For the proof, the evaluator's definitions replace them in the parsed module; everything
 //! else is the file's. So no tolerance is needed: a conversion is proved if every pixel has the evaluator's
 //! bits.
 //!
-//! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves what is [`Written`], on a
-//! driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
+//! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves the [`Written`] file, on
+//! a driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
 //! any worker.
 
 pub mod graph;

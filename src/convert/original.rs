@@ -109,7 +109,7 @@ impl Original {
         Ok(all)
     }
 
-    /// Renders what was read of a conversion, and compares each pass.
+    /// Renders the passes that were read from a conversion, and compares each.
     pub(super) fn compare(
         &self,
         passes: &PassSources,

@@ -14,7 +14,8 @@ use super::proof::{Rgb8Comparison, Runner};
 use super::prover::{Prover, Reader, Unproved, fully_undefined, unobserved, validate};
 use super::{ConvertError, Converter, FallbackReason, Source, Written};
 
-/// The sizes in which the passes are played, in pixels: textures of one size are no multiples of the other's.
+/// The sizes in which the passes are played, in pixels: the textures of one size are not multiples of the
+/// other's.
 pub const PASS_SIZES: [[u32; 2]; 2] = [[96, 54], [60, 80]];
 
 /// The number of frames that are played in each size.
@@ -27,8 +28,8 @@ pub struct PassSources<'a> {
     pub sources: &'a [Source<'a>],
     /// The order of the passes, and what they read.
     pub graph: &'a Graph,
-    /// The textures that do not change. Those that are not available are replaced, so that what is read of
-    /// them is observed.
+    /// The textures that do not change. Those that are not available are replaced, so that reads of
+    /// them are observed.
     pub media: &'a [Texture],
 }
 
@@ -184,7 +185,7 @@ impl Converter {
 }
 
 impl Prover<'_> {
-    /// Proves that written passes, played as the graph says, render the same textures as the shader: to the
+    /// Proves that written passes, played by the graph, render the same textures as the shader: to the
     /// bit in [`PASS_FRAMES`] frames of each of [`PASS_SIZES`], except in pixels that depend on undefined
     /// behavior. After a frame in which such a pixel differs, the conversion continues from the original's
     /// textures.

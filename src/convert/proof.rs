@@ -1,4 +1,4 @@
-//! Runs what was converted, and compares it with the shader in every frame.
+//! Runs a converted shader, and compares it with the original in every frame.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -156,7 +156,7 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     FRAMES.map(of).to_vec()
 }
 
-/// Renders what was read of a converted shader in each of the frames, and compares it with the shader: a
+/// Renders the artifacts of a converted shader in each of the frames, and compares them with the shader: a
 /// proof for each artifact. `timeout` is the time limit of an image. The evaluator runs in `pool`, if there
 /// is one: in rayon's global pool, all rows of a slow shader could run before another shader's.
 ///

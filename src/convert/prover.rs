@@ -1,4 +1,4 @@
-//! Proves conversions: each reader that is available reads the written file, and what it read is run.
+//! Proves conversions: each available reader reads the written file, and the result is run.
 
 use std::fmt;
 use std::time::Duration;
@@ -152,7 +152,7 @@ pub enum Unproved {
         /// Its position: file, line and column.
         at: String,
     },
-    /// A channel is a cube map or a volume, which are black in the compared frames, so that what is read from it
+    /// A channel is a cube map or a volume, which are black in the compared frames, so that reads of it
     /// cannot be observed.
     #[error(
         "iChannel{channel} is {shape}, which is black in the compared frames, so reads of it cannot be verified"

@@ -145,8 +145,8 @@ impl Files {
         self.add(file)
     }
 
-    /// The span in the file that the user knows: for a span in a joined file, the one in the part where it starts, up to
-    /// the end of that part.
+    /// The span in the file of the user: for a span in a joined file, the one in the part where it starts, up
+    /// to the end of that part.
     #[must_use]
     pub fn origin(&self, span: Span) -> Span {
         let parts = &self.get(span.file).parts;

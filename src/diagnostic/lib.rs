@@ -101,7 +101,7 @@ pub struct Edit {
 /// A mechanical correction of the error that a diagnostic reports.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fix {
-    /// What to do, such as ``write `1.0` ``.
+    /// The advice, such as ``write `1.0` ``.
     pub message: String,
     /// The edits, which do not overlap and apply together; at least one, all of one file.
     pub edits: Vec<Edit>,
@@ -213,7 +213,7 @@ impl Diagnostic {
         self
     }
 
-    /// The diagnostic with all spans in the files that the user knows ([`Files::origin`]).
+    /// The diagnostic with all spans in the files of the user ([`Files::origin`]).
     #[must_use]
     pub fn in_origin(&self, files: &Files) -> Self {
         let mut moved = self.clone();

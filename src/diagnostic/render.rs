@@ -126,7 +126,7 @@ pub struct Json {
 /// A replacement of text, with positions as in [`Json`]; an insertion has equal start and end.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JsonFix {
-    /// What to do, such as ``write `1.0` ``.
+    /// The advice, such as ``write `1.0` ``.
     pub message: String,
     /// The text that replaces the range.
     pub replacement: String,

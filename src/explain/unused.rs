@@ -1,4 +1,4 @@
-//! What a reference shader uses and another shader does not: inputs, and functions of the same name.
+//! The inputs, and the functions of the same name, that a reference shader uses and another shader does not.
 
 use std::collections::{BTreeMap, BTreeSet};
 

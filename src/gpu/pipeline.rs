@@ -169,7 +169,7 @@ impl Layout {
 }
 
 impl Layout {
-    /// The sampler of a channel. Without mipmaps, GLSL reads the largest level whatever level is asked for.
+    /// The sampler of a channel. Without mipmaps, GLSL reads the largest level whatever level is requested.
     fn sampler(&self, device: &Device, sampling: ChannelSampling) -> Sampler {
         let ChannelSampling {
             linear,

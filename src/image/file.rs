@@ -76,7 +76,7 @@ pub fn encode_shown(image_rgb8: &Rgb8Image, path: &Path) -> Result<Vec<u8>, Imag
     }
 }
 
-/// Writes an image as a PNG. Of the file, at most the size of the image is in memory.
+/// Writes an image as a PNG. At most the size of the image is in memory.
 ///
 /// # Errors
 /// Those of `out`.

@@ -8,7 +8,7 @@ use crate::{Frame, IDLE_MOUSE, Image, ImageError, Script, Texture, noise, read};
 /// The inputs of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameInputs {
-    /// `iResolution.xy`, in pixels; `None` for the size of what the frame is compared with.
+    /// `iResolution.xy`, in pixels; `None` for the size of the reference.
     pub size: Option<[u32; 2]>,
     /// `iTime`, in seconds.
     pub time: f32,

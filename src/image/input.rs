@@ -8,7 +8,7 @@ use std::path::Path;
 /// pipe without a writer nor one that replaces a file at the wrong moment is waited for.
 ///
 /// # Errors
-/// The system's error, or what the file is instead.
+/// The system's error, or the kind of a file that is not a regular one.
 pub fn open(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -33,7 +33,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Reads a regular file as a whole.
+/// Reads a whole regular file.
 ///
 /// # Errors
 /// As for [`open`].

@@ -15,7 +15,7 @@
 //! # Parts
 //!
 //! - `rgb8`: images as displayed, in 8 bits.
-//! - `texture`: textures with mipmaps; `noise`: stand-ins for ShaderToy's noise textures.
+//! - `texture`: textures with mipmaps; `noise`: substitutes for ShaderToy's noise textures.
 //! - `frame`: ShaderToy's inputs of one frame and their uniform block.
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.

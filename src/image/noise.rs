@@ -1,5 +1,5 @@
-//! Stand-ins for `ShaderToy`'s noise textures, which are not redistributable: the same on every machine, with
-//! the properties that shaders rely on.
+//! Substitutes for `ShaderToy`'s noise textures, which are not redistributable: the same on every machine,
+//! with the properties that shaders rely on.
 
 use crate::{Image, pcg};
 

@@ -41,7 +41,7 @@ pub fn write_inside(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> 
 }
 
 /// Writes a file into an output folder as [`write_inside`] does, with the bytes that a function writes, so that
-/// a large file is never in memory as a whole. If the function fails, the file is not replaced.
+/// a large file is never completely in memory. If the function fails, the file is not replaced.
 ///
 /// # Errors
 /// As for [`write_inside`], and those of the function.

@@ -427,7 +427,7 @@ impl<'a> DivergenceAnalysis<'a> {
 // Divergence of expressions and their effects.
 
 impl DivergenceAnalysis<'_> {
-    /// Computes the divergence of an expression's values, and of what it writes.
+    /// Computes the divergence of an expression's values, and of the variables that it writes.
     fn expression(&mut self, root: ExprId, control: Control, visit: &mut Visit) {
         let tree = self.program.tree;
         for expr in tree.postorder(root) {

@@ -1,6 +1,6 @@
 //! GLSL's functions whose last bits are implementation-defined, composed of operations that every conforming
-//! driver and every CPU rounds alike. One generic source has two interpretations: numbers, or a graph of the
-//! operations.
+//! driver and every CPU rounds in the same way. One generic source has two interpretations: numbers, or a
+//! graph of the operations.
 //!
 //! ```
 //! use toyproof_math::native;

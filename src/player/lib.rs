@@ -73,7 +73,7 @@ pub struct Graph {
     mipmaps: [bool; BUFFERS],
 }
 
-/// A pass: what it renders, and what it reads.
+/// A pass: its target and its inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pass {
     /// The target that it renders.

@@ -104,7 +104,7 @@ impl<R: Renderer> Player<R> {
         self.renderer
     }
 
-    /// What a pass rendered last: `None` before the first frame, and for buffers that are not used.
+    /// The last image of a pass: `None` before the first frame, and for buffers that are not used.
     #[must_use]
     pub fn texture(&self, target: Target) -> Option<&R::Texture> {
         match target {
@@ -139,7 +139,7 @@ impl<R: Renderer> Player<R> {
         let from = &self.graph.passes()[pass..];
         channels(&self.graph, pass, |number| {
             let [last, other] = self.buffer(number)?;
-            // A buffer that was rendered since then held its previous frame.
+            // If a buffer was rendered afterwards, this was its previous frame.
             let is_rendered_since = from.iter().any(|pass| pass.target == Target::Buffer(number));
             Some(if is_rendered_since { other } else { last })
         })

@@ -6,7 +6,7 @@ use toyproof_image::{Frame, Image, Texture};
 
 use super::*;
 
-/// Renders names: of the pass, the frame, and what the pass reads.
+/// Renders the names of the pass, the frame and the inputs of the pass.
 #[derive(Default)]
 struct Recorder {
     drawn: Vec<String>,

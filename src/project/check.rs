@@ -138,7 +138,7 @@ fn channels(project: &Project, pass: &Pass) -> [Option<SamplerShape>; 4] {
         None => None,
         Some(input) => Some(match input.source.source_type() {
             SourceType::Cubemap => SamplerShape::Cube,
-            // The Sound tab declares volumes as pictures.
+            // The Sound tab declares volumes as 2D textures.
             SourceType::Volume if pass.kind != PassKind::Sound => SamplerShape::D3,
             _ => SamplerShape::D2,
         }),

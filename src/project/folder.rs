@@ -1,5 +1,5 @@
 //! The folder of a project: a file for each tab, and `project.toml`, which holds the rest of the site's JSON, key by
-//! key in the same order. What an input reads is written by name: `source = "buffer-a"`.
+//! key in the same order. The source of an input is written by name: `source = "buffer-a"`.
 
 use std::collections::HashMap;
 
@@ -109,7 +109,7 @@ fn pass_lines(pass: &Node, tab: Tab, format: Format) -> String {
     members.iter().map(line).collect()
 }
 
-/// The input with the name of what it reads instead of the members that follow from it.
+/// The input with the name of its source instead of the members that follow from it.
 fn shortened(input: &Node, format: Format) -> Node {
     let Value::Object(members) = &input.value else {
         return input.clone();
@@ -129,7 +129,7 @@ fn shortened(input: &Node, format: Format) -> Node {
     input.clone()
 }
 
-/// A value of TOML on one line. What TOML does not have is JSON in a string: `{ json = "null" }`.
+/// A value of TOML on one line. Values that TOML does not have are JSON in a string: `{ json = "null" }`.
 fn inline(node: &Node) -> String {
     let list = |items: Vec<String>| items.join(", ");
     match &node.value {
@@ -399,7 +399,7 @@ fn report_unknown(node: &Node, known: &[&'static str], errors: &mut Vec<Diagnost
     }
 }
 
-/// Adds what the site's JSON has for every shader.
+/// Adds the members that the site's JSON has for every shader.
 fn complete_document(members: &mut Vec<Member>) {
     if !members.iter().any(|member| member.key == "ver") {
         members.insert(0, Member::new("ver", "0.1"));
@@ -433,7 +433,7 @@ fn assumed_passes(tabs: &[(Tab, FileId)]) -> Node {
     passes.collect::<Vec<_>>().into()
 }
 
-/// Writes out the names of a pass, and adds what is missing if `completes`.
+/// Writes out the names of a pass, and adds missing members if `completes`.
 fn expand_pass(pass: &mut Node, format: Format, completes: bool, errors: &mut Vec<Diagnostic>) {
     if completes {
         report_unknown(pass, &PASS_KEYS, errors);

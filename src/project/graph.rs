@@ -13,7 +13,7 @@ use crate::project::Project;
 /// The passes that render the image of a project.
 #[derive(Debug, Clone)]
 pub struct Rendering {
-    /// The order of the passes, and what they read.
+    /// The order of the passes, and their inputs.
     pub graph: Graph,
     /// The passes of the graph, in its order: their indices in [`Project::passes`].
     pub passes: Vec<usize>,
@@ -184,7 +184,7 @@ impl Media<'_> {
     }
 }
 
-/// The stand-in for a texture of the site.
+/// The substitute for a texture of the site.
 fn noise(source: &Source) -> Option<Noise> {
     let medium = source
         .medium()

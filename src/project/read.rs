@@ -1,4 +1,4 @@
-//! Reads a project from a tree of values, and reports what is wrong in it.
+//! Reads a project from a tree of values, and reports errors in it.
 
 use std::collections::HashMap;
 
@@ -81,7 +81,7 @@ impl Project {
     }
 }
 
-/// Removes what the JSON is wrapped in.
+/// Removes the structure around the JSON.
 fn unwrap(root: Node) -> Result<(Node, Wrapper), Box<Diagnostic>> {
     let expected = "expected ShaderToy's JSON: of its API, of its page data, or of the editor's export";
     let wrong = |node: &Node, message: String| Err(Box::new(node.error(message).help(expected)));
@@ -419,7 +419,7 @@ fn choice<T: Copy>(
     Err(Box::new(error.help(suggestion(name, &known))))
 }
 
-/// A truth value, which the site writes as a string.
+/// A Boolean, which the site writes as a string.
 fn flag(node: &Node, key: &str) -> Result<Option<bool>, Box<Diagnostic>> {
     let Some(value) = node.get(key) else {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! Files that describe what a user does with the mouse and the keyboard over the frames of a run.
+//! Files that describe the user's actions with the mouse and the keyboard over the frames of a run.
 
 use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
 use toyproof_image::{InputEvent, Script};

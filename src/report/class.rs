@@ -18,7 +18,7 @@ struct Cell {
     late: String,
 }
 
-/// The table of a class, which grows with the students and not with what is known of their shaders.
+/// The table of a class; its size depends on the number of students, not on the records of their shaders.
 #[derive(Debug, Default)]
 pub struct ClassTable {
     /// The assignments, in the order in which they appeared.

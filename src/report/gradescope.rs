@@ -101,7 +101,7 @@ impl Thumbnails {
     }
 }
 
-/// Writes the file, with what the hints show: a test per mark of the rubric. For several shaders, each name
+/// Writes the file, as far as the hints permit: a test per mark of the rubric. For several shaders, each name
 /// starts with the shader's, and the one with the fewest points gives the score.
 ///
 /// # Errors

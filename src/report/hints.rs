@@ -14,7 +14,7 @@ pub enum Hints {
 }
 
 impl Record {
-    /// Removes what the author must not see; every format of the record then lacks it.
+    /// Removes the parts that the author must not see, so that no format shows them.
     pub fn redact(&mut self, hints: Hints) {
         if hints < Hints::Fix
             && let Some(fix) = &mut self.fix

@@ -8,8 +8,9 @@ use toyproof_verify::Verdict;
 
 use super::{Hints, Record, Records, details};
 
-/// Writes the file, with what the hints show. A fault of the shader, or a violated requirement of an assignment, is
-/// a failure; what prevented its verdict is an error; an inconclusive verdict is skipped. Characters that XML
+/// Writes the file, as far as the hints permit. A fault of the shader, or a violated requirement of an
+/// assignment, is a failure; an error that prevented its verdict is an error; an inconclusive verdict is
+/// skipped. Characters that XML
 /// 1.0 forbids are removed.
 ///
 /// # Errors
@@ -97,7 +98,7 @@ impl Status {
         }
     }
 
-    /// The status of a verdict. Where nothing was compared, the test was skipped.
+    /// The status of a verdict. If nothing was compared, the test was skipped.
     fn of_verdict(verdict: Verdict) -> Self {
         match verdict {
             Verdict::Correct => Self::Passed,

@@ -272,7 +272,7 @@ fn permitted(difference: Difference, text: &str, differing: Share) -> Statement 
     .detail(text)
 }
 
-/// The largest number of standard deviations that is stated: more says no more.
+/// The largest number of standard deviations that is stated: a larger number has no additional meaning.
 const MAX_DEVIATIONS: f64 = 100.0;
 
 fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement {

@@ -230,8 +230,8 @@ impl Record {
         }
     }
 
-    /// Adds what the search for a fix found. The fix names the mistake, unless a known one alone explains the
-    /// image.
+    /// Adds the results of the search for a fix. The fix names the mistake, unless a known one alone explains
+    /// the image.
     pub fn set_search(&mut self, search: &SearchResult, files: &Files) {
         self.fix = Repair::first_of(&search.repairs, files);
         let suspects = search.suspects.iter();
@@ -302,7 +302,7 @@ impl From<diagnostic::Position> for Position {
 pub struct Mistake {
     /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+no-gamma`.
     pub id: String,
-    /// What is wrong in the shader, in one sentence.
+    /// The mistake in the shader, in one sentence.
     pub text: String,
     /// Whether it describes the image, which many mistakes may cause, and not a mistake.
     pub is_symptom: bool,

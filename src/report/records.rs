@@ -13,7 +13,7 @@ use toyproof_verify::Verdict;
 use super::html::common_folder;
 use super::{Hints, MAX_PAGE_SHADERS, Record, Tally};
 
-/// The number of records that are held in memory: those of a report with one page.
+/// The number of records that are kept in memory: those of a report with one page.
 const MAX_IN_MEMORY: usize = MAX_PAGE_SHADERS;
 
 /// The records of a run, in order.
@@ -28,11 +28,11 @@ pub struct Records {
     spill: Option<Mutex<File>>,
     /// The length of the file in bytes.
     length: u64,
-    /// Whether the file cannot be written, so that further records are held in memory.
+    /// Whether the file cannot be written, so that further records are kept in memory.
     has_failed: bool,
 }
 
-/// A record, and what is needed of it without reading it.
+/// A record, and the parts of it that are needed without reading it.
 #[derive(Debug)]
 struct Entry {
     verdict: Verdict,
@@ -40,7 +40,7 @@ struct Entry {
     place: Place,
 }
 
-/// Where a record is held.
+/// The place of a record.
 #[derive(Debug)]
 enum Place {
     Memory(Box<Record>),
@@ -199,7 +199,7 @@ impl Records {
         }
         if let Some(file) = &mut self.spill {
             let file = file.get_mut().unwrap_or_else(PoisonError::into_inner);
-            // After a write that failed in the middle, the file is longer than what is used of it.
+            // After a write that failed in the middle, the file is longer than its used part.
             file.seek(SeekFrom::Start(self.length))?;
             file.write_all(&bytes)?;
         }

@@ -43,7 +43,7 @@ pub struct Repair {
     pub range: SourceRange,
     /// The replacement of the first edit; `None` if [`Hints`](super::Hints) hide the edits.
     pub replacement: Option<String>,
-    /// What to do, such as ``replace `b + c` with `b - c` ``; `None` if the edits are hidden.
+    /// The advice, such as ``replace `b + c` with `b - c` ``; `None` if the edits are hidden.
     pub text: Option<String>,
     /// The number of pixels that agree with the reference after the edits.
     pub agreeing: u64,
@@ -67,7 +67,7 @@ pub struct RepairEdit {
     pub range: SourceRange,
     /// The replacement; `None` if the edits are hidden.
     pub replacement: Option<String>,
-    /// What to do; `None` if the edits are hidden.
+    /// The advice; `None` if the edits are hidden.
     pub text: Option<String>,
 }
 
@@ -124,7 +124,7 @@ impl Repair {
         })
     }
 
-    /// Removes what the edits are; their lines stay.
+    /// Removes the texts of the edits; their lines stay.
     pub(super) fn hide_edits(&mut self) {
         (self.replacement, self.text) = (None, None);
         self.edits.iter_mut().for_each(RepairEdit::hide);

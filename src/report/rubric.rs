@@ -83,7 +83,7 @@ struct LateDeduction {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function; `late`
-    /// for what a late submission loses.
+    /// for the deduction for a late submission.
     pub name: Cow<'static, str>,
     /// The points earned, in [0, `of`], rounded to hundredths; negative for `late`.
     pub points: f64,
@@ -166,7 +166,7 @@ impl Rubric {
 }
 
 impl LateDeduction {
-    /// The mark of a late submission, which loses at most what it earned.
+    /// The mark of a late submission, which loses at most its earned points.
     fn mark(self, late: Late, marks: &[Mark]) -> Mark {
         let percent = (self.percent_per_day * late.days() as f64).min(self.max_percent);
         let sum = |of: fn(&Mark) -> f64| marks.iter().map(of).sum::<f64>();
@@ -181,7 +181,7 @@ impl LateDeduction {
     }
 }
 
-/// Reads what a late submission loses.
+/// Reads the deduction for a late submission.
 fn late_deduction(table: &mut Table) -> LateDeduction {
     let percent = |table: &Table, key: &str, percent: &Located<f64>| {
         if !(0.0..=100.0).contains(&percent.value) {

@@ -7,7 +7,7 @@ use super::{Mark, Record, Rubric};
 /// The rubrics of a run: one for all shaders, or one for each assignment of a class.
 #[derive(Debug, Clone, Default)]
 pub struct Rubrics {
-    /// The rubric of the shaders that belong to no other.
+    /// The rubric of the shaders that no other rubric covers.
     all: Option<Rubric>,
     by_assignment: BTreeMap<String, Rubric>,
 }

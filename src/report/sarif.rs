@@ -44,8 +44,8 @@ const VERDICTS: [(Verdict, &str, &str); 3] = [
     ),
 ];
 
-/// Writes the file: a result per diagnostic, and one per verdict of `VERDICTS`. What prevented a verdict is
-/// a notification.
+/// Writes the file: a result per diagnostic, and one per verdict of `VERDICTS`. An error that prevented a
+/// verdict is a notification.
 ///
 /// # Errors
 /// The system's error: a record cannot be read, or the file cannot be written.

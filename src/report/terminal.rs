@@ -92,7 +92,7 @@ impl Layout {
     }
 }
 
-/// Formats one shader: verdict, name and reason, and below them what the layout asks for.
+/// Formats one shader: verdict, name and reason, and below them the parts that the layout requests.
 #[must_use]
 pub fn lines(record: &Record, layout: &Layout) -> String {
     let errors = diagnostics(record, Severity::Error);
@@ -115,7 +115,7 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
             let listed = if errors.is_empty() { &warnings } else { &errors };
             lines.extend(diagnostic_lines(listed, &record.shader, layout));
         }
-        // Of a shader without a fault, the reason is enough.
+        // The reason is enough for a shader without a fault.
         if !record.verdict.is_good() || layout.detail == Detail::Full {
             lines.extend(record.details.iter().map(|detail| layout.below("", detail)));
         }

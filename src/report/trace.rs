@@ -229,7 +229,7 @@ fn calls(subject: &TracedPixel<'_>, schema: &TraceSchema, event: &Event) -> (Str
 /// The most pixels of a trail that are shown, half of them at each end.
 const MAX_TRAIL: usize = 12;
 
-/// Formats where a difference comes from: the pixels that hand it on, the last frame first. Empty if the
+/// Formats the origin of a difference: the pixels that pass it on, the last frame first. Empty if the
 /// pixel does not differ.
 fn trail_lines(trail: &[TrailStep]) -> String {
     let Some(first) = trail.first().filter(|first| first.f32 != first.f64) else {
@@ -239,7 +239,7 @@ fn trail_lines(trail: &[TrailStep]) -> String {
         "\nFrom the first frame on, the difference comes from\n{:>7}  {:10} {:>12}  {:>NUMBER_WIDTH$} {:>NUMBER_WIDTH$}\n",
         "frame", "pass", "pixel", "f32", "f64"
     );
-    // The component that differs most in the pixel that was asked for.
+    // The component that differs most in the requested pixel.
     let difference = |at: usize| match (first.f32[at], first.f64[at]) {
         (Component::Float(single), Component::Float(double)) => (single - double).abs(),
         _ => 0.0,

@@ -51,7 +51,7 @@ pub struct Format {
 pub struct Located<T> {
     /// The value.
     pub value: T,
-    /// Where it stands.
+    /// Its place.
     pub span: Span,
 }
 
@@ -121,7 +121,7 @@ impl Reader<'_> {
         Span::new(self.file, bytes.start as u32, bytes.end as u32)
     }
 
-    /// Returns what the file has there, in short.
+    /// Returns a short excerpt of the file there.
     fn excerpt(&self, span: Span) -> &str {
         let text = &self.text[span.start as usize..span.end as usize];
         text.lines().next().unwrap_or_default()
@@ -137,7 +137,7 @@ impl Reader<'_> {
     }
 }
 
-/// Where a table stands.
+/// The place of a table.
 #[derive(Debug, Clone, Copy)]
 enum Place {
     Root,
@@ -193,7 +193,7 @@ impl<'r, 't> Table<'r, 't> {
         value
     }
 
-    /// Where the table stands: its header, or all of an inline table.
+    /// The place of the table: its header, or all of an inline table.
     #[must_use]
     pub fn span(&self) -> Span {
         self.span
@@ -222,7 +222,7 @@ impl<'r, 't> Table<'r, 't> {
             .report(self.reader.format.form_code, span, message, help);
     }
 
-    /// Returns what the file has there.
+    /// Returns the text of the file there.
     #[must_use]
     pub fn excerpt(&self, span: Span) -> &str {
         self.reader.excerpt(span)
@@ -234,7 +234,7 @@ impl<'r, 't> Table<'r, 't> {
         self.value_span(key).is_some()
     }
 
-    /// Where the value of a key stands.
+    /// The place of the value of a key.
     #[must_use]
     pub fn value_span(&self, key: &str) -> Option<Span> {
         self.entries.get(key).map(|value| self.reader.span(value.span()))

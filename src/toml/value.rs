@@ -8,7 +8,7 @@ use toml::de::{DeInteger, DeValue};
 /// A value that does not have the expected type.
 #[derive(Debug)]
 pub struct Mismatch {
-    /// Where it stands.
+    /// Its place.
     pub(super) bytes: Range<usize>,
     /// A description of the value that was found.
     pub(super) found: String,
@@ -133,7 +133,7 @@ impl Value for String {
     }
 }
 
-/// A number, a truth value, or a list of such: a value whose type the file does not determine.
+/// A number, a Boolean, or a list of these: a value whose type the file does not determine.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Literal {
     /// A number.

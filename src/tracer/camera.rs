@@ -22,7 +22,7 @@ pub(super) struct Camera<T: Real> {
     projection: ScreenProjection<T>,
     width: T,
     height: T,
-    /// Where the centers of the columns of pixels are on the screen, and those of the rows.
+    /// The positions on the screen of the centers of the columns of pixels, and of the rows.
     columns: Vec<T>,
     rows: Vec<T>,
 }

@@ -98,7 +98,7 @@ impl<'a> InexactFunction<'a> {
             Self::extended(B::UnpackUnorm2x16, Ext::UnpackUnorm2x16, Glsl(
                 "return vec2(float(int(toyproof_a & 65535u)) / 65535.0, float(int(toyproof_a >> 16u)) / 65535.0);",
             )),
-            // Mesa 22.3 takes the upper half of a constant for zero.
+            // Mesa 22.3 treats the upper half of a constant as zero.
             Self::extended(B::UnpackHalf2x16, Ext::UnpackHalf2x16, Glsl(
                 "return vec2(unpackHalf2x16(toyproof_a).x, unpackHalf2x16(toyproof_a >> 16u).x);",
             )),

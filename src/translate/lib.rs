@@ -31,7 +31,7 @@
 //! Each pass of [`lower()`] rewrites one construct that naga or a driver gets wrong, and a test shows that it
 //! still does without the pass, so that the pass can be removed some day. [`Lowered`] leads from naga's messages
 //! back to the author's lines. naga's validator stays the gate: backends take only a [`naga_ir::ValidModule`],
-//! and what naga refuses of our text is an error of ours, never the shader's.
+//! and text that naga refuses is our error, never the shader's.
 //!
 //! # Strict and fast
 //!

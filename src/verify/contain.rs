@@ -65,13 +65,13 @@ impl fmt::Display for Part {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("internal error while {part}: {message}; this is a bug in toyproof; please report it with the input")]
 pub struct Panic {
-    /// Where it was contained.
+    /// The part in which it was contained.
     pub part: Part,
     /// The panic's own message.
     pub message: String,
 }
 
-/// Runs a part of the work. What it has changed when it panics must not be used any more, unless its
+/// Runs a part of the work. If it panics, the values that it has changed must not be used, unless their
 /// invariants hold after each step.
 ///
 /// # Errors

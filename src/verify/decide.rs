@@ -88,7 +88,7 @@ pub enum Reason {
         /// Whether there is a reference to compare with.
         has_reference: bool,
     },
-    /// These pixels are not what the shader computes on the CPU: `error`.
+    /// These pixels differ from those that the shader computes on the CPU: `error`.
     ToolchainDiffers(Share),
     /// There is no reference: `ok`.
     NoReference,
@@ -359,7 +359,7 @@ fn by_means(random: &OtherRandomNumbers, checks: &Checks) -> (Verdict, Reason) {
         },
     };
     if verdict == Verdict::Correct {
-        // Other random numbers in float32 are no growth of errors.
+        // Other random numbers in float32 are not a growth of errors.
         let others = by_checks(&random.other_pixels, None, false);
         if others.0 != Verdict::Correct {
             return others;

@@ -13,8 +13,8 @@ use crate::compare::CheckSummary;
 use crate::failure::Failure;
 use crate::limits::is_toolchain_fault;
 
-/// Reports what was observed, except what the lints report already. `excludes_pixels` is true if pixels with
-/// undefined behavior are excluded.
+/// Reports the observations, except those that the lints have reported. `excludes_pixels` is true if pixels
+/// with undefined behavior are excluded.
 pub(super) fn notes(observed: &Observations, excludes_pixels: bool, lints: &Lints) -> Vec<Diagnostic> {
     let mut notes = Vec::new();
     for observed in &observed.faults {

@@ -108,7 +108,7 @@ impl DifferingPixel {
     /// Whether its color comes from rays that hit their own surface, in all of its samples or in some.
     fn is_acne(&self, tracer: &Tracer<f64>, epsilons: &[RayEpsilons]) -> bool {
         let Self { own, exact, .. } = self;
-        // Where lights and BRDFs are sampled too, an intermediate color proves nothing.
+        // If lights and BRDFs are also sampled, an intermediate color proves nothing.
         let is_jittered = tracer.sampler() == Some(Sampler::SineHash);
         epsilons.iter().any(|epsilons| {
             let other = tracer

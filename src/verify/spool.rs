@@ -11,8 +11,8 @@ use toyproof_image::Image;
 /// The bands that are kept in memory: as many pixels as 960×540 has.
 const MAX_BANDS_IN_MEMORY: usize = 2;
 
-/// A queue with one sender and one receiver. What does not fit into memory is in an unnamed temporary file;
-/// if that cannot be written, in memory nevertheless.
+/// A queue with one sender and one receiver. Bands that do not fit into memory are in an unnamed temporary
+/// file; if that cannot be written, in memory nevertheless.
 #[derive(Debug, Default)]
 pub(super) struct Spool {
     queue: Mutex<Queue>,

@@ -386,7 +386,7 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
         ));
     }
     let without = tally.count(Verdict::Ok);
-    // Of a single shader, its reason says so.
+    // The reason of a single shader states it.
     if without > 0 && records.len() > 1 {
         terminal.warn(format_args!(
             "nothing was compared for {} {}: no reference was given",

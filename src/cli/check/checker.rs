@@ -376,8 +376,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Binds what the image of a project reads in a frame, which is compared with a reference or not, and reports
-    /// what its passes do in the frames up to it.
+    /// Binds the inputs of the image of a project in a frame, with or without a reference, and reports the
+    /// findings on its passes in the frames up to it.
     fn bind(
         &self,
         context: &mut WorkerContext,

@@ -85,7 +85,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
 /// Reads an earlier report that `--compare` or `--costs` names, if any.
 ///
 /// # Errors
-/// It is unusable; what is wrong with it has been printed.
+/// It is unusable; the error has been printed.
 fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, ()> {
     let Some(path) = path else {
         return Ok(None);

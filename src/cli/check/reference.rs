@@ -89,7 +89,7 @@ impl References {
     /// Reads what shaders are compared with. The frames get the size of a reference image.
     ///
     /// # Errors
-    /// It is unusable; what is wrong with it has been printed.
+    /// It is unusable; the error has been printed.
     pub(super) fn new(args: &Args, plan: &mut Plan, terminal: &Terminal) -> Result<Self, ()> {
         let timeout = args.driver.timeout();
         let Some(given) = GivenReference::read(&plan.reference, &args.language, timeout, terminal)? else {
@@ -144,7 +144,7 @@ impl Scenes {
         Self { named }
     }
 
-    /// Checks the scene that `--scene` names, if any, and prints what is wrong with it.
+    /// Checks the scene that `--scene` names, if any, and prints its errors.
     fn is_usable(&self, terminal: &Terminal) -> bool {
         let Some((path, text)) = &self.named else {
             return true;

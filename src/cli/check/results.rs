@@ -142,7 +142,7 @@ impl Results {
         })
     }
 
-    /// Checks that the file still exists: what is written to a removed file is lost.
+    /// Checks that the file still exists: writes to a removed file are lost.
     pub(super) fn check_place(&self) -> io::Result<()> {
         match self.path.metadata() {
             Ok(_) => Ok(()),

@@ -65,10 +65,10 @@ impl TaskInputs {
 const SUBMISSIONS: &str = "submissions";
 
 impl Work {
-    /// Reads what the arguments name. With the `build` that checks them, submissions have keys.
+    /// Reads the tasks that the arguments name. With the `build` that checks them, submissions have keys.
     ///
     /// # Errors
-    /// Something is unusable; what is wrong with it has been printed.
+    /// Something is unusable; the error has been printed.
     pub(super) fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, ()> {
         let costs = earlier(args.costs.as_deref(), terminal)?;
         let collected = args.out.as_ref().map(|out| out.join(SUBMISSIONS));

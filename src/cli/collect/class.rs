@@ -22,7 +22,7 @@ pub(super) struct Class {
     pub(super) assignments: Vec<ClassAssignment>,
 }
 
-/// Where the students of a class are listed.
+/// The file that lists the students of a class.
 #[derive(Debug, Default)]
 pub(super) enum StudentList {
     /// Nowhere: they are those of the download.

@@ -70,7 +70,7 @@ impl Submission {
         let Some(deadline) = deadline else {
             return Lateness::OnTime;
         };
-        // Canvas marks what is late, and gives all files the time of the download.
+        // Canvas marks late files, and gives all files the time of the download.
         let unmarked = files.iter().filter(|file| file.is_late.is_none());
         let delays: Vec<_> = unmarked
             .map(|file| file.time.map(|time| utc(time, deadline) - deadline.seconds))

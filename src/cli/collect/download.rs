@@ -1,5 +1,5 @@
 //! The files of a download: a folder or an archive, with archives in it. Limits hold for each student, so that
-//! what one submits takes nothing from the others.
+//! one submission does not use up the limits of others.
 
 use std::collections::HashMap;
 use std::fs;
@@ -69,7 +69,7 @@ pub(super) fn read(download: &Path) -> io::Result<Vec<Found>> {
         };
         tree = inner;
     }
-    // Archives come last: what is in them may reach the limits.
+    // Archives come last: their contents may reach the limits.
     tree.items
         .sort_by(|a, b| (a.is_archive(), &a.path).cmp(&(b.is_archive(), &b.path)));
     let mut reader = Reader::default();
@@ -98,7 +98,7 @@ struct Item {
     place: Place,
 }
 
-/// Where the content of a name is.
+/// The place of the content of a name.
 enum Place {
     File(PathBuf, Option<FileTime>),
     Entry(zip::Entry),
@@ -269,7 +269,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// Reads what is behind a name of the download.
+    /// Reads the content of a name of the download.
     fn item(&mut self, tree: &mut Tree, item: Item) -> io::Result<()> {
         let student = submitted(&item.path).student;
         let mut used = self.students.remove(&student).unwrap_or_default();
@@ -413,7 +413,7 @@ impl Submission<'_> {
     }
 }
 
-/// A path without the middle of what is too long: its first component names the student.
+/// A path without the middle of names that are too long: its first component names the student.
 fn shortened(path: Vec<String>) -> Vec<String> {
     const MAX_BYTES: usize = 100;
     let cut = |text: String| match text.char_indices().nth(MAX_BYTES) {

@@ -167,7 +167,7 @@ pub(super) struct ClassPart {
 /// from which they are collected into the folder `to`; without one, downloads are refused.
 ///
 /// # Errors
-/// Something is unusable; what is wrong with it has been printed.
+/// Something is unusable; the error has been printed.
 pub(super) fn class_parts(
     downloads: &[PathBuf],
     class: &Path,

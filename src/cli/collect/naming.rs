@@ -166,7 +166,7 @@ fn shortened(name: &str) -> String {
     format!("{}{extension}", &name[..end.unwrap_or_default()])
 }
 
-/// Whether Windows takes a name for a device, whatever its extension.
+/// Whether Windows treats a name as a device, whatever its extension.
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().to_uppercase();
     let is_numbered = |kind: &str| {

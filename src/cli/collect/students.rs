@@ -194,7 +194,8 @@ fn separator(text: &str) -> u8 {
     by_rows.unwrap_or(b',')
 }
 
-/// A number or a name without what does not distinguish students: case, and how letters with accents are stored.
+/// A number or a name without differences that do not distinguish students: case, and the encoding of letters
+/// with accents.
 fn key(text: &str) -> String {
     text.trim().nfc().collect::<String>().to_lowercase()
 }

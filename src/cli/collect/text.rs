@@ -55,7 +55,7 @@ pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
 }
 
 /// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns `None`
-/// for what has control characters, and the name of the encoding unless it is UTF-8.
+/// for a text with control characters, and the name of the encoding unless it is UTF-8.
 pub(super) fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
     let units = |from: fn([u8; 2]) -> u16| -> String {
         let units = bytes[2..].chunks_exact(2).map(|pair| from([pair[0], pair[1]]));

@@ -199,7 +199,8 @@ fn output_name(name: &str, is_renamed: bool) -> String {
     }
 }
 
-/// Removes what an earlier run collected into the folders of assignments in a folder; other files stay.
+/// Removes the files that an earlier run collected into the folders of assignments in a folder; other files
+/// stay.
 ///
 /// # Errors
 /// The folder only has other files, which `collect` did not write.

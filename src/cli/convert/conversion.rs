@@ -42,7 +42,7 @@ pub(super) struct WorkerContext {
     pool: Option<ThreadPool>,
 }
 
-/// The files to write, and what was proved of them.
+/// The files to write, and their proofs.
 pub(super) struct Conversion {
     pub(super) files: Vec<OutputFile>,
     pub(super) status: ProofStatus,

@@ -156,7 +156,7 @@ impl To {
         value.map_or_else(String::new, |value| value.get_name().to_owned())
     }
 
-    /// Returns whether it may be written to a file with the extension of `other`: what naga is fed is GLSL.
+    /// Returns whether it may be written to a file with the extension of `other`: lowered output is GLSL.
     pub(super) fn may_end_as(self, other: Self) -> bool {
         self == other || (self, other) == (Self::Lowered, Self::Glsl)
     }

@@ -263,9 +263,9 @@ struct Runner<'a> {
     terminal: &'a Terminal,
     /// The file, or the folder.
     output: &'a Path,
-    /// None where there is no driver, or the evaluator is to render.
+    /// `None` if there is no driver, or the evaluator is to render.
     worker: Option<Worker>,
-    /// Whether the evaluator renders what it is not slower at than the driver.
+    /// Whether the evaluator renders shaders for which it is not slower than the driver.
     prefers_evaluator: bool,
     frame: Frame,
     /// The written images.

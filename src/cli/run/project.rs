@@ -75,7 +75,7 @@ enum Stopped {
 }
 
 impl Playback<'_> {
-    /// Renders a frame, and returns what a pass rendered.
+    /// Renders a frame, and returns the image of a pass.
     fn render(
         &mut self,
         clock: &Clock,
@@ -139,7 +139,7 @@ enum Unshown {
 }
 
 impl Run<'_> {
-    /// Renders the frames up to this one, and returns what the shown pass renders in it.
+    /// Renders the frames up to this one, and returns the image of the shown pass in it.
     fn show(&mut self, number: i32, interrupted: &AtomicBool) -> Result<Rendered, Unshown> {
         let start = Instant::now();
         if !self.has_history {

@@ -1,4 +1,4 @@
-//! The file of `run --state`: what the next frame of a project depends on, and which project that is.
+//! The file of `run --state`: the state that the next frame of a project depends on, and its project.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -13,7 +13,7 @@ use toyproof_project::{CompiledProject, Rendering};
 /// Identifies the format.
 const FORMAT: &str = "toyproof state 2";
 
-/// The maximum size of what precedes the textures, in bytes.
+/// The maximum size of the header before the textures, in bytes.
 const MAX_HEAD_BYTES: u64 = 1024;
 
 /// The maximum size of a pixel in all textures, in bytes: four doubles in two textures of each buffer and in
@@ -23,7 +23,7 @@ const MAX_PIXEL_BYTES: u64 = 32 * (2 * BUFFERS as u64 + 1);
 /// The owner of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Owner {
-    /// A digest of the texts of the passes, of what they read, and of how they sample it.
+    /// A digest of the texts of the passes, of their inputs and of the sampling of these.
     project: [u8; 32],
     /// Width and height in pixels.
     size: [u32; 2],
@@ -120,7 +120,7 @@ pub(super) fn read(path: &Path, owner: &Owner) -> Result<Option<State>, String> 
     Ok(Some(state))
 }
 
-/// Writes a state as a whole.
+/// Writes a complete state.
 ///
 /// # Errors
 /// Why it cannot be written.

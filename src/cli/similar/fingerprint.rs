@@ -24,7 +24,7 @@ const WINDOW: usize = 6;
 #[derive(Debug, Default)]
 pub(super) struct Fingerprints(HashMap<u64, [usize; 2]>);
 
-/// A node of a tree: what it is, and where.
+/// A node of a tree: its kind and its place.
 struct Node {
     kind: u64,
     span: Span,

@@ -175,7 +175,7 @@ fn three_digits(value: f64) -> String {
 /// Sets a number of a scene.
 type Set = Box<dyn Fn(&mut Scene, f64) + Sync>;
 
-/// Describes a wrong value, given what the number is called, the value and the scene's value.
+/// Describes a wrong value, given the name of the number, the value and the scene's value.
 type Describe = fn(&str, &str, &str) -> String;
 
 /// A wrong number.

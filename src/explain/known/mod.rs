@@ -37,7 +37,7 @@ pub struct KnownMistake {
     pub description: Cow<'static, str>,
     /// Whether it is only a symptom of many mistakes: most of the image is lost.
     pub is_symptom: bool,
-    /// Where it is in the shader, if that is known.
+    /// Its place in the shader, if known.
     pub at: Option<Span>,
 }
 
@@ -411,7 +411,7 @@ mod exercises {
         "15-parallel-rays",
     ];
 
-    /// Scenes with what no exercise has.
+    /// Scenes with features that no exercise has.
     const OTHER_SCENES: [&str; 5] = [NESTED_MOTIONS, BOTH_GLASSES, DIFFUSE_PATHS, MOVED_CAMERA, TURNED];
 
     /// A turned camera, a turned box, and patterns.

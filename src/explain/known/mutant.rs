@@ -168,7 +168,7 @@ const ANY_SPHERE_SOFT: &[(Slot, &str)] = &[(
 )];
 
 /// Returns the shader whose reflected and refracted rays start on their surface and ignore nearer hits;
-/// `None` if it has no such rays and no quadrics, which a shadow ray may start on as well.
+/// `None` if it has no such rays and no quadrics, on which a shadow ray may also start.
 fn with_min_t(shader: &MarkedShader) -> Option<MarkedShader> {
     let origins = [Slot::ReflectedOrigin, Slot::RefractedOrigin];
     if shader.has(Slot::ReflectedOrigin) && shader.has(Slot::SphereMinT) {

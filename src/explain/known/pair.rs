@@ -1,7 +1,7 @@
 //! Two mistakes at once: which pairs are worth rendering, and the shader with both.
 //!
 //! There are too many pairs to render all. Each mistake alone has been rendered: a pixel that one of two does
-//! not change most likely has the color that the other alone gives it. Where the wrong image has another
+//! not change most likely has the color that the other alone gives it. If the wrong image has another
 //! color, it contradicts the pair; the pairs with the fewest such pixels come first.
 
 use toyproof_image::Image;

@@ -181,7 +181,7 @@ pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
             if start >= to {
                 shift += growth;
             } else if start <= from && to <= end {
-                // The second edit's text contains what the first one wrote.
+                // The second edit's text contains the text of the first one.
                 inside += growth;
                 edits.retain(|own| own.span != before.span);
             } else if end > from {

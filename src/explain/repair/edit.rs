@@ -147,7 +147,7 @@ impl Candidate {
         all
     }
 
-    /// The kind of mistake that it repairs; in the head of a loop, the loop is what is wrong.
+    /// The kind of mistake that it repairs; in the head of a loop, that of the loop.
     pub(super) fn kind(&self, shader: &Shader) -> EditKind {
         let is_head = shader.statements[self.statement(shader)].kind == Shape::Loop;
         if is_head && matches!(self.change, Change::Expression { .. }) {

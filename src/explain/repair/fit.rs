@@ -143,7 +143,8 @@ pub(super) fn fitted(
     found
 }
 
-/// Searches from those components of wrong pixels that depend on a number most, relative to what is missing.
+/// Searches from those components of wrong pixels that depend on a number most, relative to the missing
+/// difference.
 fn starts(probes: &Probes, group: &mut Group, fits: &[Fit], before: &[[f64; 3]]) -> Vec<Secant> {
     let count = probes.all.len().min(PROBES);
     let step = |fit: &Fit| 1e-3 * fit.start.abs().max(0.1);

@@ -18,7 +18,7 @@ use super::term::Term;
 pub(super) struct Disturbance {
     factor: f64,
     term: f64,
-    /// How much an influence that only this change shows is worth.
+    /// The weight of an influence that only this change shows.
     pub(super) weight: f64,
 }
 

@@ -43,7 +43,7 @@ pub struct SearchOptions<'a> {
     pub donors: Option<&'a Donors>,
 }
 
-/// Expressions of correct shaders for the same assignment. Where no small edit repairs a shader, one of them
+/// Expressions of correct shaders for the same assignment. If no small edit repairs a shader, one of them
 /// may.
 #[derive(Debug, Default)]
 pub struct Donors(Vec<edits::Donor>);

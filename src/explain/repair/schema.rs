@@ -60,7 +60,7 @@ struct Writer {
     checked: Checked,
     /// A `bool` for each candidate, and a `float` for each fitted number.
     parameters: Vec<VariableId>,
-    /// Where the original of a replaced expression is.
+    /// The place of the original of a replaced expression.
     moved: HashMap<ExprId, ExprId>,
     /// The changes of statements, by candidate.
     actions: BTreeMap<StatementId, Vec<(usize, Insertion)>>,
@@ -114,7 +114,7 @@ impl Writer {
         }
     }
 
-    /// Makes an expression a choice between a term and what it was.
+    /// Makes an expression a choice between a term and the original.
     fn replace(&mut self, number: usize, expr: ExprId, term: &Term) {
         let fitted = self.fitted();
         let tree = &mut self.checked.tree;

@@ -336,8 +336,8 @@ impl Search<'_> {
         }
     }
 
-    /// The repairs that are reported, the most likely first. One that leaves pixels wrong is no alternative
-    /// to one that leaves fewer.
+    /// The repairs that are reported, the most likely first. One that leaves pixels wrong is not an
+    /// alternative to one that leaves fewer.
     fn repairs(mut self) -> Vec<Repair> {
         let left = |found: &Found| found.repair.pixels - found.repair.agreeing;
         self.found

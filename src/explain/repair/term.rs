@@ -305,7 +305,7 @@ impl Term {
     }
 }
 
-/// Adds an expression that is not constant: what it depends on may be selected by a parameter.
+/// Adds an expression that is not constant: a parameter may select the values that it depends on.
 pub(super) fn push(tree: &mut Tree, kind: ExprKind, ty: Type, at: Place) -> ExprId {
     tree.exprs.push(Expr {
         kind,

@@ -44,7 +44,7 @@ const MIN_PROBES: usize = 32;
 /// A number of loop iterations that an edited pixel may always have.
 const MIN_ITERATIONS: u32 = 2000;
 
-/// A number of loop iterations that is no limit.
+/// A number of loop iterations that is not a limit.
 pub(super) const UNLIMITED: u32 = u32::MAX >> 4;
 
 /// The largest number of values of a group after inlining. Compiling them takes about two seconds.
@@ -272,15 +272,15 @@ impl<'a> ShaderUnderTest<'a> {
         f64::from(candidate.cost) + PLACE_WEIGHT * (1.0 - ochiai) + COVERAGE_WEIGHT * (1.0 - coverage)
     }
 
-    /// The place of a candidate that passes among the repairs: where it is matters less, and how well it fits
-    /// means more, if the fit is not exact.
+    /// The rank of a passing candidate among the repairs: if the fit is not exact, its place counts less and
+    /// the quality of the fit more.
     pub(super) fn report_rank(&self, trial: &Trial) -> f64 {
         let candidate = &trial.candidate;
         let place = REPAIR_PLACE_WEIGHT * (1.0 - self.suspicion(candidate).ochiai);
         f64::from(candidate.cost) + place + REMAINING_WEIGHT * trial.outcome.remaining
     }
 
-    /// The suspicion of what a candidate changes.
+    /// The suspicion of the code that a candidate changes.
     fn suspicion(&self, candidate: &Candidate) -> Suspicion {
         match &candidate.change {
             Change::Expression { site, .. } => self.sites[*site],
@@ -316,7 +316,7 @@ impl<'a> ShaderUnderTest<'a> {
         sites
     }
 
-    /// The most suspicious statements, on different lines. Where edits make progress, the mistake is more
+    /// The most suspicious statements, on different lines. If edits make progress there, the mistake is more
     /// likely: of statements with the same coefficient, those count more (mutation-based localization;
     /// Papadakis and Le Traon, "Metallaxis-FL", 2015).
     pub(super) fn suspects(&self, progress: &[Trial]) -> Vec<Suspect> {

@@ -293,7 +293,7 @@ fn within(wrong: &WrongShader, rows: &Rows) -> Option<Statistics> {
     Some(statistics)
 }
 
-/// The descriptions of what is recognized here, as examples.
+/// The descriptions of the recognized differences, as examples.
 #[cfg(test)]
 pub(super) fn examples() -> Vec<KnownMistake> {
     let grid = "each pixel is the mean of 2×2 samples; the reference has one, at its center";

@@ -66,8 +66,8 @@ const MIN_LEVELS_OF_USUAL: usize = 4;
 const MIN_CHANGE: f64 = 4.0 / LEVELS;
 
 /// The smallest number of levels on which a fitted curve must agree for several hues or channels. A curve can
-/// be fitted to any levels that are there once; only where different colors have a component in common does
-/// it say something about the others.
+/// be fitted to any levels that are there once; only if different colors have a component in common does it
+/// predict the others.
 const MIN_SHARED_LEVELS: usize = 24;
 
 /// The largest number of samples to which a curve is fitted.
@@ -76,7 +76,7 @@ const MAX_FITTED: usize = 1 << 16;
 /// The largest share of the samples that may be off the first fit, which they distort.
 const MAX_OUTLIERS: f64 = 0.02;
 
-/// The smallest share of the wrong pixels that differ by more than the tolerance of a curve. Where fewer than
+/// The smallest share of the wrong pixels that differ by more than the tolerance of a curve. If fewer than
 /// a hypothesis may leave unexplained do, the curve that changes nothing would explain the image.
 const MIN_BEYOND_TOLERANCE: f64 = 0.2;
 

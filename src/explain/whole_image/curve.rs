@@ -145,7 +145,7 @@ impl Isotonic {
     pub(super) fn range(&self, x: f64) -> [f64; 2] {
         let above = self.steps.partition_point(|&[own, _]| own <= x);
         let from = self.steps.partition_point(|&[own, _]| own < x);
-        // Where x is a step itself, the function is known.
+        // If x is a step itself, the function is known.
         let low = if from < above {
             from
         } else {

@@ -1,5 +1,5 @@
-//! Finds how a wrong image differs as a whole from the expected one: a shader that solves its task may be
-//! antialiased, mirrored or corrected for gamma, or read another input than was asked for.
+//! Finds how a whole wrong image differs from the expected one: a shader that solves its task may be
+//! antialiased, mirrored or corrected for gamma, or read another input than the requested one.
 //!
 //! A hypothesis is tried at a few pixels and then confirmed: under it, the whole image must be correct by the
 //! same rules as any other. Most hypotheses evaluate the shader differently (a `View`: at other positions, or
@@ -34,7 +34,7 @@ pub struct Alternatives<'a> {
 /// Scenes with their names, read on first use: correct shaders do not need them.
 pub type OtherScenes = LazyLock<Vec<(String, Scene)>, Box<dyn FnOnce() -> Vec<(String, Scene)> + Send>>;
 
-/// How a wrong image differs as a whole from the expected one.
+/// How a whole wrong image differs from the expected one.
 #[derive(Debug)]
 pub(crate) struct Alternative {
     pub(crate) mistake: KnownMistake,

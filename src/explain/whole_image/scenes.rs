@@ -1,4 +1,4 @@
-//! Shaders that render another scene than was asked for, or ShaderToy's default shader.
+//! Shaders that render another scene than the requested one, or ShaderToy's default shader.
 
 use toyproof_image::{Frame, Image};
 use toyproof_verify::Expected;
@@ -84,7 +84,7 @@ fn default_image(wrong: &WrongShader, time: f32) -> Image {
     Image::new(columns, rows, pixels.collect())
 }
 
-/// The descriptions of what is recognized here, as examples.
+/// The descriptions of the recognized differences, as examples.
 #[cfg(test)]
 pub(super) fn examples() -> Vec<KnownMistake> {
     vec![

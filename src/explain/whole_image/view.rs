@@ -216,7 +216,8 @@ impl Convention {
         scaled.chain(shifted).filter(|&own| own != Self::SAME).collect()
     }
 
-    /// Where a shader with this convention has the reference's coordinate, on an axis of that length.
+    /// The position at which a shader with this convention has the reference's coordinate, on an axis of that
+    /// length.
     fn axis(self, length: f64, aspect: f64) -> Axis {
         let center = 0.5 * length;
         let to = if self.is_from_corner { 0.0 } else { center };

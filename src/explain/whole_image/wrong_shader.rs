@@ -16,7 +16,7 @@ use super::Alternative;
 use super::view::View;
 use crate::known::KnownMistake;
 
-/// The largest number of pixels of an image that is compared: it is kept as a whole.
+/// The largest number of pixels of a compared image, which is completely in memory.
 const MAX_PIXELS: u32 = 1 << 21;
 
 /// The largest numbers of columns and rows of pixels at which hypotheses are tried.

@@ -46,7 +46,7 @@ pub(crate) struct Preprocessed {
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether errors made so much of the text unusable that the rest must not be parsed.
     pub(crate) incomplete: bool,
-    /// Whether errors may hide names: of macros, or of what an `#include` was to declare.
+    /// Whether errors may hide names: of macros, or of declarations in an `#include`.
     pub(crate) lacks_names: bool,
 }
 

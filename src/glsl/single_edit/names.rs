@@ -110,7 +110,7 @@ fn glued(candidates: &mut Candidates, names: &Names, index: usize, distance: usi
         let rest_is_type = source.interner.types().any(|ty| ty == rest);
         let is_plausible = is_known(rest) || rest.starts_with(|c: char| c.is_ascii_digit());
         let cost = match (is_known(first), is_plausible) {
-            // Two known names are no coincidence, also at some distance from the error.
+            // Two known names are not a coincidence, even at some distance from the error.
             (true, true) => distance / 4,
             (true, false) => distance + 8,
             // The name of a declared function, and the type of its first parameter.

@@ -1,4 +1,4 @@
-//! The single edit: what is found for typical mistakes, and the limits of the search.
+//! The single edit: the results for typical mistakes, and the limits of the search.
 
 use std::time::Duration;
 

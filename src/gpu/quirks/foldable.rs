@@ -23,7 +23,7 @@ pub(super) type Operands<'a> = dyn Fn(u32) -> Option<Known> + 'a;
 /// called functions and loops by their iterations. A variable may be constant if a constant is stored to it.
 #[derive(Debug, Default)]
 pub(super) struct Foldable {
-    /// Of values, of variables (what may be stored to them) and of functions (what they return).
+    /// The facts about values, variables (about the stored values) and functions (about the returned values).
     known: HashMap<u32, Known>,
     /// The variables that pointers point into.
     roots: HashMap<u32, u32>,

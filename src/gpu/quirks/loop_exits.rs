@@ -13,8 +13,8 @@ use super::opaque::{Opaque, push};
 /// assignment, the next iteration overwrites it. At the added exit, every variable has its value from before
 /// the assignment.
 ///
-/// A module without `gl_FragCoord` does not change, nor do loops whose first exit comes before assignments, as
-/// in most `for` loops.
+/// A module without `gl_FragCoord` does not change; neither do loops whose first exit comes before
+/// assignments, as in most `for` loops.
 #[must_use]
 pub(crate) fn with_early_exits(words: &[u32]) -> Vec<u32> {
     let exits = late_exits(words);

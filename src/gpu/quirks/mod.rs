@@ -46,7 +46,7 @@ pub enum Scope {
     Affected,
 }
 
-/// A fault of a driver, and what is done about it.
+/// A fault of a driver, and its workaround.
 #[derive(Debug, Clone, Copy)]
 pub struct Quirk {
     /// Its name in kebab case.

@@ -116,7 +116,7 @@ impl Opaque {
         self.bound - 1
     }
 
-    /// The module of what comes before its functions, and the code of these.
+    /// The part of the module before its functions, and the code of the functions.
     pub(super) fn finish(&self, head: &[u32], code: &[u32]) -> Vec<u32> {
         let mut whole = [head, &self.declared, code].concat();
         whole[BOUND] = self.bound;

@@ -9,9 +9,9 @@ use super::foldable::{Foldable, Known, Operands};
 use super::opaque::{Opaque, push};
 
 /// Combines some numbers by or with the bits of `gl_FragCoord.z`, which are 0 if an image is
-/// rendered with triangles at depth 0. Their values do not change, nor does a module without `gl_FragCoord`. An
-/// exclusive or would be undone where a number is hidden twice, as a column and in a matrix.
-/// The numbers are:
+/// rendered with triangles at depth 0. Their values do not change; neither does a module without
+/// `gl_FragCoord`. An exclusive or would be undone where a number is hidden twice, as a column and in a
+/// matrix. The numbers are:
 ///
 /// - Numbers and vectors loaded from a uniform block. If a loop or a branch depends on a number, Mesa checks
 ///   whether it is computed from uniforms and constants only, and traverses the expression as a tree although
@@ -21,7 +21,7 @@ use super::opaque::{Opaque, push};
 ///   zero by folding constants. Mesa's llvmpipe takes the product of a constant zero and any value, and its
 ///   quotient, for zero even if it is NaN, and a quotient by it for anything, regardless of decorations.
 /// - Constants whose operations Mesa folds otherwise than the processor computes them: it does not flush
-///   denormal products and bit patterns, and it takes all derivatives of constants for 0.
+///   denormal products and bit patterns, and it treats all derivatives of constants as 0.
 /// - Denormal constants, which Mesa and `SwiftShader` do not treat as zeros when they fold them.
 /// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs
 ///   through by its step, and −2³¹ / −1 terminates the process.
@@ -193,7 +193,7 @@ impl Rewriter {
         })
     }
 
-    /// The indices of an instruction's operands that are hidden, by what is known of their values.
+    /// The indices of an instruction's operands that are hidden, by the facts about their values.
     fn hidden_operands(&self, instruction: &[u32], known: &Operands) -> Vec<usize> {
         let Some(op) = opcode(instruction) else {
             return Vec::new();

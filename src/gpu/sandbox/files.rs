@@ -50,7 +50,7 @@ const READABLE: [&str; 28] = [
     "/dev/zero",
 ];
 
-/// The beginnings of the names in `/dev` of what a GPU's driver opens: Direct Rendering Manager, NVIDIA, AMD,
+/// The beginnings of the names in `/dev` that a GPU's driver opens: Direct Rendering Manager, NVIDIA, AMD,
 /// Mali, Adreno, `PowerVR`, Windows Subsystem for Linux, and buffers shared by devices.
 const DEVICES: [&str; 13] = [
     "dri", "nvidia", "nvhost", "nvmap", "nvgpu", "kfd", "mali", "kgsl", "pvr", "dxg", "udmabuf", "dma_heap",

@@ -1,9 +1,9 @@
 //! System calls that a driver has no use for fail with `EPERM`: those of networks, of other programs and
 //! processes, and of the administration of the machine.
 //!
-//! They are a list of what is forbidden, not of what is allowed: what a driver, a compiler and a C library call
-//! differs between their versions, and a call that is missing in a list of allowed ones would end a driver that
-//! works. Access to files is Landlock's task.
+//! They are a list of forbidden calls, not of allowed ones: the calls of a driver, a compiler and a C library
+//! differ between their versions, and a call that is missing in a list of allowed ones would end a driver
+//! that works. Access to files is Landlock's task.
 
 use std::collections::BTreeMap;
 
@@ -152,7 +152,7 @@ fn programs(process: u32) -> Result<Vec<BpfProgram>, BackendError> {
     ])
 }
 
-/// Refuses x32, whose numbers are no rules' keys.
+/// Refuses x32, whose numbers are not in the rules.
 #[cfg(target_arch = "x86_64")]
 fn without_x32() -> BpfProgram {
     let instruction = |code, jt, jf, k| sock_filter { code, jt, jf, k };

@@ -107,7 +107,7 @@ fn functions_that_are_never_called() {
     // A call in a comment does not count.
     let text = format!("float shade(float x) {{ return x; }} // c *= shade(f.x);\n{main}");
     assert_eq!(warned(&text), ["W0022:1"]);
-    // Of a library, one warning is enough.
+    // One warning is enough for a library.
     let functions = (0..9).map(|i| format!("float f{i}(float x) {{ return x; }}"));
     let library = functions.collect::<Vec<_>>().join("\n");
     let (found, _) = diagnostics(&format!("{library}{main}"));

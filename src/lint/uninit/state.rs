@@ -68,7 +68,7 @@ impl State {
         unite(&mut self.assigned, &other.assigned);
     }
 
-    /// Merges what is assigned on other paths.
+    /// Merges the assignments on other paths.
     pub(super) fn join_assigned(&mut self, other: &Self) {
         if self.is_reachable && other.is_reachable {
             unite(&mut self.assigned, &other.assigned);

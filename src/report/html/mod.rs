@@ -243,7 +243,7 @@ fn images(gallery: &Gallery) -> String {
 // Escaping of text for HTML, in an element or between double quotes. Characters that affect the surrounding
 // text, such as bidirectional controls, are escaped too.
 
-/// Escapes a sentence. What is between backticks is code; a number and its percent sign stay on one line.
+/// Escapes a sentence. Text between backticks is code; a number and its percent sign stay on one line.
 fn sentence(text: &str) -> String {
     let parts: Vec<_> = text.split('`').map(|part| Text(part).to_string()).collect();
     if parts.len().is_multiple_of(2) {

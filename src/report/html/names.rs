@@ -1,4 +1,4 @@
-//! The short names of shaders: without the folder that all of them are in.
+//! The short names of shaders, without their common folder.
 
 use std::path::is_separator;
 

@@ -1,5 +1,5 @@
 //! The source of a shader with line numbers: the lines of messages and of the fix are marked, each with its
-//! messages below it, and what is far from them is folded.
+//! messages below it, and lines far from them are folded.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

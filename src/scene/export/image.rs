@@ -1,5 +1,5 @@
-//! GLSL of `mainImage` and what it calls: samples and their mean, tone map, camera, figures, background,
-//! random numbers. `«Name: text»` marks a [slot](super::slot).
+//! GLSL of `mainImage` and the functions that it calls: samples and their mean, tone map, camera, figures,
+//! background, random numbers. `«Name: text»` marks a [slot](super::slot).
 
 use std::fmt::Write;
 

@@ -236,7 +236,7 @@ impl Split {
         let mut best: Option<(f32, Self)> = None;
         for (axis, of_axis) in table.iter().enumerate() {
             let of_axis = &of_axis[..bins];
-            // The cost of what is beyond each plane, from the last plane down.
+            // The cost of the spheres beyond each plane, from the last plane down.
             let mut beyond = [0.0; BINS];
             let mut union = empty;
             for at in (1..bins).rev() {

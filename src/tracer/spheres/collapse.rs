@@ -56,7 +56,7 @@ impl SubtreeCosts {
 /// A binary tree with the costs of its subtrees.
 pub(super) struct Collapse<'a> {
     binary: &'a BinaryTree,
-    /// By node; what belongs to leaves is not used.
+    /// By node; the elements of leaves are not used.
     subtrees: Vec<SubtreeCosts>,
 }
 

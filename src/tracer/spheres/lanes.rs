@@ -27,7 +27,7 @@ pub(in super::super) struct LaneHits<T, S: Lanes<T>> {
 }
 
 impl<T: Real, S: Lanes<T>> LaneRays<T, S> {
-    /// Returns the rays as an array, for what is computed one after the other.
+    /// Returns the rays as an array, for computations on one ray after the other.
     #[inline(always)]
     pub(in super::super) fn spill(&self) -> SpilledRays<T> {
         SpilledRays {
@@ -78,7 +78,7 @@ impl<T: Real, S: Lanes<T>> LaneHits<T, S> {
     }
 
     /// Replaces the hits where the given t of a surface is smaller; at equal t, the smaller index wins. An
-    /// infinite t and NaN are no hits.
+    /// infinite t and NaN are not hits.
     #[inline(always)]
     pub(in super::super) fn update(&mut self, simd: S, t: Wide<T, S>, number: u32) {
         let tag = Wide::splat(simd, T::tag(number));
@@ -101,8 +101,8 @@ impl<T: Real, S: Lanes<T>> LaneHits<T, S> {
 }
 
 impl<T: Real> Spheres<T> {
-    /// Finds the first hits beyond `t_min` of the rays in `active` lanes. A ray's start is no hit of the sphere
-    /// that it starts on. For spheres without a tree.
+    /// Finds the first hits beyond `t_min` of the rays in `active` lanes. A ray's start is not a hit of the
+    /// sphere that it starts on. For spheres without a tree.
     #[inline(always)]
     pub(in super::super) fn nearest_in_lanes<S: Lanes<T>>(
         &self,

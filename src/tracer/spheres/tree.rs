@@ -109,7 +109,7 @@ impl<T: Real> Tree<T> {
             cost: 0.0,
         };
         // Nodes to fill, with their roots in the binary tree. The next one is a child of the last one, so
-        // that what a ray visits one after the other is close in memory.
+        // that the nodes that a ray visits one after the other are close in memory.
         let mut open = vec![(0, 0)];
         while let Some((at, root)) = open.pop() {
             let members = collapse.members(root);

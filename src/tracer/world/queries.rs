@@ -14,7 +14,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         S::COUNT == 1 || self.spheres.has_tree()
     }
 
-    /// Returns rays that know no surface on which they start if the policy moves their origins.
+    /// Returns rays without the surface on which they start if the policy moves their origins.
     #[inline(always)]
     fn owned_rays<S: Lanes<T>>(
         simd: S,

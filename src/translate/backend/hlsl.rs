@@ -111,8 +111,8 @@ fn with_separate_samplers(text: &str) -> String {
     lines.collect()
 }
 
-/// Writes the initial values of arrays as initializer lists. Compilers other than DXC refuse what naga writes:
-/// calls of its constructors in global initializers, and `(S[2])0`.
+/// Writes the initial values of arrays as initializer lists. Compilers other than DXC refuse the code that
+/// naga writes: calls of its constructors in global initializers, and `(S[2])0`.
 fn with_initializer_lists(text: &str) -> String {
     let lines = text.lines().map(|line| {
         let listed = match line.split_once(" = ") {

@@ -104,7 +104,7 @@ const BOUNDS: BoundsCheckPolicies = {
     }
 };
 
-/// [`BOUNDS`], and what the module's language requires of texels beyond a texture.
+/// [`BOUNDS`], and the requirement of the module's language on texels beyond a texture.
 fn bounds(module: &ValidModule) -> BoundsCheckPolicies {
     BoundsCheckPolicies {
         image_load: match module.fetches() {

@@ -57,8 +57,8 @@ pub fn as_shadertoy(text: &str) -> String {
     with_shadertoy_inputs(text, &INPUTS.map(|(_, value)| value).join(", "))
 }
 
-/// Writes a module as a `ShaderToy` shader: what was converted to a language without tools on this machine can
-/// then be evaluated.
+/// Writes a module as a `ShaderToy` shader, so that a file in a language without tools on this machine can be
+/// evaluated.
 ///
 /// # Errors
 /// naga's message if it cannot write the module, or if its uniform block is not the one that

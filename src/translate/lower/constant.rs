@@ -158,7 +158,8 @@ fn rewrite(tree: &Tree, values: &mut Float32Values, id: ExprId) -> Option<Rewrit
     }
 }
 
-/// Whether the value overflows, or an operand or the value is denormal: processors take it for zero, naga does not.
+/// Whether the value overflows, or an operand or the value is denormal: processors treat it as zero, naga
+/// does not.
 fn leaves_range(tree: &Tree, values: &mut Float32Values, id: ExprId) -> bool {
     if overflows(tree, values, id) {
         return true;

@@ -1,4 +1,4 @@
-//! The state of lowering: the tree that the passes rewrite, what they add to it, and the builder of new
+//! The state of lowering: the tree that the passes rewrite, their additions to it, and the builder of new
 //! nodes.
 
 use std::collections::{HashMap, HashSet};

@@ -181,7 +181,7 @@ pub(super) fn is_function(word: &str) -> bool {
     FUNCTIONS.contains(&word) || BuiltIn::ALL.iter().any(|function| function.name() == word)
 }
 
-/// Whether naga's lexer takes the word for a type. It searches for `vec`, `mat`, `texture` or `image` within,
+/// Whether naga's lexer treats the word as a type. It searches for `vec`, `mat`, `texture` or `image` within,
 /// and ignores any text from their second occurrence.
 fn is_type(word: &str) -> bool {
     let sized = |stem: &str, prefixes: &[&str], sizes: &dyn Fn(&str) -> bool| {

@@ -26,7 +26,7 @@ pub(super) const BLOCK: [(&str, &str); 10] = [
     ("float", "iSampleRate"),
 ];
 
-/// The names of the shader's output, of its color in `main` and of its block. naga takes a name for a type
+/// The names of the shader's output, of its color in `main` and of its block. naga treats a name as a type
 /// wherever a type of that name exists.
 const GENERATED_NAMES: [&str; 3] = ["toyproof_color", "toyproof_image_color", "ToyproofFrame"];
 

@@ -168,7 +168,7 @@ impl Printer<'_> {
         }
     }
 
-    /// Prints the condition of a `for`; naga takes one that begins with a type for a declaration.
+    /// Prints the condition of a `for`; naga treats one that begins with a type as a declaration.
     fn condition(&mut self, condition: ExprId) {
         let mut first = condition;
         while let Some(operand) = self.leftmost(first) {

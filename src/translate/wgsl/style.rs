@@ -1,4 +1,4 @@
-//! The code around a shader: entry point, bindings and direction of y for each kind of host, and stand-ins
+//! The code around a shader: entry point, bindings and direction of y for each kind of host, and substitutes
 //! for the hosts to run the result here. `docs/guide/converting.md` cites the hosts' documentation.
 //!
 //! The code is in `styles/`, as WGSL with two additions: `$name` is replaced by a value ([`fill`]), and a
@@ -51,7 +51,7 @@ const MEMBERS: [(&str, &str, Input, u32, u32); 10] = [
     ("iSampleRate", "f32", Input::SampleRate, 192, 4),
 ];
 
-// The names that the hosts and their stand-ins declare.
+// The names that the hosts and their substitutes declare.
 const PLAIN_NAMES: &str = "Inputs inputs main gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 iChannel0_sampler \
     iChannel1_sampler iChannel2_sampler iChannel3_sampler";
 const WGPU_SHADERTOY_NAMES: &str = "Varyings ShadertoyInput input main shader_main gl_FragCoord i_mouse i_date i_resolution i_time \
@@ -92,7 +92,7 @@ impl Style {
         }
     }
 
-    /// The code of a stand-in for the host, around the printed module; `None` if the module is complete.
+    /// The code of a substitute for the host, around the printed module; `None` if the module is complete.
     fn host_template(self) -> Option<&'static str> {
         match self {
             Self::Plain => None,
@@ -423,13 +423,13 @@ pub struct Hosted {
 const FRAME: &str = include_str!("styles/frame.wgsl");
 
 impl Style {
-    /// Embeds an image printed in this style in a stand-in for its host, which reads our uniform block.
+    /// Embeds an image printed in this style in a substitute for its host, which reads our uniform block.
     #[must_use]
     pub fn hosted(self, text: &str) -> Hosted {
         self.hosted_in(text, Stage::Image)
     }
 
-    /// Embeds a pass printed in this style in a stand-in for its host.
+    /// Embeds a pass printed in this style in a substitute for its host.
     #[must_use]
     pub fn hosted_in(self, text: &str, stage: Stage) -> Hosted {
         let Some(host) = self.host_template() else {

@@ -10,7 +10,7 @@ use crate::compare::{EXACT_TOLERANCE, Pixel, PixelStatus};
 /// probability of 1/2, so one in 2⁸ such pixels is missed.
 pub const PERTURBATIONS: u64 = 8;
 
-/// The largest share of pixels that are compared with mixed ray epsilons. Where more pixels differ, ray
+/// The largest share of pixels that are compared with mixed ray epsilons. If more pixels differ, ray
 /// epsilons are not the cause: of the correct rewrites, the one whose epsilons differ most differs in 0.2 %.
 const MAX_MIXED_SHARE: f64 = 0.01;
 
@@ -22,8 +22,8 @@ pub trait Reference: Sync {
     fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed);
     /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
     fn is_across_edge(&self, x: u32, y: u32) -> bool;
-    /// Of the `wanted` pixels, bottom row first, those in which the reference itself changes color when its
-    /// numbers are perturbed by less than a shader's precision.
+    /// Returns those of the `wanted` pixels, bottom row first, in which the reference itself changes color
+    /// when its numbers are perturbed by less than a shader's precision.
     fn tied(&self, wanted: &[bool]) -> Vec<bool>;
 }
 
@@ -177,10 +177,10 @@ pub(crate) fn exclude_tied(statuses: &mut [PixelStatus], tied: impl FnOnce(&[boo
     replace(statuses, &tied, PixelStatus::Tied);
 }
 
-/// Of the `wanted` pixels of an image, those whose color changes by more than the tolerance in one of the
-/// images of `perturbed`, which evaluates the same shader with every operation perturbed, given a seed and the
-/// wanted pixels (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993). It is called
-/// only if there are wanted pixels, and may return none.
+/// Returns those of the `wanted` pixels of an image whose color changes by more than the tolerance in one of
+/// the images of `perturbed`, which evaluates the same shader with every operation perturbed, given a seed
+/// and the wanted pixels (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993). It is
+/// called only if there are wanted pixels, and may return `None`.
 pub(crate) fn changed_by_rounding(
     image: &Image,
     wanted: &[bool],

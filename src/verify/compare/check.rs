@@ -1,4 +1,4 @@
-//! The precision and toolchain checks, what a check finds in each pixel and over the image, and the
+//! The precision and toolchain checks, the results of a check for each pixel and for the image, and the
 //! tolerances.
 
 use serde::{Deserialize, Serialize};

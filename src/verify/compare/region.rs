@@ -105,7 +105,7 @@ impl Search<'_> {
             return None;
         }
         self.is_visited[first] = true;
-        // First in, first out: the edge of what was visited is much shorter than a path through it.
+        // First in, first out: the edge of the visited pixels is much shorter than a path through them.
         let mut left = VecDeque::from([first]);
         let mut pixels = 0;
         let (mut low, mut high) = ([i64::MAX; 2], [i64::MIN; 2]);

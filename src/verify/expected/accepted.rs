@@ -1,5 +1,5 @@
-//! The colors of a reference shader for other numbers that are a matter of style: where its rays start off a
-//! surface, how near a march comes to one, how far it goes, and in how many steps.
+//! The colors of a reference shader for other numbers that are a matter of style: how far off a surface its
+//! rays start, how near a march comes to one, how far it goes, and in how many steps.
 
 use toyproof_diagnostic::Span;
 use toyproof_eval::{Program, Settings, UndefinedPolicy};

@@ -1,5 +1,5 @@
-//! The ray epsilons of a reference shader: where its rays start off a surface, and how near a march comes to
-//! one.
+//! The ray epsilons of a reference shader: how far off a surface its rays start, and how near a march comes
+//! to one.
 
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprId, ExprKind, Literal, Value};

@@ -28,7 +28,7 @@ impl ImageReference {
     const HALF_LEVEL: f64 = 0.5 / 255.0;
 
     /// Creates the reference. Colors agree if no component differs by more than `tolerance`, in [0, 1], besides
-    /// what the image lost by rounding.
+    /// the rounding of the image.
     #[must_use]
     pub fn new(image: Image, quantization: Quantization, tolerance: f64) -> Self {
         let lost = match quantization {

@@ -36,7 +36,7 @@ struct March {
 /// A number that ends a march.
 #[derive(Debug, Clone, PartialEq)]
 struct Limit {
-    /// Where the loop compares with it.
+    /// The place where the loop compares with it.
     at: Span,
     /// The literals that determine it, also elsewhere.
     literals: Vec<ExprId>,

@@ -1,4 +1,4 @@
-//! A scene as reference: what the tracer renders, and the colors that it accepts besides.
+//! A scene as reference: the image of the tracer, and the other accepted colors.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -116,8 +116,8 @@ impl SceneReference {
         }
     }
 
-    /// Of the `wanted` pixels of some rows, those in which the scene has an edge: no shader can resolve its
-    /// side.
+    /// Returns those of the `wanted` pixels of some rows in which the scene has an edge: no shader can
+    /// resolve its side.
     pub(super) fn tied(&self, rows: &Range<u32>, wanted: &[bool], number_type: NumberType) -> Vec<bool> {
         let count = wanted.iter().filter(|&&wanted| wanted).count();
         if count as f64 > MAX_TIED_SHARE * wanted.len() as f64 {

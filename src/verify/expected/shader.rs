@@ -274,7 +274,7 @@ impl ShaderReference {
         tied
     }
 
-    /// Of the pixels at some places, the number of those in which rounding decides the color.
+    /// The number of pixels, among those at some places, in which rounding decides the color.
     pub(super) fn ill_conditioned_at(&self, places: &Places) -> u64 {
         let deadline = Some(Instant::now() + self.timeout * EVALUATOR_TIME_FACTOR);
         let settings = Settings::<f64> {
@@ -306,9 +306,9 @@ impl ShaderReference {
         changed.count() as u64
     }
 
-    /// Of the `wanted` pixels at some places, those whose color changes if the pixel moves by `step` relative to
-    /// its coordinates, a few units in the last place: where an edge passes exactly through its center, even exact
-    /// operations decide nothing.
+    /// Returns those of the `wanted` pixels at some places whose color changes if the pixel moves by `step`
+    /// relative to its coordinates, a few units in the last place: where an edge passes exactly through its
+    /// center, even exact operations decide nothing.
     fn changed_by_moving(
         &self,
         places: &Places,

@@ -59,7 +59,7 @@ pub struct BoundFrame {
     pub difference: Option<PassDifference>,
 }
 
-/// Binds what the image of a shader reads in this frame: the textures that do not change, and the buffers
+/// Binds the inputs of the image of a shader in this frame: the textures that do not change, and the buffers
 /// after all passes of this frame and of those before it, in float32. Returns what the frames before it
 /// contribute, if the image depends on them. A driver that fails is left out if there is a reference, as in the check
 /// of the image.
@@ -142,7 +142,7 @@ pub fn bind(
     }))
 }
 
-/// Binds what the image of a reference reads in this frame, in double precision.
+/// Binds the inputs of the image of a reference in this frame, in double precision.
 ///
 /// # Errors
 /// Why the buffers cannot be rendered.

@@ -1,4 +1,4 @@
-//! Warnings about what the buffers of a shader hold over its frames.
+//! Warnings about the contents of the buffers of a shader over its frames.
 
 use std::time::Instant;
 
@@ -53,7 +53,7 @@ impl<'a> BufferLints<'a> {
         }
     }
 
-    /// Records what the buffers hold after a frame.
+    /// Records the contents of the buffers after a frame.
     pub(super) fn observe(&mut self, inputs: &Frame, playback: &CpuPlayback<f32>) {
         for (pass, rendered) in self.shader.graph.passes().iter().enumerate() {
             let Target::Buffer(number) = rendered.target else {

@@ -18,7 +18,7 @@ use crate::driver::Driver;
 pub struct PassShader<'a> {
     /// The passes, in the order of the graph.
     pub checked: Vec<&'a Checked>,
-    /// The order of the passes, and what they read.
+    /// The order of the passes, and their inputs.
     pub graph: &'a Graph,
     /// The textures that do not change.
     pub media: &'a [Texture],

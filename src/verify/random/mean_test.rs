@@ -163,7 +163,7 @@ fn independent_variance(pairs: &[[RandomPixel; 2]]) -> f64 {
     if all == 0.0 { 1.0 } else { own / all }
 }
 
-/// Whether the covariance of neighbors exceeds what the scene's noise can explain, even if neighbors share
+/// Whether the covariance of neighbors is larger than the scene's noise can explain, even if neighbors share
 /// it.
 fn exceeds_scene_noise(pairs: &[[RandomPixel; 2]]) -> bool {
     let (mut covariance, mut noise) = (0.0, 0.0);

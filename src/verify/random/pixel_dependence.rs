@@ -55,7 +55,7 @@ impl<'a> PixelDependence<'a> {
             let is_dependent = match &tree[id].kind {
                 ExprKind::Variable(variable) => self.variables.contains(variable),
                 ExprKind::Call { function, .. } => self.functions.contains(function),
-                // A condition selects a value, and is no part of it.
+                // A condition selects a value, and is not a part of it.
                 ExprKind::Conditional { yes, no, .. } => dependent.contains(yes) || dependent.contains(no),
                 kind => {
                     let mut any = false;
@@ -70,7 +70,7 @@ impl<'a> PixelDependence<'a> {
         dependent
     }
 
-    /// Adds what depends directly on what is known, and returns whether it is more than before.
+    /// Adds the values that depend directly on known ones, and returns whether there are new ones.
     fn spread(&mut self) -> bool {
         let tree = self.tree;
         let before = self.variables.len() + self.functions.len();

@@ -141,10 +141,10 @@ impl ShaderReference {
         })
     }
 
-    /// Whether the random numbers determine what the image shows, such as the places of objects or the shape of
-    /// clouds, rather than its noise: neighboring pixels change together, and by as much as pixels differ from each
-    /// other; or they change smoothly, though the numbers depend on the pixel, as those of a lattice do. A
-    /// sampler's numbers differ from pixel to pixel, or do not depend on it.
+    /// Whether the random numbers determine the content of the image, such as the places of objects or the
+    /// shape of clouds, rather than its noise: neighboring pixels change together, and by as much as pixels
+    /// differ from each other; or they change smoothly, though the numbers depend on the pixel, as those of a
+    /// lattice do. A sampler's numbers differ from pixel to pixel, or do not depend on it.
     fn is_content(&self, estimates: &Estimates) -> bool {
         let is_lattice = || {
             let reseeding = self.reseeding();
@@ -161,7 +161,7 @@ impl ShaderReference {
     }
 }
 
-/// Whether a shader has random numbers that determine what it shows, rather than its noise.
+/// Whether a shader has random numbers that determine its content rather than its noise.
 pub(crate) fn draws_by_random_numbers(checked: &Checked, frame: &Frame) -> bool {
     let Ok(program) = Program::prepared(checked, UndefinedPolicy::Plain) else {
         return false;

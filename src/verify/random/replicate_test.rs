@@ -1,7 +1,7 @@
 //! Tests whether a stochastic shader has the tracer's mean, from several replicates of each.
 //!
 //! One image of a shader cannot separate its noise from its errors; several replicates, each with other
-//! random numbers, can. What they have in common beyond the tracer's mean is bias. Four statistics are
+//! random numbers, can. Their common deviation from the tracer's mean is bias. Four statistics are
 //! computed:
 //!
 //! - *sums*: the difference of the means over blocks of the image, relative to its standard deviation by the
@@ -310,7 +310,8 @@ pub(crate) fn neighbor_correlations(pixels: &[ReplicatedPixel]) -> [f64; 4] {
     [[1, 0], [0, 1], [1, 1], [1, -1]].map(correlation)
 }
 
-/// Whether the difference of the means exceeds what the reference's noise can explain, even if pixels share it.
+/// Whether the difference of the means is larger than the reference's noise can explain, even if pixels share
+/// it.
 fn exceeds_noise(pixels: &[ReplicatedPixel]) -> bool {
     let (mut squares, mut noise) = (0.0, 0.0);
     for pixel in pixels {
@@ -363,7 +364,8 @@ mod tests {
         (0..12).map(uniform).sum::<f64>() - 6.0
     }
 
-    /// A gray image with noise of 0.05; `own` is what the shader adds to a pixel in a replicate.
+    /// A gray image with noise of 0.05; `own` returns the number that the shader adds to a pixel in a
+    /// replicate.
     fn pixels(own: impl Fn([u32; 2], u32) -> f64) -> Vec<ReplicatedPixel> {
         let pixel = |at: [u32; 2]| {
             let number = at[1] * 64 + at[0];

@@ -22,7 +22,7 @@ const WEIGHT_REPLICATES: usize = 4;
 /// The largest mean of samples: above it, the inverse of a tone map has no precision left.
 const MAX_SAMPLE_MEAN: f64 = 1e4;
 
-/// The share of the reference's random pixels that must change, or the reseeding had no effect. Where a rare
+/// The share of the reference's random pixels that must change, or the reseeding had no effect. If a rare
 /// event decides, such as a direction that hits a lamp, most of them do not.
 const MIN_CHANGED_SHARE: f64 = 0.1;
 

@@ -1,6 +1,6 @@
 //! Compares shaders that differ from a stochastic reference only by their random numbers.
 //!
-//! A shader with other random numbers than its reference renders another image with the same mean. Where all
+//! A shader with other random numbers than its reference renders another image with the same mean. If all
 //! pixels that differ depend on random numbers, the means are compared: the reference's over many sets of
 //! random numbers, and the shader's over its replicates, or over many pixels of its one image.
 

@@ -99,7 +99,7 @@ fn scaled(period: Period, factor: f64) -> Period {
     }
 }
 
-/// Stops a motion; what it moved follows the motion that contains it, if any.
+/// Stops a motion; the objects that it moved follow the motion that contains it, if any.
 fn stop(scene: &mut Scene, motion: usize) {
     let within = scene.motions[motion].within;
     let lights = scene.lights.iter_mut().map(|light| &mut light.motion);

@@ -27,8 +27,8 @@ const MAX_CANDIDATES: usize = 40_000;
 const MAX_VALUES: usize = 5;
 const MAX_COMBINATIONS: usize = 24;
 
-/// The cost of a donor, the numbers of its parts and of more likely names that cost one unit more, and what it
-/// gains where it consists of the same operations as what it replaces.
+/// The cost of a donor, the numbers of its parts and of more likely names that cost one unit more, and its
+/// gain if it consists of the same operations as the replaced expression.
 const DONOR: u32 = 26;
 const PARTS_PER_COST: usize = 4;
 const NAMES_PER_COST: usize = 6;
@@ -69,7 +69,7 @@ fn similarity(one: &[String], other: &[String]) -> f64 {
     2.0 * f64::from(common) / (one.len() + other.len()).max(1) as f64
 }
 
-/// Collects the donors of some shaders, each once, those that most of them have first.
+/// Collects the donors of some shaders, each once, the most frequent ones first.
 pub(in crate::repair) fn donors<'a>(trees: impl IntoIterator<Item = &'a Tree>) -> Vec<Donor> {
     let mut all: BTreeMap<String, (Donor, usize)> = BTreeMap::new();
     for tree in trees {

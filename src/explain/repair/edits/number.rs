@@ -245,7 +245,7 @@ impl Writer<'_> {
             // As an author would write it: 0.1 rather than 0.1000…01.
             add(rounded(value, 12), RELATED);
         }
-        // A wrong last digit. Where a number moves edges, it cannot be fitted.
+        // A wrong last digit. A number that moves edges cannot be fitted.
         let unit = last_digit(old);
         for steps in 1..=MAX_STEPS {
             for value in [old + f64::from(steps) * unit, old - f64::from(steps) * unit] {

@@ -59,7 +59,7 @@ pub fn expanded(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
     Ok(linker.linked(&expanded))
 }
 
-/// The ids that matter for the expansion.
+/// The ids that the expansion needs.
 struct Types {
     /// The GLSL names of the types of 32-bit floats and unsigned integers.
     names: HashMap<u32, String>,
