@@ -301,7 +301,7 @@ pub(super) struct Call {
 }
 
 impl Call {
-    /// None if the function's parameters and results do not fit the values of every case.
+    /// `None` if the function's parameters and results do not fit the values of every case.
     pub(super) fn new(tree: &Tree, function: &Function, cases: &[FunctionCase]) -> Option<Self> {
         let mut text = String::from("    ivec2 tpAt = ivec2(tpPlace);\n");
         let names: Vec<_> = (0..function.parameters.len())
@@ -382,8 +382,8 @@ impl Call {
     }
 }
 
-/// Expressions for the compared components: of the result, then of the outputs. None if some case expects other
-/// types, or the cases do not compare the same values.
+/// Expressions for the compared components: of the result, then of the outputs. `None` if some case expects
+/// other types, or the cases do not compare the same values.
 fn components(
     tree: &Tree,
     function: &Function,
@@ -421,7 +421,7 @@ fn components(
     )
 }
 
-/// Whether a value can be an expected one of a type, where also numbers that are not finite are expected.
+/// Whether a value can be an expected one of a type, where numbers that are not finite may also be expected.
 fn fits(tree: &Tree, ty: Type, literal: &Literal) -> bool {
     match (parts(tree, ty), literal) {
         (Some(parts), Literal::List(list)) => {

@@ -171,7 +171,7 @@ impl Terminal {
         self.labeled("warning", AnsiColor::Yellow, text);
     }
 
-    /// Prints an error on standard error; a line `help: …` at its end is its way out.
+    /// Prints an error on standard error; a line `help: …` at its end is the advice.
     pub(super) fn error(&self, text: impl Display) {
         let text = text.to_string();
         match text.split_once("\nhelp: ") {

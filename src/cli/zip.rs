@@ -269,7 +269,7 @@ fn read_entry(fields: &mut Fields) -> io::Result<Option<Entry>> {
 }
 
 /// The seconds since 1970 of a date and a time of DOS; `None` for one that does not exist, and for the first
-/// moment of the format, which programs write that state no time.
+/// moment of the format, which means that the time is unknown.
 fn dos_time(date: u16, time: u16) -> Option<i64> {
     const NONE: [u16; 2] = [0x21, 0];
     let part = |from: u16, at: u16, bits: u16| i64::from(from >> at & ((1 << bits) - 1));

@@ -264,8 +264,8 @@ fn observe(
     Ok(player.into_renderer().observations)
 }
 
-/// Finds the undefined pixels of passes; their textures are those that the driver rendered, so that it and the
-/// evaluator never part.
+/// Finds the undefined pixels of passes; their textures are those that the driver rendered, so that it and
+/// the evaluator never diverge.
 struct Observer<'a> {
     programs: &'a [Program],
     media: &'a [Texture],

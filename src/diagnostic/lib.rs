@@ -263,7 +263,7 @@ impl Diagnostics {
     }
 }
 
-/// Diagnostics about texts that are not at hand: they are displayed without positions.
+/// Diagnostics about texts that are not available: they are displayed without positions.
 impl From<Vec<Diagnostic>> for Diagnostics {
     fn from(diagnostics: Vec<Diagnostic>) -> Self {
         let lines: Vec<_> = diagnostics.iter().map(ToString::to_string).collect();

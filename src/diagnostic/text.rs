@@ -44,7 +44,7 @@ fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
 }
 
 /// A text for a cell of a spreadsheet: without control characters, as from [`printable`], and with an apostrophe
-/// before what a spreadsheet reads as a formula.
+/// before text that a spreadsheet reads as a formula.
 #[must_use]
 pub fn spreadsheet_text(text: &str) -> String {
     let text = printable(text);

@@ -38,7 +38,7 @@ pub struct Worker {
     not_started: Option<Failure>,
 }
 
-/// For which images Mesa's software driver compiles without LLVM's optimizations.
+/// The images for which Mesa's software driver compiles without LLVM's optimizations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum PlainCode {
     Never,

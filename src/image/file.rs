@@ -123,7 +123,7 @@ fn png<'a>(
 
 /// The size of the PNG of an image that is stored in one chunk, in bytes.
 fn stored_size([width, height]: [u32; 2]) -> usize {
-    /// The signature, the chunks of the size and of the end, and what encloses the pixels.
+    /// The signature, the chunks of the size and of the end, and the framing of the pixels.
     const AROUND: usize = 68;
     // Each row begins with the number of its filter.
     AROUND + (3 * width as usize + 1) * height as usize

@@ -4,8 +4,8 @@ use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Opens a regular file for reading. It is opened without blocking and then examined, so that neither a named
-/// pipe without a writer nor one that replaces a file at the wrong moment is waited for.
+/// Opens a regular file for reading. It is opened without blocking and then examined, so that it does not
+/// wait for a named pipe without a writer, or for one that replaces a file at the wrong moment.
 ///
 /// # Errors
 /// The system's error, or the kind of a file that is not a regular one.

@@ -59,7 +59,7 @@ impl Texture {
         }
     }
 
-    /// The whole image in another size: the lower left part of what both have, zeros elsewhere, and no
+    /// The whole image in another size: the lower left part that both have, zeros elsewhere, and no
     /// mipmaps.
     #[must_use]
     pub fn cropped(&self, size: [u32; 2]) -> Self {

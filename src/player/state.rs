@@ -60,7 +60,7 @@ impl<R: Renderer> Player<R> {
         })
     }
 
-    /// Goes on from a state; `load` makes a texture, perhaps with mipmaps.
+    /// Continues from a state; `load` makes a texture, perhaps with mipmaps.
     ///
     /// # Errors
     /// Those of `load`.

@@ -98,8 +98,8 @@ impl Record {
         self.verdict.is_good() && self.faults().is_empty()
     }
 
-    /// The violated rules and the functions that are not right, each with a label. What a shader that does
-    /// not compile would violate is not known.
+    /// The violated rules and the functions that are not right, each with a label. The violations of a shader
+    /// that does not compile are not known.
     pub(super) fn faults(&self) -> Vec<(&'static str, String)> {
         let violations = self
             .rules

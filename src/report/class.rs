@@ -40,7 +40,7 @@ impl ClassTable {
         Ok(table)
     }
 
-    /// Adds a shader, if it is a submission of an assignment. Of several shaders of a student, the one with
+    /// Adds a shader, if it is a submission of an assignment. If a student has several shaders, the one with
     /// the fewest points counts, and else the one with the worst verdict.
     fn add(&mut self, record: &Record, rubrics: &Rubrics) {
         let Some(Submitted {

@@ -101,7 +101,7 @@ pub struct Record {
     /// Further sentences on the reason, the most important first.
     #[serde(default)]
     pub details: Vec<String>,
-    /// What only the reference of a wrong shader uses: details, unless hints are turned off.
+    /// Details on what only the reference of a wrong shader uses, unless hints are turned off.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unused: Vec<String>,
     /// The command that shows more; null if there is nothing to show.
@@ -128,8 +128,8 @@ pub struct Record {
     /// Whether the search for a fix ended before all edits were tried.
     #[serde(default)]
     pub is_search_cut: bool,
-    /// Whether the time limit of explanations, which only a hang reaches, cut what explains the verdict: another run
-    /// may find more.
+    /// Whether the time limit of explanations, which only a hang reaches, cut the explanation of the verdict:
+    /// another run may find more.
     #[serde(default)]
     pub is_cut_by_time: bool,
     /// The likely cause of the verdict in the shader's text; null if none is known.
@@ -222,7 +222,8 @@ impl Record {
         }
     }
 
-    /// States that media are missing, if the shader is compared with nothing: that it renders means little then.
+    /// States that media are missing, if the shader is compared with nothing: a successful rendering then
+    /// means little.
     pub fn set_missing_media(&mut self, missing: String) {
         if self.verdict == Verdict::Ok {
             self.verdict = Verdict::Inconclusive;

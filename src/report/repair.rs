@@ -138,8 +138,8 @@ impl Repair {
         lines
     }
 
-    /// States the edits with their lines: ``line 23: replace `b + c` with `b - c` ``. Where they are hidden,
-    /// states the lines alone: “an edit of line 23”.
+    /// States the edits with their lines: ``line 23: replace `b + c` with `b - c` ``. If they are hidden,
+    /// states only the lines: “an edit of line 23”.
     #[must_use]
     pub fn summary(&self) -> String {
         let lines = self.lines();
@@ -211,7 +211,7 @@ impl Suspect {
     }
 }
 
-/// The label of the suspects, and their lines: `suspect lines`, `35, 33, 52`. None without suspects.
+/// The label of the suspects, and their lines: `suspect lines`, `35, 33, 52`. `None` without suspects.
 pub(super) fn suspect_lines(suspects: &[Suspect]) -> Option<(&'static str, String)> {
     let lines = suspects.iter().map(|suspect| suspect.range.line.to_string());
     let label = match suspects {

@@ -339,8 +339,8 @@ impl<'r, 't> Table<'r, 't> {
         })
     }
 
-    /// Returns the choice that a string names; `what` is the noun for it. None if the key is missing, or is
-    /// none of the choices, which is reported.
+    /// Returns the choice that a string names; `what` is the noun for it. `None` if the key is missing or not
+    /// one of the choices, which is reported.
     pub fn choice<T: Copy>(
         &mut self,
         key: &'static str,
@@ -357,7 +357,7 @@ impl<'r, 't> Table<'r, 't> {
         None
     }
 
-    /// Returns the choice that the string of a required key names; `None` if it is missing or none of the
+    /// Returns the choice that the string of a required key names; `None` if it is missing or not one of the
     /// choices, which is reported.
     pub fn required_choice<T: Copy>(
         &mut self,

@@ -53,7 +53,7 @@ impl Tile {
 }
 
 /// Number of samples of a pixel that are next to each other in a packet, if the number of samples allows it:
-/// rays that differ little take the same turns, so that no lane waits for another.
+/// rays that differ little take the same branches, so that no lane waits for another.
 const ADJACENT_SAMPLES: usize = 8;
 
 /// Which samples the rays of a packet are.

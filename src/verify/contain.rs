@@ -1,5 +1,4 @@
-//! Panics kept where they happen: a fault in one part of the work costs that part, not the results that are
-//! already there.
+//! Contains panics: a fault in one part of the work loses that part, not the results that exist already.
 
 use std::any::Any;
 use std::fmt;

@@ -275,8 +275,8 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         }
     }
 
-    /// Compares the shader's image in float32 with double precision from the same buffers: what earlier frames
-    /// amplify is no fault of this one.
+    /// Compares the shader's image in float32 with double precision from the same buffers: errors that
+    /// earlier frames amplify are not a fault of this one.
     fn check_precision(
         &mut self,
         rows: &Range<u32>,

@@ -271,7 +271,7 @@ impl<'a> Batch<'a> {
         self.reported.push(index);
     }
 
-    /// Prints a message. Of many shaders, diagnostics are not shown with their source lines: errors are
+    /// Prints a message. For many shaders, diagnostics are not shown with their source lines: errors are
     /// listed below their shader, and warnings are counted.
     fn print(&mut self, message: &Message, verdict: Verdict) {
         match message {

@@ -36,7 +36,7 @@ use crate::report::{self, CheckedFrame, GrowthRecord, Record};
 
 /// The worker process and the thread pool that a thread owns.
 pub(super) struct WorkerContext {
-    /// None where the evaluator renders.
+    /// `None` if the evaluator renders.
     worker: Option<Worker>,
     pool: Option<ThreadPool>,
 }

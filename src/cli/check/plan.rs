@@ -37,11 +37,11 @@ pub(super) struct PlannedFrame {
 }
 
 impl Plan {
-    /// Reads what the arguments name, or the assignment of these shaders or that lies in the folder of all of
+    /// Reads the plan that the arguments name, or the assignment of these shaders or in the folder of all of
     /// them.
     ///
     /// # Errors
-    /// It is unusable; what is wrong with it has been printed.
+    /// It is unusable; the error has been printed.
     pub(super) fn new(args: &Args, part: &TaskInputs, terminal: &Terminal) -> Result<Self, ()> {
         let rubric = reports::rubric(part.rubric.as_deref(), terminal)?;
         let found = match &part.assignment {
@@ -84,7 +84,7 @@ impl Plan {
 /// Reads the assignment that an argument names, and returns its file.
 ///
 /// # Errors
-/// It is unusable; what is wrong with it has been printed.
+/// It is unusable; the error has been printed.
 pub(in crate::cli) fn read_assignment(path: &Path, terminal: &Terminal) -> Result<(PathBuf, Assignment), ()> {
     let file = named(path, terminal)?;
     let (assignment, _) = read(&file, terminal)?;

@@ -1,4 +1,4 @@
-//! All that one command checks: the submissions, and what each is checked against.
+//! All work of one command: the submissions, and their requirements.
 
 use std::path::{Path, PathBuf};
 

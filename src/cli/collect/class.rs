@@ -131,7 +131,7 @@ impl Class {
     }
 }
 
-/// Reads where the students are listed: a file, or a table with a name for each number.
+/// Reads the list of students: a file, or a table with a name for each number.
 fn students(document: &mut Table, folder: &Path) -> StudentList {
     if document.has_table("students") {
         let students = document.table("students", |table| Students::new(table.take_strings()));

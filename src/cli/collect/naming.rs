@@ -1,4 +1,4 @@
-//! Whose a file of a download is: the names that Moodle and Canvas give to submissions.
+//! The owner of a file of a download, by the names that Moodle and Canvas give to submissions.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;

@@ -64,8 +64,8 @@ impl Entry {
 }
 
 impl Roster {
-    /// Reads the roster of a folder; `None` if it has none. In a folder that nobody collected, a student may
-    /// have a file or a folder of this name.
+    /// Reads the roster of a folder; `None` if it has none. In a folder that `collect` did not write, a
+    /// student may have a file or a folder of this name.
     ///
     /// # Errors
     /// The file is not a roster, and is ignored.

@@ -47,8 +47,8 @@ impl Fingerprints {
         Self(kept)
     }
 
-    /// The fingerprints of a text's tokens, which also a shader has that does not compile. They are comparable
-    /// with each other only.
+    /// The fingerprints of a text's tokens, which exist even for a shader that does not compile. They are
+    /// comparable with each other only.
     pub(super) fn of_text(text: &str) -> Self {
         let tokens = tokens(text);
         let kinds: Vec<u64> = tokens.iter().map(|&(kind, _)| kind).collect();
@@ -108,7 +108,7 @@ fn hash(value: &impl Hash) -> u64 {
     hasher.finish()
 }
 
-/// The places of the smallest hash of each window, of equal ones the last; the only window of a short text is
+/// The places of the smallest hash of each window, the last of equal ones; the only window of a short text is
 /// smaller.
 fn winnow(hashes: &[u64]) -> Vec<usize> {
     let mut places = Vec::new();

@@ -105,7 +105,7 @@ pub(super) struct Outcome {
 
 impl Probes {
     /// Selects probes from the pixels of the algorithm check of an image `width` pixels wide. Pixels that are
-    /// excluded there are not probed. None if no pixel is wrong.
+    /// excluded there are not probed. `None` if no pixel is wrong.
     pub(super) fn select(check: &CheckResult, expected: &Expected, width: usize) -> Option<Self> {
         // Pixels that agree have the reference's color; those of the others are kept as far as there is room.
         let actual = |at: usize| {
@@ -166,7 +166,7 @@ impl Probes {
         (count > 0).then_some(Self { all })
     }
 
-    /// Probes of a stochastic shader. None if no pixel is significantly biased.
+    /// Probes of a stochastic shader. `None` if no pixel is significantly biased.
     pub(super) fn of_means(pixels: &[NoisyPixel], places: &Places) -> Option<Self> {
         let columns = &places.columns;
         let probe = |(at, pixel): (usize, &NoisyPixel)| {

@@ -17,7 +17,7 @@ use super::trials::Trial;
 use super::under_test::{ShaderUnderTest, UNLIMITED};
 use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
 
-/// How much a candidate may cost more than the first repair to be tried as an alternative.
+/// How much more than the first repair a candidate may cost to be tried as an alternative.
 const ALTERNATIVE_MARGIN: f64 = 5.0;
 
 /// How much more to find a repair that leaves no pixel wrong, after one that leaves some.

@@ -31,8 +31,8 @@ const REMAINING_WEIGHT: f64 = 20.0;
 const GROUP: usize = 32;
 const GROUPS: usize = 8;
 
-/// The share of the budget that all groups between two decisions may take, if each candidate takes the work of so
-/// many probes; and the smallest number of candidates.
+/// The share of the budget that all groups between two decisions may take, if each candidate takes the work
+/// of this many probes; and the smallest number of candidates.
 const WAVE_SHARE: f64 = 0.1;
 const TRIAL_PROBES: f64 = 24.0;
 const MIN_WAVE: usize = 8;

@@ -95,7 +95,7 @@ const SIDES: std::ops::RangeInclusive<u32> = 16..=8192;
 /// The range of ratios of width and height.
 const ASPECTS: std::ops::RangeInclusive<f64> = 0.25..=4.0;
 
-/// How far apart two numbers may be that are a width and a height, in literals.
+/// The largest distance, in literals, between two numbers that are a width and a height.
 const MAX_DISTANCE: usize = 4;
 
 /// The largest number of resolutions that are tried.

@@ -48,7 +48,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The channel that a sampler of the author's own reads: its value is 0, the number of `iChannel0`. Other
+    /// The channel of a sampler that the author declares: its value is 0, the number of `iChannel0`. Other
     /// variables are themselves.
     fn bound_texture(&self, variable: VariableId) -> VariableId {
         let own = &self.tree[variable];

@@ -51,8 +51,8 @@ impl Checker<'_> {
     }
 
     /// The text of an integer expression with all its operands as floats, where an operator of this precedence
-    /// surrounds it, and the edits that convert them. None where an operand is not a number or a constant that is
-    /// written here.
+    /// surrounds it, and the edits that convert them. `None` if an operand is not a number or a constant that
+    /// is written here.
     fn in_floats(&self, expr: ExprId, outer: u8, edits: &mut Vec<Edit>) -> Option<String> {
         let at = self.tree[expr].at;
         if at.is_expanded() {

@@ -33,7 +33,7 @@ impl Expansions {
         self.definitions.len() - 1
     }
 
-    /// Adds a use; of uses at one span, which are nested, the first is the outermost.
+    /// Adds a use. Uses at one span are nested; the first is the outermost.
     pub(super) fn add_use(&mut self, definition: usize, at: Span) {
         self.uses.entry(at).or_insert(definition);
     }

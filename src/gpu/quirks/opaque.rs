@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use spirv::{BuiltIn, Decoration, Op};
 use toyproof_translate::backend::spirv::{BOUND, instructions, opcode};
 
-/// The ids of a module that computing such zeros takes, and the types that are added for it.
+/// The ids of a module that are needed to compute such zeros, and the types that are added for it.
 pub(super) struct Opaque {
     /// `gl_FragCoord` and its type.
     coordinate: (u32, u32),

@@ -18,9 +18,9 @@ use super::opaque::{Opaque, push};
 ///   it is a graph: the expanded `sin(iTime)` has some hundred operations and more paths than can be
 ///   traversed. The traversal ends at the first operand that depends on the pixel.
 /// - Zeros that are multiplied, divided or stored, and other operands of products that Mesa may find to be
-///   zero by folding constants. Mesa's llvmpipe takes the product of a constant zero and any value, and its
-///   quotient, for zero even if it is NaN, and a quotient by it for anything, regardless of decorations.
-/// - Constants whose operations Mesa folds otherwise than the processor computes them: it does not flush
+///   zero by folding constants. Mesa's llvmpipe treats the product of a constant zero and any value, and its
+///   quotient, as zero even if it is NaN, and a quotient by it as anything, regardless of decorations.
+/// - Constants whose operations Mesa folds differently from the processor: it does not flush
 ///   denormal products and bit patterns, and it treats all derivatives of constants as 0.
 /// - Denormal constants, which Mesa and `SwiftShader` do not treat as zeros when they fold them.
 /// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs

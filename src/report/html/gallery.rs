@@ -21,7 +21,7 @@ pub struct Exhibit {
     pub reference: Option<usize>,
     /// The image after the fix of a wrong shader.
     pub fixed: Option<usize>,
-    /// The difference images of the checks: algorithm, precision, toolchain. None where all pixels agree or
+    /// The difference images of the checks: algorithm, precision, toolchain. `None` if all pixels agree or
     /// the check did not run.
     pub checks: [Option<usize>; 3],
 }

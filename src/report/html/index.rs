@@ -231,7 +231,7 @@ fn differing(record: &Record) -> [Option<u64>; 3] {
     [&record.algorithm, &record.precision, &record.toolchain].map(differing)
 }
 
-/// A row as data: name, verdict, points, reason, the pixels that differ in each check, and whose it is.
+/// A row as data: name, verdict, points, reason, the pixels that differ in each check, and the owner.
 fn values(record: &Record, names: &Names, rubrics: &Rubrics) -> Value {
     let [algorithm, precision, toolchain] = differing(record);
     let shown = |text: &str| toyproof_diagnostic::printable(text).into_owned();

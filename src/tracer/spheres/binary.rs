@@ -257,8 +257,8 @@ impl Split {
         best.map(|(_, split)| split)
     }
 
-    /// Moves what is before the plane to the front, and returns its number. Without branches, which would be
-    /// taken at random.
+    /// Moves the spheres before the plane to the front, and returns their number. Without branches, which
+    /// would be taken at random.
     fn partition(&self, set: &mut [Item]) -> usize {
         let mut left = 0;
         for at in 0..set.len() {

@@ -2,8 +2,8 @@
 //! surface area heuristic.
 //!
 //! H. Ylitie, T. Karras and S. Laine, “Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
-//! BVHs”, 2017, section 3. Unlike there, the cost of a node or a block does not depend on how full it is, and
-//! the leaves are given.
+//! BVHs”, 2017, section 3. Unlike in the paper, the cost of a node or a block does not depend on how full it
+//! is, and the leaves are given.
 
 use smallvec::SmallVec;
 

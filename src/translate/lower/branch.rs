@@ -268,7 +268,7 @@ fn end_in_break(cx: &mut LoweringContext, body: &mut Block, at: Place) {
     });
 }
 
-/// Rewrites a block that ends in a jump, which naga would take for the end of the case.
+/// Rewrites a block that ends in a jump, which naga would treat as the end of the case.
 fn rewrite_trailing_jump(cx: &mut LoweringContext, mut inner: Block, at: Place, body: &mut Block) {
     if matches!(
         inner.last(),

@@ -5,7 +5,7 @@
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand
 //! passed through a helper function that returns it unchanged is evaluated at run time instead. naga also
-//! takes `(a, 31)` and `(i = 31)`, which are not constant expressions (§4.3.3), for 31. This pass does not
+//! treats `(a, 31)` and `(i = 31)`, which are not constant expressions (§4.3.3), as 31. This pass does not
 //! track the values that follow from them, so it makes all of them opaque.
 
 use toyproof_glsl::tree::{

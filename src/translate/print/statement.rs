@@ -222,7 +222,7 @@ impl Printer<'_> {
     }
 
     /// Prints an expression as a statement, in parentheses if it begins with `float[2](…)`, which naga would
-    /// take for a declaration.
+    /// treat as a declaration.
     fn effect(&mut self, expr: ExprId) {
         if begins_with_array(&self.cx.tree, expr) {
             self.plain("(");

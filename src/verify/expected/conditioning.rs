@@ -31,8 +31,8 @@ pub struct Conditioning {
 
 impl Expected {
     /// Tests some rows and columns of the image: edges that pass through many sample points follow one or the
-    /// other. None if fewer pixels are ill-conditioned than may differ anyway, or if the reference is an image, of
-    /// which nothing else is known.
+    /// other. `None` if fewer pixels are ill-conditioned than may differ anyway, or if the reference is an
+    /// image, of which nothing else is known.
     #[must_use]
     pub fn conditioning(&self) -> Option<Conditioning> {
         match self {
@@ -55,7 +55,8 @@ fn is_reported(ill_conditioned: Share) -> bool {
     ill_conditioned.ratio() > MAX_DIFFERING
 }
 
-/// Some rows, and some columns. Which is random: edges prefer the lines in the middle and at round shares.
+/// Some rows, and some columns. They are selected at random: edges prefer the lines in the middle and at
+/// round shares.
 fn tested_places(size: [u32; 2], samples: u32) -> [Places; 2] {
     let pairs = (TESTED_PIXELS / samples.max(1) / (size[0] + size[1]) / 2).max(1);
     let centers = |pixels: BTreeSet<u32>| pixels.into_iter().map(|at| f64::from(at) + 0.5).collect();

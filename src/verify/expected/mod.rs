@@ -266,7 +266,8 @@ impl Expected {
         }
     }
 
-    /// Accepts the colors of a band that the reference has for other ray epsilons, or if it marches otherwise.
+    /// Accepts the colors of a band that the reference has for other ray epsilons, or if it marches
+    /// differently.
     pub(crate) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band, mixed: &mut Mixed) {
         match self {
             Self::Scene(scene) => accept_epsilons(band, &scene.band(rows), mixed),

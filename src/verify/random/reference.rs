@@ -50,8 +50,8 @@ impl ShaderReference {
         })
     }
 
-    /// Whether a reseeding changes pixels, and the unchanged image is like the changed ones. None if a pixel runs
-    /// too many loop iterations.
+    /// Whether a reseeding changes pixels, and the unchanged image is like the changed ones. `None` if a
+    /// pixel runs too many loop iterations.
     fn changes_noise_alone(&self, reseeding: Reseeding, own: &Colors, places: &Places) -> Option<bool> {
         let first = self.set(Some(reseeding), 1, places)?;
         let changes = |(&a, &b): (&[f64; 3], &[f64; 3])| differ_by(a, b, MIN_RANDOM_CHANGE);

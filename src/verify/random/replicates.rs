@@ -101,7 +101,7 @@ pub(crate) fn compare_with(
         )
     };
     let mut first = None;
-    // A salt may make a hash equal in neighboring pixels, where another reseeding does not.
+    // An added number may make a hash equal in neighboring pixels, where another reseeding does not.
     for reseeding in Reseeding::all() {
         let Some(sets) = shader.replicates(reseeding, &unsalted, &estimates.pixels, &is_random_in_reference)
         else {

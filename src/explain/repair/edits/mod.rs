@@ -56,7 +56,7 @@ struct Writer<'a> {
     shader: &'a Shader<'a>,
     tree: &'a Tree,
     constants: &'a Constants,
-    /// The bits of the numbers that the shader has: of the scene's, those that it has not are missing.
+    /// The bits of the numbers that the shader has; the scene's other numbers are missing in it.
     own_numbers: HashSet<u64>,
     all: Vec<Candidate>,
 }

@@ -15,7 +15,7 @@ use super::Writer;
 use super::donor::{Donor, donors};
 use super::plausibility::Shapes;
 
-/// The costs: numbers of the scene that are missing in the shader, and that it has, others, vectors of the
+/// The costs: numbers of the scene that the shader lacks, those that it has, other numbers, vectors of the
 /// scene, numbers with another last digit, fitted numbers, and variables.
 const SCENE: u32 = 10;
 const OWN: u32 = 14;

@@ -62,7 +62,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Repeats a statement, and copies others of its function behind it whose variables are in scope there.
+    /// Repeats a statement, and copies after it others of its function whose variables are in scope there.
     fn copies(&mut self, at: usize) {
         let tree = self.tree;
         let statements = &self.shader.statements;

@@ -291,8 +291,8 @@ fn adds_squared_radius(tree: &Tree, inputs: &[(String, Role)]) -> bool {
     })
 }
 
-/// The last name of a variable, a member or a component, and what identifies it; none of other expressions. The
-/// fourth component of a vector that holds a sphere is named `r`.
+/// The last name of a variable, a member or a component, and what identifies it; `None` for other
+/// expressions. The fourth component of a vector that holds a sphere is named `r`.
 fn place_name(tree: &Tree, id: ExprId) -> Option<(String, Vec<String>)> {
     match &tree[id].kind {
         ExprKind::Variable(variable) => {
