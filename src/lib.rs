@@ -63,13 +63,11 @@
 //! `examples/` has programs that parse, evaluate and verify a shader. A program that renders on a GPU must be
 //! able to start itself as the worker process: see `toyproof_gpu`.
 
-#[cfg(all(feature = "lab", feature = "report"))]
-pub mod assignment;
 #[cfg(feature = "cli")]
 pub mod cli;
-#[cfg(feature = "report")]
-pub mod report;
 
+#[cfg(feature = "classroom")]
+pub use toyproof_classroom as classroom;
 #[cfg(feature = "convert")]
 pub use toyproof_convert as convert;
 pub use toyproof_diagnostic as diagnostic;
@@ -90,6 +88,8 @@ pub use toyproof_math as math;
 pub use toyproof_player as player;
 #[cfg(feature = "project")]
 pub use toyproof_project as project;
+#[cfg(feature = "report")]
+pub use toyproof_report as report;
 #[cfg(feature = "tracer")]
 pub use toyproof_scene as scene;
 #[cfg(feature = "tracer")]

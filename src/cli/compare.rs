@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
 use toyproof_image::{self as image};
+use toyproof_project::files;
 use toyproof_verify::compare::{Legend, TOLERANCE, compare, compare_in_8_bits};
 
-use super::files;
 use super::inputs::{may_write, shell_word};
 use super::{Exit, Terminal};
 
@@ -115,7 +115,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     }
     for (name, pixel) in [("first", comparison.first), ("worst", comparison.worst)] {
         if let Some(pixel) = pixel {
-            terminal.result(&format!("{name} {}", crate::report::place(&pixel)));
+            terminal.result(&format!("{name} {}", toyproof_report::place(&pixel)));
         }
     }
     if comparison.differing == 0 {

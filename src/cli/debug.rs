@@ -8,7 +8,9 @@ use toyproof_eval::{Failure, Program};
 use toyproof_explain::trail::follow_back;
 use toyproof_glsl::Checked;
 use toyproof_image::{FRAME_RATE, Frame};
+use toyproof_project::files::{Input, ReadError};
 use toyproof_project::{CompiledProject, PassKind};
+use toyproof_report as report;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 use toyproof_verify::project::bind::{accumulate, default_frame};
@@ -21,8 +23,6 @@ use super::reference::{GivenReference, ReferenceArgs};
 use super::run::{not_evaluated, parse_pass};
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
-use crate::cli::files::{Input, ReadError};
-use crate::report;
 
 /// Trace one pixel of a shader line by line, in f32 beside f64
 ///

@@ -1,9 +1,9 @@
 //! `toyproof explain`
 
 use toyproof_diagnostic::{nearest, wrap};
+use toyproof_report::{self as report, Explanation};
 
 use super::{Exit, Terminal};
-use crate::report::{self, Explanation};
 
 /// Explain a diagnostic code or a mistake, and how to fix it
 #[derive(Debug, clap::Args)]

@@ -12,9 +12,10 @@ use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
 use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
 use toyproof_project as project;
+use toyproof_project::files;
 use toyproof_translate::FloatMode;
 
-use super::{Terminal, WORKER, files};
+use super::{Terminal, WORKER};
 
 /// The time limit for one shader, unless the user gives another.
 const DEFAULT_TIME_LIMIT: Duration = Duration::from_secs(10);

@@ -17,7 +17,6 @@ mod convert;
 mod debug;
 mod doctor;
 mod explain;
-mod files;
 mod gradescope;
 mod help;
 mod inputs;
@@ -36,7 +35,6 @@ mod similar;
 mod stress;
 mod terminal;
 mod trade;
-mod zip;
 
 use std::ffi::OsString;
 use std::io;

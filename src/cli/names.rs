@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use crate::cli::files::Input;
+use toyproof_project::files::Input;
 
 /// Gives each input its own path below an output folder: its own relative path if that is free. No file of an
 /// input collides with a file of another input, with a folder on the path to one, or with a report.
@@ -130,9 +130,9 @@ pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use toyproof_diagnostic::path_name;
+    use toyproof_project::files::InputSource;
 
     use super::*;
-    use crate::cli::files::InputSource;
 
     fn output(names: &mut Names, folder: &str, relative: &str) -> String {
         let source = InputSource::File(Path::new(folder).join(relative));

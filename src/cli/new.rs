@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use toyproof_classroom::assignment::{FILE_NAME, Model, Subject};
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image as image;
+use toyproof_project::files;
 use toyproof_scene as scene;
 use toyproof_verify::Expected;
 
@@ -12,8 +14,6 @@ use super::inputs::{LanguageArgs, parse_time_limit};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::scenes::read_scene;
 use super::{Exit, Terminal, project};
-use crate::assignment::{FILE_NAME, Model, Subject};
-use crate::cli::files;
 
 /// Create a new file from a template
 #[derive(Debug, clap::Args)]

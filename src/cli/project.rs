@@ -7,12 +7,12 @@ use toyproof_glsl as glsl;
 use toyproof_image as image;
 use toyproof_lint::Lints;
 use toyproof_player::Target;
+use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
 use toyproof_project::{self as project, CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_toml::list_of;
 use toyproof_verify::Failure;
 use toyproof_verify::project::playback::PassShader;
 
-use super::files::{self, Input, ProjectTexts, ReadError, Texts};
 use super::inputs::may_write;
 use super::shader::{Unreadable, Unusable};
 use super::terminal::file_size;

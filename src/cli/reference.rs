@@ -10,6 +10,8 @@ use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name, plural};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image, input};
 use toyproof_project::PassKind;
+use toyproof_project::files::{self, Input, InputSource};
+use toyproof_report as report;
 use toyproof_verify::project::bind::bind_reference;
 use toyproof_verify::{
     Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MAX_UNDEFINED, MarchDependence, Quantization,
@@ -20,8 +22,6 @@ use super::Terminal;
 use super::inputs::{LanguageArgs, shell_word};
 use super::project::{pass_shader, rendering};
 use super::shader::{Shader, Unusable};
-use crate::cli::files::{self, Input, InputSource};
-use crate::report;
 
 /// What shaders are compared with.
 #[derive(Debug, Clone, clap::Args)]

@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
 use toyproof_image::{FRAME_RATE, Frame, Image};
+use toyproof_project::files;
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Backend, Tracer};
 use toyproof_verify::Expected;
@@ -19,7 +20,6 @@ use super::scenes::read_scene;
 use super::sequence::{self, FrameEnd, Frames, Sequence};
 use super::terminal::file_size;
 use super::{Exit, Terminal, inputs, project};
-use crate::cli::files;
 
 /// Render a scene with the reference tracer
 #[derive(Debug, clap::Args)]

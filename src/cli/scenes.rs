@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use include_dir::{Dir, include_dir};
 use toyproof_diagnostic::{File, Files, nearest, path_name};
 use toyproof_image::input;
+use toyproof_project::files::{self, ReadError};
 use toyproof_scene::{self as scene, Scene};
 
 use super::{Exit, Terminal};
-use crate::cli::files::{self, ReadError};
 
 /// List the built-in scenes, or write them and their shaders to a folder
 ///
@@ -82,13 +82,29 @@ pub(super) fn builtin_scenes() -> impl Iterator<Item = (String, Scene)> {
 /// A message for the user, if the file cannot be read or there is neither.
 pub(super) fn read_scene(path: &Path) -> Result<File, String> {
     match files::read_named(path) {
-        Err(ReadError::Missing(_)) => builtin_scene(path),
+        Err(ReadError::Missing { .. }) => builtin_scene(path),
         text => text.map_err(|error| error.to_string()),
     }
 }
 
+/// The error, with a hint if a path that does not exist names a built-in scene.
+pub(super) fn with_builtin_hint(error: ReadError) -> ReadError {
+    match error {
+        ReadError::Missing { path, .. } => {
+            let hint = builtin_name(&path).map_or_else(String::new, |name| {
+            format!(
+                "; `{name}` is a built-in scene (to render it: `toyproof render {name}`; to compare a shader with it: \
+                 `toyproof check SHADER --scene {name}`)"
+            )
+        });
+            ReadError::Missing { path, hint }
+        }
+        other => other,
+    }
+}
+
 /// The name of the built-in scene that a path is, with or without `.toml`.
-pub(super) fn builtin_name(path: &Path) -> Option<&'static str> {
+fn builtin_name(path: &Path) -> Option<&'static str> {
     let path = path.to_str()?;
     let stem = path.strip_suffix(".toml").unwrap_or(path);
     course_scenes().map(|(name, _)| name).find(|name| *name == stem)

@@ -8,10 +8,11 @@ use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity, grouped, path_n
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
 use toyproof_project::CompiledProject;
+use toyproof_project::files::{self, Input, ReadError, Search, Texts, content_diagnostic};
 
 use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
-use crate::cli::files::{self, Input, ReadError, Search, Texts, content_diagnostic};
+use super::scenes::with_builtin_hint;
 use crate::cli::project;
 
 /// The lints may take one part in this many of a shader's time limit.
@@ -215,6 +216,7 @@ fn find_in(
             }
             search.inputs
         })
+        .map(|input| input.map_err(with_builtin_hint))
         .collect();
     keep_folders(&mut inputs);
     inputs
@@ -290,8 +292,9 @@ fn keep_folders(inputs: &mut [Result<Input, ReadError>]) {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_project::files::InputSource;
+
     use super::*;
-    use crate::cli::files::InputSource;
 
     fn relative(paths: &[&str]) -> Vec<PathBuf> {
         let input = |path: &&str| {

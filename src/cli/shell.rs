@@ -8,9 +8,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap_complete::Shell;
 use clap_mangen::Man;
 use toyproof_diagnostic::path_name;
+use toyproof_report as report;
 
 use super::{Cli, Exit, Terminal};
-use crate::report;
 
 /// Print a completion script for a shell
 #[derive(Debug, clap::Args)]

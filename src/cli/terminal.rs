@@ -13,7 +13,9 @@ use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use terminal_size::terminal_size_of;
-use toyproof_diagnostic::{self as diagnostic, Code, Diagnostic, Files, Severity, path_name, wrap};
+use toyproof_diagnostic::{
+    self as diagnostic, Code, Diagnostic, Files, Severity, path_name, without_error_numbers, wrap,
+};
 use toyproof_image::output;
 use toyproof_verify::contain;
 
@@ -349,19 +351,6 @@ struct Interrupts {
     /// Whether the user has interrupted the program.
     flag: Arc<AtomicBool>,
     is_handled: OnceLock<()>,
-}
-
-/// A message without the numbers that the system gives its errors: "File exists (os error 17)".
-pub(super) fn without_error_numbers(text: &str) -> String {
-    let mut parts = text.split(" (os error ");
-    let mut short = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        match part.split_once(')') {
-            Some((number, rest)) if number.parse::<i32>().is_ok() => short.push_str(rest),
-            _ => short.extend([" (os error ", part]),
-        }
-    }
-    short
 }
 
 /// The width of standard error in columns, at most [`MAX_WIDTH`]; `None` if it is not a terminal.

@@ -10,6 +10,7 @@ use toyproof_image as image;
 use toyproof_image::Frame;
 use toyproof_lab::trade::{self, Report, Subject};
 use toyproof_lint::Lints;
+use toyproof_project::files;
 use toyproof_scene::{Scene, export};
 
 use super::check::Scenes;
@@ -19,7 +20,6 @@ use super::inputs::{
 use super::render::load_scene;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};
-use crate::cli::files;
 
 /// Measure rendering time against accuracy
 ///

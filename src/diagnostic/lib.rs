@@ -38,7 +38,7 @@ pub use self::layout::{columns, display_width, wrap};
 pub use self::render::{Json, JsonFix, human, json, short};
 pub use self::text::{
     color_difference, grouped, magnitude, nearest, path_name, plural, printable, printable_lines, similar,
-    spreadsheet_text,
+    spreadsheet_text, without_error_numbers,
 };
 
 /// The severity of a diagnostic.

@@ -191,6 +191,20 @@ pub fn color_difference(difference: f64) -> String {
     }
 }
 
+/// A message without the numbers that the system gives its errors: "File exists (os error 17)".
+#[must_use]
+pub fn without_error_numbers(text: &str) -> String {
+    let mut parts = text.split(" (os error ");
+    let mut short = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.split_once(')') {
+            Some((number, rest)) if number.parse::<i32>().is_ok() => short.push_str(rest),
+            _ => short.extend([" (os error ", part]),
+        }
+    }
+    short
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -33,8 +33,10 @@
 //! - `graph`: what renders the image.
 //! - `script`: files that describe the mouse and the keyboard over the frames of a run.
 
+pub mod archive;
 mod check;
 mod compiled;
+pub mod files;
 mod folder;
 mod format;
 mod graph;

@@ -129,8 +129,8 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::report::record::samples::{correct, invalid, record};
-    use crate::report::{Late, Rubric, written};
+    use crate::record::samples::{correct, invalid, record};
+    use crate::{Late, Rubric, written};
 
     fn submitted(record: Record, assignment: &str, student: &str, late: Option<u64>) -> Record {
         Record {

@@ -116,9 +116,9 @@ fn cell<T: ToString>(value: Option<T>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::record::samples::{correct, invalid};
-    use crate::report::repair::samples::repaired;
-    use crate::report::{Rubric, written};
+    use crate::record::samples::{correct, invalid};
+    use crate::repair::samples::repaired;
+    use crate::{Rubric, written};
 
     fn table(records: Vec<Record>, rubrics: &Rubrics) -> String {
         written(|out| csv(&records.into(), rubrics, out))

@@ -121,7 +121,7 @@ impl Earlier {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Record, Records, written};
+    use crate::{Record, Records, written};
 
     fn report(shaders: &[(&str, Verdict)]) -> Report {
         let record = |&(name, verdict): &(&str, Verdict)| Record {

@@ -257,10 +257,10 @@ fn shown_frame(frames: &[FrameRecord]) -> usize {
 #[cfg(test)]
 pub(super) mod samples {
     use super::*;
-    use crate::report::record::samples::{correct, record};
+    use crate::record::samples::{correct, record};
 
     /// A record of frames with these verdicts, at successive seconds.
-    pub(in crate::report) fn in_frames<const N: usize>(verdicts: [Verdict; N]) -> Record {
+    pub(crate) fn in_frames<const N: usize>(verdicts: [Verdict; N]) -> Record {
         let times = (0_u8..).map(f32::from);
         let inputs: Vec<_> = times
             .take(N)

@@ -13,7 +13,7 @@ use serde::{Serialize, Serializer};
 
 use super::html::Text;
 use super::{Hints, Mark, Record, Records, Rubric, plain};
-use crate::report::rubric::Visibility;
+use crate::rubric::Visibility;
 
 /// The output format: <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>
 #[derive(Serialize)]
@@ -203,8 +203,8 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::report::record::samples::{correct, every_verdict, invalid};
-    use crate::report::written;
+    use crate::record::samples::{correct, every_verdict, invalid};
+    use crate::written;
 
     /// The documented schema, without additional properties.
     fn schema() -> Value {

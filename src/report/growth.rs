@@ -82,7 +82,7 @@ pub(super) mod samples {
     use super::*;
 
     /// A chaotic shader after that many frames.
-    pub(in crate::report) fn chaotic(frames: usize) -> GrowthRecord {
+    pub(crate) fn chaotic(frames: usize) -> GrowthRecord {
         let differing = Share { count: 500, of: 1000 };
         let error = FrameError {
             max_abs: 0.25,

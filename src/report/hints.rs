@@ -39,8 +39,8 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::repair::samples::{repaired, suspected};
-    use crate::report::{Report, Rubric, Thumbnails, csv, gradescope, junit, sarif, written};
+    use crate::repair::samples::{repaired, suspected};
+    use crate::{Report, Rubric, Thumbnails, csv, gradescope, junit, sarif, written};
 
     /// Every text format of a record with these hints.
     fn formats(mut record: Record, hints: Hints) -> Vec<String> {

@@ -161,8 +161,8 @@ mod tests {
     use roxmltree::{Document, Node};
 
     use super::*;
-    use crate::report::record::samples::{correct, every_verdict, invalid};
-    use crate::report::written;
+    use crate::record::samples::{correct, every_verdict, invalid};
+    use crate::written;
 
     fn xml(records: Vec<Record>) -> String {
         written(|out| junit(&records.into(), Hints::Fix, out))

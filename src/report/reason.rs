@@ -3,7 +3,7 @@
 use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printable};
 use toyproof_eval as eval;
 use toyproof_explain::Findings;
-use toyproof_gpu as gpu;
+use toyproof_player::DriverFailure;
 use toyproof_scene::Sampler;
 use toyproof_verify::Difference;
 use toyproof_verify::compare::Region;
@@ -362,7 +362,7 @@ fn without_image(failure: &Failure, files: &Files) -> String {
         Failure::Invalid(_)
         | Failure::InvalidScene(_)
         | Failure::Overdue(_)
-        | Failure::Gpu(gpu::Failure::Invalid(_) | gpu::Failure::Refused(_)) => {
+        | Failure::Gpu(DriverFailure::Invalid(_) | DriverFailure::Refused(_)) => {
             first_error(&failure.diagnostics(), files)
         }
         Failure::LoopTruncated(pixels) => loop_truncated(*pixels),

@@ -409,10 +409,10 @@ pub(super) mod samples {
     use toyproof_verify::Verdict;
     use toyproof_verify::compare::CheckSummary;
 
-    use crate::report::{Record, Rubric, Seconds};
+    use crate::{Record, Rubric, Seconds};
 
     /// A record with this verdict, which is also its name, without checks.
-    pub(in crate::report) fn record(verdict: Verdict) -> Record {
+    pub(crate) fn record(verdict: Verdict) -> Record {
         Record {
             scene: Some("scene.toml".to_owned()),
             verdict,
@@ -427,7 +427,7 @@ pub(super) mod samples {
     }
 
     /// A summary of 1,000 pixels: the numbers that differ, are ill-conditioned and are undefined.
-    pub(in crate::report) fn question([differing, ill_conditioned, undefined]: [u64; 3]) -> CheckSummary {
+    pub(crate) fn check_summary([differing, ill_conditioned, undefined]: [u64; 3]) -> CheckSummary {
         CheckSummary {
             pixels: 1000,
             differing,
@@ -438,16 +438,16 @@ pub(super) mod samples {
         }
     }
 
-    pub(in crate::report) fn correct() -> Record {
+    pub(crate) fn correct() -> Record {
         Record {
-            algorithm: Some(question([0; 3])),
-            precision: Some(question([0; 3])),
-            toolchain: Some(question([0; 3])),
+            algorithm: Some(check_summary([0; 3])),
+            precision: Some(check_summary([0; 3])),
+            toolchain: Some(check_summary([0; 3])),
             ..record(Verdict::Correct)
         }
     }
 
-    pub(in crate::report) fn invalid() -> Record {
+    pub(crate) fn invalid() -> Record {
         let mut record = record(Verdict::Invalid);
         record.diagnostics.push(diagnostic::Json {
             severity: Severity::Error,
@@ -472,12 +472,12 @@ pub(super) mod samples {
     }
 
     /// One record of each verdict.
-    pub(in crate::report) fn every_verdict() -> Vec<Record> {
+    pub(crate) fn every_verdict() -> Vec<Record> {
         let mut wrong = record(Verdict::Wrong);
-        wrong.algorithm = Some(question([500, 0, 0]));
+        wrong.algorithm = Some(check_summary([500, 0, 0]));
         let mut unstable = correct();
         (unstable.shader, unstable.verdict) = ("unstable".to_owned(), Verdict::Unstable);
-        unstable.precision = Some(question([500, 0, 0]));
+        unstable.precision = Some(check_summary([500, 0, 0]));
         vec![
             record(Verdict::Missing),
             invalid(),
@@ -493,7 +493,7 @@ pub(super) mod samples {
 
     impl Rubric {
         /// A rubric without partial points for `compiles`, `algorithm` and `precision`.
-        pub(in crate::report) fn of(compiles: f64, algorithm: f64, precision: f64) -> Self {
+        pub(crate) fn of(compiles: f64, algorithm: f64, precision: f64) -> Self {
             let text = format!(
                 "compiles.points = {compiles:?}\nalgorithm.points = {algorithm:?}\nprecision.points = {precision:?}"
             );
@@ -507,10 +507,10 @@ pub(super) mod samples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::frames::samples::in_frames;
-    use crate::report::record::samples::{every_verdict, record};
-    use crate::report::repair::samples::{repaired, suspected};
-    use crate::report::{Hints, growth, repair, written};
+    use crate::frames::samples::in_frames;
+    use crate::record::samples::{every_verdict, record};
+    use crate::repair::samples::{repaired, suspected};
+    use crate::{Hints, growth, repair, written};
 
     #[test]
     fn reports_follow_the_schema_and_broken_ones_do_not() {

@@ -221,8 +221,8 @@ impl Records {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::record::samples::{correct, invalid, record};
-    use crate::report::repair::samples::repaired;
+    use crate::record::samples::{correct, invalid, record};
+    use crate::repair::samples::repaired;
 
     fn named(index: usize) -> Record {
         Record {

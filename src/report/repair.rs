@@ -231,12 +231,11 @@ pub(super) mod samples {
     use toyproof_image::Rgb8Image;
     use toyproof_verify::Verdict;
 
-    use crate::report::Record;
-    use crate::report::record::samples::{question, record};
+    use crate::Record;
+    use crate::record::samples::{check_summary, record};
 
     /// The shader of the samples. `é` is one character of two bytes.
-    pub(in crate::report) const SOURCE: &str =
-        "float é(float b, float c) {\n    return b + c;\n}\nfloat k = 1.0;\n";
+    pub(crate) const SOURCE: &str = "float é(float b, float c) {\n    return b + c;\n}\nfloat k = 1.0;\n";
 
     /// The span of a text that occurs once in the shader.
     fn span(files: &mut Files, text: &str) -> Span {
@@ -246,7 +245,7 @@ pub(super) mod samples {
     }
 
     /// A repair of the operator in line 2, one of both lines 2 and 4, and suspects in these lines.
-    pub(in crate::report) fn search() -> (Files, SearchResult) {
+    pub(crate) fn search() -> (Files, SearchResult) {
         let mut files = Files::default();
         let [sum, number] = ["b + c", "1.0"].map(|text| span(&mut files, text));
         let repair = |id, fix, agreeing| Repair {
@@ -285,7 +284,7 @@ pub(super) mod samples {
     }
 
     /// A wrong shader with a repair, an alternative and suspects.
-    pub(in crate::report) fn repaired() -> Record {
+    pub(crate) fn repaired() -> Record {
         let (files, result) = search();
         Record {
             help: Some("toyproof explain wrong-operator".to_owned()),
@@ -294,7 +293,7 @@ pub(super) mod samples {
     }
 
     /// A wrong shader with suspects, but without a repair.
-    pub(in crate::report) fn suspected() -> Record {
+    pub(crate) fn suspected() -> Record {
         let (files, mut result) = search();
         result.repairs.clear();
         searched(&files, &result)
@@ -302,7 +301,7 @@ pub(super) mod samples {
 
     fn searched(files: &Files, result: &SearchResult) -> Record {
         let mut record = record(Verdict::Wrong);
-        record.algorithm = Some(question([500, 0, 0]));
+        record.algorithm = Some(check_summary([500, 0, 0]));
         record.set_search(result, files);
         record
     }

@@ -124,7 +124,8 @@ impl Rubric {
     }
 
     /// Reads a rubric that is a table of a file.
-    pub(crate) fn read(table: &mut Table) -> Self {
+    #[must_use]
+    pub fn read(table: &mut Table) -> Self {
         let visibility = table.choice("visibility", "visibility", &VISIBILITIES);
         let images = table.choice("images", "choice of images", &STUDENT_IMAGES);
         let compiles = table.table("compiles", points);
@@ -142,7 +143,8 @@ impl Rubric {
     }
 
     /// The maximum points of all checks.
-    pub(crate) fn check_points(&self) -> f64 {
+    #[must_use]
+    pub fn check_points(&self) -> f64 {
         self.compiles + self.algorithm.points + self.precision.points
     }
 
@@ -204,8 +206,8 @@ fn points(table: &mut Table) -> f64 {
 }
 
 /// Reads the points of a table of an assignment; 0 if it gives none.
-#[cfg(feature = "lab")]
-pub(crate) fn optional_points(table: &mut Table) -> f64 {
+#[must_use]
+pub fn optional_points(table: &mut Table) -> f64 {
     let points = table.optional::<f64>("points");
     points.map_or(0.0, |points| valid_points(table, &points))
 }
@@ -359,8 +361,8 @@ mod tests {
     use toyproof_diagnostic::{Diagnostic, File};
 
     use super::*;
-    use crate::report::Submitted;
-    use crate::report::record::samples::{correct, invalid, question, record};
+    use crate::Submitted;
+    use crate::record::samples::{check_summary, correct, invalid, record};
 
     /// The rubric, or its errors: `line:column code message; help: …`.
     fn read(text: &str) -> Result<Rubric, Vec<String>> {
@@ -493,8 +495,8 @@ mod tests {
     fn partial_points_grow_linearly_and_never_reach_all() {
         let wrong = |differing| {
             let mut record = record(Verdict::Wrong);
-            record.algorithm = Some(question([differing, 0, 0]));
-            record.precision = Some(question([0; 3]));
+            record.algorithm = Some(check_summary([differing, 0, 0]));
+            record.precision = Some(check_summary([0; 3]));
             record
         };
         let algorithm = |rubric, differing| points(rubric, &wrong(differing))[1];
@@ -548,8 +550,8 @@ mod tests {
     fn ill_conditioned_pixels_count_for_precision_and_undefined_ones_for_the_algorithm() {
         let of = |algorithm, precision| {
             let mut record = record(Verdict::Unstable);
-            record.algorithm = Some(question(algorithm));
-            record.precision = Some(question(precision));
+            record.algorithm = Some(check_summary(algorithm));
+            record.precision = Some(check_summary(precision));
             let earned = points(RUBRIC, &record);
             (earned[1].1, earned[2].1)
         };

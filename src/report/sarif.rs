@@ -466,9 +466,9 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::report::record::samples::{every_verdict, invalid};
-    use crate::report::repair::samples::{repaired, suspected};
-    use crate::report::written;
+    use crate::record::samples::{every_verdict, invalid};
+    use crate::repair::samples::{repaired, suspected};
+    use crate::written;
 
     fn file(records: Vec<Record>) -> String {
         written(|out| sarif(&records.into(), out))

@@ -442,8 +442,8 @@ fn style(verdict: Verdict) -> Style {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::record::samples::{correct, invalid, record};
-    use crate::report::repair::samples::{repaired, suspected};
+    use crate::record::samples::{correct, invalid, record};
+    use crate::repair::samples::{repaired, suspected};
 
     fn text(record: &Record, detail: Detail, width: Option<usize>) -> String {
         let layout = Layout::new([record.shader.as_str()], width, detail, true);
@@ -506,7 +506,7 @@ mod tests {
     fn other_explanations_are_ranked_and_symptoms_are_labeled() {
         let mut several = wrong();
         let mistake = several.mistake.as_mut().unwrap();
-        mistake.alternatives.push(crate::report::Alternative {
+        mistake.alternatives.push(crate::Alternative {
             id: "b".to_owned(),
             text: "second".to_owned(),
         });

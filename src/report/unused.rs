@@ -35,8 +35,8 @@ mod tests {
     use toyproof_diagnostic::{File, Span};
 
     use super::*;
-    use crate::report::Hints;
-    use crate::report::record::samples::{correct, record};
+    use crate::Hints;
+    use crate::record::samples::{correct, record};
 
     #[test]
     fn only_a_wrong_shader_gets_the_sentences() {

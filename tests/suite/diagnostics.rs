@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use toyproof::assignment::Assignment;
+use toyproof::classroom::assignment::Assignment;
 use toyproof::diagnostic::{Code, Deadline, Diagnostic, File, FileId, Files, human};
 use toyproof::explain;
 use toyproof::glsl::{self, Checked};

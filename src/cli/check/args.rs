@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use toyproof_explain::repair::DEFAULT_BUDGET;
+use toyproof_report::Hints;
 use toyproof_verify::Difference;
 
 use super::shard::Shard;
 use crate::cli::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use crate::cli::reference::ReferenceArgs;
-use crate::report::Hints;
 
 /// Check shaders against a reference, and give a verdict on each
 ///

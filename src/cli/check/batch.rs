@@ -7,6 +7,8 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Severity, grouped, path_name, plural};
+use toyproof_project::files::Input;
+use toyproof_report::{self as report, Detail, Earlier, Layout, Record, Records, Report, Rubrics};
 use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
@@ -18,11 +20,9 @@ use super::reference::unused_scene;
 use super::reports;
 use super::results::{Line, Results};
 use super::submission::Submission;
-use crate::cli::files::Input;
 use crate::cli::inputs::{shell_word, short_device};
 use crate::cli::pool::{self, InOrder};
 use crate::cli::{Exit, Terminal};
-use crate::report::{self, Detail, Earlier, Layout, Record, Records, Report, Rubrics};
 
 /// The largest number of shaders whose errors and warnings are shown with their source lines.
 const MAX_WITH_SOURCE: usize = 3;

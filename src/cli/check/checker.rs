@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use rayon::ThreadPool;
+use toyproof_classroom::assignment::Subject;
 use toyproof_diagnostic::{Deadline, Files, Severity, Span, plural};
 use toyproof_explain::repair::{Donors, SearchOptions};
 use toyproof_explain::unused::Unused;
@@ -15,6 +16,7 @@ use toyproof_glsl::tree::SamplerShape;
 use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame};
 use toyproof_project::{CompiledProject, PassKind};
+use toyproof_report::{self as report, CheckedFrame, GrowthRecord, Record};
 use toyproof_scene::Scene;
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, accumulate, bind, default_frame};
@@ -26,13 +28,11 @@ use super::outcome::{Message, Outcome};
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
 use super::submission::Submission;
-use crate::assignment::Subject;
 use crate::cli::inputs::{frame_flags, shell_word};
 use crate::cli::pool;
 use crate::cli::project::{pass_shader, rendering};
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
-use crate::report::{self, CheckedFrame, GrowthRecord, Record};
 
 /// The worker process and the thread pool that a thread owns.
 pub(super) struct WorkerContext {

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use toyproof_diagnostic::{grouped, plural};
 use toyproof_explain::repair::Donors;
+use toyproof_report::{self as report, Record};
 use toyproof_verify::Verdict;
 
 use super::args::CheckFormat;
@@ -15,7 +16,6 @@ use super::checker::{Checker, WorkerContext};
 use super::outcome::Outcome;
 use super::submission::Submission;
 use crate::cli::pool;
-use crate::report::{self, Record};
 
 /// The largest number of correct shaders for one reference whose expressions are tried.
 const MAX_SHADERS: usize = 64;

@@ -7,15 +7,15 @@ use std::path::Path;
 use toyproof_diagnostic::path_name;
 use toyproof_explain::Findings;
 use toyproof_image::{self as image, ImageError, Rgb8Image, input, output};
+use toyproof_project::files;
+use toyproof_report::{Exhibit, Gallery, MAX_IMAGE_BYTES, Rubric, StudentImages, Thumbnails, subsample};
 use toyproof_verify::CheckResult;
 use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
 use toyproof_verify::contain::{Part, contain};
 
 use super::outcome::Outcome;
 use super::submission::Submission;
-use crate::cli::files;
 use crate::cli::names::with_suffix;
-use crate::report::{Exhibit, Gallery, MAX_IMAGE_BYTES, Rubric, StudentImages, Thumbnails, subsample};
 
 /// A kind of image, which a shader may lack.
 pub(super) struct ImageKind {

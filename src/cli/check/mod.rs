@@ -19,6 +19,8 @@ use std::path::Path;
 
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::input;
+use toyproof_project::files::NOT_UTF8;
+use toyproof_report::Earlier;
 
 pub(super) use self::args::Args;
 pub(super) use self::merge::{MergeArgs, merge};
@@ -26,9 +28,7 @@ pub(super) use self::plan::read_assignment;
 pub(super) use self::reference::Scenes;
 use self::results::Results;
 use self::work::Work;
-use super::files::NOT_UTF8;
 use super::{Exit, Terminal};
-use crate::report::Earlier;
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     // A worker is created and dropped here, so that wrong arguments are reported before any work starts.

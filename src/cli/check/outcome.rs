@@ -2,10 +2,10 @@
 
 use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files};
 use toyproof_explain::Findings;
+use toyproof_report::Record;
 use toyproof_verify::Failure;
 
 use crate::cli::Terminal;
-use crate::report::Record;
 
 /// A message that waits for its shader's turn.
 pub(super) enum Message {

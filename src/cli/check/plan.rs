@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_classroom::assignment::{self, Assignment, FILE_NAME};
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{Frame, FrameInputs};
+use toyproof_project::files::{self, Skipped};
+use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
 use super::work::TaskInputs;
 use super::{Args, reports};
-use crate::assignment::{self, Assignment, FILE_NAME};
 use crate::cli::Terminal;
-use crate::cli::files::{self, Skipped};
 use crate::cli::reference::ReferenceArgs;
 use crate::cli::shader::Unusable;
-use crate::report::Rubric;
 
 /// The requirements on shaders.
 pub(super) struct Plan {

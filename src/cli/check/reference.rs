@@ -9,17 +9,17 @@ use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_explain::known::Hypotheses;
 use toyproof_explain::whole_image::OtherScenes;
 use toyproof_image::Frame;
+use toyproof_project::files::{self, Input, InputSource, ReadError, Skipped};
+use toyproof_report::Record;
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
 use super::Args;
 use super::plan::{Plan, PlannedFrame};
 use crate::cli::Terminal;
-use crate::cli::files::{self, Input, InputSource, ReadError, Skipped};
 use crate::cli::reference::GivenReference;
-use crate::cli::scenes::{builtin_scenes, read_scene};
+use crate::cli::scenes::{builtin_scenes, read_scene, with_builtin_hint};
 use crate::cli::shader::Shader;
-use crate::report::Record;
 
 /// The scene of a shader.
 pub(in crate::cli) struct SceneOfShader {
@@ -184,7 +184,7 @@ impl Scenes {
                 let text = match leaving_link(found, shader, &beside) {
                     Some(skipped) => Err(format!("there is no scene to compare with: {skipped}")),
                     None if beside.is_file() => files::read_text(&beside).map_err(|error| error.to_string()),
-                    None => Err(ReadError::Missing(beside.clone()).to_string()),
+                    None => Err(with_builtin_hint(ReadError::missing(&beside)).to_string()),
                 };
                 Some((beside, text))
             }

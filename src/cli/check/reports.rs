@@ -6,16 +6,17 @@ use std::time::SystemTime;
 
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::output;
+use toyproof_project::files;
+use toyproof_report::{
+    ClassTable, Hints, LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, Report, Rubric,
+    Rubrics, csv, gradescope, html, junit, part_name, sarif,
+};
 use toyproof_verify::contain::{Part, contain};
 
 use super::images::{gallery, gallery_of_sources, thumbnails};
 use super::submission::Submission;
+use crate::cli::Terminal;
 use crate::cli::shader::Unusable;
-use crate::cli::{Terminal, files};
-use crate::report::{
-    ClassTable, Hints, LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, Report, Rubric,
-    Rubrics, csv, gradescope, html, junit, part_name, sarif,
-};
 
 /// Reads a rubric, if one is named.
 ///

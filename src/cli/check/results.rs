@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::path_name;
 use toyproof_image::{input, output};
-
-use crate::report::Record;
+use toyproof_report::Record;
 
 /// The name of the file.
 pub(super) const RESULTS_NAME: &str = "results.jsonl";

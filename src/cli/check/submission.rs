@@ -5,14 +5,14 @@ use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
 use toyproof_image::{FrameInputs, input};
+use toyproof_project::files::{self, Input, ReadError};
+use toyproof_report::Submitted;
 
 use super::Args;
 use super::plan::Plan;
 use super::reference::References;
-use crate::cli::files::{self, Input, ReadError};
 use crate::cli::names::Names;
 use crate::cli::project::image_files;
-use crate::report::Submitted;
 
 /// A shader to check.
 pub(super) struct Submission {

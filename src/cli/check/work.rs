@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_classroom::collect::roster::Owners;
+use toyproof_report::{Earlier, Rubrics};
+
 use super::batch::Batch;
 use super::checker::Checker;
 use super::images::IMAGES;
@@ -12,11 +15,10 @@ use super::results::{RESULTS_NAME, Results};
 use super::shard::{self, Manifest, Shard};
 use super::submission::Submission;
 use super::{Args, earlier};
-use crate::cli::collect::{ClassPart, Owners, class_parts};
+use crate::cli::collect::{ClassPart, class_parts};
 use crate::cli::names::Names;
 use crate::cli::shader::find_submissions;
 use crate::cli::{Exit, Terminal};
-use crate::report::{Earlier, Rubrics};
 
 /// All that one command checks.
 pub(super) struct Work {
@@ -96,7 +98,7 @@ impl Work {
             let mut plan = Plan::new(args, &part, terminal)?;
             let references = References::new(args, &mut plan, terminal)?;
             let mut inputs = find_submissions(&part.shaders, terminal);
-            let owners = Owners::read(&part.shaders, &mut inputs, terminal);
+            let owners = Owners::read(&part.shaders, &mut inputs, |error| terminal.warn(error));
             match (&part.name, plan.rubric.take()) {
                 (None, rubric) => work.rubrics = rubric.into(),
                 (Some(name), Some(rubric)) => work.rubrics.add(name.clone(), rubric),

@@ -1,24 +1,16 @@
 //! `toyproof collect`: a folder for each student, from the downloads of a learning management system.
 
-mod class;
-mod collection;
-mod download;
-mod naming;
-mod roster;
-mod students;
-mod text;
 mod writer;
 
 use std::path::{Path, PathBuf};
 
+use toyproof_classroom::collect::class::{Class, Purpose};
+use toyproof_classroom::collect::collection::Collection;
+use toyproof_classroom::collect::roster::Roster;
 use toyproof_diagnostic::{Files, path_name, printable};
+use toyproof_project::files;
 
-use self::class::{Class, Purpose};
-use self::collection::Collection;
-pub(super) use self::roster::Owners;
-use self::roster::Roster;
 use self::writer::{Listing, Writer, remove_earlier};
-use super::files;
 use super::inputs::shell_word;
 use super::shader::Unusable;
 use super::{Exit, Terminal};
@@ -83,7 +75,7 @@ fn read_class(path: &Path, purpose: Purpose, terminal: &Terminal) -> Result<Clas
 }
 
 fn collect(args: &Args, class: &Class, terminal: &Terminal) -> Result<(), String> {
-    download::check_empty(&args.output)?;
+    check_empty(&args.output)?;
     let collection = Collection::read(&args.downloads, class)?;
     if !class.assignments.is_empty() {
         write_class(&args.output, &collection, class, Listing::Everyone, terminal)?;
@@ -225,4 +217,20 @@ fn next(folder: &Path, assignment: Option<&Path>, terminal: &Terminal) {
         shell_word(&path_name(folder)),
         assignment.as_deref().unwrap_or("FILE")
     ));
+}
+
+/// Checks that a folder can be written: it does not exist or is empty.
+///
+/// # Errors
+/// Why not.
+fn check_empty(folder: &Path) -> Result<(), String> {
+    match std::fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(format!(
+            "{} already has files; nothing was written",
+            path_name(folder)
+        )),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(format!("{}: {error}", path_name(folder))),
+    }
 }

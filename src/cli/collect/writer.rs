@@ -4,16 +4,16 @@ use std::path::{Component, Path};
 use std::{fs, io};
 
 use anstyle::{AnsiColor, Style};
+use toyproof_classroom::collect::class::ClassAssignment;
+use toyproof_classroom::collect::collection::{Collection, Lateness, Submission};
+use toyproof_classroom::collect::naming::{Paths, Student, file_name};
+use toyproof_classroom::collect::roster::{Entry, FILE_NAME, Roster, Skipped};
+use toyproof_classroom::collect::text::Content;
 use toyproof_diagnostic::{grouped, path_name, plural, printable};
 use toyproof_image::output;
+use toyproof_report::{Detail, Layout};
 
-use super::class::ClassAssignment;
-use super::collection::{Collection, Lateness, Submission};
-use super::naming::{Paths, Student, file_name};
-use super::roster::{Entry, FILE_NAME, Roster, Skipped};
-use super::text::Content;
 use crate::cli::Terminal;
-use crate::report::{Detail, Layout};
 
 /// The largest number of skipped files of a student that are printed.
 const MAX_NOTES: usize = 10;

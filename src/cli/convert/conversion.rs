@@ -13,13 +13,13 @@ use toyproof_glsl as glsl;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
 use toyproof_project::PassKind;
+use toyproof_project::files::{Input, ReadError};
 use toyproof_translate::wgsl::Unprintable;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable};
 use super::super::{Exit, pool};
 use super::To;
-use crate::cli::files::{Input, ReadError};
 
 /// The settings of a batch, the same for every shader.
 pub(super) struct Settings<'a> {

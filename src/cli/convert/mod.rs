@@ -18,6 +18,8 @@ use toyproof_convert::header::{self, ProofStatus};
 use toyproof_convert::{Converter, Proved};
 use toyproof_diagnostic::{self as diagnostic, grouped, path_name, plural};
 use toyproof_gpu::browser;
+use toyproof_project::files::{self, Input, ReadError};
+use toyproof_report::{Detail, Layout};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
@@ -28,8 +30,6 @@ use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
 use super::{Exit, Terminal, project};
-use crate::cli::files::{self, Input, ReadError};
-use crate::report::{Detail, Layout};
 
 const HOSTS: &str = "\
 Examples:

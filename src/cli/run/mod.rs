@@ -19,6 +19,8 @@ use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_player::Clock;
 use toyproof_project::PassKind;
+use toyproof_project::files;
+use toyproof_report as report;
 use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
@@ -27,8 +29,7 @@ use crate::cli::names::{Names, with_suffix};
 use crate::cli::sequence::{self, FrameEnd, Frames, Sequence};
 use crate::cli::shader::{Shader, Unusable, find};
 use crate::cli::terminal::file_size;
-use crate::cli::{Exit, Terminal, files};
-use crate::report;
+use crate::cli::{Exit, Terminal};
 
 /// Run shaders and save their images
 #[derive(Debug, clap::Args)]

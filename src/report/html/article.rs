@@ -8,9 +8,9 @@ use toyproof_verify::compare::{CheckSummary, Pixel};
 use super::glossary::{Glossary, term};
 use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
-use crate::report::repair::suspect_lines;
-use crate::report::terminal::{CUT_BY_TIME, CUT_SEARCH};
-use crate::report::{Mistake, Record, Repair, Rubrics};
+use crate::repair::suspect_lines;
+use crate::terminal::{CUT_BY_TIME, CUT_SEARCH};
+use crate::{Mistake, Record, Repair, Rubrics};
 
 /// The contents of the article of a shader.
 pub(super) struct Article<'a> {
@@ -353,10 +353,10 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::report::Alternative;
-    use crate::report::Hints;
-    use crate::report::record::samples::{correct, question, record};
-    use crate::report::repair::samples::{SOURCE, repaired, suspected};
+    use crate::Alternative;
+    use crate::Hints;
+    use crate::record::samples::{check_summary, correct, record};
+    use crate::repair::samples::{SOURCE, repaired, suspected};
 
     fn article(record: &Record) -> String {
         let article = Article {
@@ -453,7 +453,7 @@ mod tests {
     fn checks_count_pixels() {
         assert!(!article(&record(Verdict::Invalid)).contains("class=\"checks\""));
         let mut record = correct();
-        record.algorithm = Some(question([1_000, 0, 0]));
+        record.algorithm = Some(check_summary([1_000, 0, 0]));
         (record.toolchain, record.seconds.gpu) = (None, None);
         let html = article(&record);
         assert!(

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 
 use super::{Text, markdown, sentence};
-use crate::report::explanation::TERMS;
-use crate::report::{Explanation, Record, explanations};
+use crate::explanation::TERMS;
+use crate::{Explanation, Record, explanations};
 
 /// The explanations of the codes and mistakes that occur.
 pub(super) struct Glossary(BTreeMap<&'static str, Explanation>);
@@ -103,9 +103,9 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::report::record::samples::{every_verdict, invalid};
-    use crate::report::repair::samples::repaired;
-    use crate::report::{Alternative, Mistake};
+    use crate::record::samples::{every_verdict, invalid};
+    use crate::repair::samples::repaired;
+    use crate::{Alternative, Mistake};
 
     #[test]
     fn every_verdict_is_defined() {

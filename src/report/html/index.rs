@@ -12,7 +12,7 @@ use toyproof_verify::compare::CheckSummary;
 
 use super::names::Names;
 use super::{Gallery, Page, Text, facts, head, heading, overview};
-use crate::report::{Record, Report, Rubrics, Tally};
+use crate::{Record, Report, Rubrics, Tally};
 
 const SCRIPT: &str = include_str!("index.js");
 
@@ -277,7 +277,7 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::report::{Exhibit, Records, written};
+    use crate::{Exhibit, Records, written};
 
     fn report(count: usize) -> Report {
         let record = |index: usize| Record {

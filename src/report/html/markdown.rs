@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn all_explanations_have_balanced_markup() {
-        for explanation in crate::report::explanations() {
+        for explanation in crate::explanations() {
             let html = html(&explanation.text);
             for tag in ["p", "ul", "li", "pre", "code", "strong"] {
                 let [starts, ends] =

@@ -291,9 +291,9 @@ impl Write for Escaping<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Mistake;
-    use crate::report::record::samples::{every_verdict, invalid};
-    use crate::report::repair::samples::repaired;
+    use crate::Mistake;
+    use crate::record::samples::{every_verdict, invalid};
+    use crate::repair::samples::repaired;
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
         let report = Report::new(Some("<device>".to_owned()), records);

@@ -2,7 +2,7 @@
 
 use std::path::is_separator;
 
-use crate::report::Record;
+use crate::Record;
 
 /// The folder that all shaders are in.
 #[derive(Debug, Clone, Copy)]
@@ -42,7 +42,7 @@ fn parent(path: &str) -> &str {
 
 /// The folder that is common to a folder and a path, each with its final separator; `None` is the folder of no
 /// path.
-pub(in crate::report) fn common_folder(folder: Option<&str>, path: &str) -> String {
+pub(crate) fn common_folder(folder: Option<&str>, path: &str) -> String {
     let mut common = folder.unwrap_or_else(|| parent(path));
     while !path.starts_with(common) {
         common = parent(common.trim_end_matches(is_separator));
@@ -53,7 +53,7 @@ pub(in crate::report) fn common_folder(folder: Option<&str>, path: &str) -> Stri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Records;
+    use crate::Records;
 
     fn records(names: &[&str]) -> Records {
         names.iter().map(|&name| Record::new(name.to_owned())).collect()

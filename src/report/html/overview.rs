@@ -6,7 +6,7 @@ use toyproof_verify::compare::CheckSummary;
 
 use super::names::Names;
 use super::{Exhibit, Gallery, Text, sentence};
-use crate::report::{Record, Rubrics, Tally};
+use crate::{Record, Rubrics, Tally};
 
 pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rubrics: &Rubrics) -> String {
     let points = if rubrics.is_empty() {

@@ -8,7 +8,7 @@ use toyproof_diagnostic::{Json, grouped, plural};
 
 use super::glossary::Glossary;
 use super::{Text, sentence};
-use crate::report::{Record, SourceRange};
+use crate::{Record, SourceRange};
 
 /// The maximum number of messages that are shown for one shader.
 const MAX_MESSAGES: usize = 50;
@@ -281,9 +281,9 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::report::Position;
-    use crate::report::record::samples::record;
-    use crate::report::repair::samples::{SOURCE, repaired, suspected};
+    use crate::Position;
+    use crate::record::samples::record;
+    use crate::repair::samples::{SOURCE, repaired, suspected};
 
     fn message_at(line: usize, column: usize) -> Json {
         Json {

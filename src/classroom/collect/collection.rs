@@ -5,6 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
+use toyproof_project::archive::FileTime;
+use toyproof_project::files;
+use toyproof_report::Late;
 use toyproof_toml::Moment;
 
 use super::class::{Class, ClassAssignment, StudentList};
@@ -13,43 +16,49 @@ use super::naming::{Paths, Student, Submitted, is_archive, submitted};
 use super::roster::FILE_NAME;
 use super::students::Students;
 use super::text::{self, Content};
-use crate::cli::files;
-use crate::cli::zip::FileTime;
-use crate::report::Late;
 
 /// Times of files that are this close, in seconds, are those of one copy.
 const COPY_SECONDS: i64 = 60;
 
 /// A file of a student.
 #[derive(Debug)]
-pub(super) struct Handed {
-    pub(super) path: Vec<String>,
-    pub(super) content: Result<Content, String>,
+pub struct SubmittedFile {
+    /// Its path in the submission.
+    pub path: Vec<String>,
+    /// Its content, or why it cannot be read.
+    pub content: Result<Content, String>,
     time: Option<FileTime>,
     /// Whether the system marks it as late; `None` if the system marks nothing in names.
     is_late: Option<bool>,
 }
 
-impl Handed {
-    pub(super) fn original_path(&self) -> String {
+impl SubmittedFile {
+    /// Its path in the submission, with `/`.
+    #[must_use]
+    pub fn original_path(&self) -> String {
         self.path.join("/")
     }
 
-    pub(super) fn is_shader(&self) -> bool {
+    /// Whether it is a shader, or a file of a project.
+    #[must_use]
+    pub fn is_shader(&self) -> bool {
         matches!(self.content, Ok(Content::Text { .. }))
     }
 }
 
 /// The submission of a student.
 #[derive(Debug, Default)]
-pub(super) struct Submission {
-    pub(super) files: Vec<Handed>,
+pub struct Submission {
+    /// Its files.
+    pub files: Vec<SubmittedFile>,
 }
 
 /// How late something was submitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Lateness {
+pub enum Lateness {
+    /// It is on time.
     OnTime,
+    /// It is late.
     Late(Late),
     /// The download does not state it.
     Unknown,
@@ -57,8 +66,8 @@ pub(super) enum Lateness {
 
 impl Submission {
     /// How late the shaders of an assignment are, or those of all assignments.
-    pub(super) fn lateness(&self, assignment: Option<&ClassAssignment>) -> Lateness {
-        let belongs = |file: &&Handed| {
+    pub fn lateness(&self, assignment: Option<&ClassAssignment>) -> Lateness {
+        let belongs = |file: &&SubmittedFile| {
             let path = file.original_path();
             file.is_shader() && assignment.is_none_or(|assignment| assignment.has(&path))
         };
@@ -95,10 +104,11 @@ fn utc(time: FileTime, deadline: Moment) -> i64 {
 
 /// The submissions of all students, each with the name of its folder.
 #[derive(Debug)]
-pub(super) struct Collection {
-    pub(super) students: Vec<(String, Student, Submission)>,
+pub struct Collection {
+    /// The folder of each student, and what it holds.
+    pub students: Vec<(String, Student, Submission)>,
     /// The downloads whose times are not those of submissions.
-    pub(super) copies: Vec<PathBuf>,
+    pub copies: Vec<PathBuf>,
 }
 
 impl Collection {
@@ -106,7 +116,7 @@ impl Collection {
     ///
     /// # Errors
     /// Something cannot be read, or there is nothing.
-    pub(super) fn read(downloads: &[PathBuf], class: &Class) -> Result<Self, String> {
+    pub fn read(downloads: &[PathBuf], class: &Class) -> Result<Self, String> {
         let students = match &class.students {
             StudentList::None => Students::default(),
             StudentList::Table(students) => students.clone(),
@@ -157,29 +167,29 @@ fn add(
     places: &mut HashSet<usize>,
 ) -> Result<bool, String> {
     let found = download::read(download).map_err(|error| unreadable(download, &error))?;
-    let mut handed = Vec::new();
+    let mut submitted_files = Vec::new();
     for Found { path, content, time } in found {
         let Submitted {
             student,
             path,
             is_late,
         } = submitted(&path);
-        let file = Handed {
+        let file = SubmittedFile {
             path,
             content,
             time,
             is_late,
         };
-        handed.push((student, file));
+        submitted_files.push((student, file));
     }
-    let is_copy = is_copy(&handed);
-    let (listed, found) = students.find(handed.iter().map(|(student, _)| student));
+    let is_copy = is_copy(&submitted_files);
+    let (listed, found) = students.find(submitted_files.iter().map(|(student, _)| student));
     places.extend(found);
-    let listed: Vec<_> = handed
+    let listed: Vec<_> = submitted_files
         .iter()
         .map(|(student, _)| listed.get(student).cloned())
         .collect();
-    for ((student, mut file), listed) in handed.into_iter().zip(listed) {
+    for ((student, mut file), listed) in submitted_files.into_iter().zip(listed) {
         let submission = submissions.entry(listed.unwrap_or(student)).or_default();
         file.time = file.time.filter(|_| !is_copy);
         // The folder of a student may be empty.
@@ -206,8 +216,8 @@ fn unreadable(download: &Path, error: &io::Error) -> String {
 }
 
 /// Whether the files of several students have about the same time.
-fn is_copy(handed: &[(Student, Handed)]) -> bool {
-    let timed = handed
+fn is_copy(files: &[(Student, SubmittedFile)]) -> bool {
+    let timed = files
         .iter()
         .filter_map(|(student, file)| Some((student, file.time?)));
     let (mut students, mut times) = (HashSet::new(), Vec::new());

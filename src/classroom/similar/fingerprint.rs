@@ -22,7 +22,7 @@ const WINDOW: usize = 6;
 
 /// The kept fingerprints of a shader, each with the first and the last line that it covers.
 #[derive(Debug, Default)]
-pub(super) struct Fingerprints(HashMap<u64, [usize; 2]>);
+pub struct Fingerprints(HashMap<u64, [usize; 2]>);
 
 /// A node of a tree: its kind and its place.
 struct Node {
@@ -31,7 +31,9 @@ struct Node {
 }
 
 impl Fingerprints {
-    pub(super) fn of(checked: &Checked, files: &Files) -> Self {
+    /// The fingerprints of a shader's functions.
+    #[must_use]
+    pub fn of(checked: &Checked, files: &Files) -> Self {
         let mut kept = HashMap::new();
         for (_, function) in checked.tree.functions.iter() {
             let mut flat = Flat {
@@ -49,7 +51,7 @@ impl Fingerprints {
 
     /// The fingerprints of a text's tokens, which exist even for a shader that does not compile. They are
     /// comparable with each other only.
-    pub(super) fn of_text(text: &str) -> Self {
+    pub fn of_text(text: &str) -> Self {
         let tokens = tokens(text);
         let kinds: Vec<u64> = tokens.iter().map(|&(kind, _)| kind).collect();
         let mut kept = HashMap::new();
@@ -57,26 +59,29 @@ impl Fingerprints {
         Self(kept)
     }
 
-    pub(super) fn len(&self) -> usize {
+    /// Their number.
+    #[must_use]
+    pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    pub(super) fn hashes(&self) -> impl Iterator<Item = u64> {
+    /// Their hashes, in no particular order.
+    pub fn hashes(&self) -> impl Iterator<Item = u64> {
         self.0.keys().copied()
     }
 
     /// Removes fingerprints.
-    pub(super) fn remove(&mut self, others: &HashSet<u64>) {
+    pub fn remove(&mut self, others: &HashSet<u64>) {
         self.0.retain(|hash, _| !others.contains(hash));
     }
 
     /// The number of fingerprints that two shaders share.
-    pub(super) fn shared(&self, other: &Self) -> usize {
+    pub fn shared(&self, other: &Self) -> usize {
         self.hashes().filter(|hash| other.0.contains_key(hash)).count()
     }
 
     /// The ranges of lines that another shader has too.
-    pub(super) fn shared_lines(&self, other: &Self) -> Vec<[usize; 2]> {
+    pub fn shared_lines(&self, other: &Self) -> Vec<[usize; 2]> {
         let shared = self.0.iter().filter(|(hash, _)| other.0.contains_key(hash));
         let mut ranges: Vec<[usize; 2]> = shared.map(|(_, &lines)| lines).collect();
         ranges.sort_unstable();

@@ -7,47 +7,50 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{path_name, printable};
 use toyproof_image::input;
-
-use crate::cli::Terminal;
-use crate::cli::files::{Input, ReadError};
-use crate::report::{Late, Submitted};
+use toyproof_project::files::{Input, ReadError};
+use toyproof_report::{Late, Submitted};
 
 /// The name of the file.
-pub(super) const FILE_NAME: &str = "submissions.json";
+pub const FILE_NAME: &str = "submissions.json";
 
 /// The maximum size of the file, in bytes: a million students.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// The students of a folder of submissions.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Roster {
+pub struct Roster {
     /// The name of the assignment, if a class has several.
     #[serde(default)]
-    pub(super) assignment: Option<String>,
-    pub(super) students: Vec<Entry>,
+    pub assignment: Option<String>,
+    /// The students.
+    pub students: Vec<Entry>,
 }
 
 /// A student.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Entry {
+pub struct Entry {
     /// The folder of the student's files.
-    pub(super) folder: String,
-    pub(super) name: String,
-    pub(super) id: Option<String>,
+    pub folder: String,
+    /// The student's name.
+    pub name: String,
+    /// The student's number, if there is one.
+    pub id: Option<String>,
     /// How late the files are; null if they are not.
     #[serde(default)]
-    pub(super) late: Option<Late>,
+    pub late: Option<Late>,
     /// The files that were collected.
-    pub(super) files: Vec<String>,
+    pub files: Vec<String>,
     /// The files that were not.
-    pub(super) skipped: Vec<Skipped>,
+    pub skipped: Vec<Skipped>,
 }
 
 /// A file that was not collected.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Skipped {
-    pub(super) file: String,
-    pub(super) reason: String,
+pub struct Skipped {
+    /// Its path.
+    pub file: String,
+    /// Why, in one sentence.
+    pub reason: String,
 }
 
 impl Entry {
@@ -69,7 +72,7 @@ impl Roster {
     ///
     /// # Errors
     /// The file is not a roster, and is ignored.
-    pub(super) fn read(folder: &Path) -> Result<Option<Self>, String> {
+    pub fn read(folder: &Path) -> Result<Option<Self>, String> {
         let path = folder.join(FILE_NAME);
         if matches!(path.metadata(), Err(error) if error.kind() != io::ErrorKind::PermissionDenied) {
             return Ok(None);
@@ -85,26 +88,27 @@ impl Roster {
 
 /// The owners of inputs, by the folders of students.
 #[derive(Debug, Default)]
-pub(in crate::cli) struct Owners {
+pub struct Owners {
     students: HashMap<PathBuf, Submitted>,
 }
 
 impl Owners {
     /// Reads the rosters of folders, and adds an error for each student who has no shader, in the order of
     /// the paths. Other folders have no roster; a file that is not one is ignored with a warning.
-    pub(in crate::cli) fn read(
+    pub fn read(
         folders: &[PathBuf],
         inputs: &mut Vec<Result<Input, ReadError>>,
-        terminal: &Terminal,
+        mut warn: impl FnMut(String),
     ) -> Self {
         let mut owners = Self::default();
         for folder in folders {
-            let roster = Roster::read(folder).unwrap_or_else(|error| {
-                terminal.warn(error);
-                None
-            });
-            let Some(roster) = roster else {
-                continue;
+            let roster = match Roster::read(folder) {
+                Ok(Some(roster)) => roster,
+                Ok(None) => continue,
+                Err(error) => {
+                    warn(error);
+                    continue;
+                }
             };
             add_missing(folder, &roster, inputs);
             let students = roster.students.into_iter().map(|student| {
@@ -122,7 +126,7 @@ impl Owners {
     }
 
     /// The student who submitted an input, if any.
-    pub(in crate::cli) fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
+    pub fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
         let path = path_of(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))
     }

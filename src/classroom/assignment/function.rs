@@ -10,9 +10,8 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
 use toyproof_lab::stress::Failure;
 use toyproof_lab::stress::function::{self, RoleMap, Signature, with_main};
+use toyproof_report::FunctionRecord;
 use toyproof_toml::Literal;
-
-use crate::report::FunctionRecord;
 
 /// The default of [`FunctionCase::tolerance`]: results in an assignment are written with a few digits.
 pub const DEFAULT_CASE_TOLERANCE: f64 = 1e-4;

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use toyproof_project::Project;
-
-use crate::cli::files::{MAX_BYTES, is_json, is_shader};
+use toyproof_project::files::{MAX_BYTES, is_json, is_shader};
 
 /// The kind of a file of a submission.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Content {
+pub enum Content {
     /// A shader, or a file of a project.
     Text {
+        /// The text.
         text: String,
         /// The encoding, if it is not UTF-8.
         encoding: Option<&'static str>,
@@ -23,7 +23,7 @@ pub(super) enum Content {
 
 /// The kind of a file, by its name and its content; at most one byte more than [`MAX_BYTES`] is given. A
 /// file with the extension of a shader is one, other text is one if it has a `mainImage`.
-pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
+pub fn content(name: &str, bytes: &[u8]) -> Content {
     let path = Path::new(name);
     let is_expected = is_shader(path) || name.eq_ignore_ascii_case("project.toml");
     if bytes.len() as u64 > MAX_BYTES {
@@ -56,7 +56,7 @@ pub(super) fn content(name: &str, bytes: &[u8]) -> Content {
 
 /// Decodes a text: by its byte order mark, else as UTF-8, else as Latin-1 as browsers read it. Returns `None`
 /// for a text with control characters, and the name of the encoding unless it is UTF-8.
-pub(super) fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
+pub fn decode(bytes: &[u8]) -> Option<(String, Option<&'static str>)> {
     let units = |from: fn([u8; 2]) -> u16| -> String {
         let units = bytes[2..].chunks_exact(2).map(|pair| from([pair[0], pair[1]]));
         char::decode_utf16(units)

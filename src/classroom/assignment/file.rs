@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_project::{PassKind, Tab};
+use toyproof_report::{Rubric, optional_points};
 use toyproof_toml::{Format, Literal, Located, Table};
 use toyproof_verify::{Difference, UnknownDifference};
 
@@ -12,7 +13,6 @@ use super::{
     Assignment, DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, MAX_FRAMES, Reference,
     Rules,
 };
-use crate::report::{Rubric, optional_points};
 
 static FORMAT: Format = Format {
     form_code: Code::AssignmentSyntax,

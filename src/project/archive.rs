@@ -33,7 +33,7 @@ const UTF8: u16 = 1 << 11;
 
 /// When a file was last changed, in seconds since 1970-01-01 00:00.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FileTime {
+pub enum FileTime {
     /// In UTC.
     Utc(i64),
     /// In the time zone of the machine that wrote the archive, to two seconds.
@@ -42,11 +42,11 @@ pub(super) enum FileTime {
 
 /// A file of an archive.
 #[derive(Debug, Clone)]
-pub(super) struct Entry {
+pub struct Entry {
     /// The path in the archive, with `/` between components. It may be hostile.
-    pub(super) name: String,
+    pub name: String,
     /// When it was last changed; `None` if the archive does not state it.
-    pub(super) modified: Option<FileTime>,
+    pub modified: Option<FileTime>,
     flags: u16,
     method: u16,
     crc: u32,
@@ -56,7 +56,7 @@ pub(super) struct Entry {
 
 /// An archive.
 #[derive(Debug)]
-pub(super) struct Archive<R> {
+pub struct Archive<R> {
     input: R,
     entries: Vec<Entry>,
     /// The number of files and folders that its directory names, as far as it was read.
@@ -103,7 +103,7 @@ impl<R: Read + Seek> Archive<R> {
     ///
     /// # Errors
     /// Those of the input, or that it is not an archive.
-    pub(super) fn open(input: R, max_entries: usize) -> io::Result<Self> {
+    pub fn open(input: R, max_entries: usize) -> io::Result<Self> {
         Self::read_directory(input, max_entries).map_err(|error| match error.kind() {
             // A damaged archive names places outside of it.
             io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput => broken("it is truncated"),
@@ -138,17 +138,17 @@ impl<R: Read + Seek> Archive<R> {
     }
 
     /// Removes and returns the files, without folders, in the order of the directory.
-    pub(super) fn take_entries(&mut self) -> Vec<Entry> {
+    pub fn take_entries(&mut self) -> Vec<Entry> {
         std::mem::take(&mut self.entries)
     }
 
     /// The number of files and folders that were read from the directory.
-    pub(super) fn count(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.count
     }
 
     /// Whether the directory names more files and folders.
-    pub(super) fn is_cut(&self) -> bool {
+    pub fn is_cut(&self) -> bool {
         self.is_cut
     }
 
@@ -156,7 +156,7 @@ impl<R: Read + Seek> Archive<R> {
     ///
     /// # Errors
     /// The file is damaged, encrypted, or compressed in another way than by *deflate*.
-    pub(super) fn read(&mut self, entry: &Entry, limit: u64) -> io::Result<Vec<u8>> {
+    pub fn read(&mut self, entry: &Entry, limit: u64) -> io::Result<Vec<u8>> {
         if entry.flags & ENCRYPTED != 0 {
             return Err(io::Error::other("it is encrypted"));
         }
@@ -312,7 +312,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 
 /// Whether a file of an archive can be run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Mode {
+pub enum Mode {
     /// It is a plain file.
     Plain,
     /// It is a program.
@@ -330,7 +330,7 @@ impl Mode {
 }
 
 /// Packs files, each with its path. The same files give the same bytes: times are those of no file.
-pub(super) fn pack(files: &[(&str, Mode, &[u8])]) -> io::Result<Vec<u8>> {
+pub fn pack(files: &[(&str, Mode, &[u8])]) -> io::Result<Vec<u8>> {
     /// 1980-01-01, the first day of the format, in the order of time and date.
     const NO_TIME: [u8; 4] = [0, 0, 0x21, 0];
     /// Version 2.0, of Unix, so that permissions count.

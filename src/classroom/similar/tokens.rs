@@ -18,7 +18,7 @@ enum Token<'a> {
 }
 
 /// The tokens of a text, each as a hash with its line, from 1.
-pub(super) fn tokens(text: &str) -> Vec<(u64, usize)> {
+pub fn tokens(text: &str) -> Vec<(u64, usize)> {
     let mut tokens = Vec::new();
     let mut line = 1;
     let mut rest = text;

@@ -3,32 +3,33 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use toyproof_project::files::is_hidden;
 use unicode_normalization::UnicodeNormalization;
-
-use crate::cli::files::is_hidden;
 
 /// A file of a download.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Submitted {
-    pub(super) student: Student,
+pub struct Submitted {
+    /// Its owner.
+    pub student: Student,
     /// Its path in the submission; empty for a folder.
-    pub(super) path: Vec<String>,
+    pub path: Vec<String>,
     /// Whether the system marks it as late; `None` if the system marks nothing in names.
-    pub(super) is_late: Option<bool>,
+    pub is_late: Option<bool>,
 }
 
 /// A student, as a download names one.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Student {
-    pub(super) name: String,
+pub struct Student {
+    /// The name.
+    pub name: String,
     /// The number that the system gives to the student or to the submission.
-    pub(super) id: Option<String>,
+    pub id: Option<String>,
 }
 
 /// The student of a file, by its path in the download, which is not empty: what the system wrote into the
 /// name of the file, of its archive or of its folder, else the folder, else the file's name without its
 /// extension.
-pub(super) fn submitted(path: &[String]) -> Submitted {
+pub fn submitted(path: &[String]) -> Submitted {
     let (first, rest) = path.split_first().expect("the path is not empty");
     let is_file = rest.is_empty() || is_archive(first);
     let named = moodle(first).or_else(|| canvas(first).filter(|_| is_file));
@@ -66,13 +67,13 @@ fn by_place(first: &str, is_file: bool) -> Named {
 }
 
 /// Whether a name is that of an archive.
-pub(super) fn is_archive(name: &str) -> bool {
+pub fn is_archive(name: &str) -> bool {
     let extension = Path::new(name).extension();
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
 }
 
 /// Whether a name is one that Moodle or Canvas gives.
-pub(super) fn is_of_system(name: &str) -> bool {
+pub fn is_of_system(name: &str) -> bool {
     moodle(name).or_else(|| canvas(name)).is_some()
 }
 
@@ -132,7 +133,7 @@ const MAX_NAME_BYTES: usize = 120;
 
 /// A name as a component of a path on any system, without spaces: letters, digits, `-`, `_` and `.`, but no
 /// hidden file, no device of Windows, and of limited length.
-pub(super) fn file_name(name: &str) -> String {
+pub fn file_name(name: &str) -> String {
     let plain = name.nfc().map(|character| match character {
         _ if character.is_alphanumeric() || "-_.".contains(character) => character,
         _ => '-',
@@ -180,7 +181,7 @@ fn is_device(name: &str) -> bool {
 /// Unique paths of files below a folder; no path is the folder of another. Case does not distinguish
 /// them: some file systems store names that differ only in case in one file.
 #[derive(Debug, Default)]
-pub(super) struct Paths {
+pub struct Paths {
     /// The paths in use, in one case.
     used: HashSet<String>,
     /// The next number for a path that was already in use.
@@ -191,7 +192,7 @@ pub(super) struct Paths {
 
 impl Paths {
     /// Starts with names that are in use.
-    pub(super) fn with_reserved(names: &[&str]) -> Self {
+    pub fn with_reserved(names: &[&str]) -> Self {
         Self {
             used: names.iter().map(|name| without_case(name)).collect(),
             ..Self::default()
@@ -199,7 +200,7 @@ impl Paths {
     }
 
     /// The path of a file with this name in a folder: the given one, or one with a number before the extension.
-    pub(super) fn file(&mut self, folder: &[String], name: &str) -> String {
+    pub fn file(&mut self, folder: &[String], name: &str) -> String {
         let folder = self.folder(folder);
         self.free(&folder, name)
     }
@@ -244,7 +245,7 @@ impl Paths {
     }
 
     /// The folder of a student: the name, with the number if another has the same name.
-    pub(super) fn student(&mut self, student: &Student) -> String {
+    pub fn student(&mut self, student: &Student) -> String {
         let name = file_name(&student.name);
         match &student.id {
             Some(id) if self.used.contains(&without_case(&name)) => {

@@ -3,8 +3,8 @@
 //! ```
 //! use std::path::Path;
 //!
-//! use toyproof::assignment::Assignment;
-//! use toyproof::diagnostic::{File, Files};
+//! use toyproof_classroom::assignment::Assignment;
+//! use toyproof_diagnostic::{File, Files};
 //!
 //! let mut files = Files::default();
 //! let text = "scene = \"02-sphere.toml\"\n[[frame]]\nsize = [64, 36]\n[[frame]]\nsize = [36, 64]\n";
@@ -29,12 +29,12 @@ mod template;
 use std::path::PathBuf;
 
 use toyproof_image::FrameInputs;
+use toyproof_report::{Record, Rubric};
 use toyproof_verify::Difference;
 
 pub use self::function::{DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, Subject};
 pub use self::rules::Rules;
 pub use self::template::Model;
-use crate::report::{Record, Rubric};
 
 /// The name of an assignment's file, which is used for the shaders of its folder.
 pub const FILE_NAME: &str = "assignment.toml";

@@ -9,7 +9,7 @@ use super::naming::Student;
 
 /// The listed students of a class.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Students {
+pub struct Students {
     listed: Vec<Student>,
     /// The places in the list of the students with a number or a name, in the form of [`key`].
     places: HashMap<String, Vec<usize>>,
@@ -19,7 +19,7 @@ impl Students {
     /// Reads a table as spreadsheets and learning management systems write it (RFC 4180, also with `;` or tabs).
     /// Without a row that names the columns, the first column has the number or the name of the download, and
     /// the second the name to show.
-    pub(super) fn parse(text: &str) -> Self {
+    pub fn parse(text: &str) -> Self {
         // Excel may state the separator in a separate line.
         let text = match text.split_once('\n') {
             Some((first, rest)) if first.to_lowercase().starts_with("sep=") => rest,
@@ -43,7 +43,7 @@ impl Students {
 
     /// The students with these names or numbers in the download, each with the name to show, which may be
     /// empty.
-    pub(super) fn new(list: Vec<(String, String)>) -> Self {
+    pub fn new(list: Vec<(String, String)>) -> Self {
         let mut students = Self::default();
         for (key, name) in list {
             students.add(vec![key], name);
@@ -75,14 +75,14 @@ impl Students {
     }
 
     /// The listed students.
-    pub(super) fn all(&self) -> &[Student] {
+    pub fn all(&self) -> &[Student] {
         &self.listed
     }
 
     /// Finds the students of a download in the list, by number or else by name; also returns the places in the
     /// list that are found. Where the download or the list has several students with one name, their numbers
     /// in the download distinguish them.
-    pub(super) fn find<'a>(
+    pub fn find<'a>(
         &self,
         students: impl IntoIterator<Item = &'a Student>,
     ) -> (HashMap<&'a Student, Student>, HashSet<usize>) {

@@ -7,14 +7,14 @@ use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-use toyproof_diagnostic::{grouped, path_name};
+use toyproof_diagnostic::grouped;
 use toyproof_image::input;
+use toyproof_project::archive::{self as zip, Archive, FileTime};
+use toyproof_project::files::{MAX_BYTES, is_hidden};
 use walkdir::WalkDir;
 
 use super::naming::{Student, is_archive, is_of_system, submitted};
 use super::text::{Content, content};
-use crate::cli::files::{MAX_BYTES, is_hidden};
-use crate::cli::zip::{self, Archive, FileTime};
 
 /// The deepest archive in archives.
 const MAX_DEPTH: usize = 4;
@@ -41,11 +41,11 @@ const MAX_PATH_BYTES: usize = 1000;
 pub(super) struct Found {
     /// Its path in the download; archives in it are components that end with `.zip`. The last component of an
     /// empty folder is empty.
-    pub(super) path: Vec<String>,
+    pub path: Vec<String>,
     /// The content, or why it cannot be read.
-    pub(super) content: Result<Content, String>,
+    pub content: Result<Content, String>,
     /// When it was last changed; for a file in an archive of the student, when the archive was.
-    pub(super) time: Option<FileTime>,
+    pub time: Option<FileTime>,
 }
 
 /// Reads all files of a download, without hidden ones and those that macOS adds. A folder that has the folders
@@ -432,20 +432,4 @@ fn shortened(path: Vec<String>) -> Vec<String> {
         _ => rest,
     };
     first.into_iter().chain(rest).collect()
-}
-
-/// Checks that a folder can be written: it does not exist or is empty.
-///
-/// # Errors
-/// Why not.
-pub(super) fn check_empty(folder: &Path) -> Result<(), String> {
-    match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
-        Ok(true) => Ok(()),
-        Ok(false) => Err(format!(
-            "{} already has files; nothing was written",
-            path_name(folder)
-        )),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(format!("{}: {error}", path_name(folder))),
-    }
 }

@@ -16,15 +16,16 @@ static FORMAT: Format = Format {
 
 /// A class.
 #[derive(Debug, Default)]
-pub(super) struct Class {
-    pub(super) students: StudentList,
+pub struct Class {
+    /// The students.
+    pub students: StudentList,
     /// The assignments whose submissions are separated; empty if there is one assignment.
-    pub(super) assignments: Vec<ClassAssignment>,
+    pub assignments: Vec<ClassAssignment>,
 }
 
 /// The file that lists the students of a class.
 #[derive(Debug, Default)]
-pub(super) enum StudentList {
+pub enum StudentList {
     /// Nowhere: they are those of the download.
     #[default]
     None,
@@ -36,21 +37,22 @@ pub(super) enum StudentList {
 
 /// An assignment, and which files are its submissions.
 #[derive(Debug)]
-pub(super) struct ClassAssignment {
+pub struct ClassAssignment {
     /// The name of its folder.
-    pub(super) name: String,
+    pub name: String,
     /// Patterns for the paths of its files in a submission.
     patterns: Vec<String>,
     /// The file or the folder of the assignment, if it is named.
-    pub(super) assignment: Option<PathBuf>,
+    pub assignment: Option<PathBuf>,
     /// The rubric, if it is not that of the assignment.
-    pub(super) rubric: Option<PathBuf>,
-    pub(super) deadline: Option<Moment>,
+    pub rubric: Option<PathBuf>,
+    /// When it is due.
+    pub deadline: Option<Moment>,
 }
 
 /// The purpose of reading the class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub enum Purpose {
     /// Collecting submissions.
     Collect,
     /// Also checking them, for which each assignment has to be named.
@@ -59,7 +61,7 @@ pub(super) enum Purpose {
 
 impl ClassAssignment {
     /// Whether a file with this path in a submission, with `/`, belongs to the assignment.
-    pub(super) fn has(&self, path: &str) -> bool {
+    pub fn has(&self, path: &str) -> bool {
         let path = path.to_lowercase();
         self.patterns
             .iter()
@@ -100,12 +102,7 @@ impl Class {
     ///
     /// # Errors
     /// The first syntax error of the TOML, or all other errors.
-    pub(super) fn parse(
-        files: &Files,
-        file: FileId,
-        folder: &Path,
-        purpose: Purpose,
-    ) -> Result<Self, Diagnostics> {
+    pub fn parse(files: &Files, file: FileId, folder: &Path, purpose: Purpose) -> Result<Self, Diagnostics> {
         toyproof_toml::read(&FORMAT, files, file, |document| {
             let students = students(document, folder);
             let mut assignments: Vec<ClassAssignment> = Vec::new();

@@ -51,9 +51,7 @@ pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{Alternative, Mistake, Position, Record, Report, SCHEMA, Seconds};
 pub use records::Records;
 pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
-#[cfg(feature = "lab")]
-pub(crate) use rubric::optional_points;
-pub use rubric::{Mark, Rubric, StudentImages, Visibility};
+pub use rubric::{Mark, Rubric, StudentImages, Visibility, optional_points};
 pub use rubrics::Rubrics;
 pub use sarif::sarif;
 pub use submitted::{Late, Submitted};

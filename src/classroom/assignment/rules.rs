@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use toyproof_diagnostic::{Files, Span, grouped};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Function};
-
-use crate::report::{RulesRecord, Violation};
+use toyproof_report::{RulesRecord, Violation};
 
 /// Rules for the text of a shader.
 #[derive(Debug, Clone, PartialEq)]

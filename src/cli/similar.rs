@@ -1,15 +1,12 @@
 //! `toyproof similar`: shaders that are near-identical.
 
-mod fingerprint;
-mod tokens;
-
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
+use toyproof_classroom::similar::fingerprint::Fingerprints;
 use toyproof_diagnostic::{Deadline, grouped, plural};
+use toyproof_project::files;
 
-use self::fingerprint::Fingerprints;
-use super::files;
 use super::inputs::LanguageArgs;
 use super::shader::{Shader, Unusable, find};
 use super::{Exit, Terminal};

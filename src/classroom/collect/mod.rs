@@ -1,0 +1,14 @@
+//! The submissions of a class: downloads of a learning management system, sorted by students.
+//!
+//! - `class`, `students`: `class.toml`, and the list of students
+//! - `download`, `text`, `naming`: what is in a download, which texts are shaders, and whose they are
+//! - `collection`: the submissions of all students
+//! - `roster`: the list of the students in a folder of submissions
+
+pub mod class;
+pub mod collection;
+mod download;
+pub mod naming;
+pub mod roster;
+mod students;
+pub mod text;

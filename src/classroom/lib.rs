@@ -1,0 +1,28 @@
+//! What a teacher needs beyond the check of one shader: assignments, submissions of a class, autograders, and the
+//! similarity of shaders.
+//!
+//! # Parts
+//!
+//! - [`assignment`]: the requirements on the shaders of a class, in one TOML file
+//! - [`collect`]: the submissions of a class, from the downloads of a learning management system
+//! - [`autograder`]: the archive of an autograder for Gradescope
+//! - [`similar`]: similarity of shaders by their trees
+//!
+//! # Example
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use toyproof_classroom::assignment::Assignment;
+//! use toyproof_diagnostic::{File, Files};
+//!
+//! let mut files = Files::default();
+//! let file = files.add(File::new("assignment.toml", "scene = \"02-sphere.toml\"\n"));
+//! let assignment = Assignment::parse(&files, file, Path::new("glsl")).unwrap();
+//! assert_eq!(assignment.frames.len(), 1);
+//! ```
+
+pub mod assignment;
+pub mod autograder;
+pub mod collect;
+pub mod similar;
