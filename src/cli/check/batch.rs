@@ -12,7 +12,7 @@ use toyproof_report::{self as report, Detail, Earlier, Layout, Record, Records, 
 use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
-use super::Args;
+use super::args::Args;
 use super::args::CheckFormat;
 use super::checker::{Checker, WorkerContext};
 use super::outcome::{Message, Outcome};

@@ -22,7 +22,7 @@ use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, accumulate, bind, default_frame};
 use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unbound_channels};
 
-use super::Args;
+use super::args::Args;
 use super::images::{FIXED, IMAGES, keep};
 use super::outcome::{Message, Outcome};
 use super::plan::{Plan, PlannedFrame};

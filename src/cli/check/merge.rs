@@ -9,12 +9,14 @@ use clap::Parser;
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::{input, output};
 
+use super::args::Args;
+use super::earlier::earlier;
 use super::images::IMAGES;
 use super::results::{self, RESULTS_NAME, Results, Span};
-use super::shard::{self, MANIFEST_NAME, Manifest, Shard};
+use super::shard::Shard;
+use super::sharding::{self, MANIFEST_NAME, Manifest};
 use super::submission::Submission;
 use super::work::Work;
-use super::{Args, earlier};
 use crate::cli::inputs::shell_word;
 use crate::cli::names::with_suffix;
 use crate::cli::{Cli, Command, Exit, Terminal};
@@ -76,7 +78,7 @@ impl From<String> for Problem {
 
 /// Merges the shards. The error is `None` if it has been printed.
 fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Problem>> {
-    let program = shard::program()
+    let program = sharding::program()
         .map_err(|error| Problem::from(format!("the program's own file cannot be read: {error}")))?;
     let folders = read_folders(args, &program)?;
     let (_, first) = &folders[0];
@@ -85,7 +87,7 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
     check.jobs = args.jobs;
     let earlier = earlier(check.compare.as_deref(), terminal).map_err(|()| None)?;
     let work = Work::new(&check, Some(&program), terminal).map_err(|()| None)?;
-    if shard::inputs(&work.submissions) != first.inputs {
+    if sharding::inputs(&work.submissions) != first.inputs {
         return Err(Some(Problem {
             error: "the shaders, their reference or a file that an option names changed after the shards were checked"
                 .to_owned(),
@@ -93,7 +95,7 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
         }));
     }
     let shards = first.shard.of;
-    let numbers = shard::assign(&work.submissions, shards);
+    let numbers = sharding::assign(&work.submissions, shards);
     let mut results = find_results(&folders).map_err(|error| Problem::from(error.to_string()))?;
     let found: Vec<Option<Found>> = work
         .submissions

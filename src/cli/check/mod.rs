@@ -4,6 +4,7 @@ mod args;
 mod batch;
 mod checker;
 mod donors;
+mod earlier;
 mod images;
 mod merge;
 mod outcome;
@@ -12,17 +13,14 @@ mod reference;
 mod reports;
 mod results;
 mod shard;
+mod sharding;
 mod submission;
 mod work;
 
-use std::path::Path;
-
-use toyproof_diagnostic::{grouped, path_name, plural};
-use toyproof_image::input;
-use toyproof_project::files::NOT_UTF8;
-use toyproof_report::Earlier;
+use toyproof_diagnostic::{grouped, plural};
 
 pub(super) use self::args::Args;
+use self::earlier::earlier;
 pub(super) use self::merge::{MergeArgs, merge};
 pub(super) use self::plan::read_assignment;
 pub(super) use self::reference::Scenes;
@@ -42,7 +40,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let build = match (&args.out, args.shard) {
         (None, _) => None,
         (Some(_), None) => submission::build(),
-        (Some(_), Some(_)) => match shard::program() {
+        (Some(_), Some(_)) => match sharding::program() {
             Ok(program) => Some(program),
             Err(error) => {
                 terminal.error(format_args!("the program's own file cannot be read: {error}"));
@@ -80,26 +78,4 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         }
     }
     work.check(args, results, earlier, terminal)
-}
-
-/// Reads an earlier report that `--compare` or `--costs` names, if any.
-///
-/// # Errors
-/// It is unusable; the error has been printed.
-fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, ()> {
-    let Some(path) = path else {
-        return Ok(None);
-    };
-    let file = if path.is_dir() {
-        path.join("verdict.json")
-    } else {
-        path.to_owned()
-    };
-    let name = path_name(&file);
-    let bytes = input::read(&file).map_err(|error| error.to_string());
-    let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| NOT_UTF8.to_owned()));
-    let earlier = text.and_then(|text| Earlier::parse(name.clone(), &text));
-    earlier
-        .map(Some)
-        .map_err(|error| terminal.error(format_args!("{name} is not an earlier report: {error}")))
 }

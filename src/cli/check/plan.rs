@@ -9,11 +9,40 @@ use toyproof_project::files::{self, Skipped};
 use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
-use super::work::TaskInputs;
-use super::{Args, reports};
+use super::args::Args;
 use crate::cli::Terminal;
+use crate::cli::collect::ClassPart;
 use crate::cli::reference::ReferenceArgs;
 use crate::cli::shader::Unusable;
+
+/// The shaders of one assignment, and the requirements on them; without a class, all shaders.
+pub(super) struct TaskInputs {
+    /// The name of the assignment in a class.
+    pub(super) name: Option<String>,
+    pub(super) shaders: Vec<PathBuf>,
+    pub(super) assignment: Option<PathBuf>,
+    pub(super) rubric: Option<PathBuf>,
+}
+
+impl TaskInputs {
+    pub(super) fn of_arguments(args: &Args) -> Self {
+        Self {
+            name: None,
+            shaders: args.shaders.clone(),
+            assignment: args.assignment.clone(),
+            rubric: args.rubric.clone(),
+        }
+    }
+
+    pub(super) fn of_class(part: ClassPart) -> Self {
+        Self {
+            name: Some(part.name),
+            shaders: vec![part.folder],
+            assignment: Some(part.assignment),
+            rubric: part.rubric,
+        }
+    }
+}
 
 /// The requirements on shaders.
 pub(super) struct Plan {
@@ -43,7 +72,7 @@ impl Plan {
     /// # Errors
     /// It is unusable; the error has been printed.
     pub(super) fn new(args: &Args, part: &TaskInputs, terminal: &Terminal) -> Result<Self, ()> {
-        let rubric = reports::rubric(part.rubric.as_deref(), terminal)?;
+        let rubric = rubric(part.rubric.as_deref(), terminal)?;
         let found = match &part.assignment {
             Some(path) => Some(named(path, terminal)?),
             None if args.reference.is_given() => None,
@@ -167,4 +196,25 @@ fn read(path: &Path, terminal: &Terminal) -> Result<(Assignment, String), ()> {
     };
     unusable.print(&files, terminal);
     Err(())
+}
+
+/// Reads a rubric, if one is named.
+///
+/// # Errors
+/// The rubric is unusable; its errors have been printed.
+fn rubric(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Rubric>, ()> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    let mut files = Files::default();
+    let rubric = match files::read_named(path) {
+        Ok(text) => {
+            let file = files.add(text);
+            Rubric::parse(&files, file).map_err(|errors| Unusable::Invalid(errors.into()))
+        }
+        Err(error) => Err(Unusable::of(error, &mut files)),
+    };
+    rubric
+        .map(Some)
+        .map_err(|unusable| unusable.print(&files, terminal))
 }

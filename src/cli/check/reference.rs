@@ -14,7 +14,7 @@ use toyproof_report::Record;
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
-use super::Args;
+use super::args::Args;
 use super::plan::{Plan, PlannedFrame};
 use crate::cli::Terminal;
 use crate::cli::reference::GivenReference;

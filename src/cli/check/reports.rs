@@ -4,40 +4,17 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use toyproof_diagnostic::{Files, path_name};
+use toyproof_diagnostic::path_name;
 use toyproof_image::output;
-use toyproof_project::files;
 use toyproof_report::{
-    ClassTable, Hints, LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, Report, Rubric,
-    Rubrics, csv, gradescope, html, junit, part_name, sarif,
+    ClassTable, Hints, LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, Report, Rubrics, csv,
+    gradescope, html, junit, part_name, sarif,
 };
 use toyproof_verify::contain::{Part, contain};
 
 use super::images::{gallery, gallery_of_sources, thumbnails};
 use super::submission::Submission;
 use crate::cli::Terminal;
-use crate::cli::shader::Unusable;
-
-/// Reads a rubric, if one is named.
-///
-/// # Errors
-/// The rubric is unusable; its errors have been printed.
-pub(super) fn rubric(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Rubric>, ()> {
-    let Some(path) = path else {
-        return Ok(None);
-    };
-    let mut files = Files::default();
-    let rubric = match files::read_named(path) {
-        Ok(text) => {
-            let file = files.add(text);
-            Rubric::parse(&files, file).map_err(|errors| Unusable::Invalid(errors.into()))
-        }
-        Err(error) => Err(Unusable::of(error, &mut files)),
-    };
-    rubric
-        .map(Some)
-        .map_err(|unusable| unusable.print(&files, terminal))
-}
 
 /// The file names of the reports, in the order in which they are written: once the last exists, all do.
 pub(super) const REPORT_NAMES: [&str; 7] = [

@@ -8,7 +8,7 @@ use toyproof_image::{FrameInputs, input};
 use toyproof_project::files::{self, Input, ReadError};
 use toyproof_report::Submitted;
 
-use super::Args;
+use super::args::Args;
 use super::plan::Plan;
 use super::reference::References;
 use crate::cli::names::Names;

@@ -1,21 +1,23 @@
 //! All work of one command: the submissions, and their requirements.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toyproof_classroom::collect::roster::Owners;
 use toyproof_report::{Earlier, Rubrics};
 
+use super::args::Args;
 use super::batch::Batch;
 use super::checker::Checker;
+use super::earlier::earlier;
 use super::images::IMAGES;
-use super::plan::Plan;
+use super::plan::{Plan, TaskInputs};
 use super::reference::References;
 use super::reports::REPORT_NAMES;
 use super::results::{RESULTS_NAME, Results};
-use super::shard::{self, Manifest, Shard};
+use super::shard::Shard;
+use super::sharding::{self, Manifest};
 use super::submission::Submission;
-use super::{Args, earlier};
-use crate::cli::collect::{ClassPart, class_parts};
+use crate::cli::collect::class_parts;
 use crate::cli::names::Names;
 use crate::cli::shader::find_submissions;
 use crate::cli::{Exit, Terminal};
@@ -32,35 +34,6 @@ pub(super) struct Work {
 struct Task {
     plan: Plan,
     references: References,
-}
-
-/// The shaders of one assignment, and the requirements on them; without a class, all shaders.
-pub(super) struct TaskInputs {
-    /// The name of the assignment in a class.
-    name: Option<String>,
-    pub(super) shaders: Vec<PathBuf>,
-    pub(super) assignment: Option<PathBuf>,
-    pub(super) rubric: Option<PathBuf>,
-}
-
-impl TaskInputs {
-    fn of_arguments(args: &Args) -> Self {
-        Self {
-            name: None,
-            shaders: args.shaders.clone(),
-            assignment: args.assignment.clone(),
-            rubric: args.rubric.clone(),
-        }
-    }
-
-    fn of_class(part: ClassPart) -> Self {
-        Self {
-            name: Some(part.name),
-            shaders: vec![part.folder],
-            assignment: Some(part.assignment),
-            rubric: part.rubric,
-        }
-    }
 }
 
 /// The folder of `--out` with the submissions of a class that were collected from downloads.
@@ -86,7 +59,7 @@ impl Work {
         };
         let reserved: Vec<&str> = REPORT_NAMES
             .into_iter()
-            .chain([RESULTS_NAME, shard::MANIFEST_NAME, SUBMISSIONS])
+            .chain([RESULTS_NAME, sharding::MANIFEST_NAME, SUBMISSIONS])
             .collect();
         let mut names = Names::new(&IMAGES.map(|kind| kind.suffix), &reserved);
         let mut work = Self {
@@ -137,11 +110,11 @@ impl Work {
         }
         let manifest = Manifest {
             program,
-            inputs: shard::inputs(&self.submissions),
+            inputs: sharding::inputs(&self.submissions),
             shard,
-            arguments: shard::arguments()?,
+            arguments: sharding::arguments()?,
         };
-        let mut numbers = shard::assign(&self.submissions, shard.of).into_iter();
+        let mut numbers = sharding::assign(&self.submissions, shard.of).into_iter();
         self.submissions.retain(|_| numbers.next() == Some(shard.number));
         manifest.write(out).map_err(|error| error.to_string())
     }
