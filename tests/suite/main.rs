@@ -21,6 +21,7 @@ mod conversion;
 mod conversion_accepted;
 mod converted_passes;
 mod debug;
+mod cycles;
 mod derivatives;
 mod diagnostics;
 mod docs;
