@@ -38,7 +38,7 @@ pub struct GraphFile {
 struct Uniforms {
     bytes: usize,
     /// The offset of each input in bytes.
-    offsets: BTreeMap<String, u32>,
+    offsets: BTreeMap<String, usize>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -135,20 +135,6 @@ enum WrapName {
     Clamp,
     Repeat,
 }
-
-/// The members of the uniform block, with their offsets in bytes.
-const OFFSETS: [(&str, u32); 10] = [
-    ("iResolution", 0),
-    ("iTime", 12),
-    ("iTimeDelta", 16),
-    ("iFrame", 20),
-    ("iFrameRate", 24),
-    ("iChannelTime", 32),
-    ("iChannelResolution", 96),
-    ("iMouse", 160),
-    ("iDate", 176),
-    ("iSampleRate", 192),
-];
 
 /// The passes of a project, and the textures for their proof.
 pub struct HostGraph<'a> {
@@ -372,7 +358,9 @@ impl GraphFile {
 fn uniforms() -> Uniforms {
     Uniforms {
         bytes: BLOCK_BYTES,
-        offsets: OFFSETS.map(|(name, offset)| (name.to_owned(), offset)).into(),
+        offsets: toyproof_image::Input::ALL
+            .map(|input| (input.name().to_owned(), input.offset()))
+            .into(),
     }
 }
 

@@ -1,28 +1,14 @@
 //! The inputs and outputs of a frame: uniforms and the framebuffer.
 
 use toyproof_glsl::tree::Input;
-use toyproof_image::{Frame, Image, SAMPLE_RATE, Texture};
+use toyproof_image::{Frame, Image, Texture};
 
 use crate::number::Number;
 use crate::texture;
 
 /// Returns one component of a float input.
 pub(crate) fn float_input<N: Number>(frame: &Frame, input: Input, component: u8) -> N {
-    let at = usize::from(component);
-    let value = match input {
-        Input::Resolution => [frame.size[0] as f32, frame.size[1] as f32, 1.0][at],
-        Input::Time => frame.time,
-        Input::TimeDelta => frame.time_delta,
-        Input::FrameRate => frame.frame_rate,
-        Input::ChannelResolution => match &frame.channels[at / 3] {
-            Some(texture) => [texture.size()[0] as f32, texture.size()[1] as f32, 1.0][at % 3],
-            None => 0.0,
-        },
-        Input::Mouse => frame.mouse[at],
-        Input::Date => frame.date[at],
-        Input::SampleRate => SAMPLE_RATE,
-        Input::Frame | Input::ChannelTime | Input::Channel(_) => 0.0,
-    };
+    let value = frame.component(input, component.into());
     // A GPU flushes subnormal operands before it computes with them.
     N::from_f64(f64::from(if value.is_subnormal() { 0.0 } else { value }))
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use toyproof_diagnostic::Span;
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{ExprKind, VariableKind};
+use toyproof_glsl::tree::ExprKind;
 use toyproof_verify::random::reachable_expressions;
 
 /// The inputs and functions that a reference uses and a shader does not.
@@ -52,7 +52,7 @@ impl Uses {
             let tree = &checked.tree;
             for expr in reachable_expressions(tree, checked.main_image) {
                 match tree[expr].kind {
-                    ExprKind::Variable(variable) if matches!(tree[variable].kind, VariableKind::Input(_)) => {
+                    ExprKind::Variable(variable) if tree[variable].kind.is_input() => {
                         uses.inputs.insert(tree[variable].name.clone());
                     }
                     ExprKind::Call { function, .. } => {

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use thiserror::Error;
 use toyproof_glsl::{Filter, Sampling, Wrap};
-use toyproof_image::{Frame, Image};
+use toyproof_image::{Frame, Image, Input, InputType};
 
 /// Why a browser rendered nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -68,19 +68,19 @@ pub fn find() -> Option<PathBuf> {
 /// Wraps a shader in `ShaderToy`'s prologue and epilogue.
 #[must_use]
 pub fn as_shadertoy(shader: &str) -> String {
+    let inputs = Input::ALL.map(|input| {
+        let length = input.length().map(|length| format!("[{length}]"));
+        let (ty, name) = (input.ty().name(), input.name());
+        format!("uniform {ty} {name}{};\n", length.unwrap_or_default())
+    });
+    let inputs = inputs.concat();
     format!(
         "#version 300 es
 #define HW_PERFORMANCE 1
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-uniform vec3 iResolution;
-uniform float iTime, iTimeDelta, iFrameRate, iSampleRate;
-uniform int iFrame;
-uniform float iChannelTime[4];
-uniform vec3 iChannelResolution[4];
-uniform vec4 iMouse, iDate;
-uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
+{inputs}uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
 uniform struct {{ sampler2D sampler; vec3 size; float time; int loaded; }} iCh0, iCh1, iCh2, iCh3;
 out vec4 shadertoy_out_color;
 #line 1
@@ -125,7 +125,10 @@ impl Chromium {
         };
         let frames_json: Vec<Value> = frames.iter().map(frame_json).collect();
         let sampling = sampling.map(sampling_json);
-        let job = json!({"language": language, "text": text, "sampling": sampling, "frames": frames_json});
+        let inputs = Input::ALL.map(input_json);
+        let job = json!({
+            "language": language, "text": text, "inputs": inputs, "sampling": sampling, "frames": frames_json,
+        });
         let answer = connection.call(&format!("toyproof({job})"), self.timeout)?;
         if let Some(reason) = answer["refused"].as_str() {
             // A browser that lost its context cannot render any more.
@@ -149,6 +152,16 @@ impl Chromium {
     pub fn name(&self) -> Option<&str> {
         self.live.as_ref().map(BrowserConnection::product)
     }
+}
+
+fn input_json(input: Input) -> Value {
+    json!({
+        "name": input.name(),
+        "isInteger": input.ty() == InputType::Int,
+        "components": input.ty().components(),
+        "length": input.length().unwrap_or(1),
+        "word": input.offset() / 4,
+    })
 }
 
 fn sampling_json(Sampling { filter, wrap }: Sampling) -> Value {

@@ -1,12 +1,12 @@
-//! The inputs of one frame: the values that ShaderToy provides to a shader, and their uniform block.
+//! The values that ShaderToy provides to a shader for one frame, and their uniform block.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use bytemuck::bytes_of;
 use serde::{Deserialize, Serialize};
 
-use crate::{Keys, Script, Texture};
+use crate::inputs::VECTOR_BYTES;
+use crate::{BLOCK_BYTES, Input, Keys, Script, Texture};
 
 /// All inputs of a shader for the frame that it renders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -67,26 +67,6 @@ pub const FRAME_RATE: f32 = 60.0;
 /// `iSampleRate`, in hertz.
 pub const SAMPLE_RATE: f32 = 44_100.0;
 
-/// The std140 uniform block at set 0, binding 0. Other hosts rely on its offsets.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Block {
-    resolution: [f32; 3],
-    time: f32,
-    time_delta: f32,
-    frame: i32,
-    frame_rate: f32,
-    padding: f32,
-    channel_time: [[f32; 4]; 4],
-    channel_resolution: [[f32; 4]; 4],
-    mouse: [f32; 4],
-    date: [f32; 4],
-    sample_rate: [f32; 4],
-}
-
-/// The size of the uniform block in bytes.
-pub const BLOCK_BYTES: usize = size_of::<Block>();
-
 impl Frame {
     /// The frame with another number and time, with the mouse and the keyboard that it has by the script.
     #[must_use]
@@ -118,47 +98,59 @@ impl Frame {
             .map(move |first| first..(first + rows).min(height))
     }
 
-    /// The bytes of the uniform block in the layout that translated shaders expect.
+    /// One component of an input as a float, in the order of its elements; 0 for `iFrame`, an integer.
+    #[must_use]
+    pub fn component(&self, input: Input, at: usize) -> f32 {
+        self.component_with(&self.channel_sizes(), input, at)
+    }
+
+    fn component_with(&self, channels: &[Option<[u32; 2]>; 4], input: Input, at: usize) -> f32 {
+        let resolution = |[width, height]: [u32; 2], axis: usize| [width as f32, height as f32, 1.0][axis];
+        match input {
+            Input::Resolution => resolution(self.size, at),
+            Input::Time => self.time,
+            Input::TimeDelta => self.time_delta,
+            Input::FrameRate => self.frame_rate,
+            Input::ChannelResolution => channels[at / 3].map_or(0.0, |size| resolution(size, at % 3)),
+            Input::Mouse => self.mouse[at],
+            Input::Date => self.date[at],
+            Input::SampleRate => SAMPLE_RATE,
+            Input::Frame | Input::ChannelTime => 0.0,
+        }
+    }
+
+    fn channel_sizes(&self) -> [Option<[u32; 2]>; 4] {
+        let channels = self.channels.each_ref();
+        channels.map(|channel| channel.as_ref().map(Texture::size))
+    }
+
+    /// The bytes of the uniform block, in the layout of [`Input::offset`].
     #[must_use]
     pub fn block(&self) -> [u8; BLOCK_BYTES] {
-        self.block_with(
-            self.channels
-                .each_ref()
-                .map(|channel| channel.as_ref().map(Texture::size)),
-        )
+        self.block_with(self.channel_sizes())
     }
 
     /// The uniform block with channels of these sizes instead of the frame's own.
     #[must_use]
     pub fn block_with(&self, channels: [Option<[u32; 2]>; 4]) -> [u8; BLOCK_BYTES] {
-        let resolution = |size: Option<[u32; 2]>| {
-            size.map_or([0.0; 4], |[width, height]| {
-                [width as f32, height as f32, 1.0, 0.0]
-            })
-        };
-        let block = Block {
-            resolution: [self.size[0] as f32, self.size[1] as f32, 1.0],
-            time: self.time,
-            time_delta: self.time_delta,
-            frame: self.frame,
-            frame_rate: self.frame_rate,
-            padding: 0.0,
-            channel_time: [[0.0; 4]; 4],
-            channel_resolution: channels.map(resolution),
-            mouse: self.mouse,
-            date: self.date,
-            sample_rate: [SAMPLE_RATE, 0.0, 0.0, 0.0],
-        };
         let mut bytes = [0; BLOCK_BYTES];
-        bytes.copy_from_slice(bytes_of(&block));
+        for input in Input::ALL {
+            let components = input.ty().components();
+            for at in 0..input.length().unwrap_or(1) * components {
+                let word = match input {
+                    Input::Frame => self.frame.to_ne_bytes(),
+                    _ => self.component_with(&channels, input, at).to_ne_bytes(),
+                };
+                let start = input.offset() + at / components * VECTOR_BYTES + at % components * 4;
+                bytes[start..start + 4].copy_from_slice(&word);
+            }
+        }
         bytes
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::mem::offset_of;
-
     use super::*;
     use crate::Image;
 
@@ -177,21 +169,6 @@ mod tests {
         assert_eq!(bands(16_384, 70), [(0, 32), (32, 64), (64, 70)]);
         assert_eq!(bands(3840, 2160).len(), 34);
         assert_eq!(bands(3840, 2160).last(), Some(&(2112, 2160)));
-    }
-
-    #[test]
-    fn the_block_has_the_documented_offsets() {
-        assert_eq!(offset_of!(Block, resolution), 0);
-        assert_eq!(offset_of!(Block, time), 12);
-        assert_eq!(offset_of!(Block, time_delta), 16);
-        assert_eq!(offset_of!(Block, frame), 20);
-        assert_eq!(offset_of!(Block, frame_rate), 24);
-        assert_eq!(offset_of!(Block, channel_time), 32);
-        assert_eq!(offset_of!(Block, channel_resolution), 96);
-        assert_eq!(offset_of!(Block, mouse), 160);
-        assert_eq!(offset_of!(Block, date), 176);
-        assert_eq!(offset_of!(Block, sample_rate), 192);
-        assert_eq!(BLOCK_BYTES, 208);
     }
 
     #[test]

@@ -27,6 +27,7 @@ mod file;
 mod frame;
 mod frame_inputs;
 pub mod input;
+mod inputs;
 mod keys;
 mod noise;
 pub mod output;
@@ -35,8 +36,9 @@ mod script;
 mod texture;
 
 pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown, write_png};
-pub use frame::{BLOCK_BYTES, FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
+pub use frame::{FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs};
+pub use inputs::{BLOCK_BYTES, Input, InputType};
 pub use keys::{KeySet, Keys};
 pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;

@@ -2,7 +2,7 @@
 
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{ExprKind, Input as Uniform, VariableKind};
+use toyproof_glsl::tree::{ExprKind, VariableKind};
 
 use crate::check::CheckedPass;
 use crate::pass::{Buffer, Input, PassKind, Source};
@@ -51,7 +51,7 @@ fn used_channels(checked: &Checked) -> [bool; 4] {
     let mut used = [false; 4];
     for (_, expr) in checked.tree.exprs.iter() {
         if let ExprKind::Variable(variable) = expr.kind
-            && let VariableKind::Input(Uniform::Channel(channel)) = checked.tree[variable].kind
+            && let VariableKind::Channel(channel) = checked.tree[variable].kind
         {
             used[usize::from(channel)] = true;
         }

@@ -43,9 +43,8 @@
 //! # Interface of a translated shader
 //!
 //! The entry point is `main`, with the color at location 0. Group 0 has the uniform block of ShaderToy's inputs
-//! at binding 0, in std140 layout (`iResolution` at byte 0, `iTime` 12, `iTimeDelta` 16, `iFrame` 20, `iFrameRate`
-//! 24, `iChannelTime` 32, `iChannelResolution` 96, `iMouse` 160, `iDate` 176, `iSampleRate` 192), the texture of
-//! channel K at binding 1 + 2K and its sampler at 2 + 2K. A shader declares only what it uses.
+//! at binding 0, in std140 layout (at the offsets of [`Input`](toyproof_glsl::tree::Input)), the texture of channel K
+//! at binding 1 + 2K and its sampler at 2 + 2K. A shader declares only what it uses.
 //!
 //! # Crashes
 //!

@@ -4,7 +4,7 @@ use toyproof_diagnostic::Code;
 use toyproof_diagnostic::{Diagnostic, Span, grouped, plural};
 use toyproof_eval::{self as eval, Fault, MESA_CAP, Observations, Observed};
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{ExprKind, Input, SamplerShape, VariableKind};
+use toyproof_glsl::tree::{ExprKind, SamplerShape, VariableKind};
 use toyproof_image::Frame;
 use toyproof_lint::Lints;
 use toyproof_player::{DriverFailure, Phase};
@@ -65,7 +65,7 @@ pub fn unbound_channels(checked: &Checked, frame: &Frame) -> Vec<(usize, Span)> 
     let mut first_uses = [None; 4];
     for (_, expr) in checked.tree.exprs.iter() {
         if let ExprKind::Variable(variable) = expr.kind
-            && let VariableKind::Input(Input::Channel(channel)) = checked.tree[variable].kind
+            && let VariableKind::Channel(channel) = checked.tree[variable].kind
         {
             first_uses[usize::from(channel)].get_or_insert(expr.at.span);
         }

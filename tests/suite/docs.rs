@@ -6,6 +6,8 @@ use std::process::Command;
 use std::time::{Duration, Instant, UNIX_EPOCH};
 use std::{env, fs};
 
+use toyproof::image::{BLOCK_BYTES, Input};
+
 use crate::architecture::sources;
 use crate::program::toyproof;
 use crate::requirements::{require_chromium, require_driver};
@@ -482,6 +484,20 @@ fn the_pipeline_of_the_guide_is_that_of_the_example() {
         count += 1;
     }
     assert_eq!(count, 3);
+}
+
+#[test]
+fn the_guide_lists_the_uniform_block() {
+    let page = read("docs/guide/converting.md");
+    for input in Input::ALL {
+        let ty = match input.length() {
+            Some(length) => format!("{}[{length}], 16 bytes each", input.ty().name()),
+            None => input.ty().name().to_owned(),
+        };
+        let row = format!("\n| `{}` | {ty} | {} |\n", input.name(), input.offset());
+        assert!(page.contains(&row), "{row}");
+    }
+    assert!(page.contains(&format!("uniform block of {BLOCK_BYTES} bytes")));
 }
 
 /// The format that editors match.

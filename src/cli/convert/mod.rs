@@ -31,27 +31,42 @@ use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
 use super::{Exit, Terminal, project};
 
-const HOSTS: &str = "\
+/// The help after the options: examples, the interface of what is written, and the exit code.
+fn hosts() -> String {
+    let offsets = toyproof_image::Input::ALL.map(|input| {
+        let length = input.length().map(|length| format!("[{length}]"));
+        format!(
+            "{}{} {}",
+            input.name(),
+            length.unwrap_or_default(),
+            input.offset()
+        )
+    });
+    format!(
+        "\
 Examples:
   toyproof convert mine.glsl > mine.wgsl
   toyproof convert mine.glsl -o mine.wgsl --verify
   toyproof convert shaders -o converted --to spv
   toyproof convert waves -o converted --verify
 
-Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of 208 bytes \
-(std140): iResolution at byte 0, iTime 12, iTimeDelta 16, iFrame 20, iFrameRate 24, iChannelTime[4] 32 and \
-iChannelResolution[4] 96 (16 bytes each), iMouse 160, iDate 176, iSampleRate 192. The texture of channel K is at \
+Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of {} bytes \
+(std140), with these inputs at these bytes: {} (elements of arrays have 16 bytes each). The texture of channel K is at \
 binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared. \
 The passes of a project go to a folder, with graph.json, which says how they are played.
 
 Exit code: 0 if every shader was written (with --verify: and proved), 1 if a shader is at fault, 2 for any other \
-error, such as a conversion that is not proved.";
+error, such as a conversion that is not proved.",
+        toyproof_image::BLOCK_BYTES,
+        offsets.join(", ")
+    )
+}
 
 /// Convert shaders to WGSL, SPIR-V, Metal, HLSL or GLSL ES
 ///
 /// A single shader is written to standard output unless -o is given.
 #[derive(Debug, clap::Args)]
-#[command(after_long_help = HOSTS)]
+#[command(after_long_help = hosts())]
 pub(super) struct Args {
     /// Shaders and projects: files, folders, or - for standard input
     #[arg(required = true)]

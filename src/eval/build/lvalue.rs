@@ -1,7 +1,7 @@
 //! The locations of variables and their parts; indices are evaluated once.
 
 use toyproof_glsl::tree::{
-    BuiltInVariable, ExprId, ExprKind, Input, Scalar, StructId, Tree, Type, VariableId, VariableKind,
+    BuiltInVariable, ExprId, ExprKind, Scalar, StructId, Tree, Type, VariableId, VariableKind,
 };
 
 use super::{Builder, Result};
@@ -39,7 +39,7 @@ impl Builder<'_> {
         }
         let ty = self.tree[variable].ty;
         let location = match self.tree[variable].kind {
-            VariableKind::Input(Input::Channel(channel)) => Location::Channel(Some(channel)),
+            VariableKind::Channel(channel) => Location::Channel(Some(channel)),
             VariableKind::Input(input) => {
                 let components = 0..component_count(self.tree, ty) as u8;
                 Location::Values(

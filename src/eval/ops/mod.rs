@@ -10,14 +10,14 @@ mod control;
 mod memory;
 mod record;
 
+use std::cell::Cell;
+use std::slice;
+
 pub(crate) use apply::fold;
 pub(crate) use compute::{compute, compute_scalar, sine_and_cosine};
 pub(crate) use control::{copy_mask, iterate, jump, jump_if, jump_if_empty, refuel, remove, split};
 pub(crate) use memory::{copy, load_at, store, store_at, texel};
 pub(crate) use record::{check, record, record_event};
-
-use std::cell::Cell;
-use std::slice;
 
 use crate::batch::{Batch, Chunk, LANES, Lanes};
 use crate::number::Number;

@@ -122,11 +122,10 @@ impl Collector<'_> {
     /// The uniforms and built-in variables that the shader can use.
     fn inputs(&mut self) {
         let tree = self.shader.tree;
-        let is_input = |kind| matches!(kind, VariableKind::Input(_));
         let inputs = tree
             .variables
             .iter()
-            .filter(|(_, variable)| is_input(variable.kind));
+            .filter(|(_, variable)| variable.kind.is_input());
         self.scope.extend(inputs.map(|(id, _)| id));
     }
 

@@ -6,8 +6,7 @@ use super::Checker;
 use super::scope::{Entity, did_you_mean};
 use crate::token::Symbol;
 use crate::tree::{
-    BuiltIn, ExprId, ExprKind, Input, Place, Scalar, StructId, Swizzle, Type, Variable, VariableId,
-    VariableKind,
+    BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, Variable, VariableId, VariableKind,
 };
 
 /// The three sets of component names; a swizzle takes all of its names from one set (§5.5).
@@ -56,7 +55,7 @@ impl Checker<'_> {
             return variable;
         }
         let is_first = |(_, channel): &(VariableId, &Variable)| {
-            channel.kind == VariableKind::Input(Input::Channel(0)) && channel.ty == own.ty
+            channel.kind == VariableKind::Channel(0) && channel.ty == own.ty
         };
         let channel = self.tree.variables.iter().find(is_first);
         channel.map_or(variable, |(channel, _)| channel)

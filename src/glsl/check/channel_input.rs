@@ -8,7 +8,9 @@ use super::Checker;
 use super::scope::did_you_mean;
 use crate::Stage;
 use crate::token::Symbol;
-use crate::tree::{BinaryOp, ExprId, ExprKind, Input, Literal, Place, Value, VariableKind};
+use crate::tree::{
+    BinaryOp, ExprId, ExprKind, Input, Literal, Place, Value, Variable, VariableId, VariableKind,
+};
 
 const MEMBERS: [&str; 4] = ["sampler", "size", "time", "loaded"];
 const MEMBERS_NOTE: &str = "its members are `sampler`, `size`, `time` and `loaded`";
@@ -31,7 +33,7 @@ impl Checker<'_> {
     /// Checks `iCh0.size`.
     pub(crate) fn channel_member(&mut self, channel: u8, member: Symbol, at: Place) -> ExprId {
         match self.text(member) {
-            "sampler" => self.input(Input::Channel(channel), at),
+            "sampler" => self.input(VariableKind::Channel(channel), at),
             "size" => self.of_channel(Input::ChannelResolution, channel, at),
             "time" => self.of_channel(Input::ChannelTime, channel, at),
             "loaded" => {
@@ -58,18 +60,14 @@ impl Checker<'_> {
 
     /// The element of an input for a channel.
     fn of_channel(&mut self, input: Input, channel: u8, at: Place) -> ExprId {
-        let array = self.input(input, at);
+        let array = self.input(VariableKind::Input(input), at);
         let index = self.int_literal(channel.into(), at);
         self.index(array, index, at)
     }
 
-    fn input(&mut self, input: Input, at: Place) -> ExprId {
-        let is_input = |kind| kind == VariableKind::Input(input);
-        let declared = self
-            .tree
-            .variables
-            .iter()
-            .find(|(_, variable)| is_input(variable.kind));
+    fn input(&mut self, kind: VariableKind, at: Place) -> ExprId {
+        let is_declared = |(_, variable): &(VariableId, &Variable)| variable.kind == kind;
+        let declared = self.tree.variables.iter().find(is_declared);
         match declared.map(|(id, variable)| (id, variable.ty)) {
             Some((id, ty)) => self.push(ExprKind::Variable(id), ty, false, at),
             None => self.error_expr(at),

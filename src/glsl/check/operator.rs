@@ -4,7 +4,7 @@ use toyproof_diagnostic::Code;
 
 use super::{Checker, is_desktop_conversion};
 use crate::tree::{
-    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Input, Place, Scalar, StepOp, Type, UnaryOp,
+    BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, Place, Scalar, StepOp, Type, UnaryOp,
     VariableKind,
 };
 
@@ -267,7 +267,7 @@ impl Checker<'_> {
             VariableKind::BuiltInConstant => ("a constant", None),
             VariableKind::Const => ("a constant", Some(constant.to_owned())),
             VariableKind::Parameter(Direction::ConstIn) => ("a `const` parameter", Some(constant.to_owned())),
-            VariableKind::Input(Input::Channel(_)) => ("a sampler", None),
+            VariableKind::Channel(_) => ("a sampler", None),
             VariableKind::Input(_) | VariableKind::Uniform => ("a uniform", Some(copy)),
             VariableKind::Varying => ("an input", Some(copy)),
             VariableKind::BuiltIn(built_in) if built_in != BuiltInVariable::FragDepth => {

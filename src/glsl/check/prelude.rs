@@ -7,8 +7,8 @@ use super::Checker;
 use super::scope::Entity;
 use crate::Options;
 use crate::tree::{
-    BuiltInVariable, Constant, ExprId, ExprKind, Input, Sampler, SamplerShape, Scalar, Type, Value, Variable,
-    VariableKind,
+    BuiltInVariable, Constant, ExprId, ExprKind, Input, InputType, Sampler, SamplerShape, Scalar, Type,
+    Value, Variable, VariableKind,
 };
 
 /// The minimum values that WebGL 2 guarantees (§7.3).
@@ -30,27 +30,23 @@ pub(super) const TEXEL_OFFSETS: RangeInclusive<i32> = -8..=7;
 impl Checker<'_> {
     pub(super) fn declare_prelude(&mut self) {
         let vec = |size| Type::Vector(Scalar::Float, size);
-        let times = self.tree.array_of(Type::FLOAT, 4);
-        let resolutions = self.tree.array_of(vec(3), 4);
-        let inputs = [
-            ("iResolution", vec(3), Input::Resolution),
-            ("iTime", Type::FLOAT, Input::Time),
-            ("iTimeDelta", Type::FLOAT, Input::TimeDelta),
-            ("iFrameRate", Type::FLOAT, Input::FrameRate),
-            ("iFrame", Type::INT, Input::Frame),
-            ("iChannelTime", times, Input::ChannelTime),
-            ("iChannelResolution", resolutions, Input::ChannelResolution),
-            ("iMouse", vec(4), Input::Mouse),
-            ("iDate", vec(4), Input::Date),
-            ("iSampleRate", Type::FLOAT, Input::SampleRate),
-        ];
-        for (name, ty, input) in inputs {
-            self.built_in(name, ty, VariableKind::Input(input), None);
+        for input in Input::ALL {
+            let ty = match input.ty() {
+                InputType::Float => Type::FLOAT,
+                InputType::Int => Type::INT,
+                InputType::Vec3 => vec(3),
+                InputType::Vec4 => vec(4),
+            };
+            let ty = match input.length() {
+                Some(length) => self.tree.array_of(ty, length as u32),
+                None => ty,
+            };
+            self.built_in(input.name(), ty, VariableKind::Input(input), None);
         }
         let channels = ["iChannel0", "iChannel1", "iChannel2", "iChannel3"];
         for ((name, shape), index) in channels.into_iter().zip(self.channels.shapes).zip(0..) {
             let ty = Type::Sampler(Sampler::float(shape));
-            self.built_in(name, ty, VariableKind::Input(Input::Channel(index)), None);
+            self.built_in(name, ty, VariableKind::Channel(index), None);
         }
         let variables = [
             ("gl_FragCoord", vec(4), BuiltInVariable::FragCoord),
@@ -76,11 +72,9 @@ impl Checker<'_> {
             .tree
             .variables
             .iter()
-            .map_while(|(_, variable)| match variable.kind {
-                VariableKind::Input(_) => Some(&variable.name),
-                _ => None,
-            });
-        !self.stage.has_input(name) && variables.any(|input| input == name)
+            .map(|(_, variable)| variable)
+            .take_while(|variable| variable.kind.is_input());
+        !self.stage.has_input(name) && variables.any(|input| input.name == name)
     }
 
     fn built_in(&mut self, name: &str, ty: Type, kind: VariableKind, value: Option<i32>) {
@@ -93,7 +87,7 @@ impl Checker<'_> {
             at: None,
         });
         // A name that does not occur in the text need not be in scope.
-        let is_declared = !matches!(kind, VariableKind::Input(_)) || self.stage.has_input(name);
+        let is_declared = !kind.is_input() || self.stage.has_input(name);
         if let Some(symbol) = self.interner.find(name).filter(|_| is_declared) {
             self.scopes.declare(symbol, Entity::Variable(variable));
         }
@@ -169,7 +163,7 @@ impl Checker<'_> {
             return None;
         };
         match self.tree[variable].kind {
-            VariableKind::Input(Input::Channel(channel)) => Some(usize::from(channel)),
+            VariableKind::Channel(channel) => Some(usize::from(channel)),
             _ => None,
         }
     }

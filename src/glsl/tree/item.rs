@@ -1,6 +1,6 @@
 //! Declarations at global scope, variables of all scopes, and statements.
 
-use super::{Constant, ExprId, Id, Place, StructId, Type};
+use super::{Constant, ExprId, Id, Input, Place, StructId, Type};
 
 /// One declaration at global scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,6 +68,8 @@ pub enum VariableKind {
     Parameter(Direction),
     /// A uniform that `ShaderToy` sets.
     Input(Input),
+    /// The sampler `iChannel0` to `iChannel3`.
+    Channel(u8),
     /// A uniform that the shader declares; nothing sets it, so it is zero.
     Uniform,
     /// A varying that the shader declares with `in`; nothing sets it, so it is zero.
@@ -78,6 +80,14 @@ pub enum VariableKind {
     BuiltIn(BuiltInVariable),
     /// A built-in constant such as `gl_MaxDrawBuffers`; its value is known.
     BuiltInConstant,
+}
+
+impl VariableKind {
+    /// Whether `ShaderToy` sets the variable.
+    #[must_use]
+    pub fn is_input(self) -> bool {
+        matches!(self, Self::Input(_) | Self::Channel(_))
+    }
 }
 
 /// The direction in which a parameter is passed (§6.1.1).
@@ -91,33 +101,6 @@ pub enum Direction {
     Out,
     /// Copied in, and back at the end.
     InOut,
-}
-
-/// The uniforms of `ShaderToy`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Input {
-    /// `vec3 iResolution`: pixels, pixels, pixel aspect (1).
-    Resolution,
-    /// `float iTime`: seconds.
-    Time,
-    /// `float iTimeDelta`: seconds.
-    TimeDelta,
-    /// `float iFrameRate`: frames per second.
-    FrameRate,
-    /// `int iFrame`: from 0.
-    Frame,
-    /// `float iChannelTime[4]`: seconds.
-    ChannelTime,
-    /// `vec3 iChannelResolution[4]`: texels.
-    ChannelResolution,
-    /// `vec4 iMouse`: pixels.
-    Mouse,
-    /// `vec4 iDate`: year, month from 0, day, seconds.
-    Date,
-    /// `float iSampleRate`: hertz.
-    SampleRate,
-    /// `iChannel0` to `iChannel3`.
-    Channel(u8),
 }
 
 /// The built-in variables of fragment shaders (§7.2).

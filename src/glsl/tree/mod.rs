@@ -26,12 +26,13 @@ use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
 pub use toyproof_diagnostic::Place;
+pub use toyproof_image::{Input, InputType};
 
 pub use self::builtin::BuiltIn;
 pub use self::expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
 pub use self::item::{
-    Arm, Block, BuiltInVariable, Case, Condition, Direction, Function, FunctionId, Input, Item, Label,
-    Statement, StatementKind, Variable, VariableId, VariableKind,
+    Arm, Block, BuiltInVariable, Case, Condition, Direction, Function, FunctionId, Item, Label, Statement,
+    StatementKind, Variable, VariableId, VariableKind,
 };
 pub use self::types::{
     ArrayId, ArrayType, Constant, Member, Sampler, SamplerShape, Scalar, Struct, StructId, Type, Value,

@@ -3,6 +3,8 @@
 
 use std::fmt::Write as _;
 
+use toyproof_glsl::tree::{Input, InputType};
+
 use crate::TranslateError;
 use crate::backend::{Target, write_glsl};
 use crate::naga_ir::ValidModule;
@@ -54,7 +56,7 @@ pub fn for_glslang(target: Target, text: &str) -> Option<String> {
 /// recognized stays too, and the front end rejects it: a mistake here cannot make a wrong file a proved one.
 #[must_use]
 pub fn as_shadertoy(text: &str) -> String {
-    with_shadertoy_inputs(text, &INPUTS.map(|(_, value)| value).join(", "))
+    with_shadertoy_inputs(text, &Input::ALL.map(value).join(", "))
 }
 
 /// Writes a module as a `ShaderToy` shader, so that a file in a language without tools on this machine can be
@@ -75,11 +77,11 @@ pub fn shadertoy(module: &ValidModule) -> Result<String, TranslateError> {
             continue;
         }
         for member in members {
-            let input = INPUTS.iter().find(|(offset, _)| *offset == member.offset);
-            let (_, value) = input.ok_or_else(|| {
+            let mut inputs = Input::ALL.into_iter();
+            let input = inputs.find(|input| input.offset() == member.offset as usize);
+            values.push(value(input.ok_or_else(|| {
                 TranslateError::new(format_args!("the block has no input at byte {}", member.offset))
-            })?;
-            values.push(*value);
+            })?));
         }
     }
     Ok(with_shadertoy_inputs(&text, &values.join(", ")))
@@ -128,22 +130,19 @@ fn unused_prefix(text: &str) -> String {
     prefix
 }
 
-/// The members of the uniform block: their offsets in bytes, and their values in a `ShaderToy` shader.
-const INPUTS: [(u32, &str); 10] = [
-    (0, "iResolution"),
-    (12, "iTime"),
-    (16, "iTimeDelta"),
-    (20, "iFrame"),
-    (24, "iFrameRate"),
-    (
-        32,
-        "vec4[4](vec4(iChannelTime[0]), vec4(iChannelTime[1]), vec4(iChannelTime[2]), vec4(iChannelTime[3]))",
-    ),
-    (96, "iChannelResolution"),
-    (160, "iMouse"),
-    (176, "iDate"),
-    (192, "iSampleRate"),
-];
+/// The value of a member of the uniform block in a `ShaderToy` shader.
+fn value(input: Input) -> String {
+    match (input.ty(), input.length()) {
+        // The elements are padded.
+        (InputType::Float, Some(length)) => {
+            let elements: Vec<_> = (0..length)
+                .map(|at| format!("vec4({}[{at}])", input.name()))
+                .collect();
+            format!("vec4[{length}]({})", elements.join(", "))
+        }
+        _ => input.name().to_owned(),
+    }
+}
 
 /// The role of a line in naga's GLSL.
 enum Line<'a> {

@@ -7,7 +7,7 @@
 use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Input, Place, Sampler, Scalar,
+    BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Place, Sampler, Scalar,
     Statement, StatementKind, Type, Value, VariableId, VariableKind,
 };
 use toyproof_glsl::{Filter, Sampling, Wrap};
@@ -42,7 +42,7 @@ pub(super) fn expand_lookups(cx: &mut LoweringContext) {
 /// Whether a texture is one of the four channels, rather than a parameter.
 fn is_channel(cx: &LoweringContext, texture: ExprId) -> bool {
     matches!(cx.tree[texture].kind, ExprKind::Variable(variable)
-        if matches!(cx.tree[variable].kind, VariableKind::Input(Input::Channel(_))))
+        if matches!(cx.tree[variable].kind, VariableKind::Channel(_)))
 }
 
 /// A filtered lookup of a channel.
@@ -80,7 +80,7 @@ impl Lookup {
         let ExprKind::Variable(texture) = cx.tree[*arguments.first()?].kind else {
             return None;
         };
-        let VariableKind::Input(Input::Channel(channel)) = cx.tree[texture].kind else {
+        let VariableKind::Channel(channel) = cx.tree[texture].kind else {
             return None;
         };
         let without_bias = if has_offset { 3 } else { 2 };

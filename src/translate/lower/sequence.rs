@@ -133,7 +133,7 @@ fn is_affected(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
                 tree[variable].kind,
                 VariableKind::Local | VariableKind::Parameter(_)
             );
-            let fixed = matches!(tree[variable].kind, VariableKind::Const | VariableKind::Input(_));
+            let fixed = tree[variable].kind == VariableKind::Const || tree[variable].kind.is_input();
             !fixed && (foreign || walk::mentions(tree, effect, variable))
         }
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,

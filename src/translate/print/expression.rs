@@ -181,7 +181,7 @@ impl<'a> Printer<'a> {
     fn variable_text(&self, id: VariableId) -> Cow<'a, str> {
         let name = self.variable(id);
         match (self.cx.tree[id].ty, self.cx.tree[id].kind) {
-            (Type::Sampler(sampler), VariableKind::Input(_)) => {
+            (Type::Sampler(sampler), VariableKind::Channel(_)) => {
                 format!("{}({name}, {name}_sampler)", sampler.name()).into()
             }
             _ => name.into(),

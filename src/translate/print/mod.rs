@@ -17,9 +17,11 @@ pub(super) use order::Order;
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
 use toyproof_glsl::Stage;
-use toyproof_glsl::tree::{FunctionId, Input, Place, Sampler, SamplerShape, Type, VariableId, VariableKind};
+use toyproof_glsl::tree::{
+    FunctionId, Input, InputType, Place, Sampler, SamplerShape, Type, VariableId, VariableKind,
+};
 
-use self::names::{BLOCK, Names};
+use self::names::Names;
 use crate::lower::context::LoweringContext;
 
 /// Prints everything that a shader's image depends on.
@@ -123,9 +125,7 @@ impl Printer<'_> {
             .inputs
             .iter()
             .filter_map(|&id| match (tree[id].kind, tree[id].ty) {
-                (VariableKind::Input(Input::Channel(channel)), Type::Sampler(sampler)) => {
-                    Some((channel, sampler))
-                }
+                (VariableKind::Channel(channel), Type::Sampler(sampler)) => Some((channel, sampler)),
                 _ => None,
             });
         let channels: Vec<(u8, Sampler)> = channels.collect();
@@ -144,9 +144,14 @@ impl Printer<'_> {
     fn frame(&mut self) {
         self.plain("layout(std140, set = 0, binding = 0) uniform ToyproofFrame ");
         self.braces(|printer| {
-            for (ty, name) in BLOCK {
+            for input in Input::ALL {
+                let (name, ty) = (input.name(), input.ty());
                 printer.line();
-                printer.plain(&format!("{ty} {name};\n"));
+                printer.plain(&match (input.length(), ty) {
+                    (None, ty) => format!("{} {name};\n", ty.name()),
+                    (Some(length), InputType::Float) => format!("vec4[{length}] {name};\n"),
+                    (Some(length), ty) => format!("{}[{length}] {name};\n", ty.name()),
+                });
             }
         });
         self.plain(";\n");

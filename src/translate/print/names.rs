@@ -6,25 +6,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::tree::{ExprKind, FunctionId, Item, StructId, Type, VariableId, walk};
+use toyproof_glsl::tree::{ExprKind, FunctionId, Input, Item, StructId, Type, VariableId, walk};
 
 use super::order::Order;
 use crate::lower::context::LoweringContext;
 use crate::print::keyword;
-
-/// The members of the uniform block, in order, with their types in it.
-pub(super) const BLOCK: [(&str, &str); 10] = [
-    ("vec3", "iResolution"),
-    ("float", "iTime"),
-    ("float", "iTimeDelta"),
-    ("int", "iFrame"),
-    ("float", "iFrameRate"),
-    ("vec4[4]", "iChannelTime"),
-    ("vec3[4]", "iChannelResolution"),
-    ("vec4", "iMouse"),
-    ("vec4", "iDate"),
-    ("float", "iSampleRate"),
-];
 
 /// The names of the shader's output, of its color in `main` and of its block. naga treats a name as a type
 /// wherever a type of that name exists.
@@ -47,7 +33,7 @@ impl Names {
         let mut names = Self::default();
         let mut types = HashSet::new();
         // Names at global scope, which must be unique.
-        let mut taken: HashSet<String> = BLOCK.iter().map(|&(_, name)| name.to_owned()).collect();
+        let mut taken: HashSet<String> = Input::ALL.iter().map(|input| input.name().to_owned()).collect();
         for channel in 0..4 {
             taken.extend([format!("iChannel{channel}"), format!("iChannel{channel}_sampler")]);
         }

@@ -164,7 +164,7 @@ impl Collector<'_> {
                 ExprKind::Call { function, .. } => dependencies.push(Item::Function(function)),
                 ExprKind::Construct { .. } => self.add_type(tree[id].ty, dependencies),
                 ExprKind::Variable(variable) => match tree[variable].kind {
-                    VariableKind::Input(_) => self.inputs.push(variable),
+                    VariableKind::Input(_) | VariableKind::Channel(_) => self.inputs.push(variable),
                     // naga has it under the same name.
                     VariableKind::BuiltIn(BuiltInVariable::FragCoord) => {}
                     _ if self.locals.contains(&variable) => {}

@@ -1,8 +1,6 @@
 //! Built-in functions: most have the same name in WGSL, some are operators there, few are missing.
 
-use toyproof_glsl::tree::{
-    BinaryOp, BuiltIn, ExprId, ExprKind, Input, SamplerShape, Scalar, Type, VariableKind,
-};
+use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, SamplerShape, Scalar, Type, VariableKind};
 
 use super::Unprintable;
 use super::style::Style;
@@ -142,7 +140,7 @@ impl Writer<'_> {
         let tree = &self.cx.tree;
         let channel = match tree[sampler].kind {
             ExprKind::Variable(id) => match (tree[id].kind, tree[id].ty) {
-                (VariableKind::Input(Input::Channel(channel)), Type::Sampler(sampler))
+                (VariableKind::Channel(channel), Type::Sampler(sampler))
                     if sampler.shape != SamplerShape::D2Array && !sampler.shadow =>
                 {
                     channel

@@ -153,7 +153,7 @@ impl Writer<'_> {
         let tree = &self.cx.tree;
         let may_change = |kind: &ExprKind| match kind {
             ExprKind::Variable(variable) => match tree[*variable].kind {
-                VariableKind::Const | VariableKind::Input(_) => false,
+                VariableKind::Const | VariableKind::Input(_) | VariableKind::Channel(_) => false,
                 VariableKind::Local | VariableKind::Parameter(Direction::In) => {
                     self.facts.is_memory(*variable)
                 }

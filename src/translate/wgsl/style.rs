@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
-    Direction, ExprId, ExprKind, Input, Place, Sampler, SamplerShape, Swizzle, Type, VariableId, VariableKind,
+    Direction, ExprId, ExprKind, Input, InputType, Place, Sampler, SamplerShape, Swizzle, Type, VariableId,
+    VariableKind,
 };
 
 use super::Unprintable;
@@ -30,26 +31,6 @@ pub enum Style {
     /// A `Material2d` of Bevy.
     Bevy,
 }
-
-/// The members of the uniform block, with their types, offsets and sizes in bytes.
-const MEMBERS: [(&str, &str, Input, u32, u32); 10] = [
-    ("iResolution", "vec3f", Input::Resolution, 0, 12),
-    ("iTime", "f32", Input::Time, 12, 4),
-    ("iTimeDelta", "f32", Input::TimeDelta, 16, 4),
-    ("iFrame", "i32", Input::Frame, 20, 4),
-    ("iFrameRate", "f32", Input::FrameRate, 24, 4),
-    ("iChannelTime", "array<vec4f, 4>", Input::ChannelTime, 32, 64),
-    (
-        "iChannelResolution",
-        "array<vec3f, 4>",
-        Input::ChannelResolution,
-        96,
-        64,
-    ),
-    ("iMouse", "vec4f", Input::Mouse, 160, 16),
-    ("iDate", "vec4f", Input::Date, 176, 16),
-    ("iSampleRate", "f32", Input::SampleRate, 192, 4),
-];
 
 // The names that the hosts and their substitutes declare.
 const PLAIN_NAMES: &str = "Inputs inputs main gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 iChannel0_sampler \
@@ -141,11 +122,10 @@ impl Style {
 impl Writer<'_> {
     /// The code that reads an input, which the variable `id` is.
     pub(super) fn input(&self, id: VariableId, input: Input) -> Result<String, Unprintable> {
-        let member = MEMBERS.iter().find(|member| member.2 == input);
-        if let Some(member) = member.filter(|_| self.style.is_in_uniform_block(input)) {
-            return Ok(format!("inputs.{}", member.0));
+        let name = input.name();
+        if self.style.is_in_uniform_block(input) {
+            return Ok(format!("inputs.{name}"));
         }
-        let name = member.map_or(&*self.cx.tree[id].name, |member| member.0);
         let missing = || Err(self.not_provided(&format!("`{name}`"), self.first_use(id)));
         let code = match self.style {
             Style::Plain => return missing(),
@@ -158,7 +138,7 @@ impl Writer<'_> {
                 Input::Mouse => "i_mouse",
                 Input::Date => "i_date",
                 Input::SampleRate => "44100.0f",
-                Input::ChannelTime | Input::ChannelResolution | Input::Channel(_) => return missing(),
+                Input::ChannelTime | Input::ChannelResolution => return missing(),
             },
             Style::ComputeToys => match input {
                 Input::Resolution => "vec3f(vec2f(textureDimensions(screen)), 1.0)",
@@ -209,14 +189,15 @@ impl Writer<'_> {
         let mut channels = BTreeMap::new();
         for &id in &order.inputs {
             match (tree[id].kind, tree[id].ty) {
-                (VariableKind::Input(Input::Channel(channel)), Type::Sampler(sampler)) => {
+                (VariableKind::Channel(channel), Type::Sampler(sampler)) => {
                     self.check_channel(id, channel, sampler)?;
                     channels.insert(channel, sampler.shape);
                 }
                 (VariableKind::Input(input), _) => {
-                    let member = MEMBERS.iter().position(|member| member.2 == input);
-                    inputs.extend(member);
-                    uniforms.extend(member.filter(|_| self.style.is_in_uniform_block(input)));
+                    inputs.insert(input);
+                    if self.style.is_in_uniform_block(input) {
+                        uniforms.insert(input);
+                    }
                 }
                 _ => {}
             }
@@ -238,8 +219,8 @@ impl Writer<'_> {
             "buffer" => self.cx.stage != Stage::Image,
             "inout" => brings_color,
             "out" => !brings_color,
-            _ => match MEMBERS.iter().position(|member| member.0 == condition) {
-                Some(member) => inputs.contains(&member),
+            _ => match Input::ALL.into_iter().find(|input| input.name() == condition) {
+                Some(input) => inputs.contains(&input),
                 None => channel_number(condition).is_some_and(|channel| channels.contains_key(&channel)),
             },
         };
@@ -318,7 +299,7 @@ impl Style {
     /// Whether the style reads an input from a uniform block of its own.
     fn is_in_uniform_block(self, input: Input) -> bool {
         match self {
-            Self::Plain => MEMBERS.iter().any(|member| member.2 == input),
+            Self::Plain => true,
             Self::WgpuShadertoy | Self::ComputeToys => false,
             Self::Bevy => matches!(
                 input,
@@ -328,49 +309,49 @@ impl Style {
     }
 
     /// Declares the members of the uniform block that are read.
-    fn members(self, inputs: &BTreeSet<usize>) -> String {
-        if self == Self::Plain {
-            return members_at_offsets(inputs);
+    fn members(self, inputs: &BTreeSet<Input>) -> String {
+        let declarations = if self == Self::Plain {
+            // The first member is always declared, to keep the offsets of the others.
+            let mut members = inputs.clone();
+            members.insert(Input::ALL[0]);
+            members_at_offsets(&members)
+        } else {
+            inputs.iter().map(|&input| member(input)).collect()
+        };
+        let declarations = declarations.join("\n    ");
+        if declarations.contains("@size") {
+            format!("// `@size` skips inputs that the shader does not read.\n    {declarations}")
+        } else {
+            declarations
         }
-        let declarations = inputs.iter().map(|&member| {
-            let (name, ty, ..) = MEMBERS[member];
-            format!("{name}: {ty},")
-        });
-        declarations.collect::<Vec<_>>().join("\n    ")
+    }
+}
+
+/// Declares an input as a member of a uniform block. Elements of arrays have a stride of 16 bytes.
+fn member(input: Input) -> String {
+    let name = input.name();
+    let ty = match (input.ty(), input.length()) {
+        (InputType::Float, None) => "f32",
+        (InputType::Int, _) => "i32",
+        (InputType::Vec3, _) => "vec3f",
+        (InputType::Float, Some(_)) | (InputType::Vec4, _) => "vec4f",
+    };
+    match input.length() {
+        Some(length) => format!("{name}: array<{ty}, {length}>,"),
+        None => format!("{name}: {ty},"),
     }
 }
 
 /// Declares members of the uniform block at the offsets of our host.
-fn members_at_offsets(inputs: &BTreeSet<usize>) -> String {
-    // The first member is always declared, to keep the offsets of the others.
-    let mut members: Vec<usize> = inputs.iter().copied().collect();
-    if members.first() != Some(&0) {
-        members.insert(0, 0);
-    }
-    let declarations = members.iter().enumerate().map(|(at, &member)| {
-        let (name, ty, _, offset, size) = MEMBERS[member];
-        let next = members.get(at + 1).map(|&next| MEMBERS[next].3);
-        // Only members with sizes of at least 16 bytes have an alignment of 16.
-        let natural = next.map(|next| {
-            let align = if matches!(next, 32 | 96 | 160 | 176) {
-                16
-            } else {
-                4
-            };
-            (offset + size).next_multiple_of(align)
-        });
-        if natural == next {
-            format!("{name}: {ty},")
-        } else {
-            format!("@size({}) {name}: {ty},", next.unwrap_or(0) - offset)
+fn members_at_offsets(inputs: &BTreeSet<Input>) -> Vec<String> {
+    let following = inputs.iter().skip(1).map(Some).chain([None]);
+    let declarations = inputs.iter().zip(following).map(|(input, next)| match next {
+        Some(next) if (input.offset() + input.size()).next_multiple_of(next.align()) != next.offset() => {
+            format!("@size({}) {}", next.offset() - input.offset(), member(*input))
         }
+        _ => member(*input),
     });
-    let declarations = declarations.collect::<Vec<_>>().join("\n    ");
-    if declarations.contains("@size") {
-        format!("// `@size` skips inputs that the shader does not read.\n    {declarations}")
-    } else {
-        declarations
-    }
+    declarations.collect()
 }
 
 /// The suffix of the type of a texture.
@@ -419,8 +400,14 @@ pub struct Hosted {
     pub upside_down: bool,
 }
 
-/// The uniform block of our host.
-const FRAME: &str = include_str!("styles/frame.wgsl");
+/// Declares the uniform block of our host.
+fn frame() -> String {
+    let members = members_at_offsets(&Input::ALL.into()).join("\n    ");
+    format!(
+        "\nstruct ToyproofFrame {{\n    {members}\n}}\n\
+         @group(0) @binding(0) var<uniform> toyproof_frame: ToyproofFrame;\n"
+    )
+}
 
 impl Style {
     /// Embeds an image printed in this style in a substitute for its host, which reads our uniform block.
@@ -447,7 +434,7 @@ impl Style {
         };
         let [before, after] = around_shader(host).map(|part| fill(part, reads, &[]));
         Hosted {
-            text: format!("{FRAME}{before}{}{after}", self.adapted(text)),
+            text: format!("{}{before}{}{after}", frame(), self.adapted(text)),
             upside_down: self.is_upside_down(stage),
         }
     }
@@ -539,7 +526,7 @@ mod tests {
                     let known = |name: &str| {
                         assert!(
                             CONDITIONS.contains(&name)
-                                || MEMBERS.iter().any(|member| member.0 == name)
+                                || Input::ALL.iter().any(|input| input.name() == name)
                                 || channel_number(name).is_some_and(|number| number < 4),
                             "{name}"
                         );

@@ -164,9 +164,7 @@ impl<'a> BufferLints<'a> {
 fn first_use(checked: &Checked, channel: usize) -> Option<Span> {
     let tree = &checked.tree;
     tree.exprs.iter().find_map(|(_, expr)| match expr.kind {
-        ExprKind::Variable(variable)
-            if tree[variable].kind == VariableKind::Input(Input::Channel(channel as u8)) =>
-        {
+        ExprKind::Variable(variable) if tree[variable].kind == VariableKind::Channel(channel as u8) => {
             Some(expr.at.span)
         }
         _ => None,

@@ -2,8 +2,8 @@
 
 use toyproof::eval::Fault;
 use toyproof::glsl::tree::{
-    self, BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Input, StepOp, Type,
-    VariableId, VariableKind,
+    self, BinaryOp, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, StepOp, Type, VariableId,
+    VariableKind,
 };
 
 use super::real::Real;
@@ -120,6 +120,7 @@ impl<N: Real> Run<'_, N> {
             && !matches!(
                 self.tree[variable].kind,
                 VariableKind::Input(_)
+                    | VariableKind::Channel(_)
                     | VariableKind::Uniform
                     | VariableKind::Varying
                     | VariableKind::BuiltInConstant
@@ -277,7 +278,7 @@ impl<N: Real> Run<'_, N> {
             return None;
         };
         match self.tree[variable].kind {
-            VariableKind::Input(Input::Channel(channel)) => Some(channel),
+            VariableKind::Channel(channel) => Some(channel),
             _ => self.samplers.get(&variable).copied().flatten(),
         }
     }

@@ -232,7 +232,7 @@ impl<N: Real> Run<'_, N> {
             Input::Mouse => frame.mouse.to_vec(),
             Input::Date => frame.date.to_vec(),
             Input::SampleRate => vec![toyproof::image::SAMPLE_RATE],
-            Input::ChannelTime | Input::Channel(_) => return zero(self.tree, ty),
+            Input::ChannelTime => return zero(self.tree, ty),
         };
         let flushed = numbers.into_iter().map(toyproof::math::native::flush);
         flushed.map(|number| Component::float(number.into())).collect()

@@ -222,9 +222,13 @@ impl Translation<'_> {
         match (tree[variable].kind, tree[variable].initializer) {
             // The number that a constant has.
             (VariableKind::Const, Some(initializer)) => self.term(initializer, &HashMap::new(), depth),
-            (VariableKind::Local | VariableKind::Parameter(_) | VariableKind::Input(_), _) => {
-                self.named(tree[variable].name.clone(), tree[variable].ty)
-            }
+            (
+                VariableKind::Local
+                | VariableKind::Parameter(_)
+                | VariableKind::Input(_)
+                | VariableKind::Channel(_),
+                _,
+            ) => self.named(tree[variable].name.clone(), tree[variable].ty),
             _ => None,
         }
     }

@@ -149,7 +149,7 @@ impl<'a> Writer<'a> {
         let Type::Array(id) = self.tree[array].ty else {
             return;
         };
-        if matches!(self.tree[array].kind, VariableKind::Input(_)) {
+        if self.tree[array].kind.is_input() {
             return;
         }
         let element = self.tree.array(id).element;
@@ -208,7 +208,7 @@ impl<'a> Writer<'a> {
 /// Whether a term reads an input of the frame.
 fn is_input(tree: &Tree, term: &Term) -> bool {
     match &term.kind {
-        TermKind::Variable(variable) => matches!(tree[*variable].kind, VariableKind::Input(_)),
+        TermKind::Variable(variable) => tree[*variable].kind.is_input(),
         TermKind::Swizzle(vector, _) => is_input(tree, vector),
         _ => false,
     }

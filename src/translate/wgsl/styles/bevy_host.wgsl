@@ -5,12 +5,12 @@ var<private> view: View;
 var<private> globals: Globals;
 $shader
 @fragment fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    view = View(vec4f(0.0, 0.0, toyproof_frame.resolution.xy));
-    globals = Globals(toyproof_frame.time, toyproof_frame.time_delta, u32(toyproof_frame.frame));
-    inputs.iFrameRate = toyproof_frame.frame_rate; //? iFrameRate
-    inputs.iChannelTime = toyproof_frame.channel_time; //? iChannelTime
-    inputs.iChannelResolution = toyproof_frame.channel_resolution; //? iChannelResolution
-    inputs.iMouse = toyproof_frame.mouse; //? iMouse
-    inputs.iDate = toyproof_frame.date; //? iDate
+    view = View(vec4f(0.0, 0.0, toyproof_frame.iResolution.xy));
+    globals = Globals(toyproof_frame.iTime, toyproof_frame.iTimeDelta, u32(toyproof_frame.iFrame));
+    inputs.iFrameRate = toyproof_frame.iFrameRate; //? iFrameRate
+    inputs.iChannelTime = toyproof_frame.iChannelTime; //? iChannelTime
+    inputs.iChannelResolution = toyproof_frame.iChannelResolution; //? iChannelResolution
+    inputs.iMouse = toyproof_frame.iMouse; //? iMouse
+    inputs.iDate = toyproof_frame.iDate; //? iDate
     return fragment(VertexOutput(position));
 }

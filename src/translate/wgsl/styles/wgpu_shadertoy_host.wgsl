@@ -15,13 +15,13 @@ var<private> i_framerate: f32;
 @group(0) @binding(8) var sampler3: sampler; //? channel3
 $shader
 @fragment fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    i_mouse = toyproof_frame.mouse;
-    i_date = toyproof_frame.date;
-    i_resolution = toyproof_frame.resolution;
-    i_time = toyproof_frame.time;
-    i_time_delta = toyproof_frame.time_delta;
-    i_frame = u32(toyproof_frame.frame);
-    i_framerate = toyproof_frame.frame_rate;
+    i_mouse = toyproof_frame.iMouse;
+    i_date = toyproof_frame.iDate;
+    i_resolution = toyproof_frame.iResolution;
+    i_time = toyproof_frame.iTime;
+    i_time_delta = toyproof_frame.iTimeDelta;
+    i_frame = u32(toyproof_frame.iFrame);
+    i_framerate = toyproof_frame.iFrameRate;
     return shader_main(vec2f(position.x, i_resolution.y - position.y)); //? image
     return shader_main(position.xy); //? buffer
 }
