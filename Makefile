@@ -3,9 +3,10 @@
 .PHONY: demo test setup check msrv lint bench fuzz accuracy platforms
 .DEFAULT_GOAL := demo
 
-# Builds, checks the course's shaders and writes images and reports to out/.
+# Builds, checks the course's shaders and writes images and reports to out/. Of the whole workspace the program alone is
+# built, with the features that tests select, so that `make test` reuses all of it.
 demo: setup
-	cargo build --release
+	cargo build --release --workspace --bin toyproof
 	./target/release/toyproof check glsl --out out
 
 # Also counts the tests that were skipped because a driver or a program is missing.
@@ -35,7 +36,7 @@ bench:
 
 # Measures again: writes docs/evidence/accuracy/ and the generated parts of docs/evidence/accuracy.md.
 accuracy:
-	cargo build --release
+	cargo build --release --workspace --bin toyproof
 	sh docs/evidence/accuracy/regenerate.sh ./target/release/toyproof
 
 # Runs a fuzz target until it finds something or is stopped: front_end, tokens, programs, scenes, images, records or
