@@ -63,6 +63,7 @@
 //! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
 
+mod built_in;
 mod check;
 mod constant;
 mod foreign;

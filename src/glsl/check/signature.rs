@@ -1,4 +1,4 @@
-//! The signatures of the built-in functions (§8), parsed from a table in the notation of the specification.
+//! The signatures of the built-in functions (§8), parsed from the notation of the specification.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -171,10 +171,11 @@ impl Pattern {
 }
 
 impl Signature {
-    /// Parses a line of the table.
-    fn parse(line: &str, interner: &Interner) -> Option<(BuiltIn, Self)> {
+    /// Parses a signature of a function.
+    fn parse(line: &str, function: BuiltIn, interner: &Interner) -> Option<Self> {
         let (result, rest) = line.split_once(' ')?;
-        let (name, parameters) = rest.strip_suffix(')')?.split_once('(')?;
+        let parameters = rest.strip_prefix(function.name())?;
+        let parameters = parameters.strip_prefix('(')?.strip_suffix(')')?;
         let mut signature = Self {
             result: Pattern::parse(result, interner)?,
             parameters: Vec::new(),
@@ -195,7 +196,7 @@ impl Signature {
             let word = optional.or(constant).unwrap_or(parameter);
             signature.parameters.push(Pattern::parse(word, interner)?);
         }
-        Some((BuiltIn::named(name)?, signature))
+        Some(signature)
     }
 }
 
@@ -208,244 +209,23 @@ static NAMES: LazyLock<HashMap<&str, BuiltIn>> = LazyLock::new(|| {
 
 static SIGNATURES: LazyLock<HashMap<BuiltIn, Vec<Signature>>> = LazyLock::new(|| {
     let interner = Interner::default();
-    let mut signatures: HashMap<_, Vec<_>> = HashMap::new();
-    for (function, signature) in lines().filter_map(|line| Signature::parse(line, &interner)) {
-        signatures.entry(function).or_default().push(signature);
+    let mut signatures = HashMap::new();
+    for &function in BuiltIn::ALL {
+        let parse = |line: &&str| Signature::parse(line, function, &interner);
+        signatures.insert(function, function.signatures().iter().filter_map(parse).collect());
     }
     signatures
 });
-
-fn lines() -> impl Iterator<Item = &'static str> {
-    TABLE.lines().map(str::trim).filter(|line| !line.is_empty())
-}
-
-// The table of signatures, in the order of §8.
-
-/// One signature per line. `genType` and similar types match a scalar and its vectors, `vec` the vectors
-/// alone, `mat` any matrix, `g` before `sampler` and `vec4` any of the three texel types; each has the same
-/// binding throughout one signature. `[float]` is optional; `const` requires a constant expression. The first
-/// line that matches applies.
-const TABLE: &str = "
-    genType radians(genType)
-    genType degrees(genType)
-    genType sin(genType)
-    genType cos(genType)
-    genType tan(genType)
-    genType asin(genType)
-    genType acos(genType)
-    genType atan(genType, genType)
-    genType atan(genType)
-    genType sinh(genType)
-    genType cosh(genType)
-    genType tanh(genType)
-    genType asinh(genType)
-    genType acosh(genType)
-    genType atanh(genType)
-
-    genType pow(genType, genType)
-    genType exp(genType)
-    genType log(genType)
-    genType exp2(genType)
-    genType log2(genType)
-    genType sqrt(genType)
-    genType inversesqrt(genType)
-
-    genType abs(genType)
-    genIType abs(genIType)
-    genType sign(genType)
-    genIType sign(genIType)
-    genType floor(genType)
-    genType trunc(genType)
-    genType round(genType)
-    genType roundEven(genType)
-    genType ceil(genType)
-    genType fract(genType)
-    genType mod(genType, genType)
-    genType mod(genType, float)
-    genType modf(genType, genType)
-    genType min(genType, genType)
-    genType min(genType, float)
-    genIType min(genIType, genIType)
-    genIType min(genIType, int)
-    genUType min(genUType, genUType)
-    genUType min(genUType, uint)
-    genType max(genType, genType)
-    genType max(genType, float)
-    genIType max(genIType, genIType)
-    genIType max(genIType, int)
-    genUType max(genUType, genUType)
-    genUType max(genUType, uint)
-    genType clamp(genType, genType, genType)
-    genType clamp(genType, float, float)
-    genIType clamp(genIType, genIType, genIType)
-    genIType clamp(genIType, int, int)
-    genUType clamp(genUType, genUType, genUType)
-    genUType clamp(genUType, uint, uint)
-    genType mix(genType, genType, genType)
-    genType mix(genType, genType, float)
-    genType mix(genType, genType, genBType)
-    genType step(genType, genType)
-    genType step(float, genType)
-    genType smoothstep(genType, genType, genType)
-    genType smoothstep(float, float, genType)
-    genBType isnan(genType)
-    genBType isinf(genType)
-    genIType floatBitsToInt(genType)
-    genUType floatBitsToUint(genType)
-    genType intBitsToFloat(genIType)
-    genType uintBitsToFloat(genUType)
-
-    uint packSnorm2x16(vec2)
-    vec2 unpackSnorm2x16(uint)
-    uint packUnorm2x16(vec2)
-    vec2 unpackUnorm2x16(uint)
-    uint packHalf2x16(vec2)
-    vec2 unpackHalf2x16(uint)
-
-    float length(genType)
-    float distance(genType, genType)
-    float dot(genType, genType)
-    vec3 cross(vec3, vec3)
-    genType normalize(genType)
-    genType faceforward(genType, genType, genType)
-    genType reflect(genType, genType)
-    genType refract(genType, genType, float)
-
-    mat matrixCompMult(mat, mat)
-    mat2 outerProduct(vec2, vec2)
-    mat3 outerProduct(vec3, vec3)
-    mat4 outerProduct(vec4, vec4)
-    mat2x3 outerProduct(vec3, vec2)
-    mat3x2 outerProduct(vec2, vec3)
-    mat2x4 outerProduct(vec4, vec2)
-    mat4x2 outerProduct(vec2, vec4)
-    mat3x4 outerProduct(vec4, vec3)
-    mat4x3 outerProduct(vec3, vec4)
-    mat2 transpose(mat2)
-    mat3 transpose(mat3)
-    mat4 transpose(mat4)
-    mat2x3 transpose(mat3x2)
-    mat3x2 transpose(mat2x3)
-    mat2x4 transpose(mat4x2)
-    mat4x2 transpose(mat2x4)
-    mat3x4 transpose(mat4x3)
-    mat4x3 transpose(mat3x4)
-    float determinant(mat2)
-    float determinant(mat3)
-    float determinant(mat4)
-    mat2 inverse(mat2)
-    mat3 inverse(mat3)
-    mat4 inverse(mat4)
-
-    bvec lessThan(vec, vec)
-    bvec lessThan(ivec, ivec)
-    bvec lessThan(uvec, uvec)
-    bvec lessThanEqual(vec, vec)
-    bvec lessThanEqual(ivec, ivec)
-    bvec lessThanEqual(uvec, uvec)
-    bvec greaterThan(vec, vec)
-    bvec greaterThan(ivec, ivec)
-    bvec greaterThan(uvec, uvec)
-    bvec greaterThanEqual(vec, vec)
-    bvec greaterThanEqual(ivec, ivec)
-    bvec greaterThanEqual(uvec, uvec)
-    bvec equal(vec, vec)
-    bvec equal(ivec, ivec)
-    bvec equal(uvec, uvec)
-    bvec equal(bvec, bvec)
-    bvec notEqual(vec, vec)
-    bvec notEqual(ivec, ivec)
-    bvec notEqual(uvec, uvec)
-    bvec notEqual(bvec, bvec)
-    bool any(bvec)
-    bool all(bvec)
-    bvec not(bvec)
-
-    ivec2 textureSize(gsampler2D, int)
-    ivec3 textureSize(gsampler3D, int)
-    ivec2 textureSize(gsamplerCube, int)
-    ivec3 textureSize(gsampler2DArray, int)
-    ivec2 textureSize(sampler2DShadow, int)
-    ivec2 textureSize(samplerCubeShadow, int)
-    ivec3 textureSize(sampler2DArrayShadow, int)
-    gvec4 texture(gsampler2D, vec2, [float])
-    gvec4 texture(gsampler3D, vec3, [float])
-    gvec4 texture(gsamplerCube, vec3, [float])
-    gvec4 texture(gsampler2DArray, vec3, [float])
-    float texture(sampler2DShadow, vec3, [float])
-    float texture(samplerCubeShadow, vec4, [float])
-    float texture(sampler2DArrayShadow, vec4)
-    gvec4 textureProj(gsampler2D, vec3, [float])
-    gvec4 textureProj(gsampler2D, vec4, [float])
-    gvec4 textureProj(gsampler3D, vec4, [float])
-    float textureProj(sampler2DShadow, vec4, [float])
-    gvec4 textureLod(gsampler2D, vec2, float)
-    gvec4 textureLod(gsampler3D, vec3, float)
-    gvec4 textureLod(gsamplerCube, vec3, float)
-    gvec4 textureLod(gsampler2DArray, vec3, float)
-    float textureLod(sampler2DShadow, vec3, float)
-    gvec4 textureOffset(gsampler2D, vec2, const ivec2, [float])
-    gvec4 textureOffset(gsampler3D, vec3, const ivec3, [float])
-    gvec4 textureOffset(gsampler2DArray, vec3, const ivec2, [float])
-    float textureOffset(sampler2DShadow, vec3, const ivec2, [float])
-    gvec4 texelFetch(gsampler2D, ivec2, int)
-    gvec4 texelFetch(gsampler3D, ivec3, int)
-    gvec4 texelFetch(gsampler2DArray, ivec3, int)
-    gvec4 texelFetchOffset(gsampler2D, ivec2, int, const ivec2)
-    gvec4 texelFetchOffset(gsampler3D, ivec3, int, const ivec3)
-    gvec4 texelFetchOffset(gsampler2DArray, ivec3, int, const ivec2)
-    gvec4 textureProjOffset(gsampler2D, vec3, const ivec2, [float])
-    gvec4 textureProjOffset(gsampler2D, vec4, const ivec2, [float])
-    gvec4 textureProjOffset(gsampler3D, vec4, const ivec3, [float])
-    float textureProjOffset(sampler2DShadow, vec4, const ivec2, [float])
-    gvec4 textureLodOffset(gsampler2D, vec2, float, const ivec2)
-    gvec4 textureLodOffset(gsampler3D, vec3, float, const ivec3)
-    gvec4 textureLodOffset(gsampler2DArray, vec3, float, const ivec2)
-    float textureLodOffset(sampler2DShadow, vec3, float, const ivec2)
-    gvec4 textureProjLod(gsampler2D, vec3, float)
-    gvec4 textureProjLod(gsampler2D, vec4, float)
-    gvec4 textureProjLod(gsampler3D, vec4, float)
-    float textureProjLod(sampler2DShadow, vec4, float)
-    gvec4 textureProjLodOffset(gsampler2D, vec3, float, const ivec2)
-    gvec4 textureProjLodOffset(gsampler2D, vec4, float, const ivec2)
-    gvec4 textureProjLodOffset(gsampler3D, vec4, float, const ivec3)
-    float textureProjLodOffset(sampler2DShadow, vec4, float, const ivec2)
-    gvec4 textureGrad(gsampler2D, vec2, vec2, vec2)
-    gvec4 textureGrad(gsampler3D, vec3, vec3, vec3)
-    gvec4 textureGrad(gsamplerCube, vec3, vec3, vec3)
-    gvec4 textureGrad(gsampler2DArray, vec3, vec2, vec2)
-    float textureGrad(sampler2DShadow, vec3, vec2, vec2)
-    float textureGrad(samplerCubeShadow, vec4, vec3, vec3)
-    float textureGrad(sampler2DArrayShadow, vec4, vec2, vec2)
-    gvec4 textureGradOffset(gsampler2D, vec2, vec2, vec2, const ivec2)
-    gvec4 textureGradOffset(gsampler3D, vec3, vec3, vec3, const ivec3)
-    gvec4 textureGradOffset(gsampler2DArray, vec3, vec2, vec2, const ivec2)
-    float textureGradOffset(sampler2DShadow, vec3, vec2, vec2, const ivec2)
-    float textureGradOffset(sampler2DArrayShadow, vec4, vec2, vec2, const ivec2)
-    gvec4 textureProjGrad(gsampler2D, vec3, vec2, vec2)
-    gvec4 textureProjGrad(gsampler2D, vec4, vec2, vec2)
-    gvec4 textureProjGrad(gsampler3D, vec4, vec3, vec3)
-    float textureProjGrad(sampler2DShadow, vec4, vec2, vec2)
-    gvec4 textureProjGradOffset(gsampler2D, vec3, vec2, vec2, const ivec2)
-    gvec4 textureProjGradOffset(gsampler2D, vec4, vec2, vec2, const ivec2)
-    gvec4 textureProjGradOffset(gsampler3D, vec4, vec3, vec3, const ivec3)
-    float textureProjGradOffset(sampler2DShadow, vec4, vec2, vec2, const ivec2)
-
-    genType dFdx(genType)
-    genType dFdy(genType)
-    genType fwidth(genType)
-";
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_row_parses_and_every_function_has_a_signature() {
-        let read: usize = SIGNATURES.values().map(Vec::len).sum();
-        assert_eq!(read, lines().count());
+    fn every_signature_parses() {
         for function in BuiltIn::ALL {
-            assert!(SIGNATURES.contains_key(function), "{}", function.name());
+            let signatures = function.signatures();
+            assert_eq!(SIGNATURES[function].len(), signatures.len(), "{signatures:?}");
         }
     }
 

@@ -13,7 +13,6 @@
 //! of `,`, and of postfix `.x`, `[i]`) may be thousands deep: traverse it with a loop, or any expression with
 //! [`Tree::postorder`], which does not recurse. `else if` chains are flat.
 
-mod builtin;
 mod expr;
 mod item;
 mod types;
@@ -28,7 +27,8 @@ use std::ops::{Index, IndexMut};
 pub use toyproof_diagnostic::Place;
 pub use toyproof_image::{Input, InputType};
 
-pub use self::builtin::BuiltIn;
+pub use crate::built_in::{BuiltIn, Definition, ExactDefinition, Instruction, Wgsl};
+
 pub use self::expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
 pub use self::item::{
     Arm, Block, BuiltInVariable, Case, Condition, Direction, Function, FunctionId, Item, Label, Statement,

@@ -121,7 +121,8 @@ fn inexact_value(tree: &Tree, id: ExprId, operands: &[Option<Constant>]) -> Opti
 pub(crate) fn function_of_floats(function: BuiltIn, ty: Type, arguments: &[Vec<f32>]) -> Option<Vec<f32>> {
     if !InexactFunction::of(function, arguments.len())?
         .definition
-        .is_componentwise()
+        .argument_count()
+        .is_some()
     {
         let results = computed(arguments, |terms| of_terms(function, terms));
         return (!results.is_empty()).then_some(results);

@@ -8,12 +8,12 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
-    BinaryOp, Constructor, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
+    BinaryOp, Constructor, Definition, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
     StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
 };
 use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 
-use crate::inexact::{Definition, InexactFunction};
+use crate::inexact::InexactFunction;
 use crate::lower::context::LoweringContext;
 use crate::lower::generated::Expansion;
 use crate::lower::lookup::{self, lookup_function};
@@ -215,7 +215,7 @@ fn componentwise_function(
 fn is_componentwise(expansion: Expansion, arguments: usize) -> bool {
     match expansion {
         Expansion::Function(function) => InexactFunction::of(function, arguments)
-            .is_some_and(|function| function.definition.is_componentwise()),
+            .is_some_and(|function| function.definition.argument_count().is_some()),
         Expansion::UintToFloat => true,
         Expansion::Product | Expansion::Lookup { .. } | Expansion::LevelOfDetail | Expansion::Projection => {
             false
@@ -275,7 +275,7 @@ fn components(ty: Type, name: &str) -> Vec<String> {
 }
 
 /// The components of the result of a function.
-pub(super) fn apply<'a>(definition: Definition<'a>, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
+pub(super) fn apply<'a>(definition: Definition, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
     match (definition, arguments) {
         (Definition::Unary(function), [a]) => vec![function(a[0])],
         (Definition::Binary(function), [a, b]) => vec![function(a[0], b[0])],

@@ -1,6 +1,6 @@
 //! Built-in functions: most have the same name in WGSL, some are operators there, few are missing.
 
-use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, SamplerShape, Scalar, Type, VariableKind};
+use toyproof_glsl::tree::{BuiltIn, ExprId, ExprKind, SamplerShape, Scalar, Type, VariableKind, Wgsl};
 
 use super::Unprintable;
 use super::style::Style;
@@ -22,16 +22,7 @@ impl Writer<'_> {
         let texts = self.values(arguments);
         self.suffixed = outer;
         let mut texts = texts?;
-        let relation = match function {
-            B::LessThan => Some(BinaryOp::Less),
-            B::LessThanEqual => Some(BinaryOp::LessEqual),
-            B::GreaterThan => Some(BinaryOp::Greater),
-            B::GreaterThanEqual => Some(BinaryOp::GreaterEqual),
-            B::Equal => Some(BinaryOp::Equal),
-            B::NotEqual => Some(BinaryOp::NotEqual),
-            _ => None,
-        };
-        if let Some(op) = relation {
+        if let Wgsl::Operator(op) = function.wgsl() {
             // WGSL compares vectors component by component, like numbers.
             let code: Vec<_> = texts.into_iter().map(Text::term).collect();
             return Ok(Text {
@@ -40,50 +31,35 @@ impl Writer<'_> {
             });
         }
         self.uses_derivatives |= function.is_derivative();
-        let name = match function {
-            B::Mod => return self.modulo(texts, ty, types.last().copied().unwrap_or(ty)),
-            B::Not => {
+        let name = match (function, function.wgsl()) {
+            (B::Mod, _) => return self.modulo(texts, ty, types.last().copied().unwrap_or(ty)),
+            (B::Not, _) => {
                 let operand = texts.pop().ok_or(Unprintable::Construct("this call"))?.operand();
                 return Ok(Text {
                     code: format!("!{operand}"),
                     class: Class::Unary,
                 });
             }
-            B::Atan if texts.len() == 2 => "atan2",
-            B::InverseSqrt => "inverseSqrt",
-            B::RoundEven | B::Round => "round",
-            B::Faceforward => "faceForward",
-            B::DFdx => "dpdx",
-            B::DFdy if self.style.is_upside_down(self.cx.stage) => {
+            (B::Atan, _) if texts.len() == 2 => "atan2",
+            (B::DFdy, _) if self.style.is_upside_down(self.cx.stage) => {
                 let operand = Self::list(texts);
                 return Ok(Text {
                     code: format!("-dpdy({operand})"),
                     class: Class::Unary,
                 });
             }
-            B::DFdy => "dpdy",
-            B::Mix if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => "select",
-            B::FloatBitsToInt | B::FloatBitsToUint | B::IntBitsToFloat | B::UintBitsToFloat => {
+            (B::DFdy, _) => "dpdy",
+            (B::Mix, _) if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => "select",
+            (_, Wgsl::Bitcast) => {
                 let name = self.type_name(ty);
                 return Ok(Text::primary(format!("bitcast<{name}>({})", Self::list(texts))));
             }
-            B::PackSnorm2x16 => "pack2x16snorm",
-            B::PackUnorm2x16 => "pack2x16unorm",
-            B::PackHalf2x16 => "pack2x16float",
-            B::UnpackSnorm2x16 => "unpack2x16snorm",
-            B::UnpackUnorm2x16 => "unpack2x16unorm",
-            B::UnpackHalf2x16 => "unpack2x16float",
-            B::Modf | B::IsNan | B::IsInf | B::Inverse | B::OuterProduct | B::MatrixCompMult => {
-                return Err(Unprintable::Construct("this built-in function"));
-            }
-            other => other.name(),
+            (_, Wgsl::Missing) => return Err(Unprintable::Construct("this built-in function")),
+            (_, Wgsl::Named(name)) => name,
+            (other, _) => other.name(),
         };
-        // GLSL accepts a scalar in place of a vector here; WGSL does not, except as the last argument of
-        // `mix`.
-        let splats = matches!(
-            function,
-            B::Min | B::Max | B::Clamp | B::Step | B::Smoothstep | B::Mix
-        );
+        // WGSL does not extend scalars to vectors, except in the last argument of `mix`.
+        let splats = function == B::Mix || function.wgsl() == Wgsl::Splat;
         if let (true, Type::Vector(..)) = (splats, ty) {
             let vector = self.type_name(ty);
             let last = texts.len() - 1;
