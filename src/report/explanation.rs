@@ -1,9 +1,8 @@
-//! The explanations of diagnostic codes and of mistakes, from the pages that document them, and of terms.
+//! The explanations of diagnostic codes, of mistakes, and of terms.
 
 use std::borrow::Cow;
 
-/// The page of diagnostics: a section for each code.
-const DIAGNOSTICS: &str = include_str!("../../docs/guide/diagnostics.md");
+use toyproof_diagnostic::Code;
 
 /// The page of mistakes: a row of a table for each.
 const MISTAKES: &str = include_str!("../../docs/guide/mistakes.md");
@@ -141,7 +140,7 @@ pub(super) const TERMS: [(&str, &str, &str); 22] = [
     ),
 ];
 
-/// Returns all explanations: of codes and mistakes in the order of their pages, then of terms.
+/// Returns all explanations: of codes in numerical order, of mistakes in the order of their page, then of terms.
 pub fn explanations() -> impl Iterator<Item = Explanation> {
     let terms = TERMS.iter().map(|&(code, _, title)| Explanation {
         code,
@@ -157,16 +156,11 @@ pub fn explain(code: &str) -> Option<Explanation> {
     explanations().find(|explanation| explanation.code.eq_ignore_ascii_case(code))
 }
 
-/// The sections `CODE: title`.
 fn diagnostics() -> impl Iterator<Item = Explanation> {
-    DIAGNOSTICS.split(HEADING).skip(1).filter_map(|section| {
-        let (heading, text) = section.split_once('\n')?;
-        let (code, title) = heading.split_once(": ")?;
-        Some(Explanation {
-            code,
-            title,
-            text: text.trim().into(),
-        })
+    Code::ALL.iter().map(|code| Explanation {
+        code: code.as_str(),
+        title: code.title(),
+        text: code.explanation().into(),
     })
 }
 
@@ -198,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_section_ends_where_the_next_begins() {
+    fn codes_are_found_in_any_case() {
         let explanation = explain("e0402").unwrap();
         assert_eq!(explanation.code, "E0402");
         assert_eq!(explanation.title, "A `const` without a value");
@@ -208,13 +202,6 @@ mod tests {
             explanation.text
         );
         assert_eq!(explain("E0"), None);
-    }
-
-    #[test]
-    fn headings_are_sorted_codes() {
-        let codes: Vec<_> = diagnostics().map(|explanation| explanation.code).collect();
-        assert_eq!(codes.len(), DIAGNOSTICS.matches(HEADING).count());
-        assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
     }
 
     #[test]

@@ -19,6 +19,7 @@ pub mod faults;
 pub mod generate;
 pub mod interpreter;
 pub mod judge;
+pub mod pages;
 pub mod rewrites;
 pub mod wait;
 

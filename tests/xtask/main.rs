@@ -23,6 +23,8 @@ use clap::Parser;
 enum Task {
     /// Write the expected texts of the tests anew; read the difference before you commit it
     Bless,
+    /// Write the pages of the guide that are generated from the texts beside the code
+    Docs,
     /// Print the name of each planted fault, as in `tests/suite/fault_names.txt`
     FaultNames {
         /// Only exercises whose names contain this
@@ -127,6 +129,11 @@ enum Task {
 fn main() -> ExitCode {
     match Task::parse() {
         Task::Bless => return bless(),
+        Task::Docs => {
+            for (path, page) in toyproof_testkit::pages::generated() {
+                std::fs::write(path, page).expect("the page can be written");
+            }
+        }
         Task::FaultNames { exercise } => faults::print_names(&exercise),
         Task::FaultPairs { exercise } => faults::print_pairs(&exercise),
         Task::Sensitivity => sensitivity::print_table(),
