@@ -92,18 +92,18 @@ impl Definition {
     }
 }
 
-const fn extended(name: &'static str, definition: Definition) -> ExactDefinition {
-    let instruction = Instruction::Extended(name);
+/// A function of `GLSL.std.450`.
+const fn ext(name: &'static str, definition: Definition) -> ExactDefinition {
     ExactDefinition {
-        instruction,
+        instruction: Instruction::Extended(name),
         definition,
     }
 }
 
+/// A core instruction.
 const fn core(name: &'static str, definition: Definition) -> ExactDefinition {
-    let instruction = Instruction::Core(name);
     ExactDefinition {
-        instruction,
+        instruction: Instruction::Core(name),
         definition,
     }
 }

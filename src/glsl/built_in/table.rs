@@ -7,7 +7,7 @@ use toyproof_math::{self as math, FloatTerm, Matrix};
 use super::ConstantFunction::{Booleans, Float, Float2, OfMatrix, OfVectors, Scalars};
 use super::Definition::{Binary, Glsl, Ternary, Unary, Vectors};
 use super::Wgsl::{Bitcast, Missing, Named, Operator, Special, Splat};
-use super::{Row, constant, core, extended};
+use super::{Row, constant, core, ext};
 use crate::tree::{BinaryOp, Value};
 
 fn cross<'a>(a: &[FloatTerm<'a>], b: &[FloatTerm<'a>]) -> Vec<FloatTerm<'a>> {
@@ -16,6 +16,23 @@ fn cross<'a>(a: &[FloatTerm<'a>], b: &[FloatTerm<'a>]) -> Vec<FloatTerm<'a>> {
 
 fn square<'a>(components: &[FloatTerm<'a>]) -> Matrix<FloatTerm<'a>> {
     Matrix::new(components, components.len().isqrt())
+}
+
+// Functions of `math`, for terms of any lifetime.
+macro_rules! unary {
+    ($function:ident) => {
+        Unary(|x| math::$function(x))
+    };
+}
+macro_rules! binary {
+    ($function:ident) => {
+        Binary(|x, y| math::$function(x, y))
+    };
+}
+macro_rules! ternary {
+    ($function:ident) => {
+        Ternary(|x, y, z| math::$function(x, y, z))
+    };
 }
 
 macro_rules! built_ins {
@@ -48,100 +65,46 @@ built_ins! {
     // §8.1 Angle and trigonometry
     Radians ["genType radians(genType)"] {
         constant: Float(f64::to_radians),
-        exact: &[extended("Radians", Unary(|x| math::radians(x)))],
+        exact: &[ext("Radians", unary!(radians))],
     },
     Degrees ["genType degrees(genType)"] {
         constant: Float(f64::to_degrees),
-        exact: &[extended("Degrees", Unary(|x| math::degrees(x)))],
+        exact: &[ext("Degrees", unary!(degrees))],
     },
-    Sin ["genType sin(genType)"] {
-        constant: Float(libm::sin),
-        exact: &[extended("Sin", Unary(|x| math::sin(x)))],
-    },
-    Cos ["genType cos(genType)"] {
-        constant: Float(libm::cos),
-        exact: &[extended("Cos", Unary(|x| math::cos(x)))],
-    },
-    Tan ["genType tan(genType)"] {
-        constant: Float(libm::tan),
-        exact: &[extended("Tan", Unary(|x| math::tan(x)))],
-    },
-    Asin ["genType asin(genType)"] {
-        constant: Float(libm::asin),
-        exact: &[extended("Asin", Unary(|x| math::asin(x)))],
-    },
-    Acos ["genType acos(genType)"] {
-        constant: Float(libm::acos),
-        exact: &[extended("Acos", Unary(|x| math::acos(x)))],
-    },
-    Atan [
-        "genType atan(genType, genType)",
-        "genType atan(genType)",
-    ] {
+    Sin ["genType sin(genType)"] { constant: Float(libm::sin), exact: &[ext("Sin", unary!(sin))] },
+    Cos ["genType cos(genType)"] { constant: Float(libm::cos), exact: &[ext("Cos", unary!(cos))] },
+    Tan ["genType tan(genType)"] { constant: Float(libm::tan), exact: &[ext("Tan", unary!(tan))] },
+    Asin ["genType asin(genType)"] { constant: Float(libm::asin), exact: &[ext("Asin", unary!(asin))] },
+    Acos ["genType acos(genType)"] { constant: Float(libm::acos), exact: &[ext("Acos", unary!(acos))] },
+    Atan ["genType atan(genType, genType)", "genType atan(genType)"] {
         constant: Scalars(constant::atan),
         wgsl: Special,
-        exact: &[extended("Atan", Unary(|x| math::atan(x))), extended("Atan2", Binary(|x, y| math::atan2(x, y)))],
+        exact: &[ext("Atan", unary!(atan)), ext("Atan2", binary!(atan2))],
     },
-    Sinh ["genType sinh(genType)"] {
-        constant: Float(libm::sinh),
-        exact: &[extended("Sinh", Unary(|x| math::sinh(x)))],
-    },
-    Cosh ["genType cosh(genType)"] {
-        constant: Float(libm::cosh),
-        exact: &[extended("Cosh", Unary(|x| math::cosh(x)))],
-    },
-    Tanh ["genType tanh(genType)"] {
-        constant: Float(libm::tanh),
-        exact: &[extended("Tanh", Unary(|x| math::tanh(x)))],
-    },
-    Asinh ["genType asinh(genType)"] {
-        constant: Float(libm::asinh),
-        exact: &[extended("Asinh", Unary(|x| math::asinh(x)))],
-    },
-    Acosh ["genType acosh(genType)"] {
-        constant: Float(libm::acosh),
-        exact: &[extended("Acosh", Unary(|x| math::acosh(x)))],
-    },
-    Atanh ["genType atanh(genType)"] {
-        constant: Float(libm::atanh),
-        exact: &[extended("Atanh", Unary(|x| math::atanh(x)))],
-    },
+    Sinh ["genType sinh(genType)"] { constant: Float(libm::sinh), exact: &[ext("Sinh", unary!(sinh))] },
+    Cosh ["genType cosh(genType)"] { constant: Float(libm::cosh), exact: &[ext("Cosh", unary!(cosh))] },
+    Tanh ["genType tanh(genType)"] { constant: Float(libm::tanh), exact: &[ext("Tanh", unary!(tanh))] },
+    Asinh ["genType asinh(genType)"] { constant: Float(libm::asinh), exact: &[ext("Asinh", unary!(asinh))] },
+    Acosh ["genType acosh(genType)"] { constant: Float(libm::acosh), exact: &[ext("Acosh", unary!(acosh))] },
+    Atanh ["genType atanh(genType)"] { constant: Float(libm::atanh), exact: &[ext("Atanh", unary!(atanh))] },
     // §8.2 Exponential
     Pow ["genType pow(genType, genType)"] {
         constant: Scalars(constant::pow),
-        exact: &[extended("Pow", Binary(|x, y| math::pow(x, y)))],
+        exact: &[ext("Pow", binary!(pow))],
     },
-    Exp ["genType exp(genType)"] {
-        constant: Float(libm::exp),
-        exact: &[extended("Exp", Unary(|x| math::exp(x)))],
-    },
-    Log ["genType log(genType)"] {
-        constant: Float(libm::log),
-        exact: &[extended("Log", Unary(|x| math::log(x)))],
-    },
-    Exp2 ["genType exp2(genType)"] {
-        constant: Float(libm::exp2),
-        exact: &[extended("Exp2", Unary(|x| math::exp2(x)))],
-    },
-    Log2 ["genType log2(genType)"] {
-        constant: Float(libm::log2),
-        exact: &[extended("Log2", Unary(|x| math::log2(x)))],
-    },
+    Exp ["genType exp(genType)"] { constant: Float(libm::exp), exact: &[ext("Exp", unary!(exp))] },
+    Log ["genType log(genType)"] { constant: Float(libm::log), exact: &[ext("Log", unary!(log))] },
+    Exp2 ["genType exp2(genType)"] { constant: Float(libm::exp2), exact: &[ext("Exp2", unary!(exp2))] },
+    Log2 ["genType log2(genType)"] { constant: Float(libm::log2), exact: &[ext("Log2", unary!(log2))] },
     Sqrt ["genType sqrt(genType)"] { constant: Float(f64::sqrt) },
     InverseSqrt ["genType inversesqrt(genType)"] {
         constant: Float(|x| 1.0 / x.sqrt()),
         wgsl: Named("inverseSqrt"),
-        exact: &[extended("InverseSqrt", Unary(|x| math::inverse_sqrt(x)))],
+        exact: &[ext("InverseSqrt", unary!(inverse_sqrt))],
     },
     // §8.3 Common
-    Abs [
-        "genType abs(genType)",
-        "genIType abs(genIType)",
-    ] { constant: Scalars(constant::abs) },
-    Sign [
-        "genType sign(genType)",
-        "genIType sign(genIType)",
-    ] { constant: Scalars(constant::sign) },
+    Abs ["genType abs(genType)", "genIType abs(genIType)"] { constant: Scalars(constant::abs) },
+    Sign ["genType sign(genType)", "genIType sign(genIType)"] { constant: Scalars(constant::sign) },
     Floor ["genType floor(genType)"] { constant: Float(f64::floor) },
     Trunc ["genType trunc(genType)"] { constant: Float(f64::trunc) },
     Round ["genType round(genType)"] { constant: Float(f64::round) },
@@ -149,15 +112,12 @@ built_ins! {
     Ceil ["genType ceil(genType)"] { constant: Float(f64::ceil) },
     Fract ["genType fract(genType)"] {
         constant: Float(|x| x - x.floor()),
-        exact: &[extended("Fract", Unary(|x| math::fract(x)))],
+        exact: &[ext("Fract", unary!(fract))],
     },
-    Mod [
-        "genType mod(genType, genType)",
-        "genType mod(genType, float)",
-    ] {
+    Mod ["genType mod(genType, genType)", "genType mod(genType, float)"] {
         constant: Float2(|x, y| x - y * (x / y).floor()),
         wgsl: Special,
-        exact: &[core("FMod", Binary(|x, y| math::modulo(x, y)))],
+        exact: &[core("FMod", binary!(modulo))],
     },
     Modf ["genType modf(genType, genType)"] { wgsl: Missing },
     Min [
@@ -188,18 +148,11 @@ built_ins! {
         "genType mix(genType, genType, genType)",
         "genType mix(genType, genType, float)",
         "genType mix(genType, genType, genBType)",
-    ] {
-        constant: Scalars(constant::mix),
-        wgsl: Special,
-        exact: &[extended("FMix", Ternary(|x, y, z| math::mix(x, y, z)))],
-    },
-    Step [
-        "genType step(genType, genType)",
-        "genType step(float, genType)",
-    ] {
+    ] { constant: Scalars(constant::mix), wgsl: Special, exact: &[ext("FMix", ternary!(mix))] },
+    Step ["genType step(genType, genType)", "genType step(float, genType)"] {
         constant: Float2(|edge, x| f64::from(u8::from(x >= edge))),
         wgsl: Splat,
-        exact: &[extended("Step", Binary(|x, y| math::step(x, y)))],
+        exact: &[ext("Step", binary!(step))],
     },
     Smoothstep [
         "genType smoothstep(genType, genType, genType)",
@@ -207,7 +160,7 @@ built_ins! {
     ] {
         constant: Scalars(constant::smoothstep),
         wgsl: Splat,
-        exact: &[extended("SmoothStep", Ternary(|x, y, z| math::smoothstep(x, y, z)))],
+        exact: &[ext("SmoothStep", ternary!(smoothstep))],
     },
     IsNan ["genBType isnan(genType)"] {
         constant: Scalars(|x| Some(Value::Bool(constant::float(x)?.is_nan()))),
@@ -237,7 +190,7 @@ built_ins! {
     PackSnorm2x16 ["uint packSnorm2x16(vec2)"] { wgsl: Named("pack2x16snorm") },
     UnpackSnorm2x16 ["vec2 unpackSnorm2x16(uint)"] {
         wgsl: Named("unpack2x16snorm"),
-        exact: &[extended("UnpackSnorm2x16", Glsl(
+        exact: &[ext("UnpackSnorm2x16", Glsl(
             "return vec2(max(float(int(toyproof_a << 16u) >> 16u) / 32767.0, -1.0), \
             max(float(int(toyproof_a) >> 16u) / 32767.0, -1.0));",
         ))],
@@ -245,25 +198,25 @@ built_ins! {
     PackUnorm2x16 ["uint packUnorm2x16(vec2)"] { wgsl: Named("pack2x16unorm") },
     UnpackUnorm2x16 ["vec2 unpackUnorm2x16(uint)"] {
         wgsl: Named("unpack2x16unorm"),
-        exact: &[extended("UnpackUnorm2x16", Glsl(
+        exact: &[ext("UnpackUnorm2x16", Glsl(
             "return vec2(float(int(toyproof_a & 65535u)) / 65535.0, float(int(toyproof_a >> 16u)) / 65535.0);",
         ))],
     },
     PackHalf2x16 ["uint packHalf2x16(vec2)"] { wgsl: Named("pack2x16float") },
     UnpackHalf2x16 ["vec2 unpackHalf2x16(uint)"] {
         wgsl: Named("unpack2x16float"),
-        exact: &[extended("UnpackHalf2x16", Glsl(
+        exact: &[ext("UnpackHalf2x16", Glsl(
             "return vec2(unpackHalf2x16(toyproof_a).x, unpackHalf2x16(toyproof_a >> 16u).x);",
         ))],
     },
     // §8.5 Geometric
     Length ["float length(genType)"] {
         constant: OfVectors(constant::length),
-        exact: &[extended("Length", Vectors(|a| vec![math::length(&a[0])]))],
+        exact: &[ext("Length", Vectors(|a| vec![math::length(&a[0])]))],
     },
     Distance ["float distance(genType, genType)"] {
         constant: OfVectors(constant::distance),
-        exact: &[extended("Distance", Vectors(|a| vec![math::distance(&a[0], &a[1])]))],
+        exact: &[ext("Distance", Vectors(|a| vec![math::distance(&a[0], &a[1])]))],
     },
     Dot ["float dot(genType, genType)"] {
         constant: OfVectors(constant::dot_product),
@@ -271,24 +224,24 @@ built_ins! {
     },
     Cross ["vec3 cross(vec3, vec3)"] {
         constant: OfVectors(constant::cross),
-        exact: &[extended("Cross", Vectors(|a| cross(&a[0], &a[1])))],
+        exact: &[ext("Cross", Vectors(|a| cross(&a[0], &a[1])))],
     },
     Normalize ["genType normalize(genType)"] {
         constant: OfVectors(constant::normalize),
-        exact: &[extended("Normalize", Vectors(|a| math::normalize(&a[0])))],
+        exact: &[ext("Normalize", Vectors(|a| math::normalize(&a[0])))],
     },
     Faceforward ["genType faceforward(genType, genType, genType)"] {
         constant: OfVectors(constant::faceforward),
         wgsl: Named("faceForward"),
-        exact: &[extended("FaceForward", Vectors(|a| math::faceforward(&a[0], &a[1], &a[2])))],
+        exact: &[ext("FaceForward", Vectors(|a| math::faceforward(&a[0], &a[1], &a[2])))],
     },
     Reflect ["genType reflect(genType, genType)"] {
         constant: OfVectors(constant::reflect),
-        exact: &[extended("Reflect", Vectors(|a| math::reflect(&a[0], &a[1])))],
+        exact: &[ext("Reflect", Vectors(|a| math::reflect(&a[0], &a[1])))],
     },
     Refract ["genType refract(genType, genType, float)"] {
         constant: OfVectors(constant::refract),
-        exact: &[extended("Refract", Vectors(|a| math::refract(&a[0], &a[1], a[2][0])))],
+        exact: &[ext("Refract", Vectors(|a| math::refract(&a[0], &a[1], a[2][0])))],
     },
     // §8.6 Matrix
     MatrixCompMult ["mat matrixCompMult(mat, mat)"] { constant: Float2(|a, b| a * b), wgsl: Missing },
@@ -314,22 +267,14 @@ built_ins! {
         "mat3x4 transpose(mat4x3)",
         "mat4x3 transpose(mat3x4)",
     ] { constant: OfMatrix(constant::transpose) },
-    Determinant [
-        "float determinant(mat2)",
-        "float determinant(mat3)",
-        "float determinant(mat4)",
-    ] {
+    Determinant ["float determinant(mat2)", "float determinant(mat3)", "float determinant(mat4)"] {
         constant: OfMatrix(|m, rows| vec![math::determinant(&math::Matrix::new(m, rows))]),
-        exact: &[extended("Determinant", Vectors(|a| vec![math::determinant(&square(&a[0]))]))],
+        exact: &[ext("Determinant", Vectors(|a| vec![math::determinant(&square(&a[0]))]))],
     },
-    Inverse [
-        "mat2 inverse(mat2)",
-        "mat3 inverse(mat3)",
-        "mat4 inverse(mat4)",
-    ] {
+    Inverse ["mat2 inverse(mat2)", "mat3 inverse(mat3)", "mat4 inverse(mat4)"] {
         constant: OfMatrix(|m, rows| math::inverse(&math::Matrix::new(m, rows)).components()),
         wgsl: Missing,
-        exact: &[extended("MatrixInverse", Vectors(|a| math::inverse(&square(&a[0])).components()))],
+        exact: &[ext("MatrixInverse", Vectors(|a| math::inverse(&square(&a[0])).components()))],
     },
     // §8.7 Vector relational
     LessThan [
