@@ -3,12 +3,7 @@
 use std::borrow::Cow;
 
 use toyproof_diagnostic::Code;
-
-/// The page of mistakes: a row of a table for each.
-const MISTAKES: &str = include_str!("../../docs/guide/mistakes.md");
-
-/// The start of a section.
-const HEADING: &str = "\n## ";
+use toyproof_explain::known::documentation;
 
 /// The explanation of a diagnostic code, of a mistake or of a term.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -140,7 +135,7 @@ pub(super) const TERMS: [(&str, &str, &str); 22] = [
     ),
 ];
 
-/// Returns all explanations: of codes in numerical order, of mistakes in the order of their page, then of terms.
+/// Returns all explanations: of codes in numerical order, of mistakes by topic, then of terms.
 pub fn explanations() -> impl Iterator<Item = Explanation> {
     let terms = TERMS.iter().map(|&(code, _, title)| Explanation {
         code,
@@ -164,26 +159,16 @@ fn diagnostics() -> impl Iterator<Item = Explanation> {
     })
 }
 
-/// The rows `| name | mistake | how to fix it |` of all tables, with the introduction of their section.
 fn mistakes() -> impl Iterator<Item = Explanation> {
-    MISTAKES.split(HEADING).skip(1).flat_map(|section| {
-        let introduction = section.split_once('\n').map_or("", |(_, text)| text);
-        let introduction = introduction.split("\n|").next().unwrap_or_default().trim();
-        section.lines().filter_map(move |line| {
-            let cells: Vec<_> = line.strip_prefix('|')?.strip_suffix('|')?.split('|').collect();
-            let [name, title, fix] = cells[..] else {
-                return None;
-            };
-            let code = name.trim().strip_prefix('`')?.strip_suffix('`')?;
-            Some(Explanation {
-                code,
-                title: title.trim(),
-                text: format!("How to fix it: {}\n\n{introduction}", fix.trim())
-                    .trim_end()
-                    .to_owned()
-                    .into(),
-            })
-        })
+    documentation::all().map(|mistake| Explanation {
+        code: mistake.id,
+        title: mistake.form,
+        text: format!(
+            "How to fix it: {}\n\n{}",
+            mistake.fix,
+            mistake.topic.introduction()
+        )
+        .into(),
     })
 }
 
@@ -205,10 +190,9 @@ mod tests {
     }
 
     #[test]
-    fn every_row_of_the_mistakes_is_explained_once() {
-        let mut codes: Vec<_> = mistakes().map(|explanation| explanation.code).collect();
-        let rows = MISTAKES.lines().filter(|line| line.starts_with("| `")).count();
-        assert!(codes.len() == rows && rows > 100, "{} of {rows}", codes.len());
+    fn every_explanation_has_its_own_code() {
+        let mut codes: Vec<_> = explanations().map(|explanation| explanation.code).collect();
+        assert!(mistakes().count() > 100);
         codes.sort_unstable();
         assert!(codes.windows(2).all(|pair| pair[0] != pair[1]), "{codes:?}");
         assert!(explain("far-root").unwrap().text.starts_with("How to fix it: "));

@@ -48,7 +48,7 @@ impl Difference {
         Self::ColorCurve,
     ];
 
-    /// The id, under which `docs/guide/mistakes.md` lists it.
+    /// The id, under which the guide lists it.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {

@@ -5,10 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use toyproof::diagnostic::Code;
+use toyproof::explain::known::documentation::{self, Topic};
 
 /// The generated pages: each with its file and the page as it should be.
 pub fn generated() -> Vec<(PathBuf, String)> {
-    vec![page("docs/guide/diagnostics.md", &diagnostics())]
+    vec![
+        page("docs/guide/diagnostics.md", &diagnostics()),
+        page("docs/guide/mistakes.md", &mistakes()),
+    ]
 }
 
 fn page(path: &str, sections: &str) -> (PathBuf, String) {
@@ -25,6 +29,21 @@ fn diagnostics() -> String {
     let sections = Code::ALL.iter().map(|code| {
         let (title, text) = (code.title(), code.explanation());
         format!("## {code}: {title}\n\n{text}\n")
+    });
+    sections.collect::<Vec<_>>().join("\n")
+}
+
+/// A section for each topic, with a table of its mistakes.
+fn mistakes() -> String {
+    let sections = Topic::ALL.iter().map(|&topic| {
+        let rows = documentation::all().filter(|mistake| mistake.topic == topic);
+        let rows = rows.map(|mistake| format!("| `{}` | {} | {} |\n", mistake.id, mistake.form, mistake.fix));
+        format!(
+            "## {}\n\n{}\n\n| id | mistake | how to fix it |\n|---|---|---|\n{}",
+            topic.title(),
+            topic.introduction(),
+            rows.collect::<String>()
+        )
     });
     sections.collect::<Vec<_>>().join("\n")
 }

@@ -8,8 +8,33 @@ use toyproof_scene::{FrameTime, Model, Projection, Scene, Shape};
 
 use super::KnownMistake;
 use super::change::place;
+use crate::known::documented::{Documented, documented};
 use crate::known::mutant::{Mutant, MutantSource};
 use crate::known::thumbnail::{WrongImage, differs, max_unexplained};
+
+/// What the guide says about these mistakes.
+pub(super) const DOCUMENTED: &[Documented] = documented! {
+    /// Allow as many steps as a ray can need: the sum of the grid's cells along x, y and z.
+    Grids "too-few-grid-steps": "the grid traversal stops after … cells";
+    /// Use the scene's `screen_distance`.
+    Numbers "wrong-screen-distance": "the screen distance is …; the scene has …";
+    /// Use the scene's `width`.
+    Numbers "wrong-projection-width": "the width of the parallel projection is …; the scene has …";
+    /// Use the scene's `gamma`.
+    Numbers "wrong-gamma": "gamma is …; the scene has …";
+    /// Use the scene's `color` of the light, and check the factors of the shading.
+    Numbers "wrong-brightness": "the light at … is … times as bright as the scene's";
+    /// Use the scene's `ambient`.
+    Numbers "wrong-ambient-light": "the ambient light is … times as bright as the scene's";
+    /// Use the scene's `radius` of the light.
+    Numbers "wrong-light-radius": "the radius of the light at … is …; the scene has …";
+    /// Use the scene's `ior`.
+    Numbers "wrong-ior": "the refractive index is …; the scene has …";
+    /// Use the scene's `radius` of the sphere.
+    Numbers "wrong-radius": "the radius of the sphere at … is …; the scene has …";
+    /// Use `throughput *= color` with the color of the mirror that was hit.
+    Numbers "constant-mirror-color": "every mirror multiplies the throughput by … instead of its color";
+};
 
 /// A number that may be wrong.
 struct Parameter {

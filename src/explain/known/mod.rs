@@ -4,8 +4,8 @@
 
 mod catalogue;
 mod change;
-#[cfg(test)]
-mod documentation;
+pub mod documentation;
+pub(crate) mod documented;
 mod fit;
 mod mutant;
 mod pair;
@@ -23,6 +23,7 @@ use toyproof_scene::export::MarkedShader;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_verify::MAX_DIFFERING;
 
+use crate::known::documented::{Documented, documented};
 use crate::known::mutant::{Mutant, MutantSource, render};
 use crate::known::thumbnail::{
     Thumbnail, View, WrongImage, cost_per_pixel, differing, max_unexplained, pixels,
@@ -31,7 +32,7 @@ use crate::known::thumbnail::{
 /// A mistake that a shader may have, or a symptom of many mistakes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KnownMistake {
-    /// The id, such as `far-root`, under which `docs/guide/mistakes.md` lists it.
+    /// The id, such as `far-root`, under which the guide lists it.
     pub id: &'static str,
     /// The bug in the shader, to follow “likely mistake: ”.
     pub description: Cow<'static, str>,
@@ -59,6 +60,14 @@ impl KnownMistake {
         }
     }
 }
+
+/// What the guide says about rays that hit the surface they start from.
+pub(crate) const SELF_INTERSECTION: &[Documented] = documented! {
+    /// Start the ray at `point + 1e-3 * normal` (`point - 1e-3 * normal` for rays that enter glass), or
+    /// accept only hits with `t > 1e-3`.
+    SelfIntersection "self-intersection":
+        "self-intersection (shadow acne): secondary rays start on the surface; offset the origin along the normal or use a minimum t of about 1e-3";
+};
 
 /// Rays that hit the surface they start from.
 pub(crate) fn self_intersection() -> KnownMistake {

@@ -9,6 +9,7 @@ use super::scan;
 use super::shader::{Shader, Shape};
 use super::term::{Numbers, PRIMARY, Term, context, is_parenthesized};
 use crate::known::KnownMistake;
+use crate::known::documented::{Documented, documented};
 
 /// An edit that may repair a shader.
 #[derive(Debug, Clone)]
@@ -58,12 +59,17 @@ pub(super) enum Action {
 }
 
 macro_rules! kinds {
-    ($($kind:ident $id:literal $description:literal,)*) => {
+    ($($(#[doc = $fix:literal])+ $kind:ident $id:literal $description:literal,)*) => {
         /// The kind of an edit, which names the mistake.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub(super) enum EditKind {
             $($kind,)*
         }
+
+        /// What the guide says about the mistakes that edits name.
+        pub(crate) const DOCUMENTED: &[Documented] = documented! {
+            $($(#[doc = $fix])+ Edits $id: $description;)*
+        };
 
         impl EditKind {
             /// All kinds.
@@ -81,27 +87,50 @@ macro_rules! kinds {
 }
 
 kinds! {
+    /// Compare the number in that line with the scene or the formula that it comes from. The fix, where it is
+    /// shown, has the right one.
     Number "wrong-number" "a number is wrong",
+    /// Write the operator of the fix, and compare the formula with its derivation.
     Operator "wrong-operator" "an operator is wrong",
+    /// Write the comparison of the fix, and check what happens on both sides of the limit.
     Comparison "wrong-comparison" "a comparison is wrong",
+    /// Change the sign, and check which way the vector or the root must point.
     Sign "wrong-sign" "a sign is wrong",
+    /// Use the variable of the fix; names that differ more are harder to confuse.
     Variable "wrong-variable" "a variable is used in place of another",
+    /// Call the function of the fix.
     Function "wrong-function" "a function is called in place of another",
+    /// Use the component of the fix, such as `.y` for `.x`.
     Component "wrong-component" "a component is used in place of another",
+    /// Swap the operands: the order matters for `-`, `/` and products with matrices.
     Operands "swapped-operands" "two operands are swapped",
+    /// Swap the arguments, and compare them with the parameters of the function.
     Arguments "swapped-arguments" "two arguments are swapped",
+    /// Add the call of the fix, such as `normalize` or `max`.
     MissingCall "missing-call" "a function call is missing around an expression",
+    /// Remove the call, and keep its argument.
     SuperfluousCall "superfluous-call" "a function call is superfluous",
+    /// Multiply by the factor of the fix.
     MissingFactor "missing-factor" "a factor is missing",
+    /// Remove the factor.
     SuperfluousFactor "superfluous-factor" "a factor is superfluous",
+    /// Add the term of the fix.
     MissingTerm "missing-term" "a term of a sum is missing",
+    /// Remove the term.
     SuperfluousTerm "superfluous-term" "a term of a sum is superfluous",
+    /// Write the condition of the fix, and check in which pixels it must be true.
     Condition "wrong-condition" "a condition is wrong",
+    /// Add the statement of the fix.
     MissingStatement "missing-statement" "a statement is missing",
+    /// Remove the statement.
     SuperfluousStatement "superfluous-statement" "a statement is superfluous",
+    /// Move the statement to the place of the fix: before or after others, or into another block.
     MisplacedStatement "misplaced-statement" "a statement is in the wrong place",
+    /// Use the bounds of the fix, and count the iterations.
     Loop "wrong-loop" "the bounds of a loop are wrong",
+    /// Write the expression of the fix, and compare it with the formula that it implements.
     Expression "wrong-expression" "an expression is wrong",
+    /// Make both edits of the fix; each alone improves the image.
     Two "two-mistakes" "two things are wrong",
 }
 

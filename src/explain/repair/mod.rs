@@ -20,6 +20,7 @@ use toyproof_diagnostic::{Fix, Span};
 use toyproof_glsl::Checked;
 use toyproof_image::Rgb8Image;
 
+pub(crate) use self::edit::DOCUMENTED;
 pub(crate) use self::search::{Before, NoisyImage, search};
 use crate::known::KnownMistake;
 

@@ -19,8 +19,36 @@ use toyproof_scene::Scene;
 use toyproof_verify::Difference;
 use toyproof_verify::compare::CheckSummary;
 
+pub(crate) use self::scenes::DOCUMENTED as SCENES;
 pub(crate) use self::wrong_shader::WrongShader;
 use crate::known::KnownMistake;
+use crate::known::documented::{Documented, documented};
+
+/// What the guide says about each [`Difference`].
+pub(crate) const DIFFERENCES: &[Documented] = documented! {
+    /// Take one sample, at `fragCoord`.
+    WholeImage "antialiasing": "each pixel is the mean of … samples; the reference has one, at its center";
+    /// Leave out the gamma correction or the tone map, or add the one that the assignment asks for.
+    WholeImage "color-curve": "the colors differ only by a color curve: …";
+    /// Check the order of the components, such as `.rgb` and `.bgr`.
+    WholeImage "swapped-channels": "red and blue are exchanged";
+    /// Check the sign of x in the screen coordinates, and the order of factors in cross products.
+    WholeImage "mirrored-x": "the image is mirrored: left and right are exchanged";
+    /// In GLSL, y points upward and `fragCoord.y` is 0 at the bottom.
+    WholeImage "mirrored-y": "the image is upside down: y is negated, or counted from the top";
+    /// Check which of `fragCoord.x` and `fragCoord.y` becomes x, and the signs.
+    WholeImage "rotated": "the image is rotated by …";
+    /// Use the assignment's screen coordinates: with a width from −1 to 1, `(2.0 * fragCoord -
+    /// iResolution.xy) / iResolution.x`.
+    WholeImage "framing": "screen coordinates …";
+    /// Without a click, `iMouse` is 0: use a default if `iMouse.z` is 0.
+    WholeImage "mouse": "the image depends on `iMouse`: …";
+    /// `iTime` is in seconds; `iFrame` counts frames, whose rate differs from screen to screen.
+    WholeImage "time": "the number of the frame, `iFrame`, is used as the time in seconds; use `iTime`";
+    /// Replace the numbers by `iResolution.x` and `iResolution.y`.
+    WholeImage "fixed-resolution":
+        "the image is right only in the resolution that is written in the shader, …; use `iResolution`";
+};
 
 /// The alternatives to the reference with which a wrong shader is compared.
 #[derive(Debug, Clone, Copy, Default)]

@@ -7,6 +7,15 @@ use super::view::View;
 use super::wrong_shader::WrongShader;
 use super::{Alternative, OtherScenes};
 use crate::known::KnownMistake;
+use crate::known::documented::{Documented, documented};
+
+/// What the guide says about these mistakes.
+pub(crate) const DOCUMENTED: &[Documented] = documented! {
+    /// Submit the shader of this assignment, or check it with the other scene.
+    WholeImage "wrong-scene": "the image agrees with another scene, …";
+    /// Paste your own shader, and save it before it is exported.
+    WholeImage "default-shader": "this is the shader that ShaderToy's editor starts with";
+};
 
 /// Finds the scene that a shader renders instead of its own.
 pub(super) fn find(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {

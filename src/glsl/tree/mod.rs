@@ -27,8 +27,6 @@ use std::ops::{Index, IndexMut};
 pub use toyproof_diagnostic::Place;
 pub use toyproof_image::{Input, InputType};
 
-pub use crate::built_in::{BuiltIn, Definition, ExactDefinition, Instruction, Wgsl};
-
 pub use self::expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
 pub use self::item::{
     Arm, Block, BuiltInVariable, Case, Condition, Direction, Function, FunctionId, Item, Label, Statement,
@@ -37,6 +35,7 @@ pub use self::item::{
 pub use self::types::{
     ArrayId, ArrayType, Constant, Member, Sampler, SamplerShape, Scalar, Struct, StructId, Type, Value,
 };
+pub use crate::built_in::{BuiltIn, Definition, ExactDefinition, Instruction, Wgsl};
 
 /// A type-checked shader.
 #[derive(Debug, Clone, Default)]

@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
-    BinaryOp, Constructor, Definition, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar, Statement,
-    StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
+    BinaryOp, Constructor, Definition, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar,
+    Statement, StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
 };
 use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 

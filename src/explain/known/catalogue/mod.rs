@@ -9,6 +9,7 @@ mod transport;
 use toyproof_scene::export::{MarkedShader, Slot};
 
 use super::KnownMistake;
+use super::documented::{Documented, Topic};
 
 /// A mistake of the catalogue.
 #[derive(Debug)]
@@ -31,40 +32,69 @@ impl Mistake {
     }
 }
 
-/// Returns all mistakes; of two that render the same image, the first is reported.
-pub(super) fn all() -> impl Iterator<Item = &'static Mistake> {
-    let topics: [&[Mistake]; 17] = [
-        shading::SHADOWS,
-        geometry::INTERSECTIONS,
-        geometry::QUADRICS,
-        geometry::BOXES,
-        geometry::GRIDS,
-        image::FILM,
-        image::CAMERA,
-        geometry::NORMALS,
-        shading::LIGHTS,
-        shading::SOFT_LIGHTS,
-        transport::MIRRORS,
-        transport::GLASS,
-        transport::PATHS,
-        shading::DISNEY,
-        geometry::MOTIONS,
-        image::BACKGROUND,
-        image::FIGURES,
-    ];
-    topics.into_iter().flatten()
+/// The mistakes of one topic.
+#[derive(Debug)]
+pub(super) struct Group {
+    mistakes: &'static [Mistake],
+    /// The id, the description and the fix of each.
+    documented: &'static [[&'static str; 3]],
 }
 
-/// `id: description, [Part = template, OtherPart = template];`. A mistake that can be made in several ways, or
-/// that concerns different parts of different shaders, has alternatives: `id: description, [edits], [other
-/// edits];`
+/// The groups in the order of their tests; of two mistakes that render the same image, the first is reported.
+static GROUPS: [(Topic, &Group); 17] = [
+    (Topic::Shadows, &shading::SHADOWS),
+    (Topic::Intersection, &geometry::INTERSECTIONS),
+    (Topic::Quadrics, &geometry::QUADRICS),
+    (Topic::Boxes, &geometry::BOXES),
+    (Topic::Grids, &geometry::GRIDS),
+    (Topic::Film, &image::FILM),
+    (Topic::Camera, &image::CAMERA),
+    (Topic::Normals, &geometry::NORMALS),
+    (Topic::Shading, &shading::LIGHTS),
+    (Topic::SoftShadows, &shading::SOFT_LIGHTS),
+    (Topic::Mirrors, &transport::MIRRORS),
+    (Topic::Glass, &transport::GLASS),
+    (Topic::Paths, &transport::PATHS),
+    (Topic::Disney, &shading::DISNEY),
+    (Topic::Motion, &geometry::MOTIONS),
+    (Topic::Background, &image::BACKGROUND),
+    (Topic::Figures, &image::FIGURES),
+];
+
+/// Returns all mistakes.
+pub(super) fn all() -> impl Iterator<Item = &'static Mistake> {
+    GROUPS.iter().flat_map(|(_, group)| group.mistakes)
+}
+
+/// What the guide says about them.
+pub(super) fn documented() -> impl Iterator<Item = Documented> {
+    GROUPS.iter().flat_map(|(topic, group)| {
+        let documented = group.documented.iter().filter(|[.., fix]| !fix.is_empty());
+        documented.map(|&[id, form, fix]| Documented {
+            topic: *topic,
+            id,
+            form,
+            fix,
+        })
+    })
+}
+
+/// `id: description, [Part = template, OtherPart = template];` after a comment with the fix, unless the mistake is
+/// documented elsewhere. A mistake that can be made in several ways, or that concerns different parts of different
+/// shaders, has alternatives: `id: description, [edits], [other edits];`
 macro_rules! mistakes {
-    ($($id:literal: $description:literal, $([$($slot:ident = $template:expr),* $(,)?]),+;)*) => {
-        &[$($($crate::known::catalogue::Mistake {
-            id: $id,
-            description: $description,
-            edits: &[$((toyproof_scene::export::Slot::$slot, $template)),*],
-        }),+),*]
+    ($(
+        $(#[doc = $fix:literal])*
+        $id:literal: $description:literal, $([$($slot:ident = $template:expr),* $(,)?]),+;
+    )*) => {
+        $crate::known::catalogue::Group {
+            mistakes: &[$($($crate::known::catalogue::Mistake {
+                id: $id,
+                description: $description,
+                edits: &[$((toyproof_scene::export::Slot::$slot, $template)),*],
+            }),+),*],
+            documented: &[$([$id, $description, concat!($($fix),*)]),*],
+        }
     };
 }
 

@@ -3,6 +3,45 @@
 use toyproof_scene::Projection;
 
 use super::{Changes, ordinal};
+use crate::known::documented::{Documented, documented};
+
+/// What the guide says about these mistakes.
+pub(super) const DOCUMENTED: &[Documented] = documented! {
+    /// Start all rays at the camera, with the direction to the pixel's point on the screen.
+    Camera "parallel-rays": "camera rays are parallel; the scene has a pinhole camera";
+    /// Give all rays the direction `vec3(0.0, 0.0, -1.0)` and move their origin with the pixel.
+    Camera "perspective-rays": "camera rays start at one point; the scene has a parallel projection";
+    /// Use the scene's `screen_distance` with screen coordinates from −1 to 1.
+    Camera "field-of-view-too-narrow":
+        "the field of view is too narrow: the screen distance is twice the scene's";
+    /// Screen coordinates run from −1 to 1, so multiply them by `0.5 * width`.
+    Camera "projection-width-not-halved":
+        "the parallel projection is twice as wide as the scene's: its width is not halved";
+    /// Screen coordinates run from −1 to 1, so multiply them by `0.5 * width`.
+    Camera "projection-width-halved-twice":
+        "the parallel projection is half as wide as the scene's: its width is halved twice";
+    /// Use the scene's `eye` as the origin of camera rays.
+    Camera "camera-at-origin": "the camera is at the origin instead of the scene's `eye`";
+    /// Use `forward = normalize(lookAt - eye)`, and the direction `x * right + y * up + screenDistance *
+    /// forward`.
+    Camera "look-at-ignored": "the camera looks along −z instead of toward the scene's `look_at`";
+    /// Rotate the camera's axes right and up by the scene's `roll`.
+    Camera "roll-ignored": "the camera's roll is ignored";
+    /// Check the bounds of the loop over the bounces against the scene's `max_depth`.
+    Mirrors "one-bounce-fewer": "paths end one bounce before the scene's maximum depth";
+    /// Check the bounds of the loop over the bounces against the scene's `max_depth`.
+    Mirrors "one-bounce-more": "paths continue one bounce beyond the scene's maximum depth";
+    /// Use the scene's `max_depth` as the number of iterations.
+    Mirrors "max-depth-too-small": "the maximum depth is …; the scene has …";
+    /// Test the upper figure first, or draw it last.
+    Figures "figures-order": "the … figure covers the … one; the scene has the opposite order";
+    /// The last figure in the scene is on top.
+    Figures "figures-order-reversed": "the order of all figures is reversed";
+    /// Add this figure, and check whether another one covers it.
+    Figures "figure-missing": "the … figure is missing";
+    /// Average the scene's number of samples in a loop.
+    Film "one-sample": "one sample per pixel is taken; the scene has …";
+};
 
 /// The largest number of path segments that is tried.
 const MAX_SEGMENTS: u32 = 12;

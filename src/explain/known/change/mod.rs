@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use toyproof_scene::{FrameTime, Point, Scene};
 
 use super::KnownMistake;
+use super::documented::Documented;
 
 /// A scene at a time, with one change.
 pub(super) struct Change {
@@ -45,6 +46,12 @@ pub(super) fn all(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
     motion::hierarchy(&mut changes);
     image::figures(&mut changes);
     changes.all
+}
+
+/// What the guide says about the changes.
+pub(super) fn documented() -> impl Iterator<Item = Documented> {
+    let all = [image::DOCUMENTED, motion::DOCUMENTED, objects::DOCUMENTED];
+    all.into_iter().flatten().copied()
 }
 
 impl<'a> Changes<'a> {

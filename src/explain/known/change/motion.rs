@@ -4,6 +4,44 @@ use glam::DVec3;
 use toyproof_scene::{FrameTime, Motion, Object, Period, Requirements, Scene, Shape};
 
 use super::{Changes, ordinal};
+use crate::known::documented::{Documented, documented};
+
+/// What the guide says about these mistakes.
+pub(super) const DOCUMENTED: &[Documented] = documented! {
+    /// Use `iFrame` without adding 1.
+    Motion "next-frame": "the next frame is shown";
+    /// Use `iFrame` without subtracting 1.
+    Motion "previous-frame": "the previous frame is shown";
+    /// Compute the angle from `iTime` or `iFrame`.
+    Motion "nothing-moves": "nothing moves: the image is that of time 0";
+    /// Apply the enclosing motion after it: `outer(inner(p))`.
+    Motion "enclosing-motion-missing": "the … motion does not follow its enclosing motion";
+    /// Use the scene's `axis`, normalized.
+    Motion "wrong-axis": "the axis of the … motion is …; the scene has another axis";
+    /// Use `iFrame` for a period in frames and `iTime` for a period in seconds.
+    Motion "frames-seconds-swapped": "the period of the … motion is counted in … instead of …";
+    /// Divide `iTime` by the scene's `seconds`, or `iFrame` by its `frames`.
+    Motion "wrong-period": "the … motion is … as fast as the scene's";
+    /// Apply it to the object, and divide floats: `float(iFrame) / 60.0`.
+    Motion "motion-missing":
+        "the … motion is missing: it is not applied, or its angle is computed with integer division";
+    /// Apply them to the objects, and divide floats: `float(iFrame) / 60.0`.
+    Motion "motions-missing":
+        "the … and the … motion are missing: they are not applied, or their angles are computed with integer division";
+    /// Scale the radius at each level.
+    Objects "child-radius-of-parent": "child spheres are as large as their parents";
+    /// Use `parent.radius + child.radius` as the distance of the centers.
+    Objects "child-distance-too-small":
+        "the centers of child spheres lie on the surface of their parents: the child's radius is not added";
+    /// Use `0.5 * (own + parent.color)`.
+    Objects "child-colors-not-mixed": "the color of child spheres is not averaged with that of their parents";
+    /// Place them around their own parents, and check the bounds of the loop.
+    Objects "smallest-missing": "the smallest spheres are missing or coincide with larger ones";
+    /// Place them at `+distance` and at `-distance` along each axis.
+    Objects "one-side-only": "child spheres lie on only one side of each axis";
+    /// Check the bounds of the loop over the child spheres.
+    Objects "child-missing": "one of the child spheres is missing at each parent: a loop bound is off by one";
+};
 
 pub(super) fn motions(changes: &mut Changes) {
     if !Requirements::of(changes.scene).motion {

@@ -3,6 +3,59 @@
 use toyproof_scene::{Fresnel, Model, Pattern, PatternKind, Scene, Shape, Space};
 
 use super::{Changes, place};
+use crate::known::documented::{Documented, documented};
+
+/// What the guide says about these mistakes.
+pub(super) const DOCUMENTED: &[Documented] = documented! {
+    /// Check the ray direction (the camera looks along −z), the sign of b in the quadratic, and the test of t
+    /// (`t > 1e-3`). Return a constant color for every hit to see where rays hit.
+    Symptom "background-only": "only the background is visible: rays hit nothing";
+    /// Check the direction to the light (`light - point`), the direction of the normal (outward), and the
+    /// origin of shadow rays: moved off the surface, `point + 1e-3 * normal`.
+    Symptom "ambient-only": "only ambient light is visible: no light reaches a surface";
+    /// Add this light with its position and color, and check the bounds of the loop over the lights.
+    Shading "light-missing": "the light at … is missing";
+    /// Use the loop's index: `lights[i]`.
+    Shading "one-light-for-all": "the light at … is used in place of every light";
+    /// Compare the light's position with the scene's.
+    Shading "light-sign": "the … of the light's position … has the wrong sign";
+    /// Apply the light's motion to its position in each frame.
+    Shading "light-not-moving": "the light at … does not move";
+    /// Trace a shadow ray for this light, too.
+    Shadows "light-without-shadow": "the light at … casts no shadows";
+    /// Trace no shadow rays for a light with `shadow = false`.
+    Shadows "extra-shadow": "the light at … casts shadows; in the scene it casts none";
+    /// Use the light's radius, not its diameter.
+    SoftShadows "light-too-large": "the radius of the light at … is twice the scene's";
+    /// Use the scene's radius; do not halve it.
+    SoftShadows "light-too-small": "the radius of the light at … is half the scene's";
+    /// Use the exact reflectance, the mean of both polarizations: `0.5 * (rs * rs + rp * rp)`.
+    Glass "schlick-instead-of-fresnel":
+        "Schlick's approximation is used; the scene has the Fresnel equations";
+    /// Use `r0 + (1.0 - r0) * pow(1.0 - c, 5.0)`.
+    Glass "fresnel-instead-of-schlick":
+        "the Fresnel equations are used; the scene has Schlick's approximation";
+    /// Trace a refracted ray for surfaces of glass.
+    Glass "glass-as-mirror": "glass is rendered as a mirror";
+    /// Only reflect at mirrors; test the material before refraction.
+    Glass "mirror-as-glass": "mirrors are rendered as glass";
+    /// Choose the color by `mod(floor(x / side) + floor(z / side), 2.0)`.
+    Quadrics "checker-missing": "checkered surfaces have only one color";
+    /// Rotate the ray's origin and direction into the box's axes.
+    Boxes "box-rotation-ignored": "the rotation of boxes is ignored";
+    /// Subtract the surface's origin, and multiply by its axes, before computing the pattern.
+    Boxes "pattern-in-world-space":
+        "patterns are in the coordinates of the scene instead of those of the surface";
+    /// Choose the color by `mod(floor(dot(direction, p) / size), 2.0)`.
+    Boxes "stripes-missing": "striped surfaces have only one color";
+    /// Add this object, and check the bounds of the loop over the objects.
+    Objects "object-missing": "the … at … is missing";
+    /// Use the scene's radii.
+    Objects "diameter-as-radius":
+        "all spheres are twice as large as the scene's: their diameter is used as the radius";
+    /// Use the scene's radii; do not halve them.
+    Objects "radius-halved": "all spheres are half as large as the scene's";
+};
 
 /// The largest number of surfaces of a scene in which a missing one is searched for.
 const MAX_MISSING: usize = 64;
