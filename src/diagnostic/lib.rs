@@ -1,5 +1,5 @@
 //! Diagnostics about spans of source files: one value, rendered for a terminal, for an editor and as JSON.
-//! Independent of any language.
+//! [`Code`] is the table of all kinds of diagnostics of the program, with their explanations.
 //!
 //! ```
 //! use toyproof_diagnostic::{Code, Diagnostic, File, Files, Span, short};

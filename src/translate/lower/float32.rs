@@ -119,11 +119,8 @@ fn inexact_value(tree: &Tree, id: ExprId, operands: &[Option<Constant>]) -> Opti
 /// The components of a function whose last bits are implementation-defined, by the evaluator's definition;
 /// `None` for other functions.
 pub(crate) fn function_of_floats(function: BuiltIn, ty: Type, arguments: &[Vec<f32>]) -> Option<Vec<f32>> {
-    if !InexactFunction::of(function, arguments.len())?
-        .definition
-        .argument_count()
-        .is_some()
-    {
+    let definition = InexactFunction::of(function, arguments.len())?.definition;
+    if definition.argument_count().is_none() {
         let results = computed(arguments, |terms| of_terms(function, terms));
         return (!results.is_empty()).then_some(results);
     }
