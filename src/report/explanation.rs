@@ -137,25 +137,33 @@ pub(super) const TERMS: [(&str, &str, &str); 22] = [
 
 /// Returns all explanations: of codes in numerical order, of mistakes by topic, then of terms.
 pub fn explanations() -> impl Iterator<Item = Explanation> {
-    let terms = TERMS.iter().map(|&(code, _, title)| Explanation {
-        code,
-        title,
-        text: "".into(),
-    });
-    diagnostics().chain(mistakes()).chain(terms)
+    let codes = Code::ALL.iter().map(|&code| of_code(code));
+    codes.chain(mistakes()).chain(terms())
 }
 
 /// Returns the explanation of a code or of a mistake, in any case.
 #[must_use]
 pub fn explain(code: &str) -> Option<Explanation> {
-    explanations().find(|explanation| explanation.code.eq_ignore_ascii_case(code))
+    if let Some(code) = Code::parse(code) {
+        return Some(of_code(code));
+    }
+    let mut others = mistakes().chain(terms());
+    others.find(|explanation| explanation.code.eq_ignore_ascii_case(code))
 }
 
-fn diagnostics() -> impl Iterator<Item = Explanation> {
-    Code::ALL.iter().map(|code| Explanation {
+fn of_code(code: Code) -> Explanation {
+    Explanation {
         code: code.as_str(),
         title: code.title(),
         text: code.explanation().into(),
+    }
+}
+
+fn terms() -> impl Iterator<Item = Explanation> {
+    TERMS.iter().map(|&(code, _, title)| Explanation {
+        code,
+        title,
+        text: "".into(),
     })
 }
 
