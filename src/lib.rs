@@ -66,13 +66,18 @@
 #[cfg(feature = "cli")]
 pub mod cli;
 
+/// Evaluating shaders on the CPU, with machine code where there is any.
+#[cfg(feature = "eval")]
+pub mod eval {
+    pub use toyproof_eval::*;
+    pub use toyproof_eval_native::Program;
+}
+
 #[cfg(feature = "classroom")]
 pub use toyproof_classroom as classroom;
 #[cfg(feature = "convert")]
 pub use toyproof_convert as convert;
 pub use toyproof_diagnostic as diagnostic;
-#[cfg(feature = "eval")]
-pub use toyproof_eval as eval;
 #[cfg(feature = "explain")]
 pub use toyproof_explain as explain;
 pub use toyproof_glsl as glsl;

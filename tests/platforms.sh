@@ -16,7 +16,7 @@ cargo check --target aarch64-apple-darwin
 
 say "WebAssembly: cargo check of the crates that need no processes"
 cargo check --target wasm32-unknown-unknown -p toyproof-math -p toyproof-diagnostic -p toyproof-image -p toyproof-glsl \
-    -p toyproof-lint -p toyproof-translate -p toyproof-eval -p toyproof-scene -p toyproof-tracer
+    -p toyproof-lint -p toyproof-translate -p toyproof-eval -p toyproof-eval-native -p toyproof-scene -p toyproof-tracer
 cargo check --target wasm32-unknown-unknown -p toyproof-explain
 
 say "aarch64: the bit-exactness tests of math, tracer and evaluator"

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Deadline, path_name};
-use toyproof_eval::{Failure, Program};
+use toyproof_eval::Failure;
+use toyproof_eval_native::Program;
 use toyproof_explain::trail::follow_back;
 use toyproof_glsl::Checked;
 use toyproof_image::{FRAME_RATE, Frame};

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::Deadline;
-use toyproof_eval::{Observed, Program, bound};
+use toyproof_eval::{Observed, bound};
+use toyproof_eval_native::Program;
 use toyproof_glsl::Sampling;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{PlayedPasses, ShaderArtifact, Worker};

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::{Deadline, File, Files, short};
-use toyproof_eval::{self as eval, Observed, Program, Refusal};
+use toyproof_eval::{self as eval, Observed, Refusal};
+use toyproof_eval_native::Program;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked, Stage};
 use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};

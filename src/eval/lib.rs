@@ -1,13 +1,10 @@
 //! Evaluates a checked shader on the CPU, without a driver: in float32 with the bits of the strict GPU run,
-//! in double precision, or in double precision with randomly rounded operations.
-//!
-//! ```text
-//! tree ─► build ─► ir ─► opt (gvn, dce, divergence, fuse) ─► lower (linearize, regalloc, isel) ─► ops ─► render
-//! ```
+//! in double precision, or in double precision with randomly rounded operations. The input is the typed tree of
+//! the source, not the lowered one and not naga's module, so that errors of the lowering, of naga and of drivers
+//! appear as differences.
 //!
 //! Each instruction is applied to a batch of pixels, which amortizes the cost of dispatch; values that are
-//! uniform in a batch are computed once. The input is the typed tree of the source, not the lowered one and
-//! not naga's module, so that errors of the lowering, of naga and of drivers appear as differences.
+//! uniform in a batch are computed once.
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
@@ -26,6 +23,22 @@
 //! }
 //! ```
 //!
+//! # Parts
+//!
+//! A tower, in which each part imports only those below it:
+//!
+//! | part | contents |
+//! |---|---|
+//! | `program`, `render`, `trace`, `passes`, `parametric` | what callers use; `compile`: the pipeline |
+//! | `exec` | number types, batches, the function of each kind of instruction, tiles of an image |
+//! | `lower` | linear code with jumps and masks, registers |
+//! | `opt` | passes on the function |
+//! | `build` | the function of a typed tree: calls inlined, vectors scalarized, checks added |
+//! | `ir` | the function; the sites of faults, and the events of traces |
+//!
+//! `toyproof-eval-native` makes machine code of programs, with the same bits: for large images, use its
+//! `Program`.
+//!
 //! # Number types
 //!
 //! [`Number`] is the type in which a shader is evaluated:
@@ -42,8 +55,8 @@
 //! GLSL leaves some operations undefined: an index out of bounds, an integer division by zero, a shift by 32 or
 //! more, a conversion of a float that does not fit, `smoothstep` with equal edges, `pow` of a negative base.
 //! [`UndefinedPolicy`] chooses what they give. The shader is rendered with different substitutes, and a pixel
-//! depends on undefined behavior only if its color does: an element out of bounds that nobody uses excuses
-//! nothing. [`Observations`] counts such operations by source position, as well as reads of uninitialized
+//! depends on undefined behavior only if its color does: an unused out-of-bounds element does not count.
+//! [`Observations`] counts such operations by source position, as well as reads of uninitialized
 //! variables, which give zero as in WebGL, and iterations of loops.
 //!
 //! # Traces
@@ -57,16 +70,11 @@
     reason = "per-pixel code must be inlined to vectorize, with loops over lane indices"
 )]
 
-mod batch;
 mod build;
-mod frame;
+mod compile;
+mod exec;
 mod ir;
 mod lower;
-#[cfg_attr(not(target_arch = "x86_64"), path = "native/absent.rs")]
-mod native;
-mod number;
-mod observe;
-mod ops;
 mod opt;
 mod parametric;
 mod passes;
@@ -74,19 +82,36 @@ mod program;
 mod render;
 #[cfg(test)]
 mod tests;
-mod texture;
-mod tile;
 mod trace;
 
-pub use build::{MAX_VALUES, Refusal};
-pub use frame::Framebuffer;
-pub use number::{Number, RandomRounding, Seed};
-pub use observe::{Fault, MESA_CAP, Observations, Observed, Site};
+pub use build::{MAX_VALUES, Refusal, Substitute, UndefinedPolicy};
+pub use exec::evaluate::Number;
+pub use exec::frame::Framebuffer;
+pub use exec::limits::Failure;
+pub use exec::number::{Arithmetic, RandomRounding, Seed};
+pub use exec::observe::{MESA_CAP, Observations, Observed};
+pub use exec::places::Places;
+pub use exec::recorder::{ExecutionTrace, ForcedPrefix, TraceEvent, TraceValue};
+pub use exec::settings::{Engine, Settings};
+pub use ir::{Call, CallId, Event, EventId, EventKind, Fault, Site, TraceSchema};
 pub use parametric::{ParametricProgram, Point, PointEvaluator};
 pub use passes::{PassFailure, PassRenderer, bound};
 pub use program::Program;
-pub use render::{Engine, Failure, Places, Rendered, RenderedF32, Settings, Substitute, UndefinedPolicy};
-pub use trace::{
-    Call, CallId, Event, EventId, EventKind, ExecutionTrace, ForcedPrefix, PixelDebugger, TraceEvent,
-    TraceSchema, TraceValue,
-};
+pub use render::{Rendered, RenderedF32};
+pub use trace::PixelDebugger;
+
+/// What a compiler to machine code is given, and implements.
+#[doc(hidden)]
+pub mod native {
+    pub use crate::exec::batch::Active;
+    pub use crate::exec::lanes::{LANES, Lanes};
+    pub use crate::exec::native::{
+        BatchTables, NativeBatch, NativeCompiler, NativeFrame, NativeInput, NativeProgram,
+    };
+    pub use crate::exec::number::FloatFormat;
+    pub use crate::ir::{Kind, NONE, Operation, Predicate, SiteId, Value, ValueDef};
+    pub use crate::lower::LoweredCode;
+    pub use crate::lower::linearize::{Step, Target};
+    pub use crate::lower::regalloc::Location;
+    pub use crate::opt::rollback::{Map, RollbackMap};
+}

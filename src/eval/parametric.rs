@@ -1,5 +1,6 @@
 //! Shaders with parameters: uniforms whose values are given for each point. Many variants of a shader,
-//! selected by parameters, are compiled once, and evaluated side by side at a few points each.
+//! selected by parameters, are compiled once, and evaluated side by side at a few points each, without machine
+//! code, which does not pay.
 
 use std::cell::RefCell;
 use std::time::Duration;
@@ -9,20 +10,24 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::VariableId;
 use toyproof_image::Frame;
 
-use crate::batch::{Active, Batch, LANES};
 use crate::build::{BuildOptions, Refusal};
+use crate::compile::compile;
+use crate::exec::batch::{Active, Batch};
+use crate::exec::evaluate::Number;
+use crate::exec::isel::FrameCode;
+use crate::exec::lanes::LANES;
+use crate::exec::limits::{BandError, Failure, Limits};
+use crate::exec::ops::run;
+use crate::exec::settings::Settings;
+use crate::exec::tile::FrameJob;
 use crate::ir::Kind;
-use crate::lower::isel::Prepared;
-use crate::ops::run;
-use crate::program::{Backend, Compiled};
-use crate::render::{Failure, Limits, Settings};
-use crate::tile::{BandError, FrameJob};
+use crate::lower::LoweredCode;
 
 /// A shader with parameters, compiled for one frame in f64.
 #[derive(Debug)]
 pub struct ParametricProgram {
-    compiled: Compiled,
-    prepared: Prepared<f64>,
+    lowered: LoweredCode,
+    code: FrameCode<f64>,
 }
 
 impl ParametricProgram {
@@ -44,15 +49,15 @@ impl ParametricProgram {
             max_values,
             ..BuildOptions::default()
         };
-        let compiled = Compiled::new(checked, parameters, options, &deadline)?;
-        let prepared = f64::prepare(&compiled, frame);
-        Ok(Self { compiled, prepared })
+        let lowered = compile(checked, parameters, options, &deadline)?;
+        let code = f64::select(&lowered, frame);
+        Ok(Self { lowered, code })
     }
 
     /// The number of instructions.
     #[must_use]
     pub fn instructions(&self) -> usize {
-        self.prepared.code.len()
+        self.code.instructions.len()
     }
 
     /// Runs `work` with an evaluator of points of the frame, whose size, time and channels are those that the
@@ -65,8 +70,8 @@ impl ParametricProgram {
     ) -> T {
         let limits = Limits::of(settings);
         let job = FrameJob::new(
-            &self.compiled,
-            &self.prepared,
+            &self.lowered,
+            &self.code,
             &frame.channels,
             &limits,
             settings,
@@ -118,7 +123,7 @@ impl PointEvaluator<'_> {
     pub fn colors(&mut self, points: &[Point<'_>]) -> Result<Vec<Option<[f64; 3]>>, Failure> {
         self.iterations = 0;
         let mut colors = Vec::with_capacity(points.len());
-        for points in points.chunks(self.program.prepared.width * LANES) {
+        for points in points.chunks(self.program.code.width * LANES) {
             self.batch_colors(points, &mut colors)?;
         }
         Ok(colors)
@@ -156,12 +161,12 @@ impl PointEvaluator<'_> {
                 }
             }
             self.begin(&mut batch, &points, chunks);
-            let instructions = run(&batch, &self.program.prepared.code);
+            let instructions = run(&batch, &self.program.code.instructions);
             self.work += instructions as f64 * (DISPATCH + chunks as f64);
             let stop = batch.stopped.take();
             if let Some(stop) = stop.filter(|stop| !stop.over_limit) {
                 let end = BandError::LoopStopped(stop);
-                return Err(end.failure(&self.program.compiled, self.limits, self.max_iterations));
+                return Err(end.failure(&self.program.lowered, self.limits, self.max_iterations));
             }
             for (lane, is_excluded) in is_excluded.iter_mut().enumerate() {
                 *is_excluded |= iterations(&batch, lane) > self.max_iterations;
@@ -189,15 +194,15 @@ impl PointEvaluator<'_> {
 
     /// Activates the chunks that hold the points. The last chunk is filled with copies of the last point.
     fn begin(&self, batch: &mut Batch<'_, f64>, points: &[Point<'_>], chunks: usize) {
-        let prepared = &self.program.prepared;
+        let code = &self.program.code;
         let point = |chunk: usize, lane: usize| &points[(chunk * LANES + lane).min(points.len() - 1)];
-        for (axis, row) in prepared.coordinates.into_iter().enumerate() {
+        for (axis, row) in code.coordinates.into_iter().enumerate() {
             let Some(row) = row else { continue };
             for (chunk, cell) in batch.float_row(row).iter().enumerate().take(chunks) {
                 cell.set(std::array::from_fn(|lane| point(chunk, lane).at[axis]));
             }
         }
-        for &(number, kind, row) in &prepared.parameters {
+        for &(number, kind, row) in &code.parameters {
             let value = |chunk, lane| {
                 let values = point(chunk, lane).values;
                 values.get(number as usize).copied().unwrap_or_default()
@@ -274,7 +279,6 @@ mod tests {
     #[test]
     fn parameters_change_the_colors_and_points_have_those_of_a_whole_image() {
         let checked = checked(TEXT);
-        // Large enough for machine code, if all of it were rendered.
         let frame = Frame {
             size: [96, 64],
             ..Frame::default()
@@ -315,7 +319,6 @@ mod tests {
             }
             assert_eq!(evaluator.iterations(), 64);
         });
-        assert!(program.compiled.native.is_empty(), "handlers evaluate points");
     }
 
     #[test]

@@ -6,16 +6,18 @@ use thiserror::Error;
 use toyproof_image::{Frame, Texture};
 use toyproof_player::{Channel, Renderer};
 
-use crate::number::Number;
-use crate::observe::Observations;
+use crate::exec::evaluate::Number;
+use crate::exec::limits::Failure;
+use crate::exec::observe::Observations;
+use crate::exec::settings::Settings;
+use crate::exec::texture::texel;
 use crate::program::Program;
-use crate::render::{self, Rendered, Settings};
-use crate::texture::texel;
+use crate::render::Rendered;
 
 /// Renders passes in a number type; buffers hold numbers of that type.
 #[derive(Debug)]
 pub struct PassRenderer<'a, N: Number> {
-    programs: &'a [Program],
+    programs: Vec<&'a Program>,
     media: &'a [Texture],
     settings: Settings<'a, N>,
     observations: Vec<Observations>,
@@ -28,18 +30,23 @@ pub struct PassFailure {
     /// The number of the pass.
     pub pass: usize,
     /// The reason.
-    pub failure: render::Failure,
+    pub failure: Failure,
 }
 
 impl<'a, N: Number> PassRenderer<'a, N> {
     /// A renderer with a program for each pass, and the textures that do not change.
     #[must_use]
-    pub fn new(programs: &'a [Program], media: &'a [Texture], settings: Settings<'a, N>) -> Self {
+    pub fn new(
+        programs: impl IntoIterator<Item = &'a Program>,
+        media: &'a [Texture],
+        settings: Settings<'a, N>,
+    ) -> Self {
+        let programs: Vec<_> = programs.into_iter().collect();
         Self {
+            observations: vec![Observations::default(); programs.len()],
             programs,
             media,
             settings,
-            observations: vec![Observations::default(); programs.len()],
         }
     }
 

@@ -5,14 +5,16 @@ use toyproof_diagnostic::{File, Files, Span};
 use toyproof_glsl::tree::Place;
 
 use crate::build::with_stack;
-use crate::ir::AliasGroups;
-use crate::ir::{Axis, Block, Cell, Function, LoopId, NONE, Node, Scope, Value, ValueDef};
-use crate::ir::{Kind, Operation};
+use crate::exec::ops::fold;
+use crate::ir::{
+    AliasGroups, Axis, Block, Cell, Function, Kind, LoopId, NONE, Node, Operation, Scope, Value, ValueDef,
+};
 use crate::lower::linearize::{LinearCode, Step, linearize};
 use crate::opt::dce::eliminate_dead_code;
 use crate::opt::divergence::Divergence;
 use crate::opt::gvn::number_values;
 use crate::opt::pair::pair;
+use crate::{Program, Refusal, UndefinedPolicy};
 
 /// Builds a function of words, with a divergent condition.
 struct FunctionBuilder {
@@ -131,7 +133,7 @@ fn scope_with_breaks(times: u32) -> Function {
 fn changes_of_many_exit_paths_are_bounded() {
     for times in [1, 60_000] {
         let mut function = scope_with_breaks(times);
-        number_values(&mut function, false);
+        number_values(&mut function, fold, false);
         let [kept, stored, ..] = function.output.map(|value| function.def(value));
         assert_eq!(kept, ValueDef::Word(7));
         assert_eq!(stored, ValueDef::Load(Cell(1)), "it is 7 or 9");
@@ -171,7 +173,7 @@ fn unreachable_blocks_of_an_unrolled_loop_are_not_cloned() {
         body,
     });
     let mut function = builder.output([0, 1]);
-    number_values(&mut function, false);
+    number_values(&mut function, fold, false);
     assert!(matches!(function.def(function.output[0]), ValueDef::Load(_)));
 }
 
@@ -223,7 +225,7 @@ fn numbered(
     body.push(store(0, bits));
     builder.function.body = body;
     let mut function = builder.output([0, 0]);
-    number_values(&mut function, false);
+    number_values(&mut function, fold, false);
     let defs = function.body.iter().filter_map(|node| match node {
         Node::Let(value) => Some(function.def(*value)),
         _ => None,
@@ -427,7 +429,8 @@ fn compilation_respects_its_deadline() {
         "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }",
     ));
     let checked = toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default()).unwrap();
-    let late = super::Program::within(&checked, Duration::ZERO).map(drop);
-    assert!(matches!(late, Err(super::Refusal::TooSlow(_))), "{late:?}");
-    assert!(super::Program::within(&checked, Duration::from_secs(3600)).is_ok());
+    let within = |limit| Program::compile(&checked, UndefinedPolicy::Plain, Some(limit), None).map(drop);
+    let late = within(Duration::ZERO);
+    assert!(matches!(late, Err(Refusal::TooSlow(_))), "{late:?}");
+    assert!(within(Duration::from_secs(3600)).is_ok());
 }

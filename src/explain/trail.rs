@@ -4,7 +4,8 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use toyproof_eval::{Program, Settings, UndefinedPolicy};
+use toyproof_eval::{Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Source, Target};
 use toyproof_verify::Failure;

@@ -3,9 +3,10 @@
 use std::time::Instant;
 
 use toyproof_eval::{
-    EventId, EventKind, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Program, Settings,
-    TraceEvent, TraceSchema, TraceValue,
+    EventId, EventKind, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Settings, TraceEvent,
+    TraceSchema, TraceValue,
 };
+use toyproof_eval_native::Program;
 use toyproof_image::Frame;
 
 use crate::compare::SEEN;

@@ -6,9 +6,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use toyproof_eval::{
-    Failure, Fault, Number, Observations, Observed, Places, Program, RandomRounding, RenderedF32, Seed,
-    Settings, Substitute, UndefinedPolicy,
+    Failure, Fault, Number, Observations, Observed, Places, RandomRounding, RenderedF32, Seed, Settings,
+    Substitute, UndefinedPolicy,
 };
+use toyproof_eval_native::Program;
 use toyproof_image::{Frame, Image};
 
 /// Evaluates a shader in f64 at some places of a frame; none if a pixel runs more loop iterations. The result does

@@ -94,7 +94,8 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use toyproof_eval::{self as eval, Program};
+use toyproof_eval as eval;
+use toyproof_eval_native::Program;
 
 pub use self::bounds::EVALUATOR_TIME_FACTOR;
 pub use self::case::{Case, FromStart};

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use toyproof_diagnostic::Code;
 use toyproof_diagnostic::{Diagnostic, Span, grouped, plural};
-use toyproof_eval::{EventKind, Program, TraceValue};
+use toyproof_eval::{EventKind, TraceValue};
+use toyproof_eval_native::Program;
 use toyproof_image::{Frame, Image};
 
 use crate::bounds::MAX_TRACED_ITERATIONS;

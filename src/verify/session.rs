@@ -7,7 +7,8 @@ use std::thread;
 use std::time::Duration;
 
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval::{self as eval, Observations, Program, Seed};
+use toyproof_eval::{self as eval, Observations, Seed};
+use toyproof_eval_native::Program;
 use toyproof_image::{Image, Rgb8Image};
 use toyproof_translate::FloatMode;
 

@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval::{self as eval, Fault, Places, Program};
+use toyproof_eval::{self as eval, Fault, Places};
+use toyproof_eval_native::Program;
 use toyproof_image::Rgb8Image;
 
 use crate::bounds::explanation_deadline;

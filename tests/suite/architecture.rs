@@ -136,6 +136,44 @@ fn codes_are_written_in_one_table() {
 }
 
 #[test]
+fn unsafe_code_occurs_in_four_files() {
+    let found = sources(Path::new("src"))
+        .into_iter()
+        .filter(|path| fs::read_to_string(path).unwrap().contains("unsafe_code"))
+        .map(|path| toyproof::diagnostic::path_name(&path));
+    let mut found: Vec<String> = found.collect();
+    found.sort();
+    let expected = [
+        "src/eval-native/x86_64/executable.rs",
+        "src/eval/exec/ops/mod.rs",
+        "src/gpu/device.rs",
+        "src/gpu/pipeline.rs",
+    ];
+    assert_eq!(found, expected);
+}
+
+/// The parts of the evaluator are a tower.
+#[test]
+fn parts_of_the_evaluator_import_only_those_below() {
+    const TOWER: [&str; 5] = ["ir", "build", "opt", "lower", "exec"];
+    /// What callers use, above the tower.
+    const TOP: [&str; 6] = ["compile", "parametric", "passes", "program", "render", "trace"];
+    for (height, part) in TOWER.iter().enumerate() {
+        for path in sources(&Path::new("src/eval").join(part)) {
+            let text = fs::read_to_string(&path).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+            for above in TOWER[height + 1..].iter().chain(&TOP) {
+                let name = toyproof::diagnostic::path_name(&path);
+                assert!(
+                    !code.contains(&format!("crate::{above}::")),
+                    "{name} imports `{above}`"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn only_the_command_line_prints_or_exits() {
     for path in sources(Path::new("src")) {
         if path.starts_with("src/cli") || path == Path::new("src/main.rs") {

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{File, Files, plural};
-use toyproof_eval::{self as eval, Program, UndefinedPolicy};
+use toyproof_eval::{self as eval, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;

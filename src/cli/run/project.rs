@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name};
-use toyproof_eval::{self as eval, PassFailure, Program};
+use toyproof_eval::{self as eval, PassFailure};
+use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Filter};
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};

@@ -3,10 +3,8 @@
 use toyproof_glsl::tree::{BuiltIn, ExprId, Place, Scalar, Type};
 
 use super::lvalue::{LValue, component_count};
-use super::{Builder, Result, UndefinedMode};
-use crate::ir::{Kind, NONE, Operation, Value};
-use crate::observe::{Fault, Predicate};
-use crate::render::Substitute;
+use super::{Builder, Result, Substitute, UndefinedPolicy};
+use crate::ir::{Fault, Kind, NONE, Operation, Predicate, Value};
 
 impl Builder<'_> {
     pub(super) fn built_in(
@@ -244,7 +242,7 @@ impl Builder<'_> {
                 O::Atan2
             }
             (B::Pow, _)
-                if self.options.undefined == UndefinedMode::Substitute(Substitute::OtherImplementation) =>
+                if self.options.undefined == UndefinedPolicy::Substitute(Substitute::OtherImplementation) =>
             {
                 let base = self.unary(O::Abs, x);
                 return self.binary(O::Pow, base, y);

@@ -6,8 +6,7 @@ use toyproof_glsl::tree::{
 
 use super::lvalue::{LValue, Location};
 use super::{Builder, InlinedCall, Result};
-use crate::ir::{Cells, Node, Value};
-use crate::trace::CallId;
+use crate::ir::{CallId, Cells, Node, Value};
 
 /// An evaluated argument.
 struct Argument {

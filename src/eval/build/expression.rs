@@ -5,9 +5,7 @@ use toyproof_glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Type};
 use super::lvalue::Location;
 use super::lvalue::{component_count, indexed_element, member_offset, scalar_kind};
 use super::{Builder, Result};
-use crate::ir::Operation;
-use crate::ir::{NONE, Node, Value};
-use crate::trace::EventKind;
+use crate::ir::{EventKind, NONE, Node, Operation, Value};
 
 /// The maximum number of nodes of an operand of `?:`, `&&` or `||` that is computed for all pixels instead of
 /// being branched over.

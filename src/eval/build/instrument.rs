@@ -6,11 +6,11 @@ use toyproof_glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Place, Tree, 
 
 use super::call::direction;
 use super::lvalue::{Location, component_count};
-use super::{Builder, InlinedCall, UndefinedMode};
-use crate::ir::{Cell, Cells, Kind, NONE, Node, Operation, Value, ValueDef};
-use crate::observe::{Fault, Predicate, Site, SiteId};
-use crate::render::Substitute;
-use crate::trace::{Call, CallId, Event, EventId, EventKind};
+use super::{Builder, InlinedCall, Substitute, UndefinedPolicy};
+use crate::ir::{
+    Call, CallId, Cell, Cells, Event, EventId, EventKind, Fault, Kind, NONE, Node, Operation, Predicate,
+    Site, SiteId, Value, ValueDef,
+};
 
 /// The number substituted for undefined results: in range of every index, and rarely a genuine result.
 const SUBSTITUTE_NUMBER: f64 = 0.5;
@@ -20,7 +20,7 @@ impl Builder<'_> {
     /// [`Builder::substitute_undefined`].
     pub(super) fn check(&mut self, fault: Fault, at: Place, predicate: Predicate, values: [Value; 2]) {
         match self.options.undefined {
-            UndefinedMode::Observed => {
+            UndefinedPolicy::Observed => {
                 let site = Site { fault, at };
                 let next = SiteId(self.sites.len() as u32);
                 let id = *self.site_ids.entry(site).or_insert(next);
@@ -33,8 +33,10 @@ impl Builder<'_> {
                     site: id,
                 });
             }
-            UndefinedMode::Substitute(_) if fault.is_undefined() => self.unresolved.push((predicate, values)),
-            UndefinedMode::Substitute(_) | UndefinedMode::Strict => {}
+            UndefinedPolicy::Substitute(_) if fault.is_undefined() => {
+                self.unresolved.push((predicate, values))
+            }
+            UndefinedPolicy::Substitute(_) | UndefinedPolicy::Plain => {}
         }
     }
 
@@ -47,8 +49,8 @@ impl Builder<'_> {
     /// Substitutes undefined results of an operation that has several values.
     pub(super) fn substitute_undefined_all<const N: usize>(&mut self, values: [Value; N]) -> [Value; N] {
         let other = match self.options.undefined {
-            UndefinedMode::Substitute(Substitute::NotANumber) => f64::NAN,
-            UndefinedMode::Substitute(Substitute::OtherImplementation) => 0.0,
+            UndefinedPolicy::Substitute(Substitute::NotANumber) => f64::NAN,
+            UndefinedPolicy::Substitute(Substitute::OtherImplementation) => 0.0,
             _ => SUBSTITUTE_NUMBER,
         };
         let unresolved = std::mem::take(&mut self.unresolved);
@@ -177,7 +179,7 @@ impl Builder<'_> {
     /// passed to `out` parameters.
     pub(super) fn begin_variable(&mut self, variable: VariableId, cells: Cells, with_value: bool) {
         let Some(at) = self.tree[variable].at else { return };
-        if self.options.undefined != UndefinedMode::Observed
+        if self.options.undefined != UndefinedPolicy::Observed
             || cells.count > MAX_FLAGGED_COMPONENTS
             || with_value && !self.out_arguments.contains(&variable)
         {

@@ -5,8 +5,7 @@ use toyproof_glsl::tree::{
 };
 
 use super::{Builder, Result};
-use crate::ir::{Cell, Cells, Kind, NONE, Node, Operation, Value, ValueDef};
-use crate::observe::{Fault, Predicate};
+use crate::ir::{Cell, Cells, Fault, Kind, NONE, Node, Operation, Predicate, Value, ValueDef};
 
 /// The location of a variable.
 #[derive(Debug, Clone)]

@@ -8,6 +8,7 @@ mod lvalue;
 mod operator;
 mod statement;
 mod texture;
+mod undefined;
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -22,11 +23,11 @@ use toyproof_glsl::{Checked, Sampling, Stage};
 use self::instrument::{WrittenFlags, out_arguments};
 use self::lvalue::{Location, component_count, scalar_kind};
 use self::operator::Term;
-use crate::ir::{Block, Cell, Cells, Function, LoopId, NONE, Node, Scope, Value, ValueDef};
-use crate::ir::{Kind, Operation};
-use crate::observe::{Predicate, Site, SiteId};
-use crate::render::Substitute;
-use crate::trace::{CallId, EventId, TraceSchema};
+pub use self::undefined::{Substitute, UndefinedPolicy};
+use crate::ir::{
+    Block, CallId, Cell, Cells, EventId, Function, Kind, LoopId, NONE, Node, Operation, Predicate, Scope,
+    Site, SiteId, TraceSchema, Value, ValueDef,
+};
 
 /// The maximum number of values of a program; larger programs are refused before memory runs out.
 pub const MAX_VALUES: usize = 2_000_000;
@@ -57,23 +58,11 @@ pub enum Refusal {
     TooSlow(#[from] Overdue),
 }
 
-/// The treatment of operations that GLSL leaves undefined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum UndefinedMode {
-    /// Compute what strict GPU runs compute.
-    #[default]
-    Strict,
-    /// Compute what strict GPU runs compute, and record each occurrence.
-    Observed,
-    /// Substitute a different result.
-    Substitute(Substitute),
-}
-
 /// The instrumentation that is compiled into a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct BuildOptions {
     /// The treatment of operations that GLSL leaves undefined.
-    pub(crate) undefined: UndefinedMode,
+    pub(crate) undefined: UndefinedPolicy,
     /// Whether traces are recorded.
     pub(crate) trace: bool,
     /// The maximum number of values.
@@ -83,7 +72,7 @@ pub(crate) struct BuildOptions {
 impl Default for BuildOptions {
     fn default() -> Self {
         Self {
-            undefined: UndefinedMode::default(),
+            undefined: UndefinedPolicy::Plain,
             trace: false,
             max_values: MAX_VALUES,
         }
@@ -101,8 +90,8 @@ pub(crate) fn with_stack<T: Send>(work: impl FnOnce() -> T + Send) -> std::resul
     })
 }
 
-/// A compiled program.
-pub(crate) struct Program {
+/// A function, and what its instrumentation refers to.
+pub(crate) struct InstrumentedFunction {
     pub(crate) function: Function,
     /// The sites of checks.
     pub(crate) sites: Vec<Site>,
@@ -110,14 +99,14 @@ pub(crate) struct Program {
     pub(crate) schema: TraceSchema,
 }
 
-/// Compiles a shader to the intermediate representation. Uniforms that are among the `parameters` get their
+/// Builds the function of a shader. Uniforms that are among the `parameters` get their
 /// values for each point; all others are zero.
-pub(crate) fn compile(
+pub(crate) fn build_function(
     checked: &Checked,
     parameters: &[VariableId],
     options: BuildOptions,
     deadline: &Deadline,
-) -> Result<Program> {
+) -> Result<InstrumentedFunction> {
     let mut builder = Builder {
         tree: &checked.tree,
         sampling: checked.sampling,
@@ -140,7 +129,7 @@ pub(crate) fn compile(
         written: BTreeMap::new(),
         out_parameters: Vec::new(),
         out_arguments: match options.undefined {
-            UndefinedMode::Observed => out_arguments(&checked.tree),
+            UndefinedPolicy::Observed => out_arguments(&checked.tree),
             _ => HashSet::new(),
         },
         schema: TraceSchema::default(),
@@ -158,7 +147,7 @@ pub(crate) fn compile(
         body: writer.block,
         output: writer.output,
     };
-    Ok(Program {
+    Ok(InstrumentedFunction {
         function,
         sites: builder.sites,
         schema: builder.schema,

@@ -8,8 +8,7 @@ use toyproof_math::Number;
 
 use super::lvalue::{component_count, scalar_kind};
 use super::{Builder, IrWriter, Result};
-use crate::ir::{Kind, NONE, Operation, Value, ValueDef};
-use crate::observe::{Fault, Predicate};
+use crate::ir::{Fault, Kind, NONE, Operation, Predicate, Value, ValueDef};
 
 impl Builder<'_> {
     pub(super) fn unary_operator(&self, op: UnaryOp, ty: Type, values: &[Value]) -> Vec<Value> {

@@ -7,9 +7,7 @@ use toyproof_glsl::tree::{
 
 use super::lvalue::Location;
 use super::{Builder, Result};
-use crate::ir::Block as Nodes;
-use crate::ir::{Cell, Node, Operation, Scope, Value, ValueDef};
-use crate::trace::EventKind;
+use crate::ir::{Block as Nodes, Cell, EventKind, Node, Operation, Scope, Value, ValueDef};
 
 impl Builder<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Result<()> {

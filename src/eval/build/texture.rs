@@ -5,8 +5,7 @@ use toyproof_glsl::{Filter, Sampling, Wrap};
 
 use super::lvalue::component_count;
 use super::{Builder, Result};
-use crate::ir::{Kind, NONE, Operation, Value, ValueDef};
-use crate::observe::{Fault, Predicate};
+use crate::ir::{Fault, Kind, NONE, Operation, Predicate, Value, ValueDef};
 
 /// A lookup at normalized coordinates.
 #[derive(Debug, Clone, Copy)]

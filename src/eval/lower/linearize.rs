@@ -4,20 +4,20 @@
 //! at different times, has its own, numbered by depth. A pixel that leaves a scope is removed from every mask
 //! up to the scope's; where a mask becomes empty, control jumps to the end of its owner.
 
-use crate::ir::{Block, Cell, Cells, Function, LoopId, Node, Scope, Value, ValueDef};
-use crate::observe::{Predicate, SiteId};
+use crate::ir::{Block, Cell, Cells, Function, LoopId, Node, Predicate, Scope, SiteId, Value, ValueDef};
 use crate::opt::divergence::Divergence;
 
 /// Identifies a mask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Mask(pub(crate) u16);
+pub struct Mask(pub u16);
 
 /// A jump target: a label while code is generated, the index of a step afterwards.
-pub(crate) type Target = u32;
+pub type Target = u32;
 
 /// A step of linear code.
 #[derive(Debug, Clone)]
-pub(crate) enum Step {
+#[doc(hidden)]
+pub enum Step {
     Compute(Value),
     Store {
         cell: Cell,
@@ -72,15 +72,15 @@ pub(crate) enum Step {
 
 /// A linearized program.
 #[derive(Debug)]
-pub(crate) struct LinearCode {
+pub struct LinearCode {
     /// The steps, each with the mask of its active pixels.
-    pub(crate) steps: Vec<(Step, Mask)>,
+    pub steps: Vec<(Step, Mask)>,
     /// The number of masks.
-    pub(crate) masks: u16,
+    pub masks: u16,
     /// The first and last step of each loop, inner loops before outer ones.
-    pub(crate) loops: Vec<(u32, u32)>,
+    pub loops: Vec<(u32, u32)>,
     /// The values that are computed once for a frame.
-    pub(crate) constants: Vec<Value>,
+    pub constants: Vec<Value>,
 }
 
 /// Linearizes a program. A traced run may replace values, so that nothing is hoisted out of it.

@@ -1,6 +1,32 @@
-//! Lowering of structured code to instructions: jumps and masks, registers, and the function that executes
-//! each instruction.
+//! Lowering of structured code to linear code: jumps and masks, and the locations of values.
 
-pub(crate) mod isel;
 pub(crate) mod linearize;
 pub(crate) mod regalloc;
+
+use toyproof_glsl::tree::Place;
+
+use self::linearize::LinearCode;
+use self::regalloc::Allocation;
+use crate::ir::{Function, Site, TraceSchema};
+
+/// A lowered program, for any number type, frame and size.
+#[derive(Debug)]
+pub struct LoweredCode {
+    /// The values and cells; its body is empty.
+    pub function: Function,
+    /// The steps.
+    pub linear: LinearCode,
+    /// The locations of values and cells.
+    pub locations: Allocation,
+    /// Whether stores to a cell must preserve the values of inactive pixels.
+    pub shared: Vec<bool>,
+    pub(crate) sites: Vec<Site>,
+    pub(crate) schema: TraceSchema,
+}
+
+impl LoweredCode {
+    /// Returns the source location of a loop.
+    pub(crate) fn loop_at(&self, id: u32) -> Place {
+        self.function.loops[id as usize]
+    }
+}

@@ -8,15 +8,13 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::ir::AliasGroups;
-use crate::ir::Kind;
-use crate::ir::{Cell, Cells, Function, Value, ValueDef};
+use crate::ir::{AliasGroups, Cell, Cells, Function, Kind, Value, ValueDef};
 use crate::lower::linearize::{LinearCode, Step};
 use crate::opt::divergence::Divergence;
 
 /// The location of a value or cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Location {
+pub enum Location {
     /// A row of floats or words, depending on the kind.
     Row(u32),
     /// A scalar of floats or words, depending on the kind.
@@ -25,14 +23,15 @@ pub(crate) enum Location {
 
 /// The location of every value and cell, and the number of rows and scalars.
 #[derive(Debug)]
-pub(crate) struct Allocation {
+#[doc(hidden)]
+pub struct Allocation {
     values: Vec<Option<Location>>,
     cells: Vec<Option<Location>>,
     /// The last step that may read each value and cell.
     value_ends: Vec<u32>,
     cell_ends: Vec<u32>,
     /// Whether a step is elided: its value already is in its location.
-    pub(crate) elided: Vec<bool>,
+    pub elided: Vec<bool>,
     pub(crate) rows: PerKind,
     pub(crate) scalars: PerKind,
 }
@@ -55,22 +54,22 @@ impl PerKind {
 
 impl Allocation {
     /// Returns the location of a value that is computed, or a constant.
-    pub(crate) fn value(&self, value: Value) -> Option<Location> {
+    pub fn value(&self, value: Value) -> Option<Location> {
         self.values[value.0 as usize]
     }
 
     /// Returns the last step that may read a value, or whatever shares its location.
-    pub(crate) fn value_end(&self, value: Value) -> u32 {
+    pub fn value_end(&self, value: Value) -> u32 {
         self.value_ends[value.0 as usize]
     }
 
     /// Returns the last step that may read a cell.
-    pub(crate) fn cell_end(&self, cell: Cell) -> u32 {
+    pub fn cell_end(&self, cell: Cell) -> u32 {
         self.cell_ends[cell.0 as usize]
     }
 
     /// Returns the location of a cell that is accessed.
-    pub(crate) fn cell(&self, cell: Cell) -> Option<Location> {
+    pub fn cell(&self, cell: Cell) -> Option<Location> {
         self.cells[cell.0 as usize]
     }
 }

@@ -2,9 +2,7 @@
 //!
 //! A kept node requires its operands and the conditions of the `if`s around it.
 
-use crate::ir::AliasGroups;
-use crate::ir::{Block, Cell, Function, Node, Value, ValueDef};
-use crate::observe::Predicate;
+use crate::ir::{AliasGroups, Block, Cell, Function, Node, Predicate, Value, ValueDef};
 
 /// Removes dead code from a function.
 pub(crate) fn eliminate_dead_code(function: &mut Function) {

@@ -1,8 +1,7 @@
 //! Fusion: a product whose only use is a sum or difference in the same block becomes one instruction with it,
 //! which saves a store and a load. Both operations are still rounded.
 
-use crate::ir::Operation;
-use crate::ir::{Block, Function, Node, Value, ValueDef};
+use crate::ir::{Block, Function, Node, Operation, Value, ValueDef};
 use crate::opt::divergence::Divergence;
 
 /// Fuses products in a function.

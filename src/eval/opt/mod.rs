@@ -6,3 +6,4 @@ pub(crate) mod divergence;
 pub(crate) mod fuse;
 pub(crate) mod gvn;
 pub(crate) mod pair;
+pub(crate) mod rollback;

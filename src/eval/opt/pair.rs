@@ -2,7 +2,7 @@
 //! instruction computes both, which takes little longer than one of them.
 
 use crate::ir::{Block, Function, Node, Operation, Value, ValueDef};
-use crate::opt::gvn::log::Map;
+use crate::opt::rollback::Map;
 
 /// Moves the second function of each pair to the first.
 pub(crate) fn pair(function: &mut Function) {

@@ -17,7 +17,8 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 use toyproof_diagnostic::Span;
-use toyproof_eval::{Places, Program};
+use toyproof_eval::Places;
+use toyproof_eval_native::Program;
 use toyproof_image::Frame;
 use toyproof_scene::export::MarkedShader;
 use toyproof_scene::{FrameTime, Scene};

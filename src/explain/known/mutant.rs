@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 
 use toyproof_diagnostic::{File, Files};
-use toyproof_eval::{Program, UndefinedPolicy};
+use toyproof_eval::UndefinedPolicy;
+use toyproof_eval_native::Program;
 use toyproof_glsl as glsl;
 use toyproof_image::Image;
 use toyproof_scene::export::{self, MarkedShader, Slot};

@@ -5,7 +5,8 @@
 //! they are rendered for a view.
 
 use rayon::prelude::*;
-use toyproof_eval::{Places, Program};
+use toyproof_eval::Places;
+use toyproof_eval_native::Program;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::{Integrator, Scene};
 use toyproof_verify::compare::Pixel;

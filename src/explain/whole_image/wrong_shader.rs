@@ -1,6 +1,7 @@
 //! A wrong shader, and the rules by which a hypothesis about its image is confirmed.
 
-use toyproof_eval::{Places, Program, Settings, UndefinedPolicy};
+use toyproof_eval::{Places, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_image::{Frame, Image};
 use toyproof_verify::BandReference;
 use toyproof_verify::NumberType;

@@ -25,7 +25,8 @@ use serde::Serialize;
 pub use tally::{Breakdown, Tally};
 use thiserror::Error;
 use toyproof_diagnostic::{Diagnostic, File, Files};
-use toyproof_eval::{self as eval, Number, Program, UndefinedPolicy};
+use toyproof_eval::{self as eval, Number, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_image::{Frame, Image, Texture};
@@ -251,7 +252,7 @@ fn render_on_cpu<N: Number>(
     let [width, height] = frame.size;
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     Ok(places
-        .map(|(x, y)| framebuffer.get(x, y).map(Number::to_f64))
+        .map(|(x, y)| framebuffer.get(x, y).map(|part| part.to_f64()))
         .collect())
 }
 

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use toyproof_diagnostic::{File, Files, plural};
-use toyproof_eval::{self as eval, Number, Program, Settings, UndefinedPolicy};
+use toyproof_eval::{self as eval, Number, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};

@@ -2,7 +2,8 @@
 //! rays start, how near a march comes to one, how far it goes, and in how many steps.
 
 use toyproof_diagnostic::Span;
-use toyproof_eval::{Program, Settings, UndefinedPolicy};
+use toyproof_eval::{Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::Checked;
 use toyproof_image::Image;
 use toyproof_tracer::ColorRange;

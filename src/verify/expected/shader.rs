@@ -6,9 +6,8 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval::{
-    self as eval, Observations, Places, Program, RandomRounding, Seed, Settings, UndefinedPolicy,
-};
+use toyproof_eval::{self as eval, Observations, Places, RandomRounding, Seed, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::Input;
 use toyproof_image::{Frame, Image};

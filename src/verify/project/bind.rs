@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval::{self as eval, Program};
+use toyproof_eval as eval;
+use toyproof_eval_native::Program;
 use toyproof_glsl::Filter;
 use toyproof_image::{FRAME_RATE, Frame, Image, Texture};
 use toyproof_player::{Clock, Source, Target};

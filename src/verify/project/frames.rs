@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use rayon::ThreadPool;
-use toyproof_eval::{Number, Program, Settings, UndefinedPolicy};
+use toyproof_eval::{Number, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_player::Clock;
 
 use super::playback::{CpuPlayback, PassShader};

@@ -1,10 +1,12 @@
 //! The frames of a shader with several passes, one after the other: on the evaluator, and by a driver.
 
+use std::ops::Deref;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Deadline, Overdue};
-use toyproof_eval::{Number, PassFailure, PassRenderer, Program, Refusal, Settings, UndefinedPolicy};
+use toyproof_eval::{Number, PassFailure, PassRenderer, Refusal, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::tree::{BuiltIn, ExprKind};
 use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
 use toyproof_image::{Frame, Image, Texture};
@@ -88,7 +90,7 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
         timeout: Duration,
         settings: Settings<'a, N>,
     ) -> Self {
-        let renderer = PassRenderer::new(programs, shader.media, settings);
+        let renderer = PassRenderer::new(programs.iter().map(Deref::deref), shader.media, settings);
         let mut player = Player::new(shader.graph.clone(), renderer);
         if let Some(state) = state {
             let load = |_: &mut _, texture: &_, mipmaps| Ok(PassRenderer::<N>::load(texture, mipmaps));

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use toyproof_eval::{MAX_VALUES, ParametricProgram, Places, Point, Program, Settings, UndefinedPolicy};
+use toyproof_eval::{MAX_VALUES, ParametricProgram, Places, Point, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::Checked;
 use toyproof_image::{Frame, Image};
 

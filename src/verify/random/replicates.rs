@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{Places, Program, Settings, UndefinedPolicy};
+use toyproof_eval::{Places, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_image::Image;
 
 use super::estimates::{Estimate, Estimates, Resampled, differs, mean, pixels, variance};

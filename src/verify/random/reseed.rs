@@ -304,7 +304,8 @@ fn has_components(tree: &Tree, id: ExprId, is_such: impl Fn(&Value) -> bool) -> 
 #[cfg(test)]
 mod tests {
     use toyproof_diagnostic::{File, Files};
-    use toyproof_eval::{Program, Settings};
+    use toyproof_eval::Settings;
+    use toyproof_eval_native::Program;
     use toyproof_glsl as glsl;
     use toyproof_image::Frame;
 

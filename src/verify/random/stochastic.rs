@@ -8,7 +8,8 @@ use std::ops::Range;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{Places, Program};
+use toyproof_eval::Places;
+use toyproof_eval_native::Program;
 use toyproof_image::Image;
 use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 

@@ -146,7 +146,7 @@ impl Comparison<'_> {
                 Outcome::Color(_) if is_discarded => Some("discarded by the evaluator".to_owned()),
                 Outcome::Color([r, g, b, a]) => {
                     let expected = [r, g, b].map(Real::to_f64);
-                    let actual = rendered.framebuffer.get(x, y).map(Number::to_f64);
+                    let actual = rendered.framebuffer.get(x, y).map(|part| part.to_f64());
                     let alpha = [f64::from(a.to_f32()), image.get(x, y)[3].into()];
                     let mut pairs = expected.into_iter().zip(actual).chain([(alpha[0], alpha[1])]);
                     let are_same = pairs.all(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
@@ -181,7 +181,10 @@ impl Comparison<'_> {
         for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
             let [a, b] = [handlers, native].map(|one| {
                 let buffer = &one.framebuffer;
-                (buffer.get(x, y).map(Number::to_f64), buffer.is_discarded(x, y))
+                (
+                    buffer.get(x, y).map(|part| part.to_f64()),
+                    buffer.is_discarded(x, y),
+                )
             });
             let are_same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
             if a.1 != b.1 || !a.0.iter().zip(&b.0).all(are_same) {

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::ValueNumbering;
-use super::log::{Change, Map};
+use super::changes::Change;
 use crate::ir::{Block, Cell, LoopId, NONE, Node, Scope, Value};
+use crate::opt::rollback::Map;
 
 /// The maximum number of changes stored for all paths that leave scopes. Each path stores all changes since
 /// the scope began; thousands of paths in one scope would exceed the memory.
@@ -77,7 +78,7 @@ impl ValueNumbering<'_> {
         } = self.open_scopes[depth];
         let lost = matches!(paths.last(), Some(None));
         let mut path = if lost { None } else { self.path_since(mark) };
-        // A loop may recompute its values for other pixels before those that leave go on.
+        // Pixels that exit wait; the loop may overwrite its cells meanwhile.
         let inside = self.open_loops.partition_point(|open| open.depth <= depth);
         if let (Some(path), Some(open)) = (&mut path, self.open_loops.get(inside)) {
             path.extend(self.cell_values.keys_since(open.mark).map(|cell| (cell, None)));

@@ -4,21 +4,26 @@
 //! them remain. The content of cells that a loop stores is unknown in and after it, unless the stored value
 //! is the known one. Known words decide branches, select elements, and give the trip counts of loops.
 
+mod changes;
 mod control;
-pub(crate) mod log;
 mod reduce;
 
+use self::changes::Changes;
 use self::control::{OpenLoop, OpenScope, UnrollBudget};
-use self::log::{Changes, RollbackMap};
-use crate::ir::{AliasGroups, Block, Cell, Cells, Function, NONE, Node, Operation, Value, ValueDef};
-use crate::observe::Predicate;
-use crate::ops::fold;
+use crate::ir::{
+    AliasGroups, Block, Cell, Cells, Function, NONE, Node, Operation, Predicate, Value, ValueDef,
+};
+use crate::opt::rollback::RollbackMap;
 
 /// Alias groups of more cells are not tracked cell by cell.
 const MAX_TRACKED_CELLS: u32 = 256;
 
-/// Rewrites a function. A traced run may replace values, so that common subexpressions are not merged then.
-pub(crate) fn number_values(function: &mut Function, traced: bool) {
+/// Evaluates an operation on words; none if it is an operation on floats.
+pub(crate) type Fold = fn(Operation, [u32; 3]) -> Option<u32>;
+
+/// Rewrites a function; `fold` has the semantics of operations. A traced run may replace values, so that
+/// common subexpressions are not merged then.
+pub(crate) fn number_values(function: &mut Function, fold: Fold, traced: bool) {
     let groups = AliasGroups::of(function);
     let body = std::mem::take(&mut function.body);
     let templates = std::mem::take(&mut function.defs);
@@ -32,6 +37,7 @@ pub(crate) fn number_values(function: &mut Function, traced: bool) {
         is_constant: Vec::new(),
         constants: RollbackMap::default(),
         function,
+        fold,
         traced,
         cell_values: RollbackMap::default(),
         available: RollbackMap::default(),
@@ -65,6 +71,7 @@ struct ValueNumbering<'a> {
     is_constant: Vec<bool>,
     /// The values of constants.
     constants: RollbackMap<ValueDef, Value>,
+    fold: Fold,
     traced: bool,
     cell_values: RollbackMap<Cell, Value>,
     available: RollbackMap<(ValueDef, u32), Value>,
@@ -346,7 +353,7 @@ impl ValueNumbering<'_> {
                 Some(operands[if word == 0 { 2 } else { 1 }])
             }
             (_, [Some(a), Some(b), Some(c)]) => {
-                fold(operation, [a, b, c]).map(|word| self.constant(ValueDef::Word(word)))
+                (self.fold)(operation, [a, b, c]).map(|word| self.constant(ValueDef::Word(word)))
             }
             _ => None,
         }

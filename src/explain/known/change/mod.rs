@@ -119,7 +119,8 @@ fn ordinal(index: usize) -> String {
 #[cfg(test)]
 mod tests {
     use toyproof_diagnostic::{File, Files};
-    use toyproof_eval::{Program, Settings};
+    use toyproof_eval::Settings;
+    use toyproof_eval_native::Program;
     use toyproof_glsl as glsl;
     use toyproof_image::Frame;
     use toyproof_scene::export;

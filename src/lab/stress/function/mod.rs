@@ -15,7 +15,8 @@ pub use role::Role;
 use serde::Serialize;
 pub(super) use signature::clear_misses;
 pub use signature::{MissConvention, RoleMap, Signature, Unrecognized};
-use toyproof_eval::{Program, UndefinedPolicy};
+use toyproof_eval::UndefinedPolicy;
+use toyproof_eval_native::Program;
 use toyproof_glsl as glsl;
 use toyproof_gpu::Worker;
 

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use toyproof_eval::{self as eval, Program, UndefinedPolicy};
+use toyproof_eval::{self as eval, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::tree::{Scalar, Type};
 use toyproof_glsl::{self as glsl, Checked};
 
