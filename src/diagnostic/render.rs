@@ -150,15 +150,6 @@ impl fmt::Display for Json {
     }
 }
 
-impl Json {
-    /// The line and column of an error (the inner option is `None` for an error without a span); `None` for
-    /// other severities.
-    #[must_use]
-    pub fn error_place(&self) -> Option<Option<(usize, usize)>> {
-        (self.severity == Severity::Error).then(|| self.line.zip(self.column))
-    }
-}
-
 /// Converts a diagnostic to its JSON form, with all spans resolved.
 #[must_use]
 pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {

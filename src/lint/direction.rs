@@ -105,12 +105,8 @@ fn direction_of(program: &Program, expr: ExprId) -> Option<ExprId> {
 /// replaced by their values.
 fn terms(program: &Program, expr: ExprId, depth: u32) -> Option<Vec<(f64, Vec<ExprId>)>> {
     let expr = program.resolve(expr);
-    if let Some([Value::Float(number)]) = program
-        .constant(expr)
-        .as_ref()
-        .map(|constant| constant.components())
-    {
-        return Some(vec![(*number, Vec::new())]);
+    if let Some(number) = program.number(expr) {
+        return Some(vec![(number, Vec::new())]);
     }
     let terms = |expr| terms(program, expr, depth.checked_sub(1)?);
     let expanded: Vec<_> = match program.tree[expr].kind {

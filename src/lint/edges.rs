@@ -147,7 +147,7 @@ impl Sum {
             if self.exprs > MAX_EXPRS {
                 return None;
             }
-            if let Some(value) = number(program, expr) {
+            if let Some(value) = program.number(expr) {
                 self.constant += factor * value;
                 continue;
             }
@@ -168,10 +168,10 @@ impl Sum {
                     op: BinaryOp::Multiply,
                     left,
                     right,
-                } if number(program, left).is_some() || number(program, right).is_some() => {
-                    let (number, other) = match number(program, left) {
+                } if program.number(left).is_some() || program.number(right).is_some() => {
+                    let (number, other) = match program.number(left) {
                         Some(number) => (number, right),
-                        None => (number(program, right)?, left),
+                        None => (program.number(right)?, left),
                     };
                     pending.push((other, factor * number));
                 }
@@ -197,14 +197,6 @@ impl Sum {
     }
 }
 
-/// The value of a constant `float`.
-fn number(program: &Program, expr: ExprId) -> Option<f64> {
-    match *program.constant(expr)?.components() {
-        [Value::Float(value)] if value.is_finite() => Some(value),
-        _ => None,
-    }
-}
-
 /// Whether the value of an expression is never less than 0.
 fn is_never_negative(program: &Program, expr: ExprId) -> bool {
     let tree = program.tree;
@@ -214,7 +206,7 @@ fn is_never_negative(program: &Program, expr: ExprId) -> bool {
             return true;
         };
         let expr = program.resolve(expr);
-        if let Some(value) = number(program, expr) {
+        if let Some(value) = program.number(expr) {
             if value < 0.0 {
                 return false;
             }

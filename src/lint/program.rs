@@ -6,7 +6,7 @@ use std::fmt::Write;
 use toyproof_diagnostic::Deadline;
 pub(super) use toyproof_glsl::tree::walk::direction;
 use toyproof_glsl::tree::{
-    Direction, ExprId, ExprKind, FunctionId, Item, StatementKind, Tree, Type, VariableId, walk,
+    Direction, ExprId, ExprKind, FunctionId, Item, StatementKind, Tree, Type, Value, VariableId, walk,
 };
 
 /// The part of a shader reachable from `mainImage`.
@@ -107,6 +107,14 @@ impl<'a> Program<'a> {
             return self.tree[variable].value.clone();
         }
         self.tree.value(expr)
+    }
+
+    /// The value of a constant `float`, if it is finite.
+    pub(super) fn number(&self, expr: ExprId) -> Option<f64> {
+        match *self.constant(expr)?.components() {
+            [Value::Float(value)] if value.is_finite() => Some(value),
+            _ => None,
+        }
     }
 
     fn find_functions(&mut self) {
