@@ -1,68 +1,12 @@
 //! Test axes: each takes one quantity of a ray or surface to its extremes, step by step.
 
-use std::fmt;
-
+use super::case::{Case, Label, MARGIN, Step};
 use super::case_sampler::{
     DEGENERATE_PARTS, Random, SPECIAL_QUADRIC_RAYS, SPHERE_ORIGINS, concentric_shells, degenerate_sphere,
     distant_quadric, distant_sphere, grazing_secondary_ray, grazing_sphere, mirrored_ray,
     nearly_linear_quadric, offset_sphere, origin_near_sphere, scaled_sphere, special_quadric_ray,
     stretched_direction,
 };
-
-/// A test case, and its layout as three texels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Case {
-    /// A ray and a sphere.
-    Sphere(RaySphere),
-    /// A ray and the quadric q·p² + 2 g z + k = 0.
-    Quadric {
-        /// The origin of the ray.
-        o: [f32; 3],
-        /// The direction of the ray, of any length.
-        d: [f32; 3],
-        /// The coefficients of x², y² and z².
-        q: [f32; 3],
-        /// Half of the coefficient of z.
-        g: f32,
-        /// The constant term.
-        k: f32,
-    },
-    /// A ray that leaves a sphere at the hit of a first ray.
-    Secondary {
-        /// The first ray and the sphere.
-        first: RaySphere,
-        /// The cosine between the second ray and the normal; 0 for a mirror reflection.
-        cosine: f32,
-    },
-}
-
-/// A ray and a sphere.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RaySphere {
-    /// The origin of the ray.
-    pub o: [f32; 3],
-    /// The direction of the ray, of any length.
-    pub d: [f32; 3],
-    /// The sphere's center.
-    pub c: [f32; 3],
-    /// The radius of the sphere.
-    pub r: f32,
-}
-
-impl Case {
-    /// The texels from which a shader reads the case, in three channels.
-    pub(super) fn texels(&self) -> [[f32; 4]; 3] {
-        let texel = |[x, y, z]: [f32; 3], w| [x, y, z, w];
-        match *self {
-            Self::Sphere(RaySphere { o, d, c, r }) => [texel(o, r), texel(d, 0.0), texel(c, 0.0)],
-            Self::Quadric { o, d, q, g, k } => [texel(o, g), texel(d, k), texel(q, 0.0)],
-            Self::Secondary {
-                first: RaySphere { o, d, c, r },
-                cosine,
-            } => [texel(o, r), texel(d, cosine), texel(c, 0.0)],
-        }
-    }
-}
 
 /// The kind of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,25 +17,6 @@ pub enum Kind {
     Quadrics,
     /// [`Case::Secondary`]
     Secondaries,
-}
-
-/// A step of an axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
-    /// A quantity.
-    Number(f64),
-    /// A named configuration.
-    Label(&'static str),
-}
-
-impl fmt::Display for Step {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) if *number == 0.0 => f.write_str("0"),
-            Self::Number(number) => write!(f, "{number:e}"),
-            Self::Label(label) => f.write_str(label),
-        }
-    }
 }
 
 /// The steps that are easy to compute.
@@ -133,7 +58,7 @@ impl Axis {
         match step {
             Step::Number(_) => format!("{} = {step}", self.label),
             Step::Label(label) if self.kind == Kind::Secondaries => format!("{}, {label}", self.label),
-            Step::Label(label) => label.to_owned(),
+            Step::Label(label) => label.to_string(),
         }
     }
 
@@ -142,9 +67,6 @@ impl Axis {
         (self.sample)(random, step)
     }
 }
-
-/// The default margin: only the axis of grazing rays tests cases that rounding decides.
-pub(super) const MARGIN: f64 = 1e-3;
 
 fn decades(from: i32, to: i32, by: i32) -> Vec<Step> {
     let steps = 0..=(to - from) / by;
@@ -156,8 +78,8 @@ fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::NAN)
 }
 
-fn labels(labels: &[&'static str]) -> Vec<Step> {
-    labels.iter().map(|label| Step::Label(label)).collect()
+fn labels(labels: &[Label]) -> Vec<Step> {
+    labels.iter().copied().map(Step::Label).collect()
 }
 
 /// All axes.
@@ -186,7 +108,7 @@ pub fn axes() -> Vec<Axis> {
     };
     let grazing = (1..=20).map(|i| Step::Number(power_of_ten(-i)));
     let missing = (1..=20).rev().map(|i| Step::Number(-power_of_ten(-i)));
-    let rays = labels(&["scale 1", "scale 1e3", "ground r = 1000"]);
+    let rays = labels(&[Label::Scale1, Label::Scale1000, Label::Ground]);
     let secondary = |name, label, steps, sample| Axis {
         name,
         label,
@@ -290,15 +212,4 @@ pub fn axes() -> Vec<Axis> {
         secondary("mirrored rays", "mirror reflection", rays.clone(), mirrored_ray),
         secondary("grazing rays", "grazing direction", rays, grazing_secondary_ray),
     ]
-}
-
-pub(super) fn to_f32(v: glam::DVec3) -> [f32; 3] {
-    v.to_array().map(|x| x as f32)
-}
-
-pub(super) fn step_value(step: Step) -> f64 {
-    match step {
-        Step::Number(number) => number,
-        Step::Label(_) => 0.0,
-    }
 }

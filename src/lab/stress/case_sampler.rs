@@ -7,29 +7,29 @@
 
 use glam::DVec3;
 
-use super::axis::{Case, MARGIN, RaySphere, Step, step_value, to_f32};
+use super::case::{Case, Label, MARGIN, RaySphere, Step, step_value, to_f32};
 use super::exact;
 
-pub(super) const SPHERE_ORIGINS: [&str; 4] = [
-    "origin inside",
-    "origin on the surface",
-    "origin 1 ULP inside",
-    "origin 1 ULP outside",
+pub(super) const SPHERE_ORIGINS: [Label; 4] = [
+    Label::OriginInside,
+    Label::OriginOnSurface,
+    Label::OriginUlpInside,
+    Label::OriginUlpOutside,
 ];
-pub(super) const DEGENERATE_PARTS: [&str; 13] = [
-    "zero coordinates",
-    "zero direction",
-    "zero radius",
-    "negative radius",
-    "denormal scene",
-    "denormal direction",
-    "infinite origin",
-    "infinite direction",
-    "infinite center",
-    "infinite radius",
-    "NaN origin",
-    "NaN direction",
-    "NaN radius",
+pub(super) const DEGENERATE_PARTS: [Label; 13] = [
+    Label::ZeroCoordinates,
+    Label::ZeroDirection,
+    Label::ZeroRadius,
+    Label::NegativeRadius,
+    Label::DenormalScene,
+    Label::DenormalDirection,
+    Label::InfiniteOrigin,
+    Label::InfiniteDirection,
+    Label::InfiniteCenter,
+    Label::InfiniteRadius,
+    Label::NanOrigin,
+    Label::NanDirection,
+    Label::NanRadius,
 ];
 
 /// A ray and a sphere of typical size, before rounding: the ray's line passes within 1.3 radii of the center;
@@ -162,7 +162,7 @@ pub(super) fn grazing_sphere(random: &mut Random, step: Step) -> Option<Case> {
 /// Origins near the surface. Points of it are exact: (1, 2, 2) has length 3.
 pub(super) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case> {
     let Step::Label(label) = step else { return None };
-    if label == SPHERE_ORIGINS[0] {
+    if label == Label::OriginInside {
         return Some(TypicalCase::new(random, [0.0, 0.9]).case());
     }
     let quantize = |x: f64| (x * 262_144.0).round() / 262_144.0;
@@ -178,8 +178,8 @@ pub(super) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case
         return None;
     }
     o[i] = match label {
-        "origin 1 ULP inside" => f32::from_bits(if outward { bits - 1 } else { bits + 1 }),
-        "origin 1 ULP outside" => f32::from_bits(if outward { bits + 1 } else { bits - 1 }),
+        Label::OriginUlpInside => f32::from_bits(if outward { bits - 1 } else { bits + 1 }),
+        Label::OriginUlpOutside => f32::from_bits(if outward { bits + 1 } else { bits - 1 }),
         _ => o[i],
     };
     let d = random.direction();
@@ -221,7 +221,7 @@ pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case>
     let i = random.below(3);
     let infinite = random.sign() as f32 * f32::INFINITY;
     match label {
-        "zero coordinates" => {
+        Label::ZeroCoordinates => {
             let [z, h] = [ray_sphere.r * 4.0, ray_sphere.r * random.between(0.0, 1.3) as f32];
             let turn = random.rotation();
             let to_position = |v| turn(v).map(|x| x as f32);
@@ -229,10 +229,10 @@ pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case>
             ray_sphere.d = to_position([0.0, 0.0, -1.0]);
             ray_sphere.c = to_position([f64::from(h), 0.0, f64::from(-z)]);
         }
-        "zero direction" => ray_sphere.d = [0.0; 3],
-        "zero radius" => ray_sphere.r = 0.0,
-        "negative radius" => ray_sphere.r = -ray_sphere.r,
-        "denormal scene" => {
+        Label::ZeroDirection => ray_sphere.d = [0.0; 3],
+        Label::ZeroRadius => ray_sphere.r = 0.0,
+        Label::NegativeRadius => ray_sphere.r = -ray_sphere.r,
+        Label::DenormalScene => {
             let small = |v: [f32; 3]| v.map(|x| (f64::from(x) * 1e-40) as f32);
             (ray_sphere.o, ray_sphere.c, ray_sphere.r) = (
                 small(ray_sphere.o),
@@ -240,30 +240,30 @@ pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case>
                 small([ray_sphere.r; 3])[0],
             );
         }
-        "denormal direction" => ray_sphere.d = ray_sphere.d.map(|x| (f64::from(x) * 1e-40) as f32),
-        "infinite origin" => ray_sphere.o[i] = infinite,
-        "infinite direction" => ray_sphere.d[i] = infinite,
-        "infinite center" => ray_sphere.c[i] = infinite,
-        "infinite radius" => ray_sphere.r = f32::INFINITY,
-        "NaN origin" => ray_sphere.o[i] = f32::NAN,
-        "NaN direction" => ray_sphere.d[i] = f32::NAN,
+        Label::DenormalDirection => ray_sphere.d = ray_sphere.d.map(|x| (f64::from(x) * 1e-40) as f32),
+        Label::InfiniteOrigin => ray_sphere.o[i] = infinite,
+        Label::InfiniteDirection => ray_sphere.d[i] = infinite,
+        Label::InfiniteCenter => ray_sphere.c[i] = infinite,
+        Label::InfiniteRadius => ray_sphere.r = f32::INFINITY,
+        Label::NanOrigin => ray_sphere.o[i] = f32::NAN,
+        Label::NanDirection => ray_sphere.d[i] = f32::NAN,
         _ => ray_sphere.r = f32::NAN,
     }
     let is_grazing = |intersection: exact::Intersection| intersection.discriminant.abs() < MARGIN;
     let exact = exact::sphere(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r);
     let is_well_conditioned =
-        label.starts_with("zero ") && label != "zero coordinates" || !exact.is_some_and(is_grazing);
+        matches!(label, Label::ZeroDirection | Label::ZeroRadius) || !exact.is_some_and(is_grazing);
     is_well_conditioned.then_some(Case::Sphere(ray_sphere))
 }
 
 // Rays and quadrics, each in its local coordinates.
 
-pub(super) const SPECIAL_QUADRIC_RAYS: [&str; 5] = [
-    "ray along a cylinder",
-    "ray along a cone's side",
-    "ray along a paraboloid's axis",
-    "ray through a cone's apex",
-    "ray through a paraboloid's apex",
+pub(super) const SPECIAL_QUADRIC_RAYS: [Label; 5] = [
+    Label::AlongCylinder,
+    Label::AlongConeSide,
+    Label::AlongParaboloidAxis,
+    Label::ThroughConeApex,
+    Label::ThroughParaboloidApex,
 ];
 
 /// q, g and k.
@@ -313,10 +313,10 @@ pub(super) fn special_quadric_ray(random: &mut Random, step: Step) -> Option<Cas
     // Multiples of 1/1024, so that sums of two are exact.
     let coarse = |v: [f64; 3]| v.map(|x| (x * 1024.0).round() / 1024.0);
     Some(match label {
-        "ray along a cylinder" => quadric_case(CYLINDER, o, along),
-        "ray along a cone's side" => quadric_case(CONE, o, [3.0, 4.0 * random.sign(), 5.0]),
-        "ray along a paraboloid's axis" => quadric_case(PARABOLOID, o, along),
-        "ray through a cone's apex" => {
+        Label::AlongCylinder => quadric_case(CYLINDER, o, along),
+        Label::AlongConeSide => quadric_case(CONE, o, [3.0, 4.0 * random.sign(), 5.0]),
+        Label::AlongParaboloidAxis => quadric_case(PARABOLOID, o, along),
+        Label::ThroughConeApex => {
             let d = coarse([x, y, 2.0 * z]);
             quadric_case(CONE, d.map(|x| -4.0 * x), d)
         }
@@ -332,8 +332,8 @@ pub(super) fn special_quadric_ray(random: &mut Random, step: Step) -> Option<Cas
 fn primary_ray(random: &mut Random, step: Step) -> Option<RaySphere> {
     let Step::Label(label) = step else { return None };
     let (scale, r) = match label {
-        "scale 1" => (1.0, random.between(0.5, 2.0)),
-        "scale 1e3" => (1e3, random.between(0.5, 2.0)),
+        Label::Scale1 => (1.0, random.between(0.5, 2.0)),
+        Label::Scale1000 => (1e3, random.between(0.5, 2.0)),
         _ => (1.0, 1000.0),
     };
     let (c, normal) = (random.direction() * (3.0 * r), random.direction());

@@ -5,6 +5,7 @@
 //! same floats.
 
 pub mod axis;
+pub mod case;
 mod case_sampler;
 mod cells;
 pub mod exact;
@@ -17,7 +18,8 @@ mod tally;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use axis::{Case, Kind, Step, axes};
+use axis::{Kind, axes};
+use case::{Case, Step};
 use cells::Cells;
 use formula::{Reading, Subject};
 use function::MissConvention;

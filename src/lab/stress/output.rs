@@ -3,7 +3,8 @@
 use serde::{Serialize, Serializer};
 use toyproof_diagnostic::spreadsheet_text;
 
-use super::axis::{Axis, Kind, Step, axes};
+use super::axis::{Axis, Kind, axes};
+use super::case::Step;
 use super::{CPU, Report, Row};
 use crate::chart::{self, Band, HeatMap, Panel};
 use crate::csv_table;

@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use toyproof_diagnostic::{columns, grouped, plural};
 
-use super::axis::{Axis, EasySteps, Kind, Step, axes};
+use super::axis::{Axis, EasySteps, Kind, axes};
+use super::case::Step;
 use super::tally::{Breakdown, MAX_FAILING_SHARE, directions};
 use super::{CPU, Report, Row};
 

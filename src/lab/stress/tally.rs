@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::Row;
-use super::axis::{Axis, EasySteps, Step, step_value};
+use super::axis::{Axis, EasySteps};
+use super::case::{Step, step_value};
 use super::cells::{Alternative, Reference};
 use super::exact::DoubleDouble;
 use super::formula::Reading;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use crate::stress::axis::RaySphere;
+use crate::stress::case::RaySphere;
 use crate::stress::tally::Outcome;
 
 /// A common mistake.

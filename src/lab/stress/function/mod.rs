@@ -11,16 +11,17 @@ use std::time::{Duration, Instant};
 
 pub use mistake::Mistake;
 pub use replace::replacements;
-pub use role::Role;
+pub use role::{Role, RoleMap};
 use serde::Serialize;
 pub(super) use signature::clear_misses;
-pub use signature::{MissConvention, RoleMap, Signature, Unrecognized};
+pub use signature::{MissConvention, Signature, Unrecognized};
 use toyproof_eval::UndefinedPolicy;
 use toyproof_eval_native::Program;
 use toyproof_glsl as glsl;
 use toyproof_gpu::Worker;
 
-use super::axis::{Axis, Case, Kind, RaySphere, Step, axes};
+use super::axis::{Axis, Kind, axes};
+use super::case::{Case, Label, RaySphere, Step};
 use super::case_sampler::Random;
 use super::cells::{Cells, Reference, reference_of};
 use super::formula::{Reading, Subject, main};
@@ -323,7 +324,7 @@ fn extremeness(axis: &str, step: Step) -> f64 {
         ("grazing", Step::Number(delta)) => 20.0 - libm::log10(delta.abs()),
         (_, Step::Number(number)) if number > 0.0 => libm::log10(number).abs(),
         (_, Step::Number(_)) => 0.0,
-        ("origin", Step::Label("origin inside")) => 0.5,
+        (_, Step::Label(Label::OriginInside)) => 0.5,
         ("origin", Step::Label(_)) => 10.0,
         (_, Step::Label(_)) => 100.0,
     }

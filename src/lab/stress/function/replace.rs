@@ -8,7 +8,7 @@ use toyproof_glsl::tree::{Scalar, Type};
 use toyproof_glsl::{self as glsl, Checked};
 
 use super::{FunctionRunner, MissConvention, Role, RoleMap, Signature, subject};
-use crate::stress::axis::RaySphere;
+use crate::stress::case::RaySphere;
 use crate::stress::formula::{FORMULAS, Formula, RECENTERED};
 use crate::stress::tally::Outcome;
 use crate::stress::{Failure, check_subject};

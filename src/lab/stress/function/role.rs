@@ -1,8 +1,11 @@
 //! The roles of a function's values in ray–sphere intersection, and their usual names.
 
+use std::collections::BTreeMap;
+
 use toyproof_glsl::tree::{Function, Scalar, Tree, Type};
 
-use super::signature::RoleMap;
+/// Roles that the user assigns, by path (`ray.origin`, `s`, `return`).
+pub type RoleMap = BTreeMap<String, Role>;
 
 /// The role of a value in ray–sphere intersection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,19 +1,15 @@
 //! The inputs and outputs of a user's function, recognized by type and name.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use thiserror::Error;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{BinaryOp, Direction, ExprId, ExprKind, Function, Tree, Type, VariableKind};
 
-use super::role::{Role, assign_input_roles, assign_output_roles, check_map, is_sphere, leaves};
-use crate::stress::axis::RaySphere;
+use super::role::{Role, RoleMap, assign_input_roles, assign_output_roles, check_map, is_sphere, leaves};
+use crate::stress::case::RaySphere;
 use crate::stress::case_sampler::Random;
 use crate::stress::tally::Outcome;
-
-/// Roles that the user assigns, by path (`ray.origin`, `s`, `return`).
-pub type RoleMap = BTreeMap<String, Role>;
 
 /// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
