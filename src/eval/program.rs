@@ -1,4 +1,4 @@
-//! LoweredCode shaders and their variants.
+//! Compiled shaders and their variants.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;

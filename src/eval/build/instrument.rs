@@ -34,7 +34,7 @@ impl Builder<'_> {
                 });
             }
             UndefinedPolicy::Substitute(_) if fault.is_undefined() => {
-                self.unresolved.push((predicate, values))
+                self.unresolved.push((predicate, values));
             }
             UndefinedPolicy::Substitute(_) | UndefinedPolicy::Plain => {}
         }

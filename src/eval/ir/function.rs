@@ -145,11 +145,13 @@ pub struct Function {
 
 impl Function {
     /// Returns the definition of a value.
+    #[must_use]
     pub fn def(&self, value: Value) -> ValueDef {
         self.defs[value.0 as usize]
     }
 
     /// Returns the kind of a value.
+    #[must_use]
     pub fn kind(&self, value: Value) -> Kind {
         match self.def(value) {
             ValueDef::Word(_) | ValueDef::Input(Input::Frame, _) => Kind::Word,
@@ -183,6 +185,7 @@ impl ValueDef {
     }
 
     /// Returns the definition with each operand replaced by the result of `with`.
+    #[must_use]
     pub fn map_operands(self, mut with: impl FnMut(Value) -> Value) -> Self {
         let mut each = |value| if value == NONE { NONE } else { with(value) };
         match self {

@@ -69,6 +69,7 @@ macro_rules! define {
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
             /// Returns the kinds of the operands, one to three.
+            #[must_use]
             pub fn operands(self) -> &'static [Kind] {
                 match self {
                     $(Self::$name => &[$(kind!($operand)),+],)*
@@ -76,6 +77,7 @@ macro_rules! define {
             }
 
             /// Returns the kind of the result.
+            #[must_use]
             pub fn kind(self) -> Kind {
                 match self {
                     $(Self::$name => kind!($value),)*

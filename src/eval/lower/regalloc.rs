@@ -54,21 +54,25 @@ impl PerKind {
 
 impl Allocation {
     /// Returns the location of a value that is computed, or a constant.
+    #[must_use]
     pub fn value(&self, value: Value) -> Option<Location> {
         self.values[value.0 as usize]
     }
 
     /// Returns the last step that may read a value, or whatever shares its location.
+    #[must_use]
     pub fn value_end(&self, value: Value) -> u32 {
         self.value_ends[value.0 as usize]
     }
 
     /// Returns the last step that may read a cell.
+    #[must_use]
     pub fn cell_end(&self, cell: Cell) -> u32 {
         self.cell_ends[cell.0 as usize]
     }
 
     /// Returns the location of a cell that is accessed.
+    #[must_use]
     pub fn cell(&self, cell: Cell) -> Option<Location> {
         self.cells[cell.0 as usize]
     }

@@ -26,6 +26,7 @@ impl<K, V> Default for RollbackMap<K, V> {
 
 impl<K: Copy + Eq + Hash, V: Copy + PartialEq> RollbackMap<K, V> {
     /// Returns a value.
+    #[must_use]
     pub fn get(&self, key: K) -> Option<V> {
         self.map.get(&key).copied()
     }
@@ -42,6 +43,7 @@ impl<K: Copy + Eq + Hash, V: Copy + PartialEq> RollbackMap<K, V> {
     }
 
     /// Returns the current state, for [`Self::roll_back`].
+    #[must_use]
     pub fn mark(&self) -> usize {
         self.changes.len()
     }

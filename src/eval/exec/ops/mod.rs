@@ -36,7 +36,7 @@ pub(crate) struct Instruction<N: Arithmetic> {
     pub(crate) to: u32,
 }
 
-/// Executes an instruction and returns the index of the next. LoweredCode for a level that [`Level::detect`]
+/// Executes an instruction and returns the index of the next. Compiled for a level that [`Level::detect`]
 /// found on this processor.
 pub(crate) type Handler<N> = unsafe fn(&Batch<'_, N>, &Instruction<N>, usize) -> usize;
 
