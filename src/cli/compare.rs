@@ -7,8 +7,8 @@ use toyproof_image::{self as image};
 use toyproof_project::files;
 use toyproof_verify::compare::{Legend, TOLERANCE, compare, compare_in_8_bits};
 
-use super::inputs::{may_write, shell_word};
-use super::{Exit, Terminal};
+use super::inputs::{check_output, shell_word};
+use super::{CliError, Exit, Terminal};
 
 /// Compare two images: exit code 0 if they agree, 1 if they differ
 ///
@@ -28,18 +28,15 @@ pub(super) struct Args {
     diff: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    if let Some(diff) = &args.diff
-        && !may_write(diff, &[&*args.a, &*args.b].into_iter().collect(), terminal)
-    {
-        return Exit::Error;
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
+    if let Some(diff) = &args.diff {
+        check_output(diff, &[&*args.a, &*args.b].into_iter().collect())?;
     }
     let shaders = [&args.a, &args.b].map(|path| files::is_shader(path) || files::is_project(path));
     if shaders.contains(&true) {
         let [a, b] = [&args.a, &args.b].map(|path| path_name(path));
         let shader = if shaders[0] { &a } else { &b };
-        terminal.error(format_args!("{shader} is a shader, but `compare` takes images"));
-        terminal.help(match shaders {
+        let help = match shaders {
             [true, true] => format!(
                 "to compare a shader with another: toyproof check {} --reference {}",
                 shell_word(&b),
@@ -50,26 +47,25 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 shell_word(shader),
                 shell_word(if shaders[0] { &b } else { &a })
             ),
-        });
-        return Exit::Error;
+        };
+        let error = CliError::new(format_args!("{shader} is a shader, but `compare` takes images"));
+        return Err(error.with_help(help));
     }
     let (a, b) = match (image::read(&args.a), image::read(&args.b)) {
         (Ok(a), Ok(b)) => (a, b),
-        (a, b) => {
-            for error in [a.err(), b.err()].into_iter().flatten() {
-                terminal.error(error);
-            }
-            return Exit::Error;
+        (Err(a), Err(b)) => {
+            terminal.error(a);
+            return Err(b.into());
         }
+        (Err(error), _) | (_, Err(error)) => return Err(error.into()),
     };
     if a.size() != b.size() {
         let [[aw, ah], [bw, bh]] = [a.size(), b.size()];
-        terminal.error(format_args!(
+        return Err(CliError::new(format_args!(
             "{} has {aw}×{ah} pixels and {} has {bw}×{bh}; only images of equal size can be compared",
             path_name(&args.a),
             path_name(&args.b)
-        ));
-        return Exit::Error;
+        )));
     }
     let has_8_bits = [&args.a, &args.b].iter().any(|path| {
         path.extension()
@@ -88,14 +84,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                 tolerance: TOLERANCE as f32,
             },
         );
-        match image::encode_shown(&difference_image, path) {
-            Ok(bytes) if terminal.write(path, &bytes) => {}
-            Ok(_) => return Exit::Error,
-            Err(error) => {
-                terminal.error(error);
-                return Exit::Error;
-            }
-        }
+        terminal.write(path, &image::encode_shown(&difference_image, path)?)?;
     }
     let pixels = grouped(comparison.pixels);
     match comparison.differing {
@@ -118,9 +107,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
             terminal.result(&format!("{name} {}", toyproof_report::place(&pixel)));
         }
     }
-    if comparison.differing == 0 {
+    Ok(if comparison.differing == 0 {
         Exit::Success
     } else {
         Exit::ShaderFault
-    }
+    })
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_diagnostic::Deadline;
 use toyproof_eval::Failure;
 use toyproof_eval_native::Program;
 use toyproof_explain::trail::follow_back;
@@ -22,8 +22,8 @@ use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
 use super::project::{pass_shader, rendering, target};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::run::{not_evaluated, parse_pass};
-use super::shader::{Shader, Unusable, find};
-use super::{Exit, Terminal};
+use super::shader::{Shader, find_one};
+use super::{CliError, Exit, Terminal};
 
 /// Trace one pixel of a shader line by line, in f32 beside f64
 ///
@@ -58,51 +58,32 @@ pub(super) struct Args {
     frame: FrameArgs,
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let found = find(std::slice::from_ref(&args.shader), terminal);
-    let [input] = found.as_slice() else {
-        terminal.error(format_args!(
-            "{} contains several shaders; `debug` takes one",
-            path_name(&args.shader)
-        ));
-        return Exit::Error;
-    };
-    let Ok(given) = GivenReference::read(&args.reference, &args.language, args.timeout, terminal) else {
-        return Exit::Error;
-    };
-    let (frame, scene) = match frame_and_scene(args, input, given.as_ref()) {
-        Ok(found) => found,
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
-    };
-    let shader = Shader::load(input, &args.language, Deadline::after(args.timeout));
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
+    let input = find_one(&args.shader, "debug", terminal)?;
+    let given = GivenReference::read(&args.reference, &args.language, args.timeout)?;
+    let (frame, scene) = frame_and_scene(args, &input, given.as_ref())?;
+    let shader = Shader::load(&input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     let kind = args.pass.unwrap_or(PassKind::Image);
     if let Some(passes) = &shader.passes
         && (passes.has_history() || kind != PassKind::Image)
     {
-        return print_pass(args, (&shader, passes), kind, frame, scene, terminal).unwrap_or_else(|exit| exit);
+        return print_pass(args, (&shader, passes), kind, frame, scene, terminal);
     }
     if kind != PassKind::Image {
-        terminal.error(format_args!("{} is no project with buffers", shader.name));
-        return Exit::Error;
+        return Err(CliError::new(format_args!(
+            "{} is no project with buffers",
+            shader.name
+        )));
     }
-    match &shader.checked {
-        Ok(checked) => {
-            let reference = Reference { scene, given };
-            print_trace(args, (&shader, checked), &frame, reference, terminal).unwrap_or_else(|exit| exit)
-        }
-        Err(Unusable::Invalid(diagnostics)) => {
-            terminal.diagnostics(diagnostics, &shader.files);
-            Exit::ShaderFault
-        }
-        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
-            terminal.error(error);
-            Exit::Error
-        }
-    }
+    let checked = shader.require_checked()?;
+    print_trace(
+        args,
+        (&shader, checked),
+        &frame,
+        Reference { scene, given },
+        terminal,
+    )
 }
 
 /// Prints the trace of the pixel of a pass of a project, and the origin of its difference.
@@ -113,11 +94,10 @@ fn print_pass(
     mut frame: Frame,
     scene: Option<Scene>,
     terminal: &Terminal,
-) -> Result<Exit, Exit> {
+) -> Result<Exit, CliError> {
     let Some(at) = passes.project.passes.iter().position(|pass| pass.kind == kind) else {
-        terminal.error(format_args!("{}: there is no {kind}", shader.name));
-        terminal.help("name one of its passes with --pass");
-        return Err(Exit::Error);
+        let error = CliError::new(format_args!("{}: there is no {kind}", shader.name));
+        return Err(error.with_help("name one of its passes with --pass"));
     };
     if !args.frame.is_moment_given() {
         let number = default_frame(scene.as_ref());
@@ -130,11 +110,8 @@ fn print_pass(
     });
     spinner.finish_and_clear();
     let trail = trail.map_err(|failure| match failure {
-        verify::Failure::Cpu(failure) => not_evaluated(&failure, shader, terminal),
-        other => {
-            terminal.error(format_args!("{}: {other}", shader.name));
-            Exit::Error
-        }
+        verify::Failure::Cpu(failure) => not_evaluated(&failure, shader),
+        other => CliError::new(format_args!("{}: {other}", shader.name)),
     })?;
     let scene = scene.filter(|_| kind == PassKind::Image).map(|mut scene| {
         accumulate(&mut scene, frame.frame);
@@ -163,8 +140,8 @@ fn frame_and_scene(
     args: &Args,
     input: &Result<Input, ReadError>,
     given: Option<&GivenReference>,
-) -> Result<(Frame, Option<Scene>), String> {
-    let mut frame = args.frame.inputs().load().map_err(|error| error.to_string())?;
+) -> Result<(Frame, Option<Scene>), CliError> {
+    let mut frame = args.frame.inputs().load()?;
     let scene = if let Some(given) = given {
         given.resize(&mut frame, args.frame.size)?;
         None
@@ -178,11 +155,11 @@ fn frame_and_scene(
     }
     let ([x, y], [width, height]) = (args.pixel, frame.size);
     if x >= width || y >= height {
-        return Err(format!(
+        return Err(CliError::new(format_args!(
             "pixel ({x}, {y}) is outside the image of {width}x{height} pixels; the last is ({}, {})",
             width - 1,
             height - 1
-        ));
+        )));
     }
     Ok((frame, scene))
 }
@@ -204,7 +181,7 @@ fn print_trace(
     frame: &Frame,
     reference: Reference,
     terminal: &Terminal,
-) -> Result<Exit, Exit> {
+) -> Result<Exit, CliError> {
     let Reference { scene, given } = reference;
     let [x, y] = args.pixel;
     let mut expected = scene.map(|scene| expected_color(scene, frame, args.pixel));
@@ -216,7 +193,8 @@ fn print_trace(
         None => None,
         Some(shader) => {
             // Its fault is not that of the shader that is traced.
-            let (trace, color) = traced(args, shader, frame, None, terminal).map_err(|_| Exit::Error)?;
+            let traced = traced(args, shader, frame, None, terminal);
+            let (trace, color) = traced.map_err(|error| error.with_exit(Exit::Error))?;
             expected = color;
             Some(trace)
         }
@@ -225,24 +203,22 @@ fn print_trace(
     print(args, &trace.beside(reference), terminal)
 }
 
-fn print(args: &Args, trace: &report::PixelTrace, terminal: &Terminal) -> Result<Exit, Exit> {
+fn print(args: &Args, trace: &report::PixelTrace, terminal: &Terminal) -> Result<Exit, CliError> {
     match args.format {
-        Format::Json if !terminal.bytes(trace.json().as_bytes()) => return Err(Exit::Error),
-        Format::Json => {}
+        Format::Json => terminal.bytes(trace.json().as_bytes())?,
         Format::Human => terminal.result(&trace.human(terminal.is_verbose())),
     }
     Ok(Exit::Success)
 }
 
-/// The trace of the pixel in one shader, and its color in f64, unless it is discarded; prints why there is
-/// none.
+/// The trace of the pixel in one shader, and its color in f64, unless it is discarded.
 fn traced(
     args: &Args,
     (shader, checked): (&Shader, &Checked),
     frame: &Frame,
     expected: Option<[f64; 3]>,
     terminal: &Terminal,
-) -> Result<(report::PixelTrace, Option<[f64; 3]>), Exit> {
+) -> Result<(report::PixelTrace, Option<[f64; 3]>), CliError> {
     let spinner = terminal.spinner(&shader.name);
     let deadline = Instant::now() + args.timeout;
     let program = Program::within(checked, args.timeout).map_err(Failure::from);
@@ -251,7 +227,7 @@ fn traced(
         Err(failure) => Err(failure.clone()),
     };
     spinner.finish_and_clear();
-    let traced = traced.map_err(|failure| not_evaluated(&failure, shader, terminal))?;
+    let traced = traced.map_err(|failure| not_evaluated(&failure, shader))?;
     let subject = report::TracedPixel {
         shader: &shader.name,
         files: &shader.files,

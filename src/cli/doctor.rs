@@ -11,7 +11,7 @@ use toyproof_gpu::{
 };
 
 use super::inputs::{self, DeviceSelector, Format};
-use super::{Exit, Terminal};
+use super::{CliError, Exit, Terminal};
 
 /// List the Vulkan drivers, the one that is used, and what is missing
 #[derive(Debug, clap::Args)]
@@ -72,27 +72,21 @@ struct DriverTest {
     error: Option<String>,
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let report = match examine(&args.device) {
-        Ok(report) => report,
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
-    };
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
+    let report = examine(&args.device)?;
     match args.format {
         Format::Human => report.print(terminal),
         Format::Json => {
             // Strings, lists and options always serialize.
             let json = serde_json::to_string_pretty(&report).unwrap_or_default() + "\n";
-            terminal.bytes(json.as_bytes());
+            terminal.bytes(json.as_bytes())?;
         }
     }
-    if report.error.is_some() {
+    Ok(if report.error.is_some() {
         Exit::Error
     } else {
         Exit::Success
-    }
+    })
 }
 
 /// Starts all drivers together, and each alone if that fails.

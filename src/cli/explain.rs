@@ -3,7 +3,7 @@
 use toyproof_diagnostic::{nearest, wrap};
 use toyproof_report::{self as report, Explanation};
 
-use super::{Exit, Terminal};
+use super::{CliError, Exit, Terminal};
 
 /// Explain a diagnostic code or a mistake, and how to fix it
 #[derive(Debug, clap::Args)]
@@ -38,8 +38,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         if let Some(explanation) = report::explain(code) {
             print(&explanation, terminal);
         } else if !print_found(code, terminal) {
-            report_unknown(code, terminal);
-            exit = Exit::Error;
+            exit = terminal.fail(&unknown(code));
         }
     }
     exit
@@ -68,16 +67,17 @@ fn print(explanation: &Explanation, terminal: &Terminal) {
     }
 }
 
-fn report_unknown(code: &str, terminal: &Terminal) {
-    terminal.error(format_args!("unknown code `{code}`"));
+fn unknown(code: &str) -> CliError {
     let codes: Vec<_> = report::explanations()
         .map(|explanation| explanation.code)
         .collect();
+    let error = CliError::new(format_args!("unknown code `{code}`"));
     match nearest(code, codes.iter().map(AsRef::as_ref)) {
-        Some(near) => terminal.help(format_args!("did you mean `{near}`?")),
-        None if code.contains(['.', '/']) => terminal
-            .help("`explain` takes codes; to trace one pixel of a shader: toyproof debug SHADER --pixel X,Y"),
-        None => terminal.help("`toyproof explain --list` lists all codes and mistakes"),
+        Some(near) => error.with_help(format_args!("did you mean `{near}`?")),
+        None if code.contains(['.', '/']) => error.with_help(
+            "`explain` takes codes; to trace one pixel of a shader: toyproof debug SHADER --pixel X,Y",
+        ),
+        None => error.with_help("`toyproof explain --list` lists all codes and mistakes"),
     }
 }
 

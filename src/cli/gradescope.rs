@@ -6,7 +6,7 @@ use toyproof_classroom::autograder;
 
 use super::check::read_assignment;
 use super::terminal::file_size;
-use super::{Exit, Terminal};
+use super::{CliError, Exit, Terminal};
 
 /// Create an autograder for Gradescope from an assignment
 ///
@@ -27,26 +27,15 @@ pub(super) struct Args {
     program: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let Ok((path, assignment)) = read_assignment(&args.assignment, terminal) else {
-        return Exit::Error;
-    };
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
+    let (path, assignment) = read_assignment(&args.assignment)?;
     let program = match &args.program {
-        Some(program) => Ok(program.clone()),
-        None => std::env::current_exe().map_err(|error| format!("the program's own file: {error}")),
+        Some(program) => program.clone(),
+        None => std::env::current_exe().map_err(|error| format!("the program's own file: {error}"))?,
     };
-    match program.and_then(|program| autograder::pack(&program, &path, &assignment)) {
-        Ok(archive) => {
-            if !terminal.write(&args.output, &archive) {
-                return Exit::Error;
-            }
-            terminal.confirm(&args.output, &file_size(archive.len()));
-            terminal.note("to use it: upload it on Gradescope, under Configure Autograder");
-            Exit::Success
-        }
-        Err(error) => {
-            terminal.error(error);
-            Exit::Error
-        }
-    }
+    let archive = autograder::pack(&program, &path, &assignment)?;
+    terminal.write(&args.output, &archive)?;
+    terminal.confirm(&args.output, &file_size(archive.len()));
+    terminal.note("to use it: upload it on Gradescope, under Configure Autograder");
+    Ok(Exit::Success)
 }

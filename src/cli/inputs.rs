@@ -15,7 +15,7 @@ use toyproof_project as project;
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
 
-use super::{Terminal, WORKER};
+use super::{CliError, WORKER};
 
 /// The time limit for one shader, unless the user gives another.
 const DEFAULT_TIME_LIMIT: Duration = Duration::from_secs(10);
@@ -29,15 +29,13 @@ pub(super) const LOADS_DRIVERS: bool = !cfg!(all(target_env = "musl", target_fea
 pub(super) const STATIC_PROGRAM: &str = "this program is linked statically and cannot load Vulkan drivers; \
                                          the packages for glibc can: the .deb, the wheel, or *-linux-gnu.tar.gz";
 
-/// Returns whether a file may be written without overwriting one of the inputs; prints an error if not.
-pub(super) fn may_write(path: &Path, originals: &Originals, terminal: &Terminal) -> bool {
-    let loses = originals.would_lose(path);
-    if loses {
-        let path = path_name(path);
-        terminal.error(format_args!("{path} is an input and would be overwritten"));
-        terminal.help("give the output another name with -o");
+/// Checks that a file can be written without overwriting one of the inputs.
+pub(super) fn check_output(path: &Path, originals: &Originals) -> Result<(), CliError> {
+    if originals.would_lose(path) {
+        let error = format!("{} is an input and would be overwritten", path_name(path));
+        return Err(CliError::new(error).with_help("give the output another name with -o"));
     }
-    !loses
+    Ok(())
 }
 
 /// The values of ShaderToy's inputs.

@@ -16,6 +16,7 @@ mod compare;
 mod convert;
 mod debug;
 mod doctor;
+mod error;
 mod explain;
 mod gradescope;
 mod help;
@@ -44,6 +45,7 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 use toyproof_gpu as gpu;
 use toyproof_verify::contain::{Part, contain};
 
+use self::error::CliError;
 use self::terminal::Terminal;
 
 /// Check, render and convert ShaderToy shaders
@@ -190,16 +192,15 @@ impl Cli {
         if std::env::var_os("RUST_BACKTRACE").is_none() {
             panic::set_hook(Box::new(Terminal::print_panic));
         }
-        let exit = contain(Part::Command, || self.command.run(&terminal)).unwrap_or_else(|panic| {
-            terminal.error(panic);
-            Exit::Error
-        });
+        let ended = contain(Part::Command, || self.command.run(&terminal));
+        let ended = ended.unwrap_or_else(|panic| Err(panic.into()));
+        let exit = ended.unwrap_or_else(|error| terminal.fail(&error));
         if terminal.has_failed() { Exit::Error } else { exit }
     }
 }
 
 impl Command {
-    fn run(&self, terminal: &Terminal) -> Exit {
+    fn run(&self, terminal: &Terminal) -> Result<Exit, CliError> {
         match self {
             Self::Check(args) => check::run(args, terminal),
             Self::Merge(args) => check::merge(args, terminal),
@@ -208,7 +209,7 @@ impl Command {
             Self::Run(args) => run::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
             Self::Debug(args) => debug::run(args, terminal),
-            Self::Explain(args) => explain::run(args, terminal),
+            Self::Explain(args) => Ok(explain::run(args, terminal)),
             Self::Compare(args) => compare::run(args, terminal),
             Self::Trade(args) => trade::run(args, terminal),
             Self::Stress(args) => stress::run(args, terminal),
@@ -216,7 +217,7 @@ impl Command {
             Self::Import(args) => project::import(args, terminal),
             Self::New(args) => new::run(args, terminal),
             Self::Gradescope(args) => gradescope::run(args, terminal),
-            Self::Similar(args) => similar::run(args, terminal),
+            Self::Similar(args) => Ok(similar::run(args, terminal)),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
             Self::Completions(args) => shell::completions(args, terminal),

@@ -13,7 +13,7 @@ use toyproof_verify::Expected;
 use super::inputs::{LanguageArgs, parse_time_limit};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::scenes::read_scene;
-use super::{Exit, Terminal, project};
+use super::{CliError, Exit, Terminal, project};
 
 /// Create a new file from a template
 #[derive(Debug, clap::Args)]
@@ -117,25 +117,21 @@ fn parse_name(text: &str) -> Result<String, String> {
     }
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     match &args.what {
-        What::Scene(args) => new_scene(args, terminal),
-        What::Assignment(args) => match new_assignment(args, terminal) {
-            Ok(()) => Exit::Success,
-            Err(()) => Exit::Error,
-        },
-        What::Class(args) => new_class(args, terminal),
-        What::Project(args) => new_project(args, terminal),
+        What::Scene(args) => new_scene(args, terminal)?,
+        What::Assignment(args) => new_assignment(args, terminal)?,
+        What::Class(args) => new_class(args, terminal)?,
+        What::Project(args) => new_project(args, terminal)?,
     }
+    Ok(Exit::Success)
 }
 
-fn new_project(args: &ProjectArgs, terminal: &Terminal) -> Exit {
+fn new_project(args: &ProjectArgs, terminal: &Terminal) -> Result<(), CliError> {
     let folder = args.output.clone().unwrap_or_else(|| PathBuf::from(&args.name));
     let files =
         project::template().map(|(name, text)| (folder.join(name), text.replacen("NAME", &args.name, 1)));
-    if !project::create(&folder, &files, terminal) {
-        return Exit::Error;
-    }
+    project::create(&folder, &files, terminal)?;
     let name = path_name(&folder);
     terminal.note(&format!("created {name} with {} files", files.len()));
     terminal.note("next:");
@@ -145,35 +141,29 @@ fn new_project(args: &ProjectArgs, terminal: &Terminal) -> Exit {
         quoted(&name),
         quoted(&format!("{name}.json"))
     ));
-    Exit::Success
+    Ok(())
 }
 
-fn new_scene(args: &SceneArgs, terminal: &Terminal) -> Exit {
+fn new_scene(args: &SceneArgs, terminal: &Terminal) -> Result<(), CliError> {
     let text = scene::template(&args.name);
-    let Ok(created) = create_file(&args.name, args.output.as_deref(), &text, terminal) else {
-        return Exit::Error;
-    };
-    if let Some(path) = created {
+    if let Some(path) = create_file(&args.name, args.output.as_deref(), &text, terminal)? {
         let (scene, stem) = (quoted(&path_name(&path)), path_name(&path.with_extension("")));
         let (image, shader) = (quoted(&format!("{stem}.png")), quoted(&format!("{stem}.glsl")));
         terminal.note(&format!("  toyproof render {scene} -o {image}"));
         terminal.note(&format!("  toyproof export {scene} -o {shader}"));
         terminal.note(&format!("  toyproof check {shader}"));
     }
-    Exit::Success
+    Ok(())
 }
 
-fn new_class(args: &ClassArgs, terminal: &Terminal) -> Exit {
+fn new_class(args: &ClassArgs, terminal: &Terminal) -> Result<(), CliError> {
     let text = include_str!("template/class.toml");
-    let Ok(created) = create_file(&args.name, args.output.as_deref(), text, terminal) else {
-        return Exit::Error;
-    };
-    if let Some(path) = created {
+    if let Some(path) = create_file(&args.name, args.output.as_deref(), text, terminal)? {
         let class = quoted(&path_name(&path));
         terminal.note(&format!("  edit {class}"));
         terminal.note(&format!("  toyproof check DOWNLOAD --class {class} --out marks"));
     }
-    Exit::Success
+    Ok(())
 }
 
 /// Creates a file from a template, `NAME.toml` unless another is given, which may be standard output; returns the
@@ -183,19 +173,16 @@ fn create_file(
     output: Option<&Path>,
     text: &str,
     terminal: &Terminal,
-) -> Result<Option<PathBuf>, ()> {
+) -> Result<Option<PathBuf>, CliError> {
     let path = output.map_or_else(|| PathBuf::from(format!("{name}.toml")), Path::to_owned);
     let is_stream = path == Path::new("-");
     let name = path_name(&path);
     if !is_stream && path.exists() {
-        terminal.error(format_args!(
+        return Err(CliError::new(format_args!(
             "{name} already exists; choose another name, or another file with `-o`"
-        ));
-        return Err(());
+        )));
     }
-    if !terminal.write(&path, text.as_bytes()) {
-        return Err(());
-    }
+    terminal.write(&path, text.as_bytes())?;
     if is_stream {
         return Ok(None);
     }
@@ -209,14 +196,13 @@ const SOLUTION: &str = "solution.glsl";
 const SCENE: &str = "scene.toml";
 
 /// Creates the folder of an assignment. Everything is rendered before the first file is written.
-fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), ()> {
+fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), CliError> {
     let folder = args.output.clone().unwrap_or_else(|| PathBuf::from(&args.name));
     let name = path_name(&folder);
     if folder.exists() {
-        terminal.error(format_args!(
+        return Err(CliError::new(format_args!(
             "{name} already exists; choose another name, or another folder with `-o`"
-        ));
-        return Err(());
+        )));
     }
     let files = if files::is_shader(&args.from) {
         from_shader(args, terminal)?
@@ -224,9 +210,7 @@ fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), ()> 
         from_scene(args, terminal)?
     };
     for (file, bytes) in &files {
-        if !terminal.write(&folder.join(file), bytes) {
-            return Err(());
-        }
+        terminal.write(&folder.join(file), bytes)?;
     }
     terminal.note(&format!("created {name}:"));
     for (file, _) in &files {
@@ -244,10 +228,11 @@ fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), ()> 
 type NewFiles = Vec<(String, Vec<u8>)>;
 
 /// The files of an assignment whose reference is a shader.
-fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, ()> {
+fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, CliError> {
     let reference = ReferenceArgs::given(args.from.clone(), None);
-    let given = GivenReference::read(&reference, &args.language, args.timeout, terminal)?.ok_or(())?;
-    let (shader, checked) = given.shader().ok_or(())?;
+    let given = GivenReference::read(&reference, &args.language, args.timeout)?;
+    let given = given.ok_or_else(CliError::silent)?;
+    let (shader, checked) = given.shader().ok_or_else(CliError::silent)?;
     let subject = Subject {
         checked,
         files: &shader.files,
@@ -257,7 +242,7 @@ fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, (
     };
     let model = Model::Shader(&subject);
     let text = subject.text.as_bytes().to_vec();
-    let frames = load(&model, terminal)?;
+    let frames = load(&model)?;
     let expected = given.expected(frames.iter(), args.timeout, terminal)?;
     let dependences = expected.iter().filter_map(Expected::march_dependence);
     let largest = dependences.max_by_key(|dependence| dependence.pixels.count);
@@ -266,20 +251,19 @@ fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, (
     }
     let mut files = vec![(SOLUTION.to_owned(), text)];
     for (index, (expected, frame)) in expected.iter().zip(&frames).enumerate() {
-        files.push(thumbnail(index, expected, frame, terminal)?);
+        files.push(thumbnail(index, expected, frame)?);
     }
     files.push((FILE_NAME.to_owned(), model.assignment(SOLUTION).into_bytes()));
     Ok(files)
 }
 
 /// The files of an assignment whose reference is a scene.
-fn from_scene(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, ()> {
-    let text = read_scene(&args.from).map_err(|error| terminal.error(error))?;
+fn from_scene(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, CliError> {
+    let text = read_scene(&args.from)?;
     let content = text.text().as_bytes().to_vec();
     let mut parsed = Files::default();
     let file = parsed.add(text);
-    let scene =
-        scene::parse(&parsed, file).map_err(|errors| terminal.diagnostics(&Vec::from(errors), &parsed))?;
+    let scene = scene::parse(&parsed, file).map_err(|errors| CliError::diagnostics(errors, &parsed))?;
     let mut files = vec![(SCENE.to_owned(), content)];
     match scene::export::shader(&scene) {
         Ok(solution) => files.push((SOLUTION.to_owned(), solution.into_bytes())),
@@ -288,32 +272,25 @@ fn from_scene(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, ()
     let model = Model::Scene {
         is_animated: !scene.motions.is_empty(),
     };
-    for (index, mut frame) in load(&model, terminal)?.into_iter().enumerate() {
+    for (index, mut frame) in load(&model)?.into_iter().enumerate() {
         frame.size = scene.film.size;
         let expected = Expected::of_scene(scene.clone(), &frame);
-        files.push(thumbnail(index, &expected, &frame, terminal)?);
+        files.push(thumbnail(index, &expected, &frame)?);
     }
     files.push((FILE_NAME.to_owned(), model.assignment(SCENE).into_bytes()));
     Ok(files)
 }
 
 /// The frames of a new assignment, which have no files.
-fn load(model: &Model, terminal: &Terminal) -> Result<Vec<image::Frame>, ()> {
+fn load(model: &Model) -> Result<Vec<image::Frame>, CliError> {
     let frames = model.frames().into_iter();
-    let frames: Result<_, _> = frames.map(|inputs| inputs.load()).collect();
-    frames.map_err(|error| terminal.error(error))
+    frames.map(|inputs| Ok(inputs.load()?)).collect()
 }
 
 /// The image of a frame, as students should see it.
-fn thumbnail(
-    index: usize,
-    expected: &Expected,
-    frame: &image::Frame,
-    terminal: &Terminal,
-) -> Result<(String, Vec<u8>), ()> {
+fn thumbnail(index: usize, expected: &Expected, frame: &image::Frame) -> Result<(String, Vec<u8>), CliError> {
     let name = format!("frame-{}.png", index + 1);
-    let image = expected.image(frame).map_err(|failure| terminal.error(failure))?;
-    let bytes = image::encode(&image, name.as_ref()).map_err(|error| terminal.error(error))?;
+    let bytes = image::encode(&expected.image(frame)?, name.as_ref())?;
     Ok((name, bytes))
 }
 

@@ -13,10 +13,10 @@ use toyproof_toml::list_of;
 use toyproof_verify::Failure;
 use toyproof_verify::project::playback::PassShader;
 
-use super::inputs::may_write;
+use super::inputs::check_output;
 use super::shader::{Unreadable, Unusable};
 use super::terminal::file_size;
-use super::{Exit, Terminal};
+use super::{CliError, Exit, Terminal};
 
 /// Reads a project from its texts, which are added to `files`.
 fn parse(texts: ProjectTexts, files: &mut Files) -> Result<Project, Diagnostics> {
@@ -149,67 +149,50 @@ pub(super) struct ImportArgs {
     output: Option<PathBuf>,
 }
 
-pub(super) fn import(args: &ImportArgs, terminal: &Terminal) -> Exit {
+pub(super) fn import(args: &ImportArgs, terminal: &Terminal) -> Result<Exit, CliError> {
     let folder = args
         .output
         .clone()
         .unwrap_or_else(|| args.input.with_extension(""));
     let mut files = Files::default();
-    let Some(project) = load(&args.input, &mut files, terminal) else {
-        return Exit::Error;
-    };
+    let project = load(&args.input, &mut files)?;
     let mut written = vec![(folder.join(PROJECT_FILE), project.to_toml())];
     written.extend(project.tabs().iter().map(|&(tab, file)| {
         let text = files.get(file).text().to_owned();
         (folder.join(tab.file_name()), text)
     }));
-    if !create(&folder, &written, terminal) {
-        return Exit::Error;
-    }
+    create(&folder, &written, terminal)?;
     let tabs = project.tabs().iter().map(|(tab, _)| tab.to_string());
     terminal.confirm(&folder, &tabs.collect::<Vec<_>>().join(", "));
-    Exit::Success
+    Ok(Exit::Success)
 }
 
 /// Writes the files of a new project; nothing is overwritten.
-pub(super) fn create(folder: &Path, files: &[(PathBuf, String)], terminal: &Terminal) -> bool {
+pub(super) fn create(
+    folder: &Path,
+    files: &[(PathBuf, String)],
+    terminal: &Terminal,
+) -> Result<(), CliError> {
+    let elsewhere = |error: String| CliError::new(error).with_help("choose another folder with -o");
     let known = Tab::ALL.map(|tab| folder.join(tab.file_name()));
     let mut taken = files.iter().map(|(path, _)| path).chain(&known);
     if let Some(path) = taken.find(|path| path.symlink_metadata().is_ok()) {
-        terminal.error(format_args!(
-            "{} already exists; nothing was written",
-            path_name(path)
-        ));
-        terminal.help("choose another folder with -o");
-        return false;
+        let path = path_name(path);
+        return Err(elsewhere(format!("{path} already exists; nothing was written")));
     }
     if folder.exists() && !folder.is_dir() {
-        terminal.error(format_args!("{} is not a folder", path_name(folder)));
-        terminal.help("choose another folder with -o");
-        return false;
+        return Err(elsewhere(format!("{} is not a folder", path_name(folder))));
     }
     files
         .iter()
-        .all(|(path, text)| terminal.write_output(folder, path, text.as_bytes()))
+        .try_for_each(|(path, text)| terminal.write_output(folder, path, text.as_bytes()))
 }
 
-/// Reads a project, or a shader as a project of one tab; prints its errors.
-fn load(path: &Path, files: &mut Files, terminal: &Terminal) -> Option<Project> {
-    let found = match &files::find(path).inputs.into_iter().next()? {
-        Err(error) => {
-            terminal.error(error);
-            return None;
-        }
-        Ok(input) => read(input),
-    };
-    let texts = found.map_err(|error| terminal.error(error)).ok()?;
-    match parse(texts, files) {
-        Ok(project) => Some(project),
-        Err(errors) => {
-            terminal.diagnostics(&errors, files);
-            None
-        }
-    }
+/// Reads a project, or a shader as a project of one tab.
+fn load(path: &Path, files: &mut Files) -> Result<Project, CliError> {
+    let found = files::find(path).inputs.into_iter().next();
+    let input = found.ok_or_else(CliError::silent)??;
+    parse(read(&input)?, files).map_err(|errors| CliError::diagnostics(errors, files))
 }
 
 /// Reads the texts of a project; those of a shader are its Image tab.
@@ -225,14 +208,10 @@ fn read(input: &Input) -> Result<ProjectTexts, ReadError> {
 }
 
 /// Writes a project, or a shader as a project of one tab, as ShaderToy's JSON.
-pub(super) fn export(input: &Path, output: &Path, terminal: &Terminal) -> Exit {
-    if !may_write(output, &std::iter::once(input).collect(), terminal) {
-        return Exit::Error;
-    }
+pub(super) fn export(input: &Path, output: &Path, terminal: &Terminal) -> Result<Exit, CliError> {
+    check_output(output, &std::iter::once(input).collect())?;
     let mut files = Files::default();
-    let Some(project) = load(input, &mut files, terminal) else {
-        return Exit::Error;
-    };
+    let project = load(input, &mut files)?;
     if !project.knows_inputs && !project.needed_by_image().is_empty() {
         let names: Vec<_> = project
             .needed_by_image()
@@ -246,11 +225,9 @@ pub(super) fn export(input: &Path, output: &Path, terminal: &Terminal) -> Exit {
         ));
     }
     let json = project.to_json(&files);
-    if !terminal.write(output, json.as_bytes()) {
-        return Exit::Error;
-    }
+    terminal.write(output, json.as_bytes())?;
     terminal.confirm(output, &file_size(json.len()));
-    Exit::Success
+    Ok(Exit::Success)
 }
 
 /// The files of a new project, by their names: an image that Buffer A refines from frame to frame.

@@ -18,10 +18,10 @@ use toyproof_verify::{
     ShaderReference, Share, unbound,
 };
 
-use super::Terminal;
 use super::inputs::{LanguageArgs, shell_word};
 use super::project::{pass_shader, rendering};
 use super::shader::{Shader, Unusable};
+use super::{CliError, Terminal};
 
 /// What shaders are compared with.
 #[derive(Debug, Clone, clap::Args)]
@@ -107,20 +107,16 @@ enum Content {
 }
 
 impl GivenReference {
-    /// Reads the reference that `--reference` names, if any; prints its errors.
-    ///
-    /// # Errors
-    /// It is unusable.
+    /// Reads the reference that `--reference` names, if any.
     pub(super) fn read(
         args: &ReferenceArgs,
         language: &LanguageArgs,
         timeout: Duration,
-        terminal: &Terminal,
-    ) -> Result<Option<Self>, ()> {
+    ) -> Result<Option<Self>, CliError> {
         let Some(path) = &args.reference else {
             return Ok(None);
         };
-        let (content, bytes) = read(path, language, timeout, terminal)?;
+        let (content, bytes) = read(path, language, timeout)?;
         let default = match content {
             Content::Image(_, Quantization::EightBit) => EIGHT_BIT_TOLERANCE,
             Content::Image(_, Quantization::Float) | Content::Shader(..) => DEFAULT_TOLERANCE,
@@ -157,22 +153,23 @@ impl GivenReference {
     ///
     /// # Errors
     /// If `--size` gives another one.
-    pub(super) fn resize(&self, frame: &mut Frame, size: Option<[u32; 2]>) -> Result<(), String> {
+    pub(super) fn resize(&self, frame: &mut Frame, size: Option<[u32; 2]>) -> Result<(), CliError> {
         let Some(image) = self.image() else {
             return Ok(());
         };
         if let Some([w, h]) = size.filter(|&size| size != image.size()) {
             let ([width, height], name) = (image.size(), &self.name);
-            return Err(format!(
+            let error = CliError::new(format_args!(
                 "{name} has {width}×{height} pixels, and the given size is {w}x{h}; only images of equal size can be \
-                 compared\nhelp: leave the size out"
+                 compared"
             ));
+            return Err(error.with_help("leave the size out"));
         }
         frame.size = image.size();
         Ok(())
     }
 
-    /// Renders the reference in some frames, which have the size of an image; prints its errors.
+    /// Renders the reference in some frames, which have the size of an image, and reports its warnings.
     ///
     /// # Errors
     /// Shaders cannot be compared with it.
@@ -181,7 +178,7 @@ impl GivenReference {
         frames: impl Iterator<Item = &'f Frame>,
         timeout: Duration,
         terminal: &Terminal,
-    ) -> Result<Vec<Expected>, ()> {
+    ) -> Result<Vec<Expected>, CliError> {
         let mut evaluation = Evaluation {
             name: &self.name,
             tolerance: self.tolerance,
@@ -254,7 +251,7 @@ impl Evaluation<'_> {
         checked: &Checked,
         frame: &Frame,
         terminal: &Terminal,
-    ) -> Result<Expected, ()> {
+    ) -> Result<Expected, CliError> {
         let name = self.name;
         let spinner = terminal.spinner(name);
         let mut frame = frame.clone();
@@ -263,18 +260,16 @@ impl Evaluation<'_> {
             bind_reference(&pass_shader(passes, &rendering), &mut frame, self.timeout)
         });
         bound.map_err(|failure| {
-            terminal.error(format_args!(
+            format!(
                 "the passes of the reference {name} cannot be evaluated: {failure}; no shader was checked"
-            ));
+            )
         })?;
         let frame = &frame;
         let evaluated = ShaderReference::new(checked, &shader.lints, frame, self.tolerance, self.timeout);
         spinner.finish_and_clear();
         let (reference, findings) = evaluated.map_err(|failure| {
             let position = report::failure_position(&failure, &shader.files);
-            terminal.error(format_args!(
-                "the reference {name} cannot be evaluated: {failure}{position}; no shader was checked"
-            ));
+            format!("the reference {name} cannot be evaluated: {failure}{position}; no shader was checked")
         })?;
         let notes = [
             shader.lints.warnings.clone(),
@@ -294,10 +289,8 @@ impl Evaluation<'_> {
             100.0 * undefined.ratio()
         );
         if undefined.ratio() > MAX_UNDEFINED {
-            terminal.error(format_args!(
-                "{share}; no shader was checked\nhelp: correct the reference, or check another frame"
-            ));
-            return Err(());
+            let error = CliError::new(format_args!("{share}; no shader was checked"));
+            return Err(error.with_help("correct the reference, or check another frame"));
         }
         if undefined.count > 0 {
             terminal.warn(format_args!("{share}; they are left out of the comparison"));
@@ -324,40 +317,31 @@ pub(super) fn ill_conditioned(name: &str, [width, height]: [u32; 2], conditionin
 }
 
 /// Reads a shader or an image, by its extension, and the bytes that identify its content.
-fn read(
-    path: &Path,
-    language: &LanguageArgs,
-    timeout: Duration,
-    terminal: &Terminal,
-) -> Result<(Content, Vec<u8>), ()> {
+fn read(path: &Path, language: &LanguageArgs, timeout: Duration) -> Result<(Content, Vec<u8>), CliError> {
     let name = path_name(path);
     let extension = path.extension().and_then(OsStr::to_str).map(str::to_lowercase);
     let quantization = match extension.as_deref() {
         _ if files::is_folder_of_shaders(path) => {
-            terminal.error(format_args!(
+            return Err(CliError::new(format_args!(
                 "{name} is a folder; `--reference` takes a single shader or an image"
-            ));
-            return Err(());
+            )));
         }
         Some("toml") => {
-            terminal.error(format_args!(
-                "{name} is a scene\nhelp: name it with --scene instead of --reference"
-            ));
-            return Err(());
+            let error = CliError::new(format_args!("{name} is a scene"));
+            return Err(error.with_help("name it with --scene instead of --reference"));
         }
         Some("png") => Some(Quantization::EightBit),
         Some("exr") => Some(Quantization::Float),
         Some("jpg" | "jpeg" | "gif" | "bmp" | "webp" | "tga" | "tif" | "tiff" | "hdr") => {
-            terminal.error(format_args!(
+            return Err(CliError::new(format_args!(
                 "{name}: images are read from .png and .exr files only"
-            ));
-            return Err(());
+            )));
         }
         _ => None,
     };
     if let Some(quantization) = quantization {
-        let image = image::read(path).map_err(|error| terminal.error(error))?;
-        let bytes = input::read(path).map_err(|error| terminal.error(format_args!("{name}: {error}")))?;
+        let image = image::read(path)?;
+        let bytes = input::read(path).map_err(|error| format!("{name}: {error}"))?;
         return Ok((Content::Image(image, quantization), bytes));
     }
     let input = Input {
@@ -371,22 +355,14 @@ fn read(
         let checked = Box::new(passes.image().clone());
         return Ok((Content::Shader(Box::new(shader), checked), bytes));
     }
-    match &shader.checked {
-        Ok(checked) => {
-            let bytes = shader.text(checked).as_bytes().to_vec();
-            let checked = Box::new(checked.clone());
-            Ok((Content::Shader(Box::new(shader), checked), bytes))
-        }
-        Err(Unusable::Invalid(diagnostics)) => {
-            terminal.diagnostics(diagnostics, &shader.files);
-            terminal.error(format_args!(
-                "the reference {name} is invalid; no shader was checked"
-            ));
-            Err(())
-        }
-        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
-            terminal.error(error);
-            Err(())
-        }
+    if let Err(Unusable::Invalid(diagnostics)) = &shader.checked {
+        let error = CliError::diagnostics(diagnostics.clone(), &shader.files);
+        return Err(error.with_message(format_args!(
+            "the reference {name} is invalid; no shader was checked"
+        )));
     }
+    let checked = shader.require_checked()?;
+    let bytes = shader.text(checked).as_bytes().to_vec();
+    let checked = Box::new(checked.clone());
+    Ok((Content::Shader(Box::new(shader), checked), bytes))
 }

@@ -13,13 +13,13 @@ use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Backend, Tracer};
 use toyproof_verify::Expected;
 
-use super::inputs::may_write;
+use super::inputs::check_output;
 use super::reference::ill_conditioned;
-use super::run::{Precision, default_image, encode, has_image_extension};
+use super::run::{Precision, check_image_extension, default_image, encode};
 use super::scenes::read_scene;
 use super::sequence::{self, FrameEnd, Frames, Sequence};
 use super::terminal::file_size;
-use super::{Exit, Terminal, inputs, project};
+use super::{CliError, Exit, Terminal, inputs, project};
 
 /// Render a scene with the reference tracer
 #[derive(Debug, clap::Args)]
@@ -94,10 +94,8 @@ fn parse_max_error(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let Some(mut scene) = load_scene(&args.scene, terminal) else {
-        return Exit::Error;
-    };
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
+    let mut scene = load_scene(&args.scene)?;
     scene.film.size = args.size.unwrap_or(scene.film.size);
     scene.film.samples = args.samples.unwrap_or(scene.film.samples);
     scene.film.sampler = args.sampler.map_or(scene.film.sampler, Sampler::from);
@@ -110,28 +108,24 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         } else {
             "this scene"
         };
-        terminal.error(format_args!("{what} needs a stochastic sampler"));
-        terminal.help("choose --sampler independent, stratified or sobol");
-        return Exit::Error;
+        let error = CliError::new(format_args!("{what} needs a stochastic sampler"));
+        return Err(error.with_help("choose --sampler independent, stratified or sobol"));
     }
     terminal.detail(&format!("the scene requires {requirements}"));
     let output = args.output.clone().unwrap_or_else(|| default_image(&args.scene));
-    if !has_image_extension(&output, terminal) {
-        return Exit::Error;
-    }
+    check_image_extension(&output)?;
     let mut previous = PreviousTracers::default();
-    let succeeded = match args.frames {
+    match args.frames {
         None => {
             let frame_time = FrameTime {
                 frame: args.frame,
                 time: args.time,
             };
-            render_frame(&scene, frame_time, &mut previous, (args, &output), terminal)
+            render_frame(&scene, frame_time, &mut previous, (args, &output), terminal)?;
         }
         Some(_) if output == Path::new("-") => {
-            terminal.error("standard output takes a single image");
-            terminal.help("name a file with -o");
-            false
+            let error = CliError::new("standard output takes a single image");
+            return Err(error.with_help("name a file with -o"));
         }
         Some(frames) => {
             // Identifies the rendering: a record of a different scene or settings is ignored.
@@ -143,11 +137,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
                     time: f64::from(one.frame) / f64::from(FRAME_RATE),
                 };
                 let frame = (args, &*one.path);
-                FrameEnd::of(render_frame(&scene, frame_time, &mut previous, frame, terminal))
-            })
+                render_frame(&scene, frame_time, &mut previous, frame, terminal)?;
+                Ok(FrameEnd::Written)
+            })?;
         }
-    };
-    if succeeded { Exit::Success } else { Exit::Error }
+    }
+    Ok(Exit::Success)
 }
 
 /// The tracer of the previous frame, in the requested number type.
@@ -157,25 +152,23 @@ struct PreviousTracers {
     double: Option<Tracer<f64>>,
 }
 
-/// Traces the scene at a frame time and writes the image; returns whether that succeeded.
+/// Traces the scene at a frame time and writes the image.
 fn render_frame(
     scene: &Scene,
     frame_time: FrameTime,
     previous: &mut PreviousTracers,
     (args, path): (&Args, &Path),
     terminal: &Terminal,
-) -> bool {
+) -> Result<(), CliError> {
     let start = Instant::now();
     let rendered = match args.precision {
         Precision::F32 => trace(scene, frame_time, &mut previous.single, args, terminal),
         Precision::F64 => trace(scene, frame_time, &mut previous.double, args, terminal),
     };
-    let Some(bytes) = encode(&rendered, path, terminal) else {
-        return false;
-    };
-    let written = terminal.write(path, &bytes);
+    let bytes = encode(&rendered, path)?;
+    terminal.write(path, &bytes)?;
     // The frames of a sequence are confirmed together.
-    if written && args.frames.is_none() {
+    if args.frames.is_none() {
         let [width, height] = rendered.size();
         let samples = match args.max_error {
             Some(error) => format!("error below {error}"),
@@ -194,7 +187,7 @@ fn render_frame(
         terminal.confirm(path, &facts);
         warn_if_ill_conditioned(scene, frame_time, args, terminal);
     }
-    written
+    Ok(())
 }
 
 /// Warns of pixels whose color rounding decides.
@@ -211,25 +204,16 @@ fn warn_if_ill_conditioned(scene: &Scene, frame_time: FrameTime, args: &Args, te
     }
 }
 
-/// Reads a scene, given by its file or by the name of a built-in scene; prints the errors.
-pub(super) fn load_scene(path: &Path, terminal: &Terminal) -> Option<Scene> {
+/// Reads a scene, given by its file or by the name of a built-in scene.
+pub(super) fn load_scene(path: &Path) -> Result<Scene, CliError> {
     if files::is_shader(path) {
         let path = path_name(path);
-        terminal.error(format_args!("{path} is a shader, but a scene is expected here"));
-        terminal.help(format_args!("to run a shader: toyproof run {path} -o IMAGE"));
-        return None;
+        let error = CliError::new(format_args!("{path} is a shader, but a scene is expected here"));
+        return Err(error.with_help(format_args!("to run a shader: toyproof run {path} -o IMAGE")));
     }
     let mut files = Files::default();
-    let file = match read_scene(path) {
-        Ok(text) => files.add(text),
-        Err(error) => {
-            terminal.error(error);
-            return None;
-        }
-    };
-    scene::parse(&files, file)
-        .map_err(|diagnostics| terminal.diagnostics(&diagnostics, &files))
-        .ok()
+    let file = files.add(read_scene(path)?);
+    scene::parse(&files, file).map_err(|errors| CliError::diagnostics(errors, &files))
 }
 
 /// Traces the scene, with a progress bar over its rows.
@@ -295,25 +279,14 @@ pub(super) struct ExportArgs {
     output: PathBuf,
 }
 
-pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Exit {
+pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Result<Exit, CliError> {
     if files::is_project(&args.input) || files::is_shader(&args.input) || files::is_json(&args.input) {
         return project::export(&args.input, &args.output, terminal);
     }
-    if !may_write(&args.output, &iter::once(&*args.input).collect(), terminal) {
-        return Exit::Error;
-    }
-    let Some(scene) = load_scene(&args.input, terminal) else {
-        return Exit::Error;
-    };
-    match scene::export::shader(&scene) {
-        Ok(text) if terminal.write(&args.output, text.as_bytes()) => {
-            terminal.confirm(&args.output, &file_size(text.len()));
-            Exit::Success
-        }
-        Ok(_) => Exit::Error,
-        Err(error) => {
-            terminal.error(format_args!("{}: {error}", path_name(&args.input)));
-            Exit::Error
-        }
-    }
+    check_output(&args.output, &iter::once(&*args.input).collect())?;
+    let text = scene::export::shader(&load_scene(&args.input)?);
+    let text = text.map_err(|error| format!("{}: {error}", path_name(&args.input)))?;
+    terminal.write(&args.output, text.as_bytes())?;
+    terminal.confirm(&args.output, &file_size(text.len()));
+    Ok(Exit::Success)
 }

@@ -8,7 +8,7 @@ use toyproof_image::input;
 use toyproof_project::files::{self, ReadError};
 use toyproof_scene::{self as scene, Scene};
 
-use super::{Exit, Terminal};
+use super::{CliError, Exit, Terminal};
 
 /// List the built-in scenes, or write them and their shaders to a folder
 ///
@@ -24,36 +24,33 @@ pub(super) struct Args {
     write: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let Some(folder) = &args.write else {
         for (stem, text) in course_scenes() {
             terminal.result(&format!("{stem:<24} {}", title(stem, text)));
         }
         terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
-        return Exit::Success;
+        return Ok(Exit::Success);
     };
     let differs = |name: &str, text: &str| {
         let path = folder.join(name);
         path.exists() && input::read(&path).ok().as_deref() != Some(text.as_bytes())
     };
     if let Some((name, _)) = course_files().find(|(name, text)| differs(name, text)) {
-        terminal.error(format_args!(
+        return Err(CliError::new(format_args!(
             "{} already exists with other contents; nothing was written, choose another folder",
             path_name(&folder.join(name))
-        ));
-        return Exit::Error;
+        )));
     }
     for (name, text) in course_files() {
-        if !terminal.write(&folder.join(name), text.as_bytes()) {
-            return Exit::Error;
-        }
+        terminal.write(&folder.join(name), text.as_bytes())?;
     }
     terminal.note(&format!(
         "wrote {} files to {}",
         course_files().count(),
         path_name(folder)
     ));
-    Exit::Success
+    Ok(Exit::Success)
 }
 
 fn title(name: &str, text: &str) -> String {

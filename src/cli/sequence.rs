@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::{self as image, input};
 
-use super::Terminal;
+use super::{CliError, Terminal};
 
 /// The numbers of the frames of a sequence, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,17 +62,8 @@ impl Frames {
 pub(super) enum FrameEnd {
     /// Its image is written.
     Written,
-    /// It cannot be rendered or written, which has been reported.
-    Failed,
     /// The user interrupted it.
     Interrupted,
-}
-
-impl FrameEnd {
-    /// The end of a frame that is written, or has failed.
-    pub(super) fn of(is_written: bool) -> Self {
-        if is_written { Self::Written } else { Self::Failed }
-    }
 }
 
 /// A sequence in progress. A record next to the images holds the next frame until all frames exist.
@@ -132,47 +124,21 @@ impl Sequence {
         }
     }
 
-    /// Renders the missing frames in order until one fails or the user interrupts; returns whether all
-    /// succeeded. A frame may end early when the user interrupts: it is then among those that are missing.
+    /// Renders the missing frames in order until one fails or the user interrupts. A frame may end early when
+    /// the user interrupts: it is then among those that are missing.
     pub(super) fn render(
         self,
         terminal: &Terminal,
-        mut frame: impl FnMut(&SequenceFrame, &AtomicBool) -> FrameEnd,
-    ) -> bool {
+        frame: impl FnMut(&SequenceFrame, &AtomicBool) -> Result<FrameEnd, CliError>,
+    ) -> Result<(), CliError> {
         let start = Instant::now();
         let interrupted = terminal.watch_interrupts("the sequence ends with the frame in progress");
         let bar = terminal.bar(self.frames.count(), "frames");
         bar.set_position(self.existing);
         bar.reset_eta();
-        for one in self.missing() {
-            let end = if interrupted.load(Ordering::Relaxed) {
-                FrameEnd::Interrupted
-            } else {
-                frame(&one, &interrupted)
-            };
-            if end == FrameEnd::Interrupted {
-                let rendered = bar.position();
-                bar.finish_and_clear();
-                terminal.error(format_args!(
-                    "interrupted after {} of {} frames",
-                    grouped(rendered),
-                    grouped(self.frames.count())
-                ));
-                terminal.help("run the same command again to render the others");
-                return false;
-            }
-            if end == FrameEnd::Failed {
-                bar.finish_and_clear();
-                return false;
-            }
-            let record = format!("{}\n{}\n", self.fingerprint, i64::from(one.frame) + 1);
-            if !terminal.write(&self.record, record.as_bytes()) {
-                bar.finish_and_clear();
-                return false;
-            }
-            bar.inc(1);
-        }
+        let rendered = self.render_missing(terminal, &bar, &interrupted, frame);
         bar.finish_and_clear();
+        rendered?;
         // The sequence is complete, so no record is needed.
         let _ = std::fs::remove_file(&self.record);
         if let Some(stale) = self.stale_frame() {
@@ -196,7 +162,30 @@ impl Sequence {
             );
             terminal.confirm(&first, &facts);
         }
-        true
+        Ok(())
+    }
+
+    fn render_missing(
+        &self,
+        terminal: &Terminal,
+        bar: &ProgressBar,
+        interrupted: &AtomicBool,
+        mut frame: impl FnMut(&SequenceFrame, &AtomicBool) -> Result<FrameEnd, CliError>,
+    ) -> Result<(), CliError> {
+        for one in self.missing() {
+            if interrupted.load(Ordering::Relaxed) || frame(&one, interrupted)? == FrameEnd::Interrupted {
+                let error = CliError::new(format_args!(
+                    "interrupted after {} of {} frames",
+                    grouped(bar.position()),
+                    grouped(self.frames.count())
+                ));
+                return Err(error.with_help("run the same command again to render the others"));
+            }
+            let record = format!("{}\n{}\n", self.fingerprint, i64::from(one.frame) + 1);
+            terminal.write(&self.record, record.as_bytes())?;
+            bar.inc(1);
+        }
+        Ok(())
     }
 }
 
@@ -272,10 +261,18 @@ mod tests {
         // Too many to be collected in memory.
         let far = Sequence::resume(parse_frames("0..2147483647").unwrap(), &output, "far", &terminal);
         let mut first = Vec::new();
-        far.render(&terminal, |one, _| {
+        let end = |is_written: bool| {
+            if is_written {
+                Ok(FrameEnd::Written)
+            } else {
+                Err(CliError::silent())
+            }
+        };
+        let failed = far.render(&terminal, |one, _| {
             first.push(one.frame);
-            FrameEnd::of(first.len() < 3)
+            end(first.len() < 3)
         });
+        assert!(failed.is_err());
         assert_eq!(first, [0, 1, 2]);
         let render = |fingerprint: &str, most: usize| {
             let mut made = Vec::new();
@@ -283,9 +280,9 @@ mod tests {
             let whole = sequence.render(&terminal, |one, _| {
                 made.push(one.frame);
                 std::fs::write(&one.path, "").unwrap();
-                FrameEnd::of(made.len() <= most)
+                end(made.len() <= most)
             });
-            (made, whole)
+            (made, whole.is_ok())
         };
         assert_eq!(render("a", 2), (vec![0, 1, 2], false), "the third fails");
         assert_eq!(render("a", 0), (vec![2], false), "what was made is kept");
@@ -311,12 +308,12 @@ mod tests {
         let whole = sequence().render(&terminal, |one, interrupted| {
             if one.frame == 7 {
                 interrupted.store(true, Ordering::Relaxed);
-                return FrameEnd::Interrupted;
+                return Ok(FrameEnd::Interrupted);
             }
             std::fs::write(&one.path, "").unwrap();
-            FrameEnd::Written
+            Ok(FrameEnd::Written)
         });
-        assert!(!whole);
+        assert!(whole.is_err());
         assert_eq!(sequence().first_missing(), Some(7));
     }
 }

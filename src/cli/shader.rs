@@ -4,15 +4,17 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
 
-use toyproof_diagnostic::{Deadline, Diagnostic, Files, Severity, grouped, path_name, plural};
+use toyproof_diagnostic::{
+    Deadline, Diagnostic, Diagnostics, FileId, Files, Severity, grouped, path_name, plural,
+};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
 use toyproof_project::CompiledProject;
 use toyproof_project::files::{self, Input, ReadError, Search, Texts, content_diagnostic};
 
-use super::Terminal;
 use super::inputs::{Deny, LanguageArgs};
 use super::scenes::with_builtin_hint;
+use super::{CliError, Exit, Terminal};
 use crate::cli::project;
 
 /// The lints may take one part in this many of a shader's time limit.
@@ -50,13 +52,19 @@ impl Unusable {
     }
 }
 
-impl Unusable {
-    /// Prints why; `files` has the texts of the diagnostics.
-    pub(super) fn print(&self, files: &Files, terminal: &Terminal) {
-        match self {
-            Self::Invalid(diagnostics) => terminal.diagnostics(diagnostics, files),
-            Self::Unreadable(error) | Self::Unrendered(error) => terminal.error(error),
+/// Reads and parses a file that the user named, other than a shader.
+pub(super) fn parse_named<T>(
+    path: &Path,
+    parse: impl FnOnce(&Files, FileId) -> Result<T, Diagnostics>,
+) -> Result<T, CliError> {
+    let mut files = Files::default();
+    match files::read_named(path).map_err(|error| content_diagnostic(error, &mut files)) {
+        Ok(text) => {
+            let file = files.add(text);
+            parse(&files, file).map_err(|errors| CliError::diagnostics(errors, &files))
         }
+        Err(Ok(diagnostic)) => Err(CliError::diagnostics(vec![diagnostic], &files)),
+        Err(Err(error)) => Err(CliError::new(error)),
     }
 }
 
@@ -122,6 +130,16 @@ impl Shader {
         }
     }
 
+    /// The tree, which a command needs.
+    pub(super) fn require_checked(&self) -> Result<&Checked, CliError> {
+        self.checked.as_ref().map_err(|unusable| match unusable {
+            Unusable::Invalid(diagnostics) => {
+                CliError::diagnostics(diagnostics.clone(), &self.files).with_exit(Exit::ShaderFault)
+            }
+            Unusable::Unreadable(error) | Unusable::Unrendered(error) => CliError::new(error),
+        })
+    }
+
     /// The trees of all passes; empty for a shader that cannot be used.
     pub(super) fn trees(&self) -> Vec<&Checked> {
         match &self.passes {
@@ -180,6 +198,22 @@ fn read(
 /// that are not followed, and of archives and texts.
 pub(super) fn find(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
     find_in(arguments, terminal, |_, _| {})
+}
+
+/// Finds the only shader that an argument of a command names.
+pub(super) fn find_one(
+    argument: &Path,
+    command: &str,
+    terminal: &Terminal,
+) -> Result<Result<Input, ReadError>, CliError> {
+    let mut found = find(&[argument.to_owned()], terminal);
+    match found.pop() {
+        Some(input) if found.is_empty() => Ok(input),
+        _ => Err(CliError::new(format_args!(
+            "{} contains several shaders; `{command}` takes one",
+            path_name(argument)
+        ))),
+    }
 }
 
 /// Finds shaders as [`find`] does. A folder in a searched one whose only shaders are in texts and archives has an

@@ -10,7 +10,7 @@ use clap_mangen::Man;
 use toyproof_diagnostic::path_name;
 use toyproof_report as report;
 
-use super::{Cli, Exit, Terminal};
+use super::{Cli, CliError, Exit, Terminal};
 
 /// Print a completion script for a shell
 #[derive(Debug, clap::Args)]
@@ -25,7 +25,7 @@ pub(super) struct CompletionsArgs {
     shell: Shell,
 }
 
-pub(super) fn completions(args: &CompletionsArgs, terminal: &Terminal) -> Exit {
+pub(super) fn completions(args: &CompletionsArgs, terminal: &Terminal) -> Result<Exit, CliError> {
     let mut script = Vec::new();
     // The codes complete words; an unknown one is searched for, so it is not an error of the arguments.
     let codes = report::explanations().map(|explanation| PossibleValue::new(explanation.code));
@@ -34,7 +34,8 @@ pub(super) fn completions(args: &CompletionsArgs, terminal: &Terminal) -> Exit {
         explain.mut_arg("codes", |argument| argument.value_parser(codes))
     });
     clap_complete::generate(args.shell, &mut command, "toyproof", &mut script);
-    exit(terminal.bytes(&script))
+    terminal.bytes(&script)?;
+    Ok(Exit::Success)
 }
 
 /// Print the manual page, or write the pages of all commands to a folder
@@ -49,24 +50,16 @@ pub(super) struct ManArgs {
     output: Option<PathBuf>,
 }
 
-pub(super) fn man(args: &ManArgs, terminal: &Terminal) -> Exit {
+pub(super) fn man(args: &ManArgs, terminal: &Terminal) -> Result<Exit, CliError> {
     let Some(folder) = &args.output else {
         let mut page = Vec::new();
         // Writing to memory does not fail.
         let _ = Man::new(Cli::command()).render(&mut page);
-        return exit(terminal.bytes(&page));
+        terminal.bytes(&page)?;
+        return Ok(Exit::Success);
     };
     let written = fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
-    match written {
-        Ok(()) => terminal.confirm(folder, "one manual page for each command"),
-        Err(error) => {
-            terminal.error(format_args!("cannot write to {}: {error}", path_name(folder)));
-            return Exit::Error;
-        }
-    }
-    Exit::Success
-}
-
-fn exit(succeeded: bool) -> Exit {
-    if succeeded { Exit::Success } else { Exit::Error }
+    written.map_err(|error| format!("cannot write to {}: {error}", path_name(folder)))?;
+    terminal.confirm(folder, "one manual page for each command");
+    Ok(Exit::Success)
 }

@@ -9,8 +9,8 @@ use toyproof_lab::stress::function::{self, Role, RoleMap, Signature};
 use toyproof_lab::stress::{self, Report, Settings, formula};
 
 use super::inputs::{DriverArgs, LanguageArgs};
-use super::shader::{Shader, Unusable, find};
-use super::{Exit, Terminal};
+use super::shader::{Shader, find_one};
+use super::{CliError, Exit, Terminal};
 
 /// Find the inputs for which ray–surface intersection fails numerically
 ///
@@ -70,11 +70,8 @@ fn parse_role(text: &str) -> Result<(String, Role), String> {
     })
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
-    let mut worker = match worker(&args.driver, terminal) {
-        Ok(worker) => worker,
-        Err(exit) => return exit,
-    };
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
+    let mut worker = worker(&args.driver, terminal)?;
     let interrupted = terminal.watch_interrupts("stopping; no files are written");
     match &args.shader {
         Some(shader) => examine(args, shader, worker.as_mut(), &interrupted, terminal),
@@ -92,26 +89,25 @@ impl Args {
     }
 }
 
-fn study(args: &Args, worker: Option<&mut Worker>, interrupted: &AtomicBool, terminal: &Terminal) -> Exit {
+fn study(
+    args: &Args,
+    worker: Option<&mut Worker>,
+    interrupted: &AtomicBool,
+    terminal: &Terminal,
+) -> Result<Exit, CliError> {
     let subjects = formula::subjects();
     let bar = terminal.bar(stress::run_count(&subjects, worker.is_some()), "formulas tested");
     let studied = stress::study(&subjects, worker, args.settings(), interrupted, || bar.inc(1));
     bar.finish_and_clear();
-    match studied {
-        Ok(report) => {
-            for line in report.summary() {
-                terminal.result(&line);
-            }
-            for line in report.double_precision_summary() {
-                terminal.detail(&line);
-            }
-            write_results(&report, report.json(), args, terminal)
-        }
-        Err(failure) => {
-            terminal.error(failure);
-            Exit::Error
-        }
+    let report = studied?;
+    for line in report.summary() {
+        terminal.result(&line);
     }
+    for line in report.double_precision_summary() {
+        terminal.detail(&line);
+    }
+    write_results(&report, report.json(), args, terminal)?;
+    Ok(Exit::Success)
 }
 
 fn examine(
@@ -120,39 +116,16 @@ fn examine(
     worker: Option<&mut Worker>,
     interrupted: &AtomicBool,
     terminal: &Terminal,
-) -> Exit {
-    let found = find(&[path.to_owned()], terminal);
-    let [input] = found.as_slice() else {
-        terminal.error(format_args!(
-            "{} contains several shaders; `stress` takes one",
-            path_name(path)
-        ));
-        return Exit::Error;
-    };
-    let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
-    let checked = match &shader.checked {
-        Ok(checked) => checked,
-        Err(Unusable::Invalid(diagnostics)) => {
-            terminal.diagnostics(diagnostics, &shader.files);
-            return Exit::ShaderFault;
-        }
-        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
-    };
+) -> Result<Exit, CliError> {
+    let input = find_one(path, "stress", terminal)?;
+    let shader = Shader::load(&input, &args.language, Deadline::after(args.driver.timeout()));
+    let checked = shader.require_checked()?;
     let map: RoleMap = args.map.iter().cloned().collect();
     let signature = match &args.function {
         Some(name) => Signature::recognize(checked, name, &map),
         None => Signature::only(checked, &map),
     };
-    let signature = match signature {
-        Ok(signature) => signature,
-        Err(why) => {
-            terminal.error(format_args!("{}: {why}", shader.name));
-            return Exit::Error;
-        }
-    };
+    let signature = signature.map_err(|why| format!("{}: {why}", shader.name))?;
     let subject = function::subject(
         shader.text(checked),
         &signature,
@@ -163,32 +136,21 @@ fn examine(
         bar.inc(1);
     });
     bar.finish_and_clear();
-    match examined {
-        Ok(findings) => {
-            for line in findings.summary(&signature.name) {
-                terminal.result(&line);
-            }
-            let kept = write_results(&findings.report, findings.json(), args, terminal);
-            kept.max(if findings.mistake.is_some_and(|mistake| !mistake.recoverable) {
-                Exit::ShaderFault
-            } else {
-                Exit::Success
-            })
-        }
-        Err(failure) => {
-            terminal.error(format_args!("{}: {failure}", shader.name));
-            Exit::Error
-        }
+    let findings = examined.map_err(|failure| format!("{}: {failure}", shader.name))?;
+    for line in findings.summary(&signature.name) {
+        terminal.result(&line);
     }
+    write_results(&findings.report, findings.json(), args, terminal)?;
+    Ok(if findings.mistake.is_some_and(|mistake| !mistake.recoverable) {
+        Exit::ShaderFault
+    } else {
+        Exit::Success
+    })
 }
 
 /// Creates a worker that has a driver; `None` if only the evaluator is available.
-fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Exit> {
-    let fail = |error: &dyn std::fmt::Display| {
-        terminal.error(error);
-        Exit::Error
-    };
-    let Some(mut worker) = driver.worker().map_err(|error| fail(&error))? else {
+fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, CliError> {
+    let Some(mut worker) = driver.worker()? else {
         return Ok(None);
     };
     match worker.probe() {
@@ -197,11 +159,11 @@ fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Ex
             terminal.warn(format_args!("{failure}; testing only the CPU"));
             Ok(None)
         }
-        Err(failure) => Err(fail(&failure)),
+        Err(failure) => Err(failure.into()),
     }
 }
 
-fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal) -> Exit {
+fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal) -> Result<(), CliError> {
     let mut files = vec![
         ("stress.csv".to_owned(), report.csv().into_bytes()),
         ("stress.json".to_owned(), json.into_bytes()),
@@ -209,19 +171,11 @@ fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal
     for (name, heat_map) in report.heat_maps() {
         files.push((format!("{name}.svg"), heat_map.svg().into_bytes()));
         let name = format!("{name}.png");
-        match toyproof_image::encode(&heat_map.image(), name.as_ref()) {
-            Ok(bytes) => files.push((name, bytes)),
-            Err(error) => {
-                terminal.error(error);
-                return Exit::Error;
-            }
-        }
+        let bytes = toyproof_image::encode(&heat_map.image(), name.as_ref())?;
+        files.push((name, bytes));
     }
-    let kept = files
-        .iter()
-        .all(|(name, bytes)| terminal.write(&args.output.join(name), bytes));
-    if !kept {
-        return Exit::Error;
+    for (name, bytes) in &files {
+        terminal.write(&args.output.join(name), bytes)?;
     }
     let path = |name: &str| path_name(&args.output.join(name));
     terminal.note(&format!(
@@ -229,5 +183,5 @@ fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal
         path("stress.csv"),
         path("stress-spheres.svg")
     ));
-    Exit::Success
+    Ok(())
 }

@@ -19,6 +19,8 @@ use toyproof_diagnostic::{
 use toyproof_image::output;
 use toyproof_verify::contain;
 
+use super::{CliError, Exit};
+
 /// The number of warnings of one code that are shown for one shader.
 const WARNINGS_SHOWN: usize = 3;
 
@@ -91,7 +93,8 @@ impl Terminal {
         let written = self
             .bars
             .suspend(|| writeln!(anstream::stdout().lock(), "{text}"));
-        self.check_write(written);
+        // The command goes on, and then ends with an error.
+        let _ = self.check_write(written);
     }
 
     /// Prints a paragraph on standard output, wrapped at the terminal's width.
@@ -99,13 +102,16 @@ impl Terminal {
         self.result(&wrap("", 0, text, self.width()));
     }
 
-    /// Writes bytes to standard output; returns whether that succeeded.
-    pub(super) fn bytes(&self, bytes: &[u8]) -> bool {
+    /// Writes bytes to standard output.
+    pub(super) fn bytes(&self, bytes: &[u8]) -> Result<(), CliError> {
         self.stream(|stdout| stdout.write_all(bytes))
     }
 
-    /// Writes the output of a function to standard output; returns whether that succeeded.
-    pub(super) fn stream(&self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> bool {
+    /// Writes the output of a function to standard output.
+    pub(super) fn stream(
+        &self,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), CliError> {
         let written = self.bars.suspend(|| {
             let mut stdout = BufWriter::new(io::stdout().lock());
             write(&mut stdout).and_then(|()| stdout.flush())
@@ -115,19 +121,19 @@ impl Terminal {
 
     /// Reports the first failed write to standard output. A closed pipe is not an error: the reader has all
     /// it wants.
-    fn check_write(&self, written: io::Result<()>) -> bool {
+    fn check_write(&self, written: io::Result<()>) -> Result<(), CliError> {
         match written {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 if !self.write_failed.swap(true, Ordering::Relaxed) {
                     self.error(format_args!("cannot write to standard output: {error}"));
                 }
-                false
+                Err(CliError::silent())
             }
             Err(_) => {
                 self.closed.store(true, Ordering::Relaxed);
-                true
+                Ok(())
             }
-            Ok(()) => true,
+            Ok(()) => Ok(()),
         }
     }
 
@@ -185,6 +191,20 @@ impl Terminal {
         }
     }
 
+    /// Prints the error of a command or of one of its inputs; returns its exit status.
+    pub(super) fn fail(&self, error: &CliError) -> Exit {
+        if let Some((diagnostics, files)) = &error.diagnostics {
+            self.diagnostics(diagnostics, files);
+        }
+        if let Some(message) = &error.message {
+            self.error(message);
+        }
+        if let Some(help) = &error.help {
+            self.help(help);
+        }
+        error.exit
+    }
+
     /// Prints a way out of an error on standard error.
     pub(super) fn help(&self, text: impl Display) {
         self.labeled("help", AnsiColor::Cyan, text);
@@ -235,29 +255,20 @@ impl Terminal {
         }
     }
 
-    /// Writes a file atomically, or standard output if the path is `-`; prints the error and returns false on
-    /// failure.
-    pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> bool {
+    /// Writes a file atomically, or standard output if the path is `-`.
+    pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         if path == Path::new("-") {
             return self.bytes(bytes);
         }
-        let written = output::write(path, bytes);
-        if let Err(error) = &written {
-            self.error(format_args!("cannot write {error}"));
-        }
-        written.is_ok()
+        Ok(output::write(path, bytes).map_err(|error| format!("cannot write {error}"))?)
     }
 
     /// Writes `output` itself, or a file below it if it is a folder; no link is followed out of that folder.
-    pub(super) fn write_output(&self, output: &Path, path: &Path, bytes: &[u8]) -> bool {
+    pub(super) fn write_output(&self, output: &Path, path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         if path == output || !path.starts_with(output) {
             return self.write(path, bytes);
         }
-        let written = output::write_inside(output, path, bytes);
-        if let Err(error) = &written {
-            self.error(format_args!("cannot write {error}"));
-        }
-        written.is_ok()
+        Ok(output::write_inside(output, path, bytes).map_err(|error| format!("cannot write {error}"))?)
     }
 
     /// Shows a progress bar with a label that names the counted items, on a terminal only.

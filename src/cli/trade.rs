@@ -18,8 +18,8 @@ use super::inputs::{
     FrameArgs, LOADS_DRIVERS, LanguageArgs, STATIC_PROGRAM, parse_adapter, parse_time_limit, worker,
 };
 use super::render::load_scene;
-use super::shader::{Shader, Unusable, find};
-use super::{Exit, Terminal};
+use super::shader::{Shader, Unusable, find_one};
+use super::{CliError, Exit, Terminal};
 
 /// Measure rendering time against accuracy
 ///
@@ -64,36 +64,27 @@ fn parse_max_error(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let interrupted = terminal.watch_interrupts("stopping; no files are written");
-    match measure(args, &interrupted, terminal) {
-        Ok(report) => print_report(&report, args, terminal),
-        Err(exit) => exit,
-    }
+    print_report(&measure(args, &interrupted, terminal)?, args, terminal)?;
+    Ok(Exit::Success)
 }
 
-/// Measures all methods; prints the error on failure.
-fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result<Report, Exit> {
+/// Measures all methods.
+fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result<Report, CliError> {
     let start = Instant::now();
     let deadline = Deadline::after(args.budget);
-    let fail = |error: String| {
-        terminal.error(error);
-        Exit::Error
-    };
-    let frame = args
-        .frame
-        .inputs()
-        .load()
-        .map_err(|error| fail(error.to_string()))?;
-    let is_shader = files::is_shader(&args.subject);
-    let scene = (!is_shader).then(|| load_scene(&args.subject, terminal).ok_or(Exit::Error));
-    let scene = scene.transpose()?;
-    let shader = if is_shader {
-        Some(load_shader(&args.subject, args, &deadline, terminal)?)
+    let frame = args.frame.inputs().load()?;
+    let (scene, shader) = if files::is_shader(&args.subject) {
+        let input = find_one(&args.subject, "trade", terminal)?;
+        let shader = Shader::load(&input, &args.language, deadline.clone());
+        shader.require_checked()?;
+        (scene_for_shader(&args.subject), Some(shader))
     } else {
-        shader_for_scene(&args.subject, scene.as_ref(), args, &deadline)
+        let scene = load_scene(&args.subject)?;
+        let shader = shader_for_scene(&args.subject, &scene, args, &deadline);
+        (Some(scene), shader)
     };
-    let scene = scene.or_else(|| scene_for_shader(&args.subject));
     let (scene, frame) = fit_size(scene, frame, args.frame.size);
     let checked = shader
         .as_ref()
@@ -113,7 +104,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
         bar.set_position((1000.0 * share) as u64);
     });
     bar.finish_and_clear();
-    report.map_err(|failure| fail(failure.to_string()))
+    Ok(report?)
 }
 
 /// The name of a scene or shader in reports: without folder and extension.
@@ -134,38 +125,14 @@ fn fit_size(scene: Option<Scene>, mut frame: Frame, size: Option<[u32; 2]>) -> (
     (scene, frame)
 }
 
-/// Loads a shader that must be valid.
-fn load_shader(path: &Path, args: &Args, deadline: &Deadline, terminal: &Terminal) -> Result<Shader, Exit> {
-    let found = find(&[path.to_owned()], terminal);
-    let [input] = found.as_slice() else {
-        terminal.error(format_args!(
-            "{} contains several shaders; `trade` takes one",
-            path_name(path)
-        ));
-        return Err(Exit::Error);
-    };
-    let shader = Shader::load(input, &args.language, deadline.clone());
-    match &shader.checked {
-        Ok(_) => Ok(shader),
-        Err(Unusable::Invalid(diagnostics)) => {
-            terminal.diagnostics(diagnostics, &shader.files);
-            Err(Exit::ShaderFault)
-        }
-        Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
-            terminal.error(error);
-            Err(Exit::Error)
-        }
-    }
-}
-
 /// Loads the shader next to a scene, else exports the scene, if possible.
-fn shader_for_scene(path: &Path, scene: Option<&Scene>, args: &Args, deadline: &Deadline) -> Option<Shader> {
+fn shader_for_scene(path: &Path, scene: &Scene, args: &Args, deadline: &Deadline) -> Option<Shader> {
     let shader = path.with_extension("glsl");
     if shader.is_file() {
         let found = files::find(&shader).inputs;
         return Some(Shader::load(found.first()?, &args.language, deadline.clone()));
     }
-    let text = export::shader(scene?).ok()?;
+    let text = export::shader(scene).ok()?;
     let mut files = Files::default();
     let file = files.add(File::new("<exported>", text));
     Some(Shader {
@@ -187,11 +154,7 @@ fn scene_for_shader(path: &Path) -> Option<Scene> {
 }
 
 /// Creates a worker for each device that `--on` selects.
-fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(String, Worker)>, Exit> {
-    let fail = |error: String| {
-        terminal.error(error);
-        Exit::Error
-    };
+fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<(String, Worker)>, CliError> {
     let adapters = match selector {
         "cpu" => return Ok(Vec::new()),
         "all" if !LOADS_DRIVERS => {
@@ -199,9 +162,7 @@ fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<
             return Ok(Vec::new());
         }
         "all" => {
-            let mut probe = worker(AdapterSelector::Auto, budget)
-                .map_err(fail)?
-                .with_all_drivers();
+            let mut probe = worker(AdapterSelector::Auto, budget)?.with_all_drivers();
             match probe.probe() {
                 Ok(drivers) => drivers.iter().map(|driver| driver.name.clone()).collect(),
                 Err(failure) => {
@@ -225,13 +186,15 @@ fn workers(selector: &str, budget: Duration, terminal: &Terminal) -> Result<Vec<
         };
         Ok((short, worker(on, budget)?))
     });
-    made.collect::<Result<_, String>>().map_err(fail)
+    made.collect()
 }
 
-fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
+fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Result<(), CliError> {
     if report.results.is_empty() {
-        terminal.error(format_args!("nothing was measured: {}", report.skipped_line()));
-        return Exit::Error;
+        return Err(CliError::new(format_args!(
+            "nothing was measured: {}",
+            report.skipped_line()
+        )));
     }
     if let Some(error) = args.max_error {
         terminal.result(&report.fastest_line(error));
@@ -247,29 +210,20 @@ fn print_report(report: &Report, args: &Args, terminal: &Terminal) -> Exit {
         terminal.detail(&line);
     }
     let Some(folder) = &args.output else {
-        return Exit::Success;
+        return Ok(());
     };
     let chart = report.chart();
-    let png = match image::encode(&chart.image(), "trade.png".as_ref()) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
-    };
+    let png = image::encode(&chart.image(), "trade.png".as_ref())?;
     let files = [
         ("trade.csv", report.csv().into_bytes()),
         ("trade.json", report.json().into_bytes()),
         ("trade.svg", chart.svg().into_bytes()),
         ("trade.png", png),
     ];
-    let kept = files
-        .iter()
-        .all(|(name, bytes)| terminal.write(&folder.join(name), bytes));
-    if !kept {
-        return Exit::Error;
+    for (name, bytes) in &files {
+        terminal.write(&folder.join(name), bytes)?;
     }
     let [csv, chart] = ["trade.csv", "trade.svg"].map(|name| path_name(&folder.join(name)));
     terminal.note(&format!("Chart: {chart}. All configurations: {csv}"));
-    Exit::Success
+    Ok(())
 }

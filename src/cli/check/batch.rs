@@ -326,7 +326,7 @@ impl<'a> Batch<'a> {
                 }
             }
             CheckFormat::Short => {}
-            CheckFormat::Json => failed |= !terminal.stream(|stdout| report.json(stdout)),
+            CheckFormat::Json => failed |= terminal.stream(|stdout| report.json(stdout)).is_err(),
         }
         if let Some(earlier) = earlier {
             failed |= !print_changes(&earlier, &report, args.format, terminal);

@@ -7,13 +7,10 @@ use toyproof_image::input;
 use toyproof_project::files::NOT_UTF8;
 use toyproof_report::Earlier;
 
-use crate::cli::Terminal;
+use crate::cli::CliError;
 
 /// Reads an earlier report that `--compare` or `--costs` names, if any.
-///
-/// # Errors
-/// It is unusable; the error has been printed.
-pub(super) fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Earlier>, ()> {
+pub(super) fn earlier(path: Option<&Path>) -> Result<Option<Earlier>, CliError> {
     let Some(path) = path else {
         return Ok(None);
     };
@@ -26,7 +23,7 @@ pub(super) fn earlier(path: Option<&Path>, terminal: &Terminal) -> Result<Option
     let bytes = input::read(&file).map_err(|error| error.to_string());
     let text = bytes.and_then(|bytes| String::from_utf8(bytes).map_err(|_| NOT_UTF8.to_owned()));
     let earlier = text.and_then(|text| Earlier::parse(name.clone(), &text));
-    earlier
-        .map(Some)
-        .map_err(|error| terminal.error(format_args!("{name} is not an earlier report: {error}")))
+    Ok(Some(earlier.map_err(|error| {
+        format!("{name} is not an earlier report: {error}")
+    })?))
 }

@@ -19,7 +19,7 @@ use super::submission::Submission;
 use super::work::Work;
 use crate::cli::inputs::shell_word;
 use crate::cli::names::with_suffix;
-use crate::cli::{Cli, Command, Exit, Terminal};
+use crate::cli::{Cli, CliError, Command, Exit, Terminal};
 
 /// Merge the shards of a batch into one report
 ///
@@ -49,54 +49,25 @@ pub(in crate::cli) struct MergeArgs {
     jobs: Option<u16>,
 }
 
-pub(in crate::cli) fn merge(args: &MergeArgs, terminal: &Terminal) -> Exit {
-    match try_merge(args, terminal) {
-        Ok(exit) => exit,
-        Err(problem) => {
-            if let Some(Problem { error, help }) = problem {
-                terminal.error(error);
-                if let Some(help) = help {
-                    terminal.help(help);
-                }
-            }
-            Exit::Error
-        }
-    }
-}
-
-/// Why shards cannot be merged.
-struct Problem {
-    error: String,
-    help: Option<String>,
-}
-
-impl From<String> for Problem {
-    fn from(error: String) -> Self {
-        Self { error, help: None }
-    }
-}
-
-/// Merges the shards. The error is `None` if it has been printed.
-fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Problem>> {
-    let program = sharding::program()
-        .map_err(|error| Problem::from(format!("the program's own file cannot be read: {error}")))?;
+pub(in crate::cli) fn merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, CliError> {
+    let program = sharding::program()?;
     let folders = read_folders(args, &program)?;
     let (_, first) = &folders[0];
     let mut check = parse(&first.arguments, &args.out)?;
     check.compare.clone_from(&args.compare);
     check.jobs = args.jobs;
-    let earlier = earlier(check.compare.as_deref(), terminal).map_err(|()| None)?;
-    let work = Work::new(&check, Some(&program), terminal).map_err(|()| None)?;
+    let earlier = earlier(check.compare.as_deref())?;
+    let work = Work::new(&check, Some(&program), terminal)?;
     if sharding::inputs(&work.submissions) != first.inputs {
-        return Err(Some(Problem {
-            error: "the shaders, their reference or a file that an option names changed after the shards were checked"
-                .to_owned(),
-            help: Some("run `merge` in the folder in which the shards were checked, or check them again".to_owned()),
-        }));
+        let error = CliError::new(
+            "the shaders, their reference or a file that an option names changed after the shards were checked",
+        );
+        return Err(error
+            .with_help("run `merge` in the folder in which the shards were checked, or check them again"));
     }
     let shards = first.shard.of;
     let numbers = sharding::assign(&work.submissions, shards);
-    let mut results = find_results(&folders).map_err(|error| Problem::from(error.to_string()))?;
+    let mut results = find_results(&folders)?;
     let found: Vec<Option<Found>> = work
         .submissions
         .iter()
@@ -107,12 +78,11 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
     check_complete(&folders, &work.submissions, &numbers, &found)?;
     for (submission, found) in work.submissions.iter().zip(&found) {
         if let Some((folder, _)) = found {
-            copy_images(submission, folder, &args.out)
-                .map_err(|error| Problem::from(format!("cannot write {error}")))?;
+            copy_images(submission, folder, &args.out).map_err(|error| format!("cannot write {error}"))?;
         }
     }
     let results = Results::merged(&args.out, lines(&work.submissions, &found))
-        .map_err(|error| Problem::from(format!("cannot write {error}")))?;
+        .map_err(|error| format!("cannot write {error}"))?;
     terminal.note(&format!(
         "{} {} merged",
         grouped(shards.into()),
@@ -122,24 +92,21 @@ fn try_merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exit, Option<Probl
 }
 
 /// Reads the manifests of the shards, which must belong to one batch and to this program.
-fn read_folders(args: &MergeArgs, program: &str) -> Result<Vec<(PathBuf, Manifest)>, Problem> {
+fn read_folders(args: &MergeArgs, program: &str) -> Result<Vec<(PathBuf, Manifest)>, CliError> {
     let mut folders: Vec<(PathBuf, Manifest)> = Vec::new();
     for folder in &args.shards {
         let name = path_name(folder);
-        let manifest = Manifest::read(folder).map_err(|error| error.to_string())?;
-        let manifest = manifest
+        let manifest = Manifest::read(folder)?
             .ok_or_else(|| format!("{name} is not the folder of a shard: it has no {MANIFEST_NAME}"))?;
         if is_same_folder(folder, &args.out) {
-            return Err(Problem {
-                error: format!("{name} is a shard, and would be overwritten"),
-                help: Some("give the report another folder with --out".to_owned()),
-            });
+            let error = CliError::new(format_args!("{name} is a shard, and would be overwritten"));
+            return Err(error.with_help("give the report another folder with --out"));
         }
         if manifest.program != program {
-            return Err(Problem {
-                error: format!("{name} was written by another build of toyproof"),
-                help: Some("merge with the program that checked the shards, or check them again".to_owned()),
-            });
+            let error = CliError::new(format_args!("{name} was written by another build of toyproof"));
+            return Err(
+                error.with_help("merge with the program that checked the shards, or check them again")
+            );
         }
         if let Some((other, first)) = folders.first() {
             let other = path_name(other);
@@ -156,10 +123,7 @@ fn read_folders(args: &MergeArgs, program: &str) -> Result<Vec<(PathBuf, Manifes
                 String::new()
             };
             if !error.is_empty() {
-                return Err(Problem {
-                    error,
-                    help: Some("merge the shards of one batch".to_owned()),
-                });
+                return Err(CliError::new(error).with_help("merge the shards of one batch"));
             }
         }
         folders.push((folder.clone(), manifest));
@@ -173,7 +137,7 @@ fn is_same_folder(a: &Path, b: &Path) -> bool {
 
 /// Parses the arguments of the command that checked the shards as those of a check of all shaders, which writes
 /// into another folder.
-fn parse(arguments: &[String], out: &Path) -> Result<Args, Problem> {
+fn parse(arguments: &[String], out: &Path) -> Result<Args, CliError> {
     const NAME: &str = "check";
     let at = arguments.iter().position(|argument| argument == NAME);
     let (before, after) = arguments.split_at(at.map_or(0, |at| at + 1));
@@ -230,7 +194,7 @@ fn check_complete(
     submissions: &[Submission],
     numbers: &[u32],
     found: &[Option<Found>],
-) -> Result<(), Problem> {
+) -> Result<(), CliError> {
     let (_, first) = &folders[0];
     let mut lacking = Vec::new();
     for number in 1..=first.shard.of {
@@ -261,20 +225,18 @@ fn check_complete(
         .iter()
         .map(|argument| shell_word(argument))
         .collect();
-    Err(Problem {
-        error: format!(
-            "{} of {} shards {} missing or incomplete\n{}",
-            grouped(lacking.len() as u64),
-            grouped(first.shard.of.into()),
-            plural(lacking.len() as u64, "is", "are"),
-            lacking.join("\n")
-        ),
-        help: Some(format!(
-            "check them with `toyproof {} --shard K/{} --out DIR --resume`, and merge again",
-            arguments.join(" "),
-            first.shard.of
-        )),
-    })
+    let error = CliError::new(format_args!(
+        "{} of {} shards {} missing or incomplete\n{}",
+        grouped(lacking.len() as u64),
+        grouped(first.shard.of.into()),
+        plural(lacking.len() as u64, "is", "are"),
+        lacking.join("\n")
+    ));
+    Err(error.with_help(format_args!(
+        "check them with `toyproof {} --shard K/{} --out DIR --resume`, and merge again",
+        arguments.join(" "),
+        first.shard.of
+    )))
 }
 
 /// Copies the images of a shader, and removes those that it does not have.

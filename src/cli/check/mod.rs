@@ -26,56 +26,33 @@ pub(super) use self::plan::read_assignment;
 pub(super) use self::reference::Scenes;
 use self::results::Results;
 use self::work::Work;
-use super::{Exit, Terminal};
+use super::{CliError, Exit, Terminal};
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     // A worker is created and dropped here, so that wrong arguments are reported before any work starts.
-    if let Err(error) = args.driver.worker() {
-        terminal.error(error);
-        return Exit::Error;
-    }
-    let Ok(earlier) = earlier(args.compare.as_deref(), terminal) else {
-        return Exit::Error;
-    };
+    args.driver.worker()?;
+    let earlier = earlier(args.compare.as_deref())?;
     let build = match (&args.out, args.shard) {
         (None, _) => None,
         (Some(_), None) => submission::build(),
-        (Some(_), Some(_)) => match sharding::program() {
-            Ok(program) => Some(program),
-            Err(error) => {
-                terminal.error(format_args!("the program's own file cannot be read: {error}"));
-                return Exit::Error;
-            }
-        },
+        (Some(_), Some(_)) => Some(sharding::program()?),
     };
-    let Ok(mut work) = Work::new(args, build.as_deref(), terminal) else {
-        return Exit::Error;
-    };
+    let mut work = Work::new(args, build.as_deref(), terminal)?;
     let mut results = None;
     if let Some(out) = &args.out {
-        let opened = match (args.shard, build) {
-            (Some(shard), Some(program)) => work.select(args, shard, program, out),
-            _ => Ok(()),
-        };
-        match opened
-            .and_then(|()| Results::open(out, args.resume).map_err(|error| format!("cannot write {error}")))
-        {
-            Ok(opened) => {
-                if let broken @ 1.. = opened.broken as u64 {
-                    terminal.warn(format_args!(
-                        "{} {} of results.jsonl cannot be read; {} checked again",
-                        grouped(broken),
-                        plural(broken, "line", "lines"),
-                        plural(broken, "its shader is", "their shaders are"),
-                    ));
-                }
-                results = Some(opened);
-            }
-            Err(error) => {
-                terminal.error(error);
-                return Exit::Error;
-            }
+        if let (Some(shard), Some(program)) = (args.shard, build) {
+            work.select(args, shard, program, out)?;
         }
+        let opened = Results::open(out, args.resume).map_err(|error| format!("cannot write {error}"))?;
+        if let broken @ 1.. = opened.broken as u64 {
+            terminal.warn(format_args!(
+                "{} {} of results.jsonl cannot be read; {} checked again",
+                grouped(broken),
+                plural(broken, "line", "lines"),
+                plural(broken, "its shader is", "their shaders are"),
+            ));
+        }
+        results = Some(opened);
     }
-    work.check(args, results, earlier, terminal)
+    Ok(work.check(args, results, earlier, terminal))
 }

@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use toyproof_classroom::assignment::{self, Assignment, FILE_NAME};
-use toyproof_diagnostic::{Files, path_name};
+use toyproof_diagnostic::path_name;
 use toyproof_image::{Frame, FrameInputs};
-use toyproof_project::files::{self, Skipped};
+use toyproof_project::files::Skipped;
 use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
 use super::args::Args;
-use crate::cli::Terminal;
 use crate::cli::collect::ClassPart;
 use crate::cli::reference::ReferenceArgs;
-use crate::cli::shader::Unusable;
+use crate::cli::shader::parse_named;
+use crate::cli::{CliError, Terminal};
 
 /// The shaders of one assignment, and the requirements on them; without a class, all shaders.
 pub(super) struct TaskInputs {
@@ -68,15 +68,13 @@ pub(super) struct PlannedFrame {
 impl Plan {
     /// Reads the plan that the arguments name, or the assignment of these shaders or in the folder of all of
     /// them.
-    ///
-    /// # Errors
-    /// It is unusable; the error has been printed.
-    pub(super) fn new(args: &Args, part: &TaskInputs, terminal: &Terminal) -> Result<Self, ()> {
-        let rubric = rubric(part.rubric.as_deref(), terminal)?;
+    pub(super) fn new(args: &Args, part: &TaskInputs, terminal: &Terminal) -> Result<Self, CliError> {
+        let rubric = part.rubric.as_ref().map(|path| parse_named(path, Rubric::parse));
+        let rubric = rubric.transpose()?;
         let found = match &part.assignment {
-            Some(path) => Some(named(path, terminal)?),
+            Some(path) => Some(named(path)?),
             None if args.reference.is_given() => None,
-            None => beside(&part.shaders).map_err(|error| terminal.error(error))?,
+            None => beside(&part.shaders)?,
         };
         let mut plan = Self {
             reference: args.reference.clone(),
@@ -87,7 +85,7 @@ impl Plan {
         };
         let mut frames = vec![args.frame.inputs()];
         if let Some(path) = found {
-            let (assignment, text) = read(&path, terminal)?;
+            let (assignment, text) = read(&path)?;
             terminal.detail(&format!("assignment: {}", path_name(&path)));
             if !args.frame.is_given() {
                 frames.clone_from(&assignment.frames);
@@ -103,7 +101,7 @@ impl Plan {
             plan.assignment = Some((assignment, text));
         }
         for inputs in frames {
-            let frame = inputs.load().map_err(|error| terminal.error(error))?;
+            let frame = inputs.load()?;
             plan.frames.push(PlannedFrame { inputs, frame });
         }
         Ok(plan)
@@ -111,17 +109,14 @@ impl Plan {
 }
 
 /// Reads the assignment that an argument names, and returns its file.
-///
-/// # Errors
-/// It is unusable; the error has been printed.
-pub(in crate::cli) fn read_assignment(path: &Path, terminal: &Terminal) -> Result<(PathBuf, Assignment), ()> {
-    let file = named(path, terminal)?;
-    let (assignment, _) = read(&file, terminal)?;
+pub(in crate::cli) fn read_assignment(path: &Path) -> Result<(PathBuf, Assignment), CliError> {
+    let file = named(path)?;
+    let (assignment, _) = read(&file)?;
     Ok((file, assignment))
 }
 
 /// The file that `--assignment` names, which may be its folder.
-fn named(path: &Path, terminal: &Terminal) -> Result<PathBuf, ()> {
+fn named(path: &Path) -> Result<PathBuf, CliError> {
     let file = if path.is_dir() {
         path.join(FILE_NAME)
     } else {
@@ -130,16 +125,13 @@ fn named(path: &Path, terminal: &Terminal) -> Result<PathBuf, ()> {
     if file.is_file() {
         return Ok(file);
     }
-    let name = path_name(&file);
-    terminal.error(format_args!(
-        "there is no assignment {name}\nhelp: `toyproof new assignment` creates one"
-    ));
-    Err(())
+    let error = CliError::new(format_args!("there is no assignment {}", path_name(&file)));
+    Err(error.with_help("`toyproof new assignment` creates one"))
 }
 
 /// The assignment in the folder of all shaders. Folders of submissions are searched for shaders, but an
 /// assignment in one of them is not used: its author is a student.
-fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, String> {
+fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, CliError> {
     let mut found: Option<PathBuf> = None;
     let mut without = None;
     for shader in shaders {
@@ -154,15 +146,19 @@ fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, String> {
             continue;
         }
         if let Some(skipped) = Skipped::of(&path, folder) {
-            return Err(format!("the assignment cannot be used: {skipped}"));
+            return Err(CliError::new(format_args!(
+                "the assignment cannot be used: {skipped}"
+            )));
         }
         match &found {
             Some(other) if *other != path => {
                 let [first, second] = [other, &path].map(|path| path_name(path));
-                return Err(format!(
-                    "there are several assignments: {first} and {second}\nhelp: name one with --assignment, or check \
-                     their shaders one after the other"
+                let error = CliError::new(format_args!(
+                    "there are several assignments: {first} and {second}"
                 ));
+                return Err(
+                    error.with_help("name one with --assignment, or check their shaders one after the other")
+                );
             }
             _ => found = Some(path),
         }
@@ -170,51 +166,19 @@ fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, String> {
     match (&found, without) {
         (Some(path), Some(shader)) => {
             let [path, shader] = [path, shader].map(|path| path_name(path));
-            Err(format!(
-                "{path} is not the assignment of {shader}, which is elsewhere\nhelp: name it with --assignment, or \
-                 check the shaders one after the other"
-            ))
+            let error = format!("{path} is not the assignment of {shader}, which is elsewhere");
+            Err(CliError::new(error)
+                .with_help("name it with --assignment, or check the shaders one after the other"))
         }
         _ => Ok(found),
     }
 }
 
 /// Reads an assignment, and its text.
-fn read(path: &Path, terminal: &Terminal) -> Result<(Assignment, String), ()> {
-    let mut files = Files::default();
-    let unusable = match files::read_named(path) {
-        Ok(text) => {
-            let content = text.text().to_owned();
-            let file = files.add(text);
-            let folder = path.parent().unwrap_or(Path::new(""));
-            match Assignment::parse(&files, file, folder) {
-                Ok(assignment) => return Ok((assignment, content)),
-                Err(errors) => Unusable::Invalid(errors.into()),
-            }
-        }
-        Err(error) => Unusable::of(error, &mut files),
-    };
-    unusable.print(&files, terminal);
-    Err(())
-}
-
-/// Reads a rubric, if one is named.
-///
-/// # Errors
-/// The rubric is unusable; its errors have been printed.
-fn rubric(path: Option<&Path>, terminal: &Terminal) -> Result<Option<Rubric>, ()> {
-    let Some(path) = path else {
-        return Ok(None);
-    };
-    let mut files = Files::default();
-    let rubric = match files::read_named(path) {
-        Ok(text) => {
-            let file = files.add(text);
-            Rubric::parse(&files, file).map_err(|errors| Unusable::Invalid(errors.into()))
-        }
-        Err(error) => Err(Unusable::of(error, &mut files)),
-    };
-    rubric
-        .map(Some)
-        .map_err(|unusable| unusable.print(&files, terminal))
+fn read(path: &Path) -> Result<(Assignment, String), CliError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse_named(path, |files, file| {
+        let assignment = Assignment::parse(files, file, folder)?;
+        Ok((assignment, files.get(file).text().to_owned()))
+    })
 }

@@ -16,10 +16,10 @@ use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
 use super::args::Args;
 use super::plan::{Plan, PlannedFrame};
-use crate::cli::Terminal;
 use crate::cli::reference::GivenReference;
 use crate::cli::scenes::{builtin_scenes, read_scene, with_builtin_hint};
 use crate::cli::shader::Shader;
+use crate::cli::{CliError, Terminal};
 
 /// The scene of a shader.
 pub(in crate::cli) struct SceneOfShader {
@@ -87,23 +87,15 @@ pub(super) enum References {
 
 impl References {
     /// Reads what shaders are compared with. The frames get the size of a reference image.
-    ///
-    /// # Errors
-    /// It is unusable; the error has been printed.
-    pub(super) fn new(args: &Args, plan: &mut Plan, terminal: &Terminal) -> Result<Self, ()> {
+    pub(super) fn new(args: &Args, plan: &mut Plan, terminal: &Terminal) -> Result<Self, CliError> {
         let timeout = args.driver.timeout();
-        let Some(given) = GivenReference::read(&plan.reference, &args.language, timeout, terminal)? else {
+        let Some(given) = GivenReference::read(&plan.reference, &args.language, timeout)? else {
             let scenes = Scenes::new(plan.reference.scene.as_deref());
-            return if scenes.is_usable(terminal) {
-                Ok(Self::Scenes(scenes))
-            } else {
-                Err(())
-            };
+            scenes.check()?;
+            return Ok(Self::Scenes(scenes));
         };
         for PlannedFrame { inputs, frame } in &mut plan.frames {
-            given
-                .resize(frame, inputs.size)
-                .map_err(|error| terminal.error(error))?;
+            given.resize(frame, inputs.size)?;
         }
         let frames = plan.frames.iter().map(|planned| &planned.frame);
         let expected = given.expected(frames, timeout, terminal)?;
@@ -144,31 +136,21 @@ impl Scenes {
         Self { named }
     }
 
-    /// Checks the scene that `--scene` names, if any, and prints its errors.
-    fn is_usable(&self, terminal: &Terminal) -> bool {
+    /// Checks the scene that `--scene` names, if any.
+    fn check(&self) -> Result<(), CliError> {
         let Some((path, text)) = &self.named else {
-            return true;
+            return Ok(());
         };
         if files::is_shader(path) {
             let name = path_name(path);
-            terminal.error(format_args!(
-                "{name} is a shader; `--scene` takes a scene file or the name of a scene\n\
-                 help: name a shader to compare with with --reference"
-            ));
-            return false;
+            let error = format!("{name} is a shader; `--scene` takes a scene file or the name of a scene");
+            return Err(CliError::new(error).with_help("name a shader to compare with with --reference"));
         }
         let mut files = Files::default();
-        match text {
-            Err(error) => terminal.error(error),
-            Ok(text) => {
-                let file = files.add(text.clone());
-                match scene::parse(&files, file) {
-                    Ok(_) => return true,
-                    Err(errors) => terminal.diagnostics(&errors, &files),
-                }
-            }
-        }
-        false
+        let file = files.add(text.clone()?);
+        scene::parse(&files, file)
+            .map(drop)
+            .map_err(|errors| CliError::diagnostics(errors, &files))
     }
 
     /// The path of a shader's scene, and its text or the error: the scene that `--scene` names, else the one

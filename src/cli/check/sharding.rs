@@ -99,9 +99,12 @@ fn mix(bits: u64) -> u64 {
 ///
 /// # Errors
 /// The file cannot be read.
-pub(super) fn program() -> io::Result<String> {
+pub(super) fn program() -> Result<String, String> {
     let mut hash = Sha256::new();
-    io::copy(&mut File::open(std::env::current_exe()?)?, &mut hash)?;
+    std::env::current_exe()
+        .and_then(File::open)
+        .and_then(|mut file| io::copy(&mut file, &mut hash))
+        .map_err(|error| format!("the program's own file cannot be read: {error}"))?;
     Ok(format!("{:x}", hash.finalize()))
 }
 

@@ -20,7 +20,7 @@ use super::submission::Submission;
 use crate::cli::collect::class_parts;
 use crate::cli::names::Names;
 use crate::cli::shader::find_submissions;
-use crate::cli::{Exit, Terminal};
+use crate::cli::{CliError, Exit, Terminal};
 
 /// All that one command checks.
 pub(super) struct Work {
@@ -41,11 +41,8 @@ const SUBMISSIONS: &str = "submissions";
 
 impl Work {
     /// Reads the tasks that the arguments name. With the `build` that checks them, submissions have keys.
-    ///
-    /// # Errors
-    /// Something is unusable; the error has been printed.
-    pub(super) fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, ()> {
-        let costs = earlier(args.costs.as_deref(), terminal)?;
+    pub(super) fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, CliError> {
+        let costs = earlier(args.costs.as_deref())?;
         let collected = args.out.as_ref().map(|out| out.join(SUBMISSIONS));
         let parts = match &args.class {
             Some(class) => {
@@ -102,11 +99,9 @@ impl Work {
         shard: Shard,
         program: String,
         out: &Path,
-    ) -> Result<(), String> {
+    ) -> Result<(), CliError> {
         if args.shaders.iter().any(|shader| shader == Path::new("-")) {
-            return Err(
-                "--shard cannot be used with standard input, which only one shard could read".to_owned(),
-            );
+            return Err("--shard cannot be used with standard input, which only one shard could read".into());
         }
         let manifest = Manifest {
             program,
@@ -116,7 +111,7 @@ impl Work {
         };
         let mut numbers = sharding::assign(&self.submissions, shard.of).into_iter();
         self.submissions.retain(|_| numbers.next() == Some(shard.number));
-        manifest.write(out).map_err(|error| error.to_string())
+        Ok(manifest.write(out)?)
     }
 
     /// Checks all submissions, and writes the reports.

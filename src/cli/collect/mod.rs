@@ -7,13 +7,12 @@ use std::path::{Path, PathBuf};
 use toyproof_classroom::collect::class::{Class, Purpose};
 use toyproof_classroom::collect::collection::Collection;
 use toyproof_classroom::collect::roster::Roster;
-use toyproof_diagnostic::{Files, path_name, printable};
-use toyproof_project::files;
+use toyproof_diagnostic::{path_name, printable};
 
 use self::writer::{Listing, Writer, remove_earlier};
 use super::inputs::shell_word;
-use super::shader::Unusable;
-use super::{Exit, Terminal};
+use super::shader::parse_named;
+use super::{CliError, Exit, Terminal};
 
 /// Collect submissions from downloads into a folder for each student
 ///
@@ -40,41 +39,21 @@ pub(super) struct Args {
     class: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let class = match &args.class {
-        Some(path) => read_class(path, Purpose::Collect, terminal),
-        None => Ok(Class::default()),
+        Some(path) => read_class(path, Purpose::Collect)?,
+        None => Class::default(),
     };
-    let Ok(class) = class else {
-        return Exit::Error;
-    };
-    match collect(args, &class, terminal) {
-        Ok(()) => Exit::Success,
-        Err(error) => {
-            terminal.error(error);
-            Exit::Error
-        }
-    }
+    collect(args, &class, terminal)?;
+    Ok(Exit::Success)
 }
 
-fn read_class(path: &Path, purpose: Purpose, terminal: &Terminal) -> Result<Class, ()> {
-    let mut files = Files::default();
-    let unusable = match files::read_named(path) {
-        Ok(text) => {
-            let file = files.add(text);
-            let folder = path.parent().unwrap_or(Path::new(""));
-            match Class::parse(&files, file, folder, purpose) {
-                Ok(class) => return Ok(class),
-                Err(errors) => Unusable::Invalid(errors.into()),
-            }
-        }
-        Err(error) => Unusable::of(error, &mut files),
-    };
-    unusable.print(&files, terminal);
-    Err(())
+fn read_class(path: &Path, purpose: Purpose) -> Result<Class, CliError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse_named(path, |files, file| Class::parse(files, file, folder, purpose))
 }
 
-fn collect(args: &Args, class: &Class, terminal: &Terminal) -> Result<(), String> {
+fn collect(args: &Args, class: &Class, terminal: &Terminal) -> Result<(), CliError> {
     check_empty(&args.output)?;
     let collection = Collection::read(&args.downloads, class)?;
     if !class.assignments.is_empty() {
@@ -106,7 +85,7 @@ fn write_class(
     class: &Class,
     listing: Listing,
     terminal: &Terminal,
-) -> Result<(), String> {
+) -> Result<(), CliError> {
     if class
         .assignments
         .iter()
@@ -157,36 +136,25 @@ pub(super) struct ClassPart {
 
 /// Finds the submissions of each assignment of a class: in a folder that `collect` wrote, or in downloads,
 /// from which they are collected into the folder `to`; without one, downloads are refused.
-///
-/// # Errors
-/// Something is unusable; the error has been printed.
 pub(super) fn class_parts(
     downloads: &[PathBuf],
     class: &Path,
     to: Option<&Path>,
     terminal: &Terminal,
-) -> Result<Vec<ClassPart>, ()> {
-    let class = read_class(class, Purpose::Check, terminal)?;
-    find_parts(downloads, &class, to, terminal).map_err(|error| terminal.error(error))
-}
-
-fn find_parts(
-    downloads: &[PathBuf],
-    class: &Class,
-    to: Option<&Path>,
-    terminal: &Terminal,
-) -> Result<Vec<ClassPart>, String> {
+) -> Result<Vec<ClassPart>, CliError> {
+    let class = read_class(class, Purpose::Check)?;
     let collected = match downloads {
-        [folder] if is_collected(folder, class) => folder.clone(),
+        [folder] if is_collected(folder, &class) => folder.clone(),
         _ => {
             let Some(to) = to else {
-                return Err("a shard needs collected submissions, not a download\n\
-                     help: `toyproof collect DOWNLOAD --class class.toml -o homework`, and check `homework`"
-                    .to_owned());
+                let error = CliError::new("a shard needs collected submissions, not a download");
+                return Err(error.with_help(
+                    "`toyproof collect DOWNLOAD --class class.toml -o homework`, and check `homework`",
+                ));
             };
-            let collection = Collection::read(downloads, class)?;
+            let collection = Collection::read(downloads, &class)?;
             remove_earlier(to)?;
-            write_class(to, &collection, class, Listing::Notes, terminal)?;
+            write_class(to, &collection, &class, Listing::Notes, terminal)?;
             to.to_owned()
         }
     };

@@ -13,7 +13,7 @@ use toyproof_diagnostic::{grouped, path_name, plural, printable};
 use toyproof_image::output;
 use toyproof_report::{Detail, Layout};
 
-use crate::cli::Terminal;
+use crate::cli::{CliError, Terminal};
 
 /// The largest number of skipped files of a student that are printed.
 const MAX_NOTES: usize = 10;
@@ -37,7 +37,7 @@ pub(super) struct Writer<'a> {
 
 impl Writer<'_> {
     /// Writes the shaders of all students, and the roster, and prints what happened to them.
-    pub(super) fn write(&self, collection: &Collection) -> Result<(), String> {
+    pub(super) fn write(&self, collection: &Collection) -> Result<(), CliError> {
         let names = collection.students.iter().map(|(folder, ..)| folder.as_str());
         let layout = Layout::new(names, self.terminal.width(), Detail::Normal, false);
         let mut students = Vec::new();
@@ -56,11 +56,11 @@ impl Writer<'_> {
             students,
         };
         let text = serde_json::to_string_pretty(&roster).map_err(|error| error.to_string())? + "\n";
-        if !self
-            .terminal
-            .write_output(self.folder, &self.folder.join(FILE_NAME), text.as_bytes())
-        {
-            return Err("the list of students was not written".to_owned());
+        let path = self.folder.join(FILE_NAME);
+        let written = self.terminal.write_output(self.folder, &path, text.as_bytes());
+        if let Err(error) = written {
+            self.terminal.fail(&error);
+            return Err(CliError::new("the list of students was not written"));
         }
         if unknown > 0 {
             self.terminal.warn(format_args!(

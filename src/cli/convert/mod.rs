@@ -25,11 +25,11 @@ use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
 
 use self::conversion::{Conversion, Refusal, Settings};
-use super::inputs::{DriverArgs, Format, LanguageArgs, may_write};
+use super::inputs::{DriverArgs, Format, LanguageArgs, check_output};
 use super::names::{Names, with_suffix};
 use super::pool::{self, InOrder};
 use super::shader::{Shader, find};
-use super::{Exit, Terminal, project};
+use super::{CliError, Exit, Terminal, project};
 
 /// The help after the options: examples, the interface of what is written, and the exit code.
 fn hosts() -> String {
@@ -185,7 +185,7 @@ impl To {
     }
 }
 
-pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let inputs = find(&args.shaders, terminal);
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
     let has_passes = |input: &Result<Input, ReadError>| input.as_ref().is_ok_and(project::has_passes);
@@ -194,29 +194,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         [project] if has_passes(project) => Written::Passes,
         _ => Written::One,
     };
-    let Some(output) = output(args, written, terminal) else {
-        return Exit::Error;
-    };
-    let Some(to) = target_language(args, &output, written, terminal) else {
-        return Exit::Error;
-    };
-    if let Err(error) = check_target(args, to) {
-        terminal.error(error);
-        return Exit::Error;
-    }
+    let output = output(args, written)?;
+    let to = target_language(args, &output, written)?;
+    check_target(args, to)?;
     let browser = args.browser.then(browser::find).flatten();
     if args.browser && browser.is_none() {
-        terminal.error("--browser needs Chromium, which is not installed");
-        terminal.help("on Debian: apt-get install chromium");
-        return Exit::Error;
+        let error = CliError::new("--browser needs Chromium, which is not installed");
+        return Err(error.with_help("on Debian: apt-get install chromium"));
     }
     // People read converted shaders: by default they keep the author's functions.
     let float = args.driver.explicit_float().unwrap_or(FloatMode::Fast);
-    let workers = args.driver.translator().and_then(|_| args.driver.worker());
-    if let Err(error) = workers {
-        terminal.error(error);
-        return Exit::Error;
-    }
+    args.driver.translator().and_then(|_| args.driver.worker())?;
     let settings = Settings {
         to,
         converter: Converter {
@@ -235,11 +223,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
         .iter()
         .filter_map(|job| job.input.as_ref().ok()?.path())
         .collect();
-    if !jobs
-        .iter()
-        .all(|job| may_write(&job.last_file(), &originals, terminal))
-    {
-        return Exit::Error;
+    for job in &jobs {
+        check_output(&job.last_file(), &originals)?;
     }
     let names: Vec<_> = jobs.iter().map(Job::name).collect();
     Batch {
@@ -297,48 +282,44 @@ fn jobs(inputs: Vec<Result<Input, ReadError>>, written: Written, output: &Path, 
     jobs.collect()
 }
 
-/// Returns the language that the arguments or the extension of the output name; prints an error if they
-/// disagree, or if the output cannot take the results.
-fn target_language(args: &Args, output: &Path, written: Written, terminal: &Terminal) -> Option<To> {
+/// Returns the language that the arguments or the extension of the output name.
+///
+/// # Errors
+/// They disagree, or the output cannot take the results.
+fn target_language(args: &Args, output: &Path, written: Written) -> Result<To, CliError> {
     let standard = output == Path::new("-");
     let several = written != Written::One;
     let of_extension = (!standard && !output.is_dir()).then(|| To::of(output)).flatten();
     let to = match (args.to, of_extension) {
         (Some(to), Some(of)) if !to.may_end_as(of) => {
-            terminal.error(format_args!(
+            let error = CliError::new(format_args!(
                 "the extension of {} means {}, but --to is {}",
                 path_name(output),
                 of.name(),
                 to.name()
             ));
-            terminal.help("leave out --to, or give the output another extension");
-            return None;
+            return Err(error.with_help("leave out --to, or give the output another extension"));
         }
         (to, of) => to.or(of),
     };
     let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
-        terminal.error(format_args!(
-            "cannot determine the language of {}",
-            path_name(output)
+        let error = format!("cannot determine the language of {}", path_name(output));
+        return Err(CliError::new(error).with_help(
+            "give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to",
         ));
-        terminal.help("give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to");
-        return None;
     };
     if several && (standard || of_extension.is_some()) {
-        needs_folder(written, output, terminal);
-        return None;
+        return Err(needs_folder(written, output));
     }
     if standard && to == To::Spv && io::stdout().is_terminal() {
-        terminal.error("SPIR-V is binary and is not written to a terminal");
-        terminal.help("name a file with -o");
-        return None;
+        let error = CliError::new("SPIR-V is binary and is not written to a terminal");
+        return Err(error.with_help("name a file with -o"));
     }
     if standard && args.format == Format::Json {
-        terminal.error("--format json needs standard output, and so does the converted shader");
-        terminal.help("name a file or a folder with -o");
-        return None;
+        let error = CliError::new("--format json needs standard output, and so does the converted shader");
+        return Err(error.with_help("name a file or a folder with -o"));
     }
-    Some(to)
+    Ok(to)
 }
 
 /// Checks that the options apply to the target language.
@@ -352,16 +333,12 @@ fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// Returns the output that the arguments name, or its default; prints an error if several shaders have no
-/// output.
-fn output(args: &Args, written: Written, terminal: &Terminal) -> Option<PathBuf> {
+/// Returns the output that the arguments name, or its default, which several shaders do not have.
+fn output(args: &Args, written: Written) -> Result<PathBuf, CliError> {
     match &args.output {
-        Some(output) => Some(output.clone()),
-        None if written == Written::One => Some(PathBuf::from("-")),
-        None => {
-            needs_folder(written, Path::new("-"), terminal);
-            None
-        }
+        Some(output) => Ok(output.clone()),
+        None if written == Written::One => Ok(PathBuf::from("-")),
+        None => Err(needs_folder(written, Path::new("-"))),
     }
 }
 
@@ -473,7 +450,7 @@ impl Status {
 type Finished = (Shader, Result<Conversion, Refusal>, bool);
 
 impl Batch<'_> {
-    fn convert(mut self, jobs: &[Job], settings: &Settings) -> Exit {
+    fn convert(mut self, jobs: &[Job], settings: &Settings) -> Result<Exit, CliError> {
         let stop = self
             .terminal
             .watch_interrupts("the shaders in progress are finished first");
@@ -514,22 +491,23 @@ impl Batch<'_> {
         if self.args.format == Format::Json {
             // Strings, lists and options always serialize.
             let json = serde_json::to_string_pretty(&self.rows).unwrap_or_default() + "\n";
-            self.terminal.bytes(json.as_bytes());
+            self.terminal.bytes(json.as_bytes())?;
         } else if self.several {
             self.print_tally();
         }
-        self.exit
+        Ok(self.exit)
     }
 
     /// Writes a conversion if it is proved or forced; returns whether it was written.
     fn write(&self, job: &Job, converted: &mut Result<Conversion, Refusal>) -> bool {
         match converted {
             Ok(converted) if converted.status.is_proved() || self.args.force => {
-                std::mem::take(&mut converted.files).iter().all(|file| {
+                let written = std::mem::take(&mut converted.files).iter().try_for_each(|file| {
                     let inside = file.name.as_ref().map(|name| job.path.join(name));
                     let path = inside.as_ref().unwrap_or(&job.path);
                     self.terminal.write_output(&self.output, path, &file.bytes)
-                })
+                });
+                written.map_err(|error| self.terminal.fail(&error)).is_ok()
             }
             _ => false,
         }
@@ -682,8 +660,8 @@ impl Batch<'_> {
     }
 }
 
-/// Reports that several files cannot be written to one.
-fn needs_folder(written: Written, output: &Path, terminal: &Terminal) {
+/// Several files cannot be written to one.
+fn needs_folder(written: Written, output: &Path) -> CliError {
     let output = if output == Path::new("-") {
         "standard output".to_owned()
     } else {
@@ -693,6 +671,5 @@ fn needs_folder(written: Written, output: &Path, terminal: &Terminal) {
         Written::Passes => "the passes of a project",
         Written::One | Written::Shaders => "several shaders",
     };
-    terminal.error(format_args!("{what} cannot be written to {output}"));
-    terminal.help("name a folder with -o");
+    CliError::new(format_args!("{what} cannot be written to {output}")).with_help("name a folder with -o")
 }

@@ -12,12 +12,12 @@ use clap::ValueEnum;
 use indicatif::ProgressBar;
 pub(in crate::cli) use project::parse_pass;
 use serde::Serialize;
-use toyproof_diagnostic::{Code, Deadline, grouped, path_name, plural};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, grouped, path_name, plural};
 use toyproof_eval::{self as eval, Number, Settings, UndefinedPolicy};
 use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
-use toyproof_image::{self as image, Frame, Image};
+use toyproof_image::{self as image, Frame, Image, ImageError};
 use toyproof_player::Clock;
 use toyproof_project::PassKind;
 use toyproof_project::files;
@@ -25,12 +25,14 @@ use toyproof_report as report;
 use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
-use crate::cli::inputs::{DriverArgs, Format, FrameArgs, LanguageArgs, may_write, shell_word, short_device};
+use crate::cli::inputs::{
+    DriverArgs, Format, FrameArgs, LanguageArgs, check_output, shell_word, short_device,
+};
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::sequence::{self, FrameEnd, Frames, Sequence};
 use crate::cli::shader::{Shader, Unusable, find};
 use crate::cli::terminal::file_size;
-use crate::cli::{Exit, Terminal};
+use crate::cli::{CliError, Exit, Terminal};
 
 /// Run shaders and save their images
 #[derive(Debug, clap::Args)]
@@ -106,20 +108,10 @@ impl Precision {
     }
 }
 
-pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
+pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let inputs_of_frame = args.frame.inputs();
-    let load = || inputs_of_frame.load().map_err(|error| error.to_string());
-    let (worker, frame) = match args
-        .driver
-        .patient_worker()
-        .and_then(|worker| Ok((worker, load()?)))
-    {
-        Ok(found) => found,
-        Err(error) => {
-            terminal.error(error);
-            return Exit::Error;
-        }
-    };
+    let worker = args.driver.patient_worker()?;
+    let frame = inputs_of_frame.load()?;
     let inputs = find(&args.shaders, terminal);
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
     let output = match (&args.output, &inputs[..]) {
@@ -131,21 +123,20 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let is_folder = !standard && names_folder(&output);
     if several && !is_folder {
         let output = path_name(&output);
-        terminal.error(format_args!("several images cannot be written to {output}"));
-        terminal.help("name a folder with -o");
-        return Exit::Error;
+        let error = CliError::new(format_args!("several images cannot be written to {output}"));
+        return Err(error.with_help("name a folder with -o"));
     }
     if standard && (args.frames.is_some() || args.format == Format::Json) {
-        terminal.error("standard output takes a single image, not a sequence or JSON");
-        terminal.help("name a file with -o");
-        return Exit::Error;
+        let error = CliError::new("standard output takes a single image, not a sequence or JSON");
+        return Err(error.with_help("name a file with -o"));
     }
     let one = !several && !is_folder;
     let mut names = Names::new(&[".png"], &[]);
     let mut exit = Exit::Success;
     let channels = inputs_of_frame.files().collect();
-    if !may_write(&output, &channels, terminal) || (one && !has_image_extension(&output, terminal)) {
-        return Exit::Error;
+    check_output(&output, &channels)?;
+    if one {
+        check_image_extension(&output)?;
     }
     let mut runner = Runner {
         args,
@@ -170,23 +161,27 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Exit {
         if let Some(passes) = &shader.passes
             && !matches!(shader.checked, Err(Unusable::Invalid(_)))
         {
-            exit = exit.max(runner.project(&shader, passes, &path));
+            let ended = runner.project(&shader, passes, &path);
+            exit = exit.max(ended.unwrap_or_else(|error| terminal.fail(&error)));
             continue;
         }
         if let Ok(checked) = &shader.checked {
             terminal.diagnostics(&unbound(checked, &shader.lints, &runner.frame), &shader.files);
         }
-        exit = exit.max(match args.frames {
+        let rendered = match args.frames {
             None => runner.one_image(&shader, &path),
             Some(frames) => runner.sequence(&shader, frames, &path),
-        });
+        };
+        if let Err(error) = rendered {
+            exit = exit.max(terminal.fail(&error));
+        }
     }
     if args.format == Format::Json {
         // Strings and numbers always serialize.
         let json = serde_json::to_string_pretty(&runner.images).unwrap_or_default() + "\n";
-        terminal.bytes(json.as_bytes());
+        terminal.bytes(json.as_bytes())?;
     }
-    exit
+    Ok(exit)
 }
 
 /// Parses a number of frames in a second.
@@ -206,36 +201,30 @@ pub(in crate::cli) fn default_image(input: &Path) -> PathBuf {
     Path::new(input.file_name().unwrap_or_default()).with_extension("png")
 }
 
-/// Returns whether images can be written to a file of this name; prints an error if not.
-pub(in crate::cli) fn has_image_extension(path: &Path, terminal: &Terminal) -> bool {
+/// Checks that images can be written to a file of this name.
+pub(in crate::cli) fn check_image_extension(path: &Path) -> Result<(), CliError> {
     if path == Path::new("-") {
-        return true;
+        return Ok(());
     }
-    match image::check_extension(path) {
-        Ok(()) => true,
-        Err(error) => {
-            terminal.error(error);
-            if path
-                .extension()
-                .is_some_and(|extension| ["gif", "mp4", "webm"].iter().any(|video| extension == *video))
-            {
-                terminal.help("write a sequence with --frames A..B -o NAME.png, and encode it with ffmpeg");
-            }
-            false
+    image::check_extension(path).map_err(|error| {
+        let error = CliError::new(error);
+        let extension = path.extension();
+        if extension.is_some_and(|extension| ["gif", "mp4", "webm"].iter().any(|video| extension == *video)) {
+            error.with_help("write a sequence with --frames A..B -o NAME.png, and encode it with ffmpeg")
+        } else {
+            error
         }
-    }
+    })
 }
 
-/// Encodes an image for a file, by its extension, or as PNG for standard output; prints an error on failure.
-pub(in crate::cli) fn encode(image: &Image, path: &Path, terminal: &Terminal) -> Option<Vec<u8>> {
+/// Encodes an image for a file, by its extension, or as PNG for standard output.
+pub(in crate::cli) fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     let format = if path == Path::new("-") {
         Path::new("-.png")
     } else {
         path
     };
     image::encode(image, format)
-        .map_err(|error| terminal.error(error))
-        .ok()
 }
 
 /// An image that was written, as JSON has it.
@@ -276,15 +265,14 @@ struct Runner<'a> {
 
 /// Why there is no image.
 enum NotRendered {
-    /// An error, which has been reported.
-    Failed(Exit),
+    Failed(CliError),
     /// The user interrupted the rendering.
     Interrupted,
 }
 
-impl From<Exit> for NotRendered {
-    fn from(exit: Exit) -> Self {
-        Self::Failed(exit)
+impl From<CliError> for NotRendered {
+    fn from(error: CliError) -> Self {
+        Self::Failed(error)
     }
 }
 
@@ -309,16 +297,16 @@ impl Runner<'_> {
     }
 
     /// Renders an image into its file.
-    fn one_image(&mut self, shader: &Shader, path: &Path) -> Exit {
+    fn one_image(&mut self, shader: &Shader, path: &Path) -> Result<(), CliError> {
         match self.render(shader, None) {
             Ok(rendered) => self.write(&rendered, &shader.name, path, true),
-            Err(NotRendered::Failed(exit)) => exit,
-            Err(NotRendered::Interrupted) => Exit::Error,
+            Err(NotRendered::Failed(error)) => Err(error),
+            Err(NotRendered::Interrupted) => Err(CliError::silent()),
         }
     }
 
     /// Renders the frames of a shader, each into its file; stops at the first failure.
-    fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Exit {
+    fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Result<(), CliError> {
         let mut hasher = DefaultHasher::new();
         if let Ok(checked) = &shader.checked {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
@@ -326,17 +314,15 @@ impl Runner<'_> {
         let fingerprint = self.fingerprint(hasher);
         let sequence = Sequence::resume(frames, output, &fingerprint, self.terminal);
         let clock = self.clock(0);
-        let mut exit = Exit::Success;
-        let whole = sequence.render(self.terminal, |one, interrupted| {
+        sequence.render(self.terminal, |one, interrupted| {
             self.frame = clock.frame(one.frame);
-            exit = match self.render(shader, Some(interrupted)) {
-                Ok(rendered) => self.write(&rendered, &shader.name, &one.path, false),
-                Err(NotRendered::Failed(exit)) => exit,
-                Err(NotRendered::Interrupted) => return FrameEnd::Interrupted,
-            };
-            FrameEnd::of(exit == Exit::Success)
-        });
-        of_sequence(whole, exit)
+            match self.render(shader, Some(interrupted)) {
+                Ok(rendered) => self.write(&rendered, &shader.name, &one.path, false)?,
+                Err(NotRendered::Failed(error)) => return Err(error),
+                Err(NotRendered::Interrupted) => return Ok(FrameEnd::Interrupted),
+            }
+            Ok(FrameEnd::Written)
+        })
     }
 
     /// The inputs of all frames; the one with this number has the time that the user gives.
@@ -369,20 +355,10 @@ impl Runner<'_> {
         format!("{:016x}", hasher.finish())
     }
 
-    /// Renders the shader; prints the error on failure. The evaluator shows its progress, and ends early if
-    /// the user interrupts it, unless the image is one of a sequence, whose flag is given.
+    /// Renders the shader. The evaluator shows its progress, and ends early if the user interrupts it, unless
+    /// the image is one of a sequence, whose flag is given.
     fn render(&mut self, shader: &Shader, interrupted: Option<&AtomicBool>) -> Result<Rendered, NotRendered> {
-        let checked = match &shader.checked {
-            Ok(checked) => checked,
-            Err(Unusable::Invalid(diagnostics)) => {
-                self.terminal.diagnostics(diagnostics, &shader.files);
-                return Err(Exit::ShaderFault.into());
-            }
-            Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => {
-                self.terminal.error(error);
-                return Err(Exit::Error.into());
-            }
-        };
+        let checked = shader.require_checked()?;
         if self.prefers_evaluator {
             match self.evaluate::<f32>(checked, interrupted) {
                 Err(failure) if self.worker.is_some() && is_too_large(&failure) => {
@@ -391,7 +367,7 @@ impl Runner<'_> {
                         shader.name
                     ));
                 }
-                result => return result.map_err(|failure| self.not_rendered(&failure, shader)),
+                result => return result.map_err(|failure| not_rendered(&failure, shader)),
             }
         }
         if let Some(worker) = &mut self.worker {
@@ -402,14 +378,9 @@ impl Runner<'_> {
                 None => self.terminal.spinner(&shader.name),
                 Some(_) => ProgressBar::hidden(),
             };
-            let lowered = match float.lower_within(checked, &deadline) {
-                Ok(lowered) => lowered,
-                Err(overdue) => {
-                    let overdue = [glsl::overdue(overdue)];
-                    self.terminal.diagnostics(&overdue, &shader.files);
-                    return Err(Exit::ShaderFault.into());
-                }
-            };
+            let lowered = float
+                .lower_within(checked, &deadline)
+                .map_err(|overdue| shaders_fault(vec![glsl::overdue(overdue)], shader))?;
             let drawn = worker.draw(lowered, self.frame.clone(), float);
             spinner.finish_and_clear();
             match drawn {
@@ -417,14 +388,14 @@ impl Runner<'_> {
                     self.report_no_driver(&failure);
                     self.worker = None;
                 }
-                result => return Ok(self.draw_result(result, shader)?),
+                result => return Ok(draw_result(result, shader)?),
             }
         }
         let evaluated = match self.args.precision {
             Precision::F32 => self.evaluate::<f32>(checked, interrupted),
             Precision::F64 => self.evaluate::<f64>(checked, interrupted),
         };
-        evaluated.map_err(|failure| self.not_rendered(&failure, shader))
+        evaluated.map_err(|failure| not_rendered(&failure, shader))
     }
 
     /// Reports that the evaluator takes the place of a driver. Strict runs have the same bits on both.
@@ -436,63 +407,6 @@ impl Runner<'_> {
             self.terminal.warn(
                 "no Vulkan driver: shaders are evaluated on the CPU, strictly (`toyproof doctor` has details)",
             );
-        }
-    }
-
-    /// Reports why the evaluator failed.
-    fn not_rendered(&self, failure: &eval::Failure, shader: &Shader) -> NotRendered {
-        match failure {
-            eval::Failure::Interrupted => NotRendered::Interrupted,
-            failure => NotRendered::Failed(not_evaluated(failure, shader, self.terminal)),
-        }
-    }
-
-    fn draw_result(&self, drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Rendered, Exit> {
-        match drawn {
-            Ok(DrawOutput {
-                loop_truncated: Some(pixels @ 1..),
-                ..
-            }) => {
-                self.terminal.error(format_args!(
-                    "{}: {}",
-                    shader.name,
-                    report::loop_truncated(pixels)
-                ));
-                Err(Exit::ShaderFault)
-            }
-            Ok(drawn) => Ok(Rendered {
-                seconds: drawn.draw.as_secs_f64(),
-                device: drawn.device.clone(),
-                image: drawn.image(),
-            }),
-            Err(failure) => Err(self.draw_failed(failure, shader)),
-        }
-    }
-
-    /// Prints why the driver rendered nothing.
-    fn draw_failed(&self, failure: Failure, shader: &Shader) -> Exit {
-        match failure {
-            Failure::Invalid(diagnostics) => {
-                self.terminal.diagnostics(&diagnostics, &shader.files);
-                Exit::ShaderFault
-            }
-            Failure::Refused(diagnostics) => {
-                self.terminal.diagnostics(&diagnostics, &shader.files);
-                Exit::Error
-            }
-            failure => {
-                self.terminal.error(format_args!("{}: {failure}", shader.name));
-                if failure.is_timeout() {
-                    self.terminal
-                        .help("allow more time with --timeout, or render on the CPU with --device cpu");
-                }
-                let shaders_fault = failure.is_invalid() || matches!(failure, Failure::Timeout { .. });
-                if shaders_fault {
-                    Exit::ShaderFault
-                } else {
-                    Exit::Error
-                }
-            }
         }
     }
 
@@ -538,13 +452,15 @@ impl Runner<'_> {
     }
 
     /// Writes an image, and confirms it unless it is one of a sequence.
-    fn write(&mut self, rendered: &Rendered, shader: &str, path: &Path, confirms: bool) -> Exit {
-        let Some(bytes) = encode(&rendered.image, path, self.terminal) else {
-            return Exit::Error;
-        };
-        if !self.terminal.write_output(self.output, path, &bytes) {
-            return Exit::Error;
-        }
+    fn write(
+        &mut self,
+        rendered: &Rendered,
+        shader: &str,
+        path: &Path,
+        confirms: bool,
+    ) -> Result<(), CliError> {
+        let bytes = encode(&rendered.image, path)?;
+        self.terminal.write_output(self.output, path, &bytes)?;
         let [width, height] = rendered.image.size();
         let precision = self.args.precision.name();
         let Rendered { device, seconds, .. } = rendered;
@@ -564,7 +480,7 @@ impl Runner<'_> {
             device: device.clone(),
             seconds: *seconds,
         });
-        Exit::Success
+        Ok(())
     }
 }
 
@@ -574,27 +490,63 @@ fn is_too_large(failure: &eval::Failure) -> bool {
     matches!(failure, eval::Failure::Refused(TooLong | TooDeep | NoMemory))
 }
 
-/// The result of a sequence: `exit` is that of its last frame.
-fn of_sequence(is_whole: bool, exit: Exit) -> Exit {
-    // Otherwise it was interrupted, or its record could not be written, which has been reported.
-    if is_whole || exit != Exit::Success {
-        exit
-    } else {
-        Exit::Error
+/// The image that a driver rendered.
+fn draw_result(drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Rendered, CliError> {
+    let drawn = drawn.map_err(|failure| draw_failed(failure, shader))?;
+    if let Some(pixels @ 1..) = drawn.loop_truncated {
+        let error = format!("{}: {}", shader.name, report::loop_truncated(pixels));
+        return Err(CliError::new(error).with_exit(Exit::ShaderFault));
+    }
+    Ok(Rendered {
+        seconds: drawn.draw.as_secs_f64(),
+        device: drawn.device.clone(),
+        image: drawn.image(),
+    })
+}
+
+/// Why the driver rendered nothing.
+fn draw_failed(failure: Failure, shader: &Shader) -> CliError {
+    match failure {
+        Failure::Invalid(diagnostics) => shaders_fault(diagnostics, shader),
+        Failure::Refused(diagnostics) => CliError::diagnostics(diagnostics, &shader.files),
+        failure => {
+            let mut error = CliError::new(format_args!("{}: {failure}", shader.name));
+            if failure.is_timeout() {
+                error =
+                    error.with_help("allow more time with --timeout, or render on the CPU with --device cpu");
+            }
+            if failure.is_invalid() || matches!(failure, Failure::Timeout { .. }) {
+                error = error.with_exit(Exit::ShaderFault);
+            }
+            error
+        }
     }
 }
 
-/// Prints why the evaluator failed.
-pub(in crate::cli) fn not_evaluated(failure: &eval::Failure, shader: &Shader, terminal: &Terminal) -> Exit {
+/// The errors of a shader.
+fn shaders_fault(diagnostics: Vec<Diagnostic>, shader: &Shader) -> CliError {
+    CliError::diagnostics(diagnostics, &shader.files).with_exit(Exit::ShaderFault)
+}
+
+fn not_rendered(failure: &eval::Failure, shader: &Shader) -> NotRendered {
+    match failure {
+        eval::Failure::Interrupted => NotRendered::Interrupted,
+        failure => NotRendered::Failed(not_evaluated(failure, shader)),
+    }
+}
+
+/// Why the evaluator failed.
+pub(in crate::cli) fn not_evaluated(failure: &eval::Failure, shader: &Shader) -> CliError {
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
-        terminal.diagnostics(&[glsl::overdue(*overdue)], &shader.files);
-        return Exit::ShaderFault;
+        return shaders_fault(vec![glsl::overdue(*overdue)], shader);
     }
     let position = report::failure_position(failure, &shader.files);
-    terminal.error(format_args!("{}: {failure}{position}", shader.name));
-    if matches!(failure, eval::Failure::Timeout { .. } | eval::Failure::TimeUp) {
-        terminal.help("allow more time with --timeout");
+    let error = CliError::new(format_args!("{}: {failure}{position}", shader.name));
+    match failure {
+        eval::Failure::Refused(_) => error,
+        eval::Failure::Timeout { .. } | eval::Failure::TimeUp => error
+            .with_help("allow more time with --timeout")
+            .with_exit(Exit::ShaderFault),
+        _ => error.with_exit(Exit::ShaderFault),
     }
-    let ours = matches!(failure, eval::Failure::Refused(_));
-    if ours { Exit::Error } else { Exit::ShaderFault }
 }

@@ -1,5 +1,6 @@
 //! `toyproof run` of a project: its passes over frames, from the first one or from a saved state.
 
+use std::fmt::Display;
 use std::hash::{DefaultHasher, Hash};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,12 +18,12 @@ use toyproof_project::{CompiledProject, PassKind, Rendering, Tab};
 use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::state::{self, Owner};
-use super::{Precision, Rendered, Runner, is_too_large, not_evaluated, of_sequence};
+use super::{Precision, Rendered, Runner, draw_failed, is_too_large, not_evaluated, shaders_fault};
 use crate::cli::inputs::short_device;
 use crate::cli::project::{pass_shader, target};
 use crate::cli::sequence::{FrameEnd, Sequence};
 use crate::cli::shader::Shader;
-use crate::cli::{Exit, Terminal};
+use crate::cli::{CliError, Exit, Terminal};
 
 /// Parses the name of a pass whose texture can be shown: `image`, or `buffer-a` to `buffer-d`.
 pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
@@ -203,12 +204,17 @@ fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
 
 impl Runner<'_> {
     /// Renders a project: one frame, or each of a sequence into its file.
-    pub(super) fn project(&mut self, shader: &Shader, passes: &CompiledProject, path: &Path) -> Exit {
+    pub(super) fn project(
+        &mut self,
+        shader: &Shader,
+        passes: &CompiledProject,
+        path: &Path,
+    ) -> Result<Exit, CliError> {
         // The worker is used beside this runner, which writes the images. The next shader has the same frame.
         let (mut worker, frame) = (self.worker.take(), self.frame.clone());
         let exit = self.render_project(&mut worker, shader, passes, path);
         (self.worker, self.frame) = (worker, frame);
-        exit.unwrap_or_else(|exit| exit)
+        exit
     }
 
     fn render_project(
@@ -217,7 +223,7 @@ impl Runner<'_> {
         shader: &Shader,
         passes: &CompiledProject,
         path: &Path,
-    ) -> Result<Exit, Exit> {
+    ) -> Result<Exit, CliError> {
         let kind = self.args.pass.unwrap_or(PassKind::Image);
         let rendering = self.rendering(shader, passes, kind)?;
         let scheduled = pass_shader(passes, &rendering);
@@ -226,9 +232,9 @@ impl Runner<'_> {
             && let Some(frame) = bound(&rendering, &self.clock(self.frame.frame).frame(self.frame.frame))
         {
             (self.worker, self.frame) = (worker.take(), frame);
-            let exit = self.one_image(shader, path);
+            let rendered = self.one_image(shader, path);
             *worker = self.worker.take();
-            return Ok(exit);
+            return rendered.map(|()| Exit::Success);
         }
         let sequence = self.args.frames.map(|frames| {
             let fingerprint = self.fingerprint_of_project(shader, passes);
@@ -258,7 +264,7 @@ impl Runner<'_> {
         if evaluates {
             match scheduled.programs(limit) {
                 Err((_, refusal)) if worker.is_some() && is_too_large(&refusal.into()) => {}
-                result => programs = Some(self.programs(result, shader)?),
+                result => programs = Some(compiled_programs(result, shader)?),
             }
         }
         let opened = match worker {
@@ -272,7 +278,7 @@ impl Runner<'_> {
         } else {
             compiled = match programs {
                 Some(programs) => programs,
-                None => self.programs(scheduled.programs(limit), shader)?,
+                None => compiled_programs(scheduled.programs(limit), shader)?,
             };
             let state = state.as_ref();
             match self.args.precision {
@@ -297,25 +303,18 @@ impl Runner<'_> {
             has_history,
             terminal: self.terminal,
         };
-        let exit = match sequence {
+        let shown = match sequence {
             None => self.one_frame(&mut run, first, shader, path, &interrupted),
             Some(sequence) => self.all_frames(&mut run, sequence, shader),
         };
+        // The state of the frames before a failed one is saved.
+        let exit = shown.map_or_else(|error| self.terminal.fail(&error), |()| Exit::Success);
         let saved = self.save_state(&mut run, next, &owner);
         drop(run);
         if has_no_driver {
             *worker = None;
         }
-        Ok(exit.max(saved))
-    }
-
-    /// Unwraps the programs of the passes, or prints why they are missing.
-    fn programs(
-        &self,
-        result: Result<Vec<Program>, (usize, eval::Refusal)>,
-        shader: &Shader,
-    ) -> Result<Vec<Program>, Exit> {
-        result.map_err(|(_, refusal)| not_evaluated(&refusal.into(), shader, self.terminal))
+        saved.map(|()| exit)
     }
 
     /// What renders a pass, with the textures that the user binds to the channels of the image.
@@ -324,14 +323,14 @@ impl Runner<'_> {
         shader: &Shader,
         passes: &CompiledProject,
         kind: PassKind,
-    ) -> Result<Rendering, Exit> {
+    ) -> Result<Rendering, CliError> {
         if passes.project.pass(kind).is_none() {
             let error = format!("there is no {kind}");
-            return Err(self.refuse(shader, &error, "name one of its passes with --pass"));
+            return Err(refusal(shader, error, "name one of its passes with --pass"));
         }
         let rendering = passes.rendering(kind);
-        let mut rendering = rendering
-            .map_err(|error| self.refuse(shader, &error, "`toyproof check` compiles all its tabs"))?;
+        let mut rendering =
+            rendering.map_err(|error| refusal(shader, error, "`toyproof check` compiles all its tabs"))?;
         report_replaced(&rendering, &self.frame.channels, &shader.name, self.terminal);
         for (channel, texture) in self.frame.channels.iter().enumerate() {
             if let Some(texture) = texture {
@@ -355,20 +354,20 @@ impl Runner<'_> {
         passes: &PassShader<'_>,
         owner: &Owner,
         first: i32,
-    ) -> Result<Option<State>, Exit> {
+    ) -> Result<Option<State>, CliError> {
         let Some(file) = &self.args.state else {
             return Ok(None);
         };
-        let refuse = |error: &str| self.refuse(shader, &error, "name another file with --state");
-        let Some(state) = state::read(file, owner).map_err(|error| refuse(&error))? else {
+        let refuse = |error: String| refusal(shader, error, "name another file with --state");
+        let Some(state) = state::read(file, owner).map_err(refuse)? else {
             return Ok(None);
         };
         if !state.fits(passes.graph) {
-            return Err(refuse(&format!("{} is damaged", path_name(file))));
+            return Err(refuse(format!("{} is damaged", path_name(file))));
         }
         if state.frame >= first {
             let last = state.frame;
-            return Err(refuse(&format!(
+            return Err(refuse(format!(
                 "the state is that of frame {last}, and frame {first} is earlier"
             )));
         }
@@ -406,13 +405,6 @@ impl Runner<'_> {
         }
     }
 
-    /// Prints why a project is not rendered.
-    fn refuse(&self, shader: &Shader, error: &dyn std::fmt::Display, help: &str) -> Exit {
-        self.terminal.error(format_args!("{}: {error}", shader.name));
-        self.terminal.help(help);
-        Exit::Error
-    }
-
     /// Compiles the passes for the driver; `None` if there is no driver and the evaluator takes its place.
     fn open<'w>(
         &self,
@@ -420,7 +412,7 @@ impl Runner<'_> {
         shader: &PassShader<'_>,
         state: Option<&State>,
         named: &Shader,
-    ) -> Result<Option<DevicePlayback<'w>>, Exit> {
+    ) -> Result<Option<DevicePlayback<'w>>, CliError> {
         let driver = &self.args.driver;
         match DevicePlayback::open(worker, shader, state, driver.float(), driver.explicit_timeout()) {
             Ok(playback) => Ok(Some(playback)),
@@ -428,11 +420,8 @@ impl Runner<'_> {
                 self.report_no_driver(&failure);
                 Ok(None)
             }
-            Err(PlaybackFailure::Gpu(failure)) => Err(self.draw_failed(failure, named)),
-            Err(PlaybackFailure::Overdue(overdue)) => {
-                self.terminal.diagnostics(&[glsl::overdue(overdue)], &named.files);
-                Err(Exit::ShaderFault)
-            }
+            Err(PlaybackFailure::Gpu(failure)) => Err(draw_failed(failure, named)),
+            Err(PlaybackFailure::Overdue(overdue)) => Err(shaders_fault(vec![glsl::overdue(overdue)], named)),
         }
     }
 
@@ -443,30 +432,25 @@ impl Runner<'_> {
         shader: &Shader,
         path: &Path,
         interrupted: &AtomicBool,
-    ) -> Exit {
-        match run.show(number, interrupted) {
-            Ok(rendered) => {
-                self.frame = run.clock.frame(number);
-                self.write(&rendered, &shader.name, path, true)
-            }
-            Err(unshown) => self.unshown(unshown, number, shader),
-        }
+    ) -> Result<(), CliError> {
+        let rendered = run.show(number, interrupted);
+        let rendered = rendered.map_err(|unshown| self.not_shown(unshown, number, shader))?;
+        self.frame = run.clock.frame(number);
+        self.write(&rendered, &shader.name, path, true)
     }
 
-    fn all_frames(&mut self, run: &mut Run<'_>, sequence: Sequence, shader: &Shader) -> Exit {
-        let mut exit = Exit::Success;
-        let whole = sequence.render(self.terminal, |one, interrupted| {
-            exit = match run.show(one.frame, interrupted) {
+    fn all_frames(&mut self, run: &mut Run<'_>, sequence: Sequence, shader: &Shader) -> Result<(), CliError> {
+        sequence.render(self.terminal, |one, interrupted| {
+            match run.show(one.frame, interrupted) {
                 Ok(rendered) => {
                     self.frame = run.clock.frame(one.frame);
-                    self.write(&rendered, &shader.name, &one.path, false)
+                    self.write(&rendered, &shader.name, &one.path, false)?;
                 }
-                Err(Unshown::Interrupted(_)) => return FrameEnd::Interrupted,
-                Err(unshown) => self.unshown(unshown, one.frame, shader),
-            };
-            FrameEnd::of(exit == Exit::Success)
-        });
-        of_sequence(whole, exit)
+                Err(Unshown::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
+                Err(unshown) => return Err(self.not_shown(unshown, one.frame, shader)),
+            }
+            Ok(FrameEnd::Written)
+        })
     }
 
     /// A digest of everything that the frames of a sequence depend on.
@@ -485,46 +469,45 @@ impl Runner<'_> {
         self.fingerprint(hasher)
     }
 
-    /// Prints why a frame is not shown.
-    fn unshown(&self, unshown: Unshown, number: i32, shader: &Shader) -> Exit {
+    /// Why a frame is not shown.
+    fn not_shown(&self, unshown: Unshown, number: i32, shader: &Shader) -> CliError {
         match unshown {
-            Unshown::Stopped(Stopped::Device(failure)) => self.draw_failed(failure, shader),
-            Unshown::Stopped(Stopped::Evaluator(error)) => {
-                not_evaluated(&error.failure, shader, self.terminal)
-            }
+            Unshown::Stopped(Stopped::Device(failure)) => draw_failed(failure, shader),
+            Unshown::Stopped(Stopped::Evaluator(error)) => not_evaluated(&error.failure, shader),
             Unshown::Interrupted(next) => {
-                self.terminal.error(format_args!(
-                    "interrupted before frame {next}; frame {number} was to be shown"
-                ));
-                self.terminal.help(match self.args.state {
+                let error = format!("interrupted before frame {next}; frame {number} was to be shown");
+                CliError::new(error).with_help(match self.args.state {
                     Some(_) => "run the same command again to go on",
                     None => "with --state FILE, the same command goes on",
-                });
-                Exit::Error
+                })
             }
         }
     }
 
     /// Writes the state after the last frame, if there is one and the user wants it.
-    fn save_state(&self, run: &mut Run<'_>, first: i32, owner: &Owner) -> Exit {
+    fn save_state(&self, run: &mut Run<'_>, first: i32, owner: &Owner) -> Result<(), CliError> {
         let Some(file) = self.args.state.as_ref().filter(|_| run.next > first) else {
-            return Exit::Success;
+            return Ok(());
         };
-        let saved = match run.playback.state(&run.clock, run.next - 1) {
-            Ok(saved) => state::write(file, owner, &saved),
-            // The failure of the frame has been reported.
-            Err(_) => return Exit::Success,
-        };
-        match saved {
-            Ok(()) => {
-                self.terminal
-                    .confirm(file, &format!("the buffers after frame {}", run.next - 1));
-                Exit::Success
-            }
-            Err(error) => {
-                self.terminal.error(error);
-                Exit::Error
-            }
+        // If there is no state, the failure of the frame has been reported.
+        if let Ok(saved) = run.playback.state(&run.clock, run.next - 1) {
+            state::write(file, owner, &saved)?;
+            self.terminal
+                .confirm(file, &format!("the buffers after frame {}", run.next - 1));
         }
+        Ok(())
     }
+}
+
+/// Why a project is not rendered, and a way out.
+fn refusal(shader: &Shader, error: impl Display, help: &str) -> CliError {
+    CliError::new(format_args!("{}: {error}", shader.name)).with_help(help)
+}
+
+/// Unwraps the programs of the passes.
+fn compiled_programs(
+    result: Result<Vec<Program>, (usize, eval::Refusal)>,
+    shader: &Shader,
+) -> Result<Vec<Program>, CliError> {
+    result.map_err(|(_, refusal)| not_evaluated(&refusal.into(), shader))
 }

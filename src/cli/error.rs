@@ -1,0 +1,73 @@
+//! The error that ends a command.
+
+use std::fmt::Display;
+
+use toyproof_diagnostic::{Diagnostic, Files};
+
+use super::Exit;
+
+/// The error that ends a command, or the part of it that concerns one input. Functions return it, and the
+/// command line prints it in one place, with [`Terminal::fail`](super::Terminal::fail).
+#[derive(Debug)]
+pub(super) struct CliError {
+    /// Diagnostics on a file that the user named, with its text. They are printed first.
+    pub(super) diagnostics: Option<(Vec<Diagnostic>, Files)>,
+    /// A sentence; a line `help: …` at its end is the advice.
+    pub(super) message: Option<String>,
+    /// A way out.
+    pub(super) help: Option<String>,
+    pub(super) exit: Exit,
+}
+
+impl CliError {
+    pub(super) fn new(message: impl Display) -> Self {
+        Self {
+            message: Some(message.to_string()),
+            ..Self::silent()
+        }
+    }
+
+    /// An error of which nothing is printed: standard output failed, which has been reported, or the user
+    /// interrupted the command.
+    pub(super) fn silent() -> Self {
+        Self {
+            diagnostics: None,
+            message: None,
+            help: None,
+            exit: Exit::Error,
+        }
+    }
+
+    /// Diagnostics on files that the user named.
+    pub(super) fn diagnostics(diagnostics: impl Into<Vec<Diagnostic>>, files: &Files) -> Self {
+        Self {
+            diagnostics: Some((diagnostics.into(), files.clone())),
+            ..Self::silent()
+        }
+    }
+
+    pub(super) fn with_message(self, message: impl Display) -> Self {
+        Self {
+            message: Some(message.to_string()),
+            ..self
+        }
+    }
+
+    pub(super) fn with_help(self, help: impl Display) -> Self {
+        Self {
+            help: Some(help.to_string()),
+            ..self
+        }
+    }
+
+    /// Sets the exit status, which is [`Exit::Error`] by default.
+    pub(super) fn with_exit(self, exit: Exit) -> Self {
+        Self { exit, ..self }
+    }
+}
+
+impl<E: Display> From<E> for CliError {
+    fn from(error: E) -> Self {
+        Self::new(error)
+    }
+}
