@@ -3,12 +3,11 @@
 //!
 //! # Parts
 //!
-//! - `files`: finds and reads the inputs, and follows links only inside the named folder.
-//! - `check`: `work` reads what one command checks, `batch` runs it, `shard` distributes a batch over shards,
-//!   and `merge` repeats the command of the shards with their results.
-//! - `collect`: makes folders of students from downloads, whose archives `zip` reads.
-//! - `similar`: compares shaders by winnowing over their trees.
+//! - `check`: `args` gives `options`, `work` reads what one command checks, `batch` runs it, `sharding`
+//!   distributes a batch over shards, and `merge` repeats the command of the shards with their results.
+//! - `shader`: finds and reads the shaders that arguments name.
 //! - `terminal`: all output to the terminal.
+//! - `error`: the error that ends a command, which is printed here.
 
 mod check;
 mod collect;

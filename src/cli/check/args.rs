@@ -7,6 +7,7 @@ use toyproof_explain::repair::DEFAULT_BUDGET;
 use toyproof_report::Hints;
 use toyproof_verify::Difference;
 
+use super::options::{BatchOptions, CheckFormat, CheckOptions, Options, PlanOptions, TaskInputs};
 use super::shard::Shard;
 use crate::cli::inputs::{DriverArgs, FrameArgs, LanguageArgs};
 use crate::cli::reference::ReferenceArgs;
@@ -31,15 +32,15 @@ With --shard: 0 if the shard is complete, else 2.")]
 pub(in crate::cli) struct Args {
     /// Shaders: files, folders, or - for standard input; with --class, downloads
     #[arg(required = true)]
-    pub(super) shaders: Vec<PathBuf>,
+    shaders: Vec<PathBuf>,
     #[command(flatten)]
-    pub(super) reference: ReferenceArgs,
+    reference: ReferenceArgs,
     /// The assignment (.toml): reference, frames and points [default: assignment.toml in the shaders' folder]
     ///
     /// A shader must be right in all frames. Flags of a frame (--size, --time, --mouse and so on) replace the
     /// frames of the assignment by that one, and --rubric replaces its points.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "reference"])]
-    pub(super) assignment: Option<PathBuf>,
+    assignment: Option<PathBuf>,
     /// The class (.toml): the patterns, deadlines and rubrics of several assignments, which are all checked
     ///
     /// The shaders are downloads of Moodle or Canvas, which are collected into the folder `submissions` of
@@ -47,12 +48,12 @@ pub(in crate::cli) struct Args {
     /// class.csv has the points of all.
     #[arg(long, value_name = "FILE", requires = "out",
           conflicts_with_all = ["scene", "reference", "assignment", "rubric"])]
-    pub(super) class: Option<PathBuf>,
+    class: Option<PathBuf>,
     /// Differences from the reference with which a shader is still correct, such as antialiasing,color-curve
     ///
     /// They are those of the section “Right, but not as asked” of the guide's page on mistakes, by their ids.
     #[arg(long, value_name = "ID", value_delimiter = ',')]
-    pub(super) permit: Vec<Difference>,
+    permit: Vec<Difference>,
     /// Write images and reports into this folder
     ///
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
@@ -60,13 +61,13 @@ pub(in crate::cli) struct Args {
     /// NAME-fixed.png where a fix was found. For all: report.html, report.csv, verdict.json, junit.xml and
     /// report.sarif; with --class, class.csv.
     #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
-    pub(super) out: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
     ///
     /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been
     /// interrupted.
     #[arg(long, requires = "out", help_heading = "Reports")]
-    pub(super) resume: bool,
+    resume: bool,
     /// Check only part K of N of the shaders, in a folder of its own; `toyproof merge` writes the report of
     /// all
     ///
@@ -79,23 +80,23 @@ pub(in crate::cli) struct Args {
     ///
     /// All parts need the same report. A shader that it does not have counts as the mean of the others.
     #[arg(long, value_name = "OLD", requires = "shard", help_heading = "Reports")]
-    pub(super) costs: Option<PathBuf>,
+    costs: Option<PathBuf>,
     /// List the verdicts that differ from an earlier report: a folder that --out wrote, or its verdict.json
     #[arg(long, value_name = "OLD", conflicts_with = "shard", help_heading = "Reports")]
     pub(super) compare: Option<PathBuf>,
     /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's
     /// results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
-    pub(super) rubric: Option<PathBuf>,
+    rubric: Option<PathBuf>,
     /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
     ///
     /// Students' reports are junit.xml and Gradescope's results.json. If this option is given, it applies to
     /// all reports and to the terminal. results.jsonl, which --resume reads, always has everything.
     #[arg(long, value_enum, value_name = "HINTS", help_heading = "Reports")]
-    pub(super) hints: Option<HintLevel>,
+    hints: Option<HintLevel>,
     /// The format of standard output
     #[arg(long, value_enum, default_value_t = CheckFormat::Human, help_heading = "Output")]
-    pub(super) format: CheckFormat,
+    format: CheckFormat,
     /// The number of shaders to check in parallel [default: the number of cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256), allow_negative_numbers = true)]
     pub(super) jobs: Option<u16>,
@@ -105,29 +106,18 @@ pub(in crate::cli) struct Args {
     /// checked, a second search tries expressions of the correct ones. A unit is about a second of one core.
     /// Work is counted, not timed, so that the result is the same on every machine.
     #[arg(long, value_name = "N", default_value_t = DEFAULT_BUDGET, value_parser = parse_search, allow_negative_numbers = true)]
-    pub(super) search: f64,
+    search: f64,
     #[command(flatten)]
-    pub(super) frame: FrameArgs,
+    frame: FrameArgs,
     #[command(flatten)]
-    pub(super) language: LanguageArgs,
+    language: LanguageArgs,
     #[command(flatten)]
-    pub(super) driver: DriverArgs,
-}
-
-/// The format of standard output.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum CheckFormat {
-    /// A verdict for each shader, with an explanation
-    Human,
-    /// A line `file:line:column: error[E0100]: message` for each diagnostic, for editors
-    Short,
-    /// verdict.json
-    Json,
+    driver: DriverArgs,
 }
 
 /// What reports show of the mistake in a wrong shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum HintLevel {
+enum HintLevel {
     /// Nothing
     None,
     /// The likely mistake, and the line of the fix or the suspect lines
@@ -147,14 +137,43 @@ impl From<HintLevel> for Hints {
 }
 
 impl Args {
-    /// The hints in reports for teachers.
-    pub(super) fn teachers_hints(&self) -> Hints {
-        self.hints.map_or(Hints::Fix, Hints::from)
-    }
-
-    /// The hints in reports for students.
-    pub(super) fn students_hints(&self) -> Hints {
-        self.hints.map_or(Hints::Line, Hints::from)
+    /// The options that the arguments give.
+    pub(super) fn options(&self) -> Options {
+        let hints = |default| self.hints.map_or(default, Hints::from);
+        Options {
+            task: TaskInputs {
+                name: None,
+                shaders: self.shaders.clone(),
+                assignment: self.assignment.clone(),
+                rubric: self.rubric.clone(),
+            },
+            class: self.class.clone(),
+            costs: self.costs.clone(),
+            plan: PlanOptions {
+                reference: self.reference.clone(),
+                permitted: self.permit.clone(),
+                frame: self.frame.inputs(),
+                is_frame_given: self.frame.is_given(),
+            },
+            check: CheckOptions {
+                language: self.language.clone(),
+                driver: self.driver.clone(),
+                search: self.search,
+                is_moment_given: self.frame.is_moment_given(),
+                out: self.out.clone(),
+            },
+            batch: BatchOptions {
+                format: self.format,
+                jobs: self.jobs.map(usize::from),
+                out: self.out.clone(),
+                resume: self.resume,
+                shard: self.shard,
+                // The expression that repairs a shader may be in another shard; `merge` searches.
+                searches_again: self.search > 0.0 && self.shard.is_none(),
+                teachers_hints: hints(Hints::Fix),
+                students_hints: hints(Hints::Line),
+            },
+        }
     }
 }
 
@@ -190,9 +209,9 @@ mod tests {
             (&["--hints", "line"], [Hints::Line; 2]),
             (&["--hints", "fix"], [Hints::Fix; 2]),
         ] {
-            let args = args(flags).unwrap();
+            let batch = args(flags).unwrap().options().batch;
             assert_eq!(
-                [args.teachers_hints(), args.students_hints()],
+                [batch.teachers_hints, batch.students_hints],
                 expected,
                 "{flags:?}"
             );

@@ -12,15 +12,14 @@ use toyproof_report::{self as report, Detail, Earlier, Layout, Record, Records, 
 use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
-use super::args::Args;
-use super::args::CheckFormat;
 use super::checker::{Checker, WorkerContext};
+use super::options::{BatchOptions, CheckFormat};
 use super::outcome::{Message, Outcome};
 use super::reference::unused_scene;
 use super::reports;
 use super::results::{Line, Results};
 use super::submission::Submission;
-use crate::cli::inputs::{shell_word, short_device};
+use crate::cli::inputs::{DriverArgs, shell_word, short_device};
 use crate::cli::pool::{self, InOrder};
 use crate::cli::{Exit, Terminal};
 
@@ -50,7 +49,7 @@ enum Waiting {
 
 /// A run over all shaders of one command.
 pub(super) struct Batch<'a> {
-    pub(super) args: &'a Args,
+    pub(super) options: &'a BatchOptions,
     pub(super) terminal: &'a Terminal,
     rubrics: Rubrics,
     results: Option<Results>,
@@ -76,7 +75,7 @@ pub(super) struct Batch<'a> {
 
 impl<'a> Batch<'a> {
     pub(super) fn new(
-        args: &'a Args,
+        options: &'a BatchOptions,
         rubrics: Rubrics,
         results: Option<Results>,
         earlier: Option<Earlier>,
@@ -84,17 +83,20 @@ impl<'a> Batch<'a> {
         terminal: &'a Terminal,
     ) -> Self {
         Self {
-            args,
+            options,
             terminal,
             rubrics,
             results,
             earlier,
             order: InOrder::default(),
-            records: args.out.clone().map_or_else(Records::default, Records::stored_in),
+            records: options
+                .out
+                .clone()
+                .map_or_else(Records::default, Records::stored_in),
             reported: Vec::new(),
             device: None,
             failed: false,
-            layout: layout(submissions, args.format, terminal),
+            layout: layout(submissions, options.format, terminal),
             unrepaired: HashSet::new(),
             has_sources: submissions.len() <= MAX_WITH_SOURCE,
             hidden_warnings: 0,
@@ -103,7 +105,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Checks the submissions, and prints the result of each.
-    pub(super) fn check(&mut self, submissions: &[Submission], checkers: &[Checker]) {
+    pub(super) fn check(&mut self, submissions: &[Submission], checkers: &[Checker], driver: &DriverArgs) {
         let stop = self
             .terminal
             .watch_interrupts("the shaders in progress are finished first");
@@ -124,7 +126,7 @@ impl<'a> Batch<'a> {
             }
         }
         let reused = submissions.len() - todo.len();
-        if self.args.resume && reused > 0 {
+        if self.options.resume && reused > 0 {
             let of = submissions.len();
             self.terminal.note(&format!(
                 "{} of {} {} reused from an earlier run",
@@ -139,7 +141,7 @@ impl<'a> Batch<'a> {
             &todo,
             threads,
             &stop,
-            || WorkerContext::new(self.args, threads, pixels),
+            || WorkerContext::new(driver, threads, pixels),
             |context, index| {
                 let submission = &submissions[index];
                 checkers[submission.task].check(context, submission)
@@ -172,23 +174,20 @@ impl<'a> Batch<'a> {
                 grouped(self.records.len() as u64),
                 grouped(submissions.len() as u64)
             ));
-            if self.args.out.is_some() {
+            if self.options.out.is_some() {
                 self.terminal
                     .help("run the same command with --resume to check the others");
             }
             self.failed = true;
-        } else if self.args.search > 0.0 && self.args.shard.is_none() {
-            // The expression that repairs a shader may be in another shard; `merge` searches.
+        } else if self.options.searches_again {
             self.search_again(submissions, checkers, &stop);
         }
     }
 
     /// The number of threads for that number of shaders.
     pub(super) fn threads(&self, shaders: usize) -> usize {
-        let threads = match self.args.jobs {
-            Some(jobs) => usize::from(jobs),
-            None => std::thread::available_parallelism().map_or(1, NonZero::get),
-        };
+        let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+        let threads = self.options.jobs.unwrap_or_else(cores);
         threads.clamp(1, shaders.max(1))
     }
 
@@ -242,11 +241,11 @@ impl<'a> Batch<'a> {
         if outcome.record.verdict == Verdict::Wrong && outcome.record.fix.is_none() {
             self.unrepaired.insert(index);
         }
-        outcome.record.redact(self.args.teachers_hints());
+        outcome.record.redact(self.options.teachers_hints);
         for message in &outcome.messages {
             self.print(message, outcome.record.verdict);
         }
-        match self.args.format {
+        match self.options.format {
             CheckFormat::Human => {
                 match contain(Part::Summary, || report::lines(&outcome.record, &self.layout)) {
                     Ok(lines) => self.terminal.result(&lines),
@@ -284,7 +283,7 @@ impl<'a> Batch<'a> {
                     self.hidden_warnings += warnings.count() as u64;
                 }
             }
-            Message::Diagnostics(..) if self.args.format == CheckFormat::Short => {}
+            Message::Diagnostics(..) if self.options.format == CheckFormat::Short => {}
             message => message.print(self.terminal),
         }
     }
@@ -292,7 +291,7 @@ impl<'a> Batch<'a> {
     /// Prints the summary, and writes the reports.
     pub(super) fn finish(self, submissions: &[Submission]) -> Exit {
         let Self {
-            args,
+            options,
             terminal,
             rubrics,
             records,
@@ -307,7 +306,7 @@ impl<'a> Batch<'a> {
         } = self;
         let reported: Vec<_> = reported.into_iter().map(|index| &submissions[index]).collect();
         let report = Report::new(device, records);
-        match args.format {
+        match options.format {
             CheckFormat::Human => {
                 print_summary(&report, hidden_warnings, start.elapsed(), terminal);
                 if let [one] = &reported[..]
@@ -329,15 +328,22 @@ impl<'a> Batch<'a> {
             CheckFormat::Json => failed |= terminal.stream(|stdout| report.json(stdout)).is_err(),
         }
         if let Some(earlier) = earlier {
-            failed |= !print_changes(&earlier, &report, args.format, terminal);
+            failed |= !print_changes(&earlier, &report, options.format, terminal);
         }
-        if let Some(out) = &args.out {
+        if let Some(out) = &options.out {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
-            let written = args.shard.is_some()
-                || reports::write(&report, &reported, &rubrics, args.students_hints(), out, terminal);
+            let written = options.shard.is_some()
+                || reports::write(
+                    &report,
+                    &reported,
+                    &rubrics,
+                    options.students_hints,
+                    out,
+                    terminal,
+                );
             match is_there {
-                Ok(()) if written => terminal.note(&match args.shard {
+                Ok(()) if written => terminal.note(&match options.shard {
                     None => format!("report: {}", path_name(&out.join("report.html"))),
                     Some(shard) => format!("shard {shard}: {}", path_name(out)),
                 }),
@@ -350,7 +356,7 @@ impl<'a> Batch<'a> {
                 }
             }
         }
-        if args.shard.is_some() {
+        if options.shard.is_some() {
             return if failed { Exit::Error } else { Exit::Success };
         }
         if failed || report.shaders().tally().count(Verdict::Error) > 0 {

@@ -22,13 +22,13 @@ use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, accumulate, bind, default_frame};
 use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unbound_channels};
 
-use super::args::Args;
 use super::images::{FIXED, IMAGES, keep};
+use super::options::CheckOptions;
 use super::outcome::{Message, Outcome};
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
 use super::submission::Submission;
-use crate::cli::inputs::{frame_flags, shell_word};
+use crate::cli::inputs::{DriverArgs, frame_flags, shell_word};
 use crate::cli::pool;
 use crate::cli::project::{pass_shader, rendering};
 use crate::cli::reference::ill_conditioned;
@@ -51,8 +51,8 @@ impl WorkerContext {
     }
 
     /// Creates the context for one of `threads` threads that render images of up to that many pixels.
-    pub(super) fn new(args: &Args, threads: usize, pixels: u64) -> Self {
-        let mut worker = new_worker(args);
+    pub(super) fn new(driver: &DriverArgs, threads: usize, pixels: u64) -> Self {
+        let mut worker = new_worker(driver);
         if let Some(worker) = &mut worker {
             // The driver starts while the first shader is read and its scene is traced.
             worker.warm_up(pixels);
@@ -65,14 +65,14 @@ impl WorkerContext {
 }
 
 /// Creates a worker; the arguments have been validated before.
-fn new_worker(args: &Args) -> Option<Worker> {
-    let worker = args.driver.worker().ok().flatten();
+fn new_worker(driver: &DriverArgs) -> Option<Worker> {
+    let worker = driver.worker().ok().flatten();
     worker.map(Worker::with_plain_code_for_small_images)
 }
 
 /// Checks shaders, on any thread.
 pub(super) struct Checker<'a> {
-    args: &'a Args,
+    options: &'a CheckOptions,
     plan: &'a Plan,
     references: &'a References,
     /// Whether the missing driver has been reported.
@@ -83,9 +83,9 @@ pub(super) struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(args: &'a Args, plan: &'a Plan, references: &'a References) -> Self {
+    pub(super) fn new(options: &'a CheckOptions, plan: &'a Plan, references: &'a References) -> Self {
         Self {
-            args,
+            options,
             plan,
             references,
             fell_back: AtomicBool::new(false),
@@ -108,7 +108,10 @@ impl<'a> Checker<'a> {
         let checked = contain(Part::Shader, || self.check_shader(context, submission));
         let mut outcome = checked.unwrap_or_else(|panic| {
             // The worker was interrupted in an unknown state.
-            context.worker = context.worker.take().and_then(|_| new_worker(self.args));
+            context.worker = context
+                .worker
+                .take()
+                .and_then(|_| new_worker(&self.options.driver));
             let mut record = Record::new(submission.name.clone());
             record.set_failure(panic.into(), &Files::default());
             Outcome::known(record)
@@ -130,7 +133,7 @@ impl<'a> Checker<'a> {
         }
         outcome.report(shader.lints.warnings.clone(), &shader.files);
         let findings = self.check_frames(context, &mut outcome, &shader, reference.as_ref());
-        if outcome.record.verdict == Verdict::Wrong && self.args.search > 0.0 && has_history(&shader) {
+        if outcome.record.verdict == Verdict::Wrong && self.options.search > 0.0 && has_history(&shader) {
             outcome.record.set_unsearched();
         }
         if let Some((assignment, _)) = &self.plan.assignment {
@@ -138,8 +141,8 @@ impl<'a> Checker<'a> {
                 checked,
                 files: &shader.files,
                 text: shader.text(checked),
-                lenient: self.args.language.is_lenient(),
-                timeout: self.args.driver.timeout(),
+                lenient: self.options.language.is_lenient(),
+                timeout: self.options.driver.timeout(),
             });
             let subject = subject.filter(|_| outcome.record.verdict.is_compiled());
             let mut check_text = || assignment.check_text(subject.as_ref(), &mut outcome.record);
@@ -148,7 +151,7 @@ impl<'a> Checker<'a> {
                 None => check_text(),
             }
         }
-        if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
+        if let (Some(out), Some(stem)) = (&self.options.out, &submission.output_stem) {
             keep(out, stem, &IMAGES, findings.as_ref(), &mut outcome);
         }
         if outcome.record.help.is_none() {
@@ -267,7 +270,7 @@ impl<'a> Checker<'a> {
         let mut command = vec![format!("toyproof {name}"), shell_word(&record.shader), flag];
         command.extend(self.plan.reference.flags());
         command.extend(frame_flags(&self.plan.frames[record.shown_frame()].inputs));
-        command.extend(self.args.language.flags());
+        command.extend(self.options.language.flags());
         command.join(" ")
     }
 
@@ -287,7 +290,7 @@ impl<'a> Checker<'a> {
         let mut key = index;
         if has_history && self.plan.assignment.is_none() && !matches!(reference, Some(Reference::Given(_))) {
             // The reference has the time of the frame that the user does not name.
-            if !self.args.frame.is_moment_given() {
+            if !self.options.is_moment_given {
                 let scene = match reference {
                     Some(Reference::Scene(scene)) => scene.scene.as_ref().ok(),
                     _ => None,
@@ -328,8 +331,8 @@ impl<'a> Checker<'a> {
                 double: &bound.double,
                 growth: bound.growth.visible,
             }),
-            float: self.args.driver.float(),
-            timeout: self.args.driver.timeout(),
+            float: self.options.driver.float(),
+            timeout: self.options.driver.timeout(),
             pool: context.pool.as_ref(),
         };
         let options = Options {
@@ -338,7 +341,7 @@ impl<'a> Checker<'a> {
                 permitted: &self.plan.permitted,
                 scenes: Some(&self.other_scenes),
             }),
-            search: (explains && !has_history && self.args.search > 0.0)
+            search: (explains && !has_history && self.options.search > 0.0)
                 .then(|| self.search_options(shader, checked)),
         };
         if self.fell_back.load(Ordering::Relaxed) {
@@ -348,7 +351,7 @@ impl<'a> Checker<'a> {
         let mut findings = explain::check(worker, &case, &options);
         if let Err(Failure::Gpu(failure)) = &findings
             && failure.is_without_driver()
-            && self.args.driver.may_fall_back()
+            && self.options.driver.may_fall_back()
         {
             if !self.fell_back.swap(true, Ordering::Relaxed) {
                 outcome.messages.push(Message::Warning(format!(
@@ -367,7 +370,7 @@ impl<'a> Checker<'a> {
         for panic in findings.panics.drain(..) {
             outcome.fail(format!("{}: {panic}", outcome.record.shader));
         }
-        let denied = denied(&mut findings.notes, self.args.language.denied());
+        let denied = denied(&mut findings.notes, self.options.language.denied());
         outcome.report(std::mem::take(&mut findings.notes), &shader.files);
         if denied.is_empty() {
             Ok(findings)
@@ -388,8 +391,8 @@ impl<'a> Checker<'a> {
     ) -> Result<Option<BoundFrame>, Failure> {
         let renderers = Renderers {
             driver: context.worker.as_mut().map(|worker| worker as &mut Driver),
-            float: self.args.driver.float(),
-            timeout: self.args.driver.timeout(),
+            float: self.options.driver.float(),
+            timeout: self.options.driver.timeout(),
             pool: context.pool.as_ref(),
         };
         let rendering = rendering(passes, PassKind::Image)?;
@@ -437,8 +440,8 @@ impl<'a> Checker<'a> {
             expected: Some(&cached.expected),
             frame: &frame,
             from_start: None,
-            float: self.args.driver.float(),
-            timeout: self.args.driver.timeout(),
+            float: self.options.driver.float(),
+            timeout: self.options.driver.timeout(),
             pool: context.pool.as_ref(),
         };
         let options = Options {
@@ -457,7 +460,7 @@ impl<'a> Checker<'a> {
         let mut outcome = Outcome::known(record.clone());
         outcome.record.set_search(search, &shader.files);
         outcome.record.help = self.help(&outcome);
-        if let (Some(out), Some(stem)) = (&self.args.out, &submission.output_stem) {
+        if let (Some(out), Some(stem)) = (&self.options.out, &submission.output_stem) {
             keep(out, stem, &[FIXED], Some(&findings), &mut outcome);
         }
         Some(outcome)
@@ -466,8 +469,8 @@ impl<'a> Checker<'a> {
     fn load(&self, submission: &Submission) -> Shader {
         Shader::load(
             &submission.input,
-            &self.args.language,
-            Deadline::after(self.args.driver.timeout()),
+            &self.options.language,
+            Deadline::after(self.options.driver.timeout()),
         )
     }
 
@@ -480,8 +483,8 @@ impl<'a> Checker<'a> {
     fn search_options<'s>(&self, shader: &'s Shader, checked: &Checked) -> SearchOptions<'s> {
         SearchOptions {
             source: shader.text(checked),
-            lenient: self.args.language.is_lenient(),
-            budget: self.args.search,
+            lenient: self.options.language.is_lenient(),
+            budget: self.options.search,
             donors: None,
         }
     }

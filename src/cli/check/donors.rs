@@ -10,9 +10,9 @@ use toyproof_explain::repair::Donors;
 use toyproof_report::{self as report, Record};
 use toyproof_verify::Verdict;
 
-use super::args::CheckFormat;
 use super::batch::Batch;
 use super::checker::{Checker, WorkerContext};
+use super::options::CheckFormat;
 use super::outcome::Outcome;
 use super::submission::Submission;
 use crate::cli::pool;
@@ -131,11 +131,11 @@ impl Batch<'_> {
             plural(count, "shader is repaired by", "shaders are repaired by")
         ));
         for (place, mut outcome) in found {
-            outcome.record.redact(self.args.teachers_hints());
+            outcome.record.redact(self.options.teachers_hints);
             for message in &outcome.messages {
                 message.print(self.terminal);
             }
-            if self.args.format == CheckFormat::Human {
+            if self.options.format == CheckFormat::Human {
                 self.terminal
                     .result(&report::lines(&outcome.record, &self.layout));
             }

@@ -54,10 +54,11 @@ pub(in crate::cli) fn merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exi
     let folders = read_folders(args, &program)?;
     let (_, first) = &folders[0];
     let mut check = parse(&first.arguments, &args.out)?;
-    check.compare.clone_from(&args.compare);
+    check.shard = None;
     check.jobs = args.jobs;
-    let earlier = earlier(check.compare.as_deref())?;
-    let work = Work::new(&check, Some(&program), terminal)?;
+    let options = check.options();
+    let earlier = earlier(args.compare.as_deref())?;
+    let work = Work::new(&options, Some(&program), terminal)?;
     if sharding::inputs(&work.submissions) != first.inputs {
         let error = CliError::new(
             "the shaders, their reference or a file that an option names changed after the shards were checked",
@@ -88,7 +89,7 @@ pub(in crate::cli) fn merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exi
         grouped(shards.into()),
         plural(shards.into(), "shard is", "shards are")
     ));
-    Ok(work.check(&check, Some(results), earlier, terminal))
+    Ok(work.check(&options, Some(results), earlier, terminal))
 }
 
 /// Reads the manifests of the shards, which must belong to one batch and to this program.
@@ -135,8 +136,8 @@ fn is_same_folder(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Parses the arguments of the command that checked the shards as those of a check of all shaders, which writes
-/// into another folder.
+/// Parses the arguments of the command that checked the shards as those of a check that writes into another
+/// folder.
 fn parse(arguments: &[String], out: &Path) -> Result<Args, CliError> {
     const NAME: &str = "check";
     let at = arguments.iter().position(|argument| argument == NAME);
@@ -147,7 +148,7 @@ fn parse(arguments: &[String], out: &Path) -> Result<Args, CliError> {
         .chain(["--shard".into(), "1/1".into(), "--out".into(), out.into()])
         .chain(after.iter().map(OsString::from));
     match Cli::try_parse_from(all).map(|cli| cli.command) {
-        Ok(Command::Check(check)) => Ok(Args { shard: None, ..check }),
+        Ok(Command::Check(check)) => Ok(check),
         _ => Err(format!("the arguments in {MANIFEST_NAME} are not those of `toyproof {NAME}`").into()),
     }
 }

@@ -7,6 +7,7 @@ mod donors;
 mod earlier;
 mod images;
 mod merge;
+mod options;
 mod outcome;
 mod plan;
 mod reference;
@@ -30,20 +31,22 @@ use super::{CliError, Exit, Terminal};
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     // A worker is created and dropped here, so that wrong arguments are reported before any work starts.
-    args.driver.worker()?;
+    let options = args.options();
+    options.check.driver.worker()?;
     let earlier = earlier(args.compare.as_deref())?;
-    let build = match (&args.out, args.shard) {
+    let build = match (&options.batch.out, options.batch.shard) {
         (None, _) => None,
         (Some(_), None) => submission::build(),
         (Some(_), Some(_)) => Some(sharding::program()?),
     };
-    let mut work = Work::new(args, build.as_deref(), terminal)?;
+    let mut work = Work::new(&options, build.as_deref(), terminal)?;
     let mut results = None;
-    if let Some(out) = &args.out {
-        if let (Some(shard), Some(program)) = (args.shard, build) {
-            work.select(args, shard, program, out)?;
+    if let Some(out) = &options.batch.out {
+        if let (Some(shard), Some(program)) = (options.batch.shard, build) {
+            work.select(&options.task.shaders, shard, program, out)?;
         }
-        let opened = Results::open(out, args.resume).map_err(|error| format!("cannot write {error}"))?;
+        let opened =
+            Results::open(out, options.batch.resume).map_err(|error| format!("cannot write {error}"))?;
         if let broken @ 1.. = opened.broken as u64 {
             terminal.warn(format_args!(
                 "{} {} of results.jsonl cannot be read; {} checked again",
@@ -54,5 +57,5 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         }
         results = Some(opened);
     }
-    Ok(work.check(args, results, earlier, terminal))
+    Ok(work.check(&options, results, earlier, terminal))
 }

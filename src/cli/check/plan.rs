@@ -9,40 +9,10 @@ use toyproof_project::files::Skipped;
 use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
-use super::args::Args;
-use crate::cli::collect::ClassPart;
+use super::options::{PlanOptions, TaskInputs};
 use crate::cli::reference::ReferenceArgs;
 use crate::cli::shader::parse_named;
 use crate::cli::{CliError, Terminal};
-
-/// The shaders of one assignment, and the requirements on them; without a class, all shaders.
-pub(super) struct TaskInputs {
-    /// The name of the assignment in a class.
-    pub(super) name: Option<String>,
-    pub(super) shaders: Vec<PathBuf>,
-    pub(super) assignment: Option<PathBuf>,
-    pub(super) rubric: Option<PathBuf>,
-}
-
-impl TaskInputs {
-    pub(super) fn of_arguments(args: &Args) -> Self {
-        Self {
-            name: None,
-            shaders: args.shaders.clone(),
-            assignment: args.assignment.clone(),
-            rubric: args.rubric.clone(),
-        }
-    }
-
-    pub(super) fn of_class(part: ClassPart) -> Self {
-        Self {
-            name: Some(part.name),
-            shaders: vec![part.folder],
-            assignment: Some(part.assignment),
-            rubric: part.rubric,
-        }
-    }
-}
 
 /// The requirements on shaders.
 pub(super) struct Plan {
@@ -66,28 +36,32 @@ pub(super) struct PlannedFrame {
 }
 
 impl Plan {
-    /// Reads the plan that the arguments name, or the assignment of these shaders or in the folder of all of
+    /// Reads the plan that the options name, or the assignment of these shaders or in the folder of all of
     /// them.
-    pub(super) fn new(args: &Args, part: &TaskInputs, terminal: &Terminal) -> Result<Self, CliError> {
+    pub(super) fn new(
+        options: &PlanOptions,
+        part: &TaskInputs,
+        terminal: &Terminal,
+    ) -> Result<Self, CliError> {
         let rubric = part.rubric.as_ref().map(|path| parse_named(path, Rubric::parse));
         let rubric = rubric.transpose()?;
         let found = match &part.assignment {
             Some(path) => Some(named(path)?),
-            None if args.reference.is_given() => None,
+            None if options.reference.is_given() => None,
             None => beside(&part.shaders)?,
         };
         let mut plan = Self {
-            reference: args.reference.clone(),
+            reference: options.reference.clone(),
             frames: Vec::new(),
-            permitted: args.permit.clone(),
+            permitted: options.permitted.clone(),
             rubric,
             assignment: None,
         };
-        let mut frames = vec![args.frame.inputs()];
+        let mut frames = vec![options.frame.clone()];
         if let Some(path) = found {
             let (assignment, text) = read(&path)?;
             terminal.detail(&format!("assignment: {}", path_name(&path)));
-            if !args.frame.is_given() {
+            if !options.is_frame_given {
                 frames.clone_from(&assignment.frames);
             }
             plan.reference = match &assignment.reference {

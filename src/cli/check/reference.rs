@@ -14,7 +14,7 @@ use toyproof_report::Record;
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
-use super::args::Args;
+use super::options::CheckOptions;
 use super::plan::{Plan, PlannedFrame};
 use crate::cli::reference::GivenReference;
 use crate::cli::scenes::{builtin_scenes, read_scene, with_builtin_hint};
@@ -87,9 +87,13 @@ pub(super) enum References {
 
 impl References {
     /// Reads what shaders are compared with. The frames get the size of a reference image.
-    pub(super) fn new(args: &Args, plan: &mut Plan, terminal: &Terminal) -> Result<Self, CliError> {
-        let timeout = args.driver.timeout();
-        let Some(given) = GivenReference::read(&plan.reference, &args.language, timeout)? else {
+    pub(super) fn new(
+        options: &CheckOptions,
+        plan: &mut Plan,
+        terminal: &Terminal,
+    ) -> Result<Self, CliError> {
+        let timeout = options.driver.timeout();
+        let Some(given) = GivenReference::read(&plan.reference, &options.language, timeout)? else {
             let scenes = Scenes::new(plan.reference.scene.as_deref());
             scenes.check()?;
             return Ok(Self::Scenes(scenes));

@@ -8,7 +8,7 @@ use toyproof_image::{FrameInputs, input};
 use toyproof_project::files::{self, Input, ReadError};
 use toyproof_report::Submitted;
 
-use super::args::Args;
+use super::options::CheckOptions;
 use super::plan::Plan;
 use super::reference::References;
 use crate::cli::names::Names;
@@ -43,7 +43,7 @@ impl Submission {
     /// With the `build` that checks it, the submission has a key.
     pub(super) fn new(
         input: Result<Input, ReadError>,
-        args: &Args,
+        options: &CheckOptions,
         plan: &Plan,
         references: &References,
         names: &mut Names,
@@ -52,9 +52,9 @@ impl Submission {
         let found = input.as_ref().ok();
         let identity = found
             .zip(build)
-            .and_then(|(found, build)| identity(found, args, plan, references, build));
+            .and_then(|(found, build)| identity(found, options, plan, references, build));
         let (key, bytes) = identity.map_or((None, 0), |(key, bytes)| (Some(key), bytes));
-        let output_stem = match (&args.out, found) {
+        let output_stem = match (&options.out, found) {
             (Some(out), Some(found)) => Some(out.join(names.assign(found))),
             _ => None,
         };
@@ -84,7 +84,7 @@ pub(super) fn build() -> Option<String> {
 /// in bytes.
 fn identity(
     found: &Input,
-    args: &Args,
+    options: &CheckOptions,
     plan: &Plan,
     references: &References,
     build: &str,
@@ -98,9 +98,9 @@ fn identity(
     let inputs: Vec<_> = plan.frames.iter().map(|planned| &planned.inputs).collect();
     let settings = (
         &inputs,
-        &args.language,
-        &args.driver,
-        args.search,
+        &options.language,
+        &options.driver,
+        options.search,
         &plan.permitted,
     );
     add(build.as_bytes());

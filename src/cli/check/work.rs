@@ -1,23 +1,23 @@
 //! All work of one command: the submissions, and their requirements.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toyproof_classroom::collect::roster::Owners;
 use toyproof_report::{Earlier, Rubrics};
 
-use super::args::Args;
 use super::batch::Batch;
 use super::checker::Checker;
 use super::earlier::earlier;
 use super::images::IMAGES;
-use super::plan::{Plan, TaskInputs};
+use super::options::{Options, TaskInputs};
+use super::plan::Plan;
 use super::reference::References;
 use super::reports::REPORT_NAMES;
 use super::results::{RESULTS_NAME, Results};
 use super::shard::Shard;
 use super::sharding::{self, Manifest};
 use super::submission::Submission;
-use crate::cli::collect::class_parts;
+use crate::cli::collect::{ClassPart, class_parts};
 use crate::cli::names::Names;
 use crate::cli::shader::find_submissions;
 use crate::cli::{CliError, Exit, Terminal};
@@ -30,6 +30,17 @@ pub(super) struct Work {
     pub(super) submissions: Vec<Submission>,
 }
 
+impl From<ClassPart> for TaskInputs {
+    fn from(part: ClassPart) -> Self {
+        Self {
+            name: Some(part.name),
+            shaders: vec![part.folder],
+            assignment: Some(part.assignment),
+            rubric: part.rubric,
+        }
+    }
+}
+
 /// The plan of some of the shaders, and their references.
 struct Task {
     plan: Plan,
@@ -40,19 +51,19 @@ struct Task {
 const SUBMISSIONS: &str = "submissions";
 
 impl Work {
-    /// Reads the tasks that the arguments name. With the `build` that checks them, submissions have keys.
-    pub(super) fn new(args: &Args, build: Option<&str>, terminal: &Terminal) -> Result<Self, CliError> {
-        let costs = earlier(args.costs.as_deref())?;
-        let collected = args.out.as_ref().map(|out| out.join(SUBMISSIONS));
-        let parts = match &args.class {
+    /// Reads the tasks that the options name. With the `build` that checks them, submissions have keys.
+    pub(super) fn new(options: &Options, build: Option<&str>, terminal: &Terminal) -> Result<Self, CliError> {
+        let costs = earlier(options.costs.as_deref())?;
+        let collected = options.batch.out.as_ref().map(|out| out.join(SUBMISSIONS));
+        let parts;
+        let parts = match &options.class {
             Some(class) => {
-                let to = collected.as_deref().filter(|_| args.shard.is_none());
-                class_parts(&args.shaders, class, to, terminal)?
-                    .into_iter()
-                    .map(TaskInputs::of_class)
-                    .collect()
+                let to = collected.as_deref().filter(|_| options.batch.shard.is_none());
+                let of_class = class_parts(&options.task.shaders, class, to, terminal)?;
+                parts = of_class.into_iter().map(TaskInputs::from).collect::<Vec<_>>();
+                &parts[..]
             }
-            None => vec![TaskInputs::of_arguments(args)],
+            None => std::slice::from_ref(&options.task),
         };
         let reserved: Vec<&str> = REPORT_NAMES
             .into_iter()
@@ -65,8 +76,8 @@ impl Work {
             submissions: Vec::new(),
         };
         for part in parts {
-            let mut plan = Plan::new(args, &part, terminal)?;
-            let references = References::new(args, &mut plan, terminal)?;
+            let mut plan = Plan::new(&options.plan, part, terminal)?;
+            let references = References::new(&options.check, &mut plan, terminal)?;
             let mut inputs = find_submissions(&part.shaders, terminal);
             let owners = Owners::read(&part.shaders, &mut inputs, |error| terminal.warn(error));
             match (&part.name, plan.rubric.take()) {
@@ -79,7 +90,8 @@ impl Work {
                     input.relative = Path::new(name).join(&input.relative);
                 }
                 let submitted = owners.of(&input).cloned();
-                let submission = Submission::new(input, args, &plan, &references, &mut names, build);
+                let submission =
+                    Submission::new(input, &options.check, &plan, &references, &mut names, build);
                 work.submissions.push(Submission {
                     task: work.tasks.len(),
                     submitted,
@@ -95,12 +107,12 @@ impl Work {
     /// Keeps the submissions of a shard, and describes it in its folder.
     pub(super) fn select(
         &mut self,
-        args: &Args,
+        shaders: &[PathBuf],
         shard: Shard,
         program: String,
         out: &Path,
     ) -> Result<(), CliError> {
-        if args.shaders.iter().any(|shader| shader == Path::new("-")) {
+        if shaders.iter().any(|shader| shader == Path::new("-")) {
             return Err("--shard cannot be used with standard input, which only one shard could read".into());
         }
         let manifest = Manifest {
@@ -117,17 +129,17 @@ impl Work {
     /// Checks all submissions, and writes the reports.
     pub(super) fn check(
         mut self,
-        args: &Args,
+        options: &Options,
         results: Option<Results>,
         earlier: Option<Earlier>,
         terminal: &Terminal,
     ) -> Exit {
         let submissions = &self.submissions;
         let rubrics = std::mem::take(&mut self.rubrics);
-        let mut batch = Batch::new(args, rubrics, results, earlier, submissions, terminal);
+        let mut batch = Batch::new(&options.batch, rubrics, results, earlier, submissions, terminal);
         let tasks = self.tasks.iter();
-        let checkers = tasks.map(|task| Checker::new(args, &task.plan, &task.references));
-        batch.check(submissions, &checkers.collect::<Vec<_>>());
+        let checkers = tasks.map(|task| Checker::new(&options.check, &task.plan, &task.references));
+        batch.check(submissions, &checkers.collect::<Vec<_>>(), &options.check.driver);
         batch.finish(submissions)
     }
 }
