@@ -9,7 +9,7 @@ use toyproof_verify::compare::CheckResult;
 use toyproof_verify::contain::{Panic, Part, contain};
 use toyproof_verify::random::Reseeding;
 use toyproof_verify::{
-    CheckEvidence, Checks, Examined, MAX_UNSTABLE, Reason, Ruling, Share, Verdict, Verified, cause, unbound,
+    CheckEvidence, Checks, MAX_UNSTABLE, Reason, Ruling, Share, Subject, Verdict, Verified, cause, unbound,
     within,
 };
 
@@ -28,10 +28,10 @@ const NOISY_SIDE: u32 = 24;
 /// (`correct`), or no mistake explains it and the means or the rays of the shader do.
 #[must_use]
 pub fn explain(verified: &Verified, options: &Options) -> Explanation {
-    let Some(examined) = verified.examined() else {
+    let Some(subject) = verified.subject() else {
         return Explanation::of(verified.evidence().into());
     };
-    within(examined.case.pool, || Search::new(examined, options).run())
+    within(subject.case.pool, || Search::new(subject, options).run())
 }
 
 impl Explanation {
@@ -53,7 +53,7 @@ impl Explanation {
 
 /// A search for explanations.
 struct Search<'a> {
-    examined: Examined<'a>,
+    subject: Subject<'a>,
     options: &'a Options<'a>,
     /// Only a hang exceeds it.
     deadline: Instant,
@@ -70,9 +70,9 @@ struct Settled {
 }
 
 impl<'a> Search<'a> {
-    fn new(examined: Examined<'a>, options: &'a Options<'a>) -> Self {
+    fn new(subject: Subject<'a>, options: &'a Options<'a>) -> Self {
         Self {
-            examined,
+            subject,
             options,
             deadline: explanation_deadline(options.search.map_or(0.0, |search| search.budget)),
             panics: Vec::new(),
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
     }
 
     fn run(mut self) -> Explanation {
-        let evidence = self.examined.evidence();
+        let evidence = self.subject.evidence();
         if let Some(permitted) = self.permitted(&evidence) {
             return permitted;
         }
@@ -97,7 +97,7 @@ impl<'a> Search<'a> {
             self.of_few_pixels(&ruling)
         };
         let search = self.repairs(&ruling, reseeding);
-        let case = self.examined.case;
+        let case = self.subject.case;
         let cause = self.loss_of_precision(&ruling);
         let span = cause.as_ref().and_then(|cause| cause.span);
         let mut warnings = case.lints.warnings.iter();
@@ -152,7 +152,7 @@ impl<'a> Search<'a> {
 
     /// Searches for a mistake, and decides what no mistake explains.
     fn settle(&mut self, evidence: CheckEvidence) -> Settled {
-        let may_be_stochastic = self.examined.may_be_stochastic();
+        let may_be_stochastic = self.subject.may_be_stochastic();
         let ruling = Ruling::from(evidence.clone());
         // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
         // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
@@ -173,7 +173,7 @@ impl<'a> Search<'a> {
         };
         let mut evidence = evidence;
         if settled.is_unexplained()
-            && let Some(means) = self.examined.compare_means(&evidence, self.deadline)
+            && let Some(means) = self.subject.compare_means(&evidence, self.deadline)
         {
             evidence = means.evidence;
             settled.ruling = evidence.clone().into();
@@ -182,7 +182,7 @@ impl<'a> Search<'a> {
             settled.compares_means = true;
         }
         if settled.is_unexplained() {
-            evidence.self_intersection = self.examined.self_intersection();
+            evidence.self_intersection = self.subject.self_intersection();
             settled.ruling = evidence.into();
             if matches!(settled.ruling.reason, Reason::SelfIntersection(_)) {
                 settled.mistake = Some(Diagnosis::of(known::self_intersection()));
@@ -197,7 +197,7 @@ impl<'a> Search<'a> {
     /// Searches for the mistake that explains a wrong image, or for two.
     fn of_scene(&mut self, ruling: &Ruling, stage: Stage) -> Option<Diagnosis> {
         let hypotheses = self.options.hypotheses?;
-        let Examined { program, case, .. } = self.examined;
+        let Subject { program, case, .. } = self.subject;
         if ruling.verdict != Verdict::Wrong {
             return None;
         }
@@ -232,12 +232,12 @@ impl<'a> Search<'a> {
         checks: &Checks,
         find: impl FnOnce(&WrongShader) -> Option<T>,
     ) -> Option<T> {
-        let Examined {
+        let Subject {
             case,
             program,
             results,
             ..
-        } = self.examined;
+        } = self.subject;
         let algorithm = results.algorithm.as_ref()?;
         self.contained(Part::Mistake, || {
             find(&WrongShader::new(case, program, algorithm, checks)?)
@@ -247,12 +247,12 @@ impl<'a> Search<'a> {
     /// Searches for the mistake of a shader whose means differ.
     fn of_noisy_pixels(&mut self, ruling: &Ruling, reseeding: Option<Reseeding>) -> Option<Diagnosis> {
         let (hypotheses, reseeding) = (self.options.hypotheses?, reseeding?);
-        let (examined, deadline) = (self.examined, self.deadline);
+        let (subject, deadline) = (self.subject, self.deadline);
         if ruling.verdict != Verdict::Wrong {
             return None;
         }
         self.contained(Part::Mistake, || {
-            let pixels = examined.noisy_pixels(reseeding, hypotheses.places(), deadline)?;
+            let pixels = subject.noisy_pixels(reseeding, hypotheses.places(), deadline)?;
             hypotheses.recognize_noisy(&pixels)
         })
     }
@@ -260,47 +260,47 @@ impl<'a> Search<'a> {
     /// Searches for edits that repair a wrong image, and for the lines that it depends on. `reseeding` is
     /// there if the shader's means were compared.
     fn repairs(&mut self, ruling: &Ruling, reseeding: Option<Reseeding>) -> Option<SearchResult> {
-        let (examined, deadline) = (self.examined, self.deadline);
-        let algorithm = examined.results.algorithm.as_ref()?;
+        let (subject, deadline) = (self.subject, self.deadline);
+        let algorithm = subject.results.algorithm.as_ref()?;
         let options = self.options.search?;
         if ruling.verdict != Verdict::Wrong {
             return None;
         }
         let image = || {
             // A shader that differs in other pixels, too, may have random numbers of its own.
-            let reseeding = reseeding.or_else(|| examined.reseeding(deadline))?;
-            let places = Places::spread(examined.case.frame.size, [NOISY_SIDE; 2]);
-            let pixels = examined.noisy_pixels(reseeding, &places, deadline)?;
+            let reseeding = reseeding.or_else(|| subject.reseeding(deadline))?;
+            let places = Places::spread(subject.case.frame.size, [NOISY_SIDE; 2]);
+            let pixels = subject.noisy_pixels(reseeding, &places, deadline)?;
             Some(NoisyImage { pixels, places })
         };
         let before = Before {
             check: algorithm,
-            faults: &examined.results.faults,
+            faults: &subject.results.faults,
             compares_means: ruling.reason.compares_means(),
         };
         self.contained(Part::Repair, || {
-            repair::search(examined.case, options, before, &image, deadline)
+            repair::search(subject.case, options, before, &image, deadline)
         })
     }
 
     /// Searches for the mistake that explains the few differing pixels of a correct image.
     fn of_few_pixels(&mut self, ruling: &Ruling) -> Option<Diagnosis> {
         let hypotheses = self.options.hypotheses?;
-        let examined = self.examined;
-        let algorithm = examined.results.algorithm.as_ref()?;
+        let subject = self.subject;
+        let algorithm = subject.results.algorithm.as_ref()?;
         if ruling.verdict != Verdict::Correct || algorithm.summary.differing == 0 {
             return None;
         }
-        let differing = algorithm.sample_pixels(examined.case.frame.size, usize::MAX);
+        let differing = algorithm.sample_pixels(subject.case.frame.size, usize::MAX);
         self.contained(Part::Mistake, || {
-            hypotheses.explaining(examined.program, &differing)
+            hypotheses.explaining(subject.program, &differing)
         })
     }
 
     /// Searches for the line in which float32 loses precision, where it is not enough.
     fn loss_of_precision(&mut self, ruling: &Ruling) -> Option<Diagnostic> {
-        let (examined, deadline) = (self.examined, self.deadline);
-        let results = examined.results;
+        let (subject, deadline) = (self.subject, self.deadline);
+        let results = subject.results;
         let differs_often = |check: &CheckResult| Share::differing(&check.summary).ratio() > MAX_UNSTABLE;
         let loses_precision = match &ruling.reason {
             // The reference loses it at the same place.
@@ -315,7 +315,7 @@ impl<'a> Search<'a> {
         }
         self.contained(Part::Cause, || {
             let mut checks = [&results.precision, &results.algorithm].into_iter().flatten();
-            checks.find_map(|check| cause(examined.program, examined.case.frame, deadline, check))
+            checks.find_map(|check| cause(subject.program, subject.case.frame, deadline, check))
         })
     }
 

@@ -119,7 +119,7 @@ pub use self::pool::{join, within};
 use self::random::stochastic::Stochastic;
 pub use self::session::BandReference;
 use self::session::VerifySession;
-pub use self::verified::{CheckResults, Examined, MeansEvidence, Ruling, Verified};
+pub use self::verified::{CheckResults, MeansEvidence, Ruling, Subject, Verified};
 
 /// Runs the three checks. Without a `driver`, or where it renders no image of a shader that has a reference, the
 /// evaluator renders the image, and there is no toolchain check.

@@ -95,9 +95,9 @@ impl Ruling {
     }
 }
 
-/// A shader that was evaluated in double precision, so that a difference can be examined further.
+/// A shader that was evaluated in double precision, so that the cause of a difference can be searched for.
 #[derive(Debug, Clone, Copy)]
-pub struct Examined<'a> {
+pub struct Subject<'a> {
     /// The shader and its frame.
     pub case: &'a Case<'a>,
     /// The evaluator's program.
@@ -119,10 +119,10 @@ pub struct MeansEvidence {
 impl<'a> Verified<'a> {
     /// The shader, unless it could not be evaluated in double precision.
     #[must_use]
-    pub fn examined(&'a self) -> Option<Examined<'a>> {
+    pub fn subject(&'a self) -> Option<Subject<'a>> {
         let is_complete = self.failure.is_none() && self.results.precision.is_some();
         let program = self.program.as_ref().filter(|_| is_complete)?;
-        Some(Examined {
+        Some(Subject {
             case: self.case,
             program,
             results: &self.results,
@@ -139,8 +139,8 @@ impl<'a> Verified<'a> {
                 has_reference: self.results.reference.is_some(),
             };
         }
-        let evidence = match self.examined() {
-            Some(examined) => examined.evidence(),
+        let evidence = match self.subject() {
+            Some(subject) => subject.evidence(),
             // Only float32 was evaluated: nothing is known of earlier frames.
             None => CheckEvidence {
                 checks: self.results.checks(),
@@ -154,8 +154,8 @@ impl<'a> Verified<'a> {
     /// has other random numbers than its reference, and of the test for self-intersection.
     #[must_use]
     pub fn ruling(&self) -> Ruling {
-        match self.examined() {
-            Some(examined) => examined.settled(explanation_deadline(0.0)).into(),
+        match self.subject() {
+            Some(subject) => subject.settled(explanation_deadline(0.0)).into(),
             None => self.evidence().into(),
         }
     }
@@ -174,7 +174,7 @@ impl CheckResults {
     }
 }
 
-impl Examined<'_> {
+impl Subject<'_> {
     /// The evidence of the three checks.
     #[must_use]
     pub fn evidence(&self) -> CheckEvidence {
