@@ -137,7 +137,7 @@ fn undeclared(source: &Source, errors: &Diagnostics) -> Vec<usize> {
     ];
     let reported = errors
         .iter()
-        .filter(|error| codes.iter().any(|code| error.code == *code));
+        .filter(|error| codes.contains(&error.code));
     let indices = reported.flat_map(|error| {
         // In a macro, the related span has the name.
         let related = error.related.iter().map(|(span, _)| *span);
