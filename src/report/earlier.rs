@@ -126,7 +126,7 @@ mod tests {
     fn report(shaders: &[(&str, Verdict)]) -> Report {
         let record = |&(name, verdict): &(&str, Verdict)| Record {
             verdict,
-            ..Record::new(name.to_owned())
+            ..Record::unchecked(name.to_owned())
         };
         Report::new(None, shaders.iter().map(record).collect::<Records>())
     }
@@ -161,7 +161,7 @@ mod tests {
                 all,
                 ..Seconds::default()
             },
-            ..Record::new(name.to_owned())
+            ..Record::unchecked(name.to_owned())
         };
         let report = Report::new(None, vec![record("a", Some(3.5)), record("b", None)]);
         let earlier = Earlier::parse(String::new(), &written(|out| report.json(out))).unwrap();

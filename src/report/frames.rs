@@ -352,7 +352,7 @@ mod tests {
             ],
             ..FrameInputs::default()
         };
-        let record = Record::new(String::new());
+        let record = Record::unchecked(String::new());
         let label = FrameRecord::new(&inputs, [8, 4], &record).label();
         let expected =
             "8x4, frame 3, mouse (1, 2.5), date (2026, 0, 1, 0.5), channel 1 noise, channel 2 a/b.png";

@@ -14,8 +14,9 @@ pub enum Hints {
 }
 
 impl Record {
-    /// Removes the parts that the author must not see, so that no format shows them.
-    pub fn redact(&mut self, hints: Hints) {
+    /// Returns the record without the parts that the author must not see, so that no format shows them.
+    #[must_use]
+    pub fn redacted(mut self, hints: Hints) -> Self {
         if hints < Hints::Fix
             && let Some(fix) = &mut self.fix
         {
@@ -33,6 +34,7 @@ impl Record {
                 self.help = None;
             }
         }
+        self
     }
 }
 
@@ -43,10 +45,9 @@ mod tests {
     use crate::{Report, Rubric, Thumbnails, csv, gradescope, junit, sarif, written};
 
     /// Every text format of a record with these hints.
-    fn formats(mut record: Record, hints: Hints) -> Vec<String> {
-        record.redact(hints);
+    fn formats(record: Record, hints: Hints) -> Vec<String> {
         let rubric = Rubric::of(1.0, 8.0, 1.0);
-        let report = Report::new(None, vec![record]);
+        let report = Report::new(None, vec![record.redacted(hints)]);
         let records = report.shaders();
         vec![
             written(|out| csv(records, &Some(rubric.clone()).into(), out)),
@@ -84,8 +85,7 @@ mod tests {
 
     #[test]
     fn with_all_hints_nothing_is_removed() {
-        let mut record = repaired();
-        record.redact(Hints::Fix);
+        let record = repaired().redacted(Hints::Fix);
         assert_eq!(record.fix, repaired().fix);
         let gradescope = &formats(repaired(), Hints::Fix)[3];
         assert!(

@@ -10,10 +10,12 @@ use toyproof_eval as eval;
 use toyproof_explain::Findings;
 use toyproof_explain::known::{Diagnosis, KnownMistake};
 use toyproof_explain::repair::SearchResult;
+use toyproof_explain::unused::Unused;
 use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Verdict, decide};
 
 use super::reason::{Statement, state, state_reason};
+use super::unused::sentences;
 use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRecord, Submitted, Suspect};
 
 /// The JSON Schema of a [`Report`].
@@ -158,10 +160,56 @@ pub struct Record {
     pub seconds: Seconds,
 }
 
+/// The result of the checks of a shader in one frame, of which a record is made.
+#[derive(Debug)]
+pub struct FrameResult<'a> {
+    /// The name of the shader, as the user gave it.
+    pub shader: &'a str,
+    /// The name of the scene, if it was compared with one.
+    pub scene: Option<&'a str>,
+    /// The file name of the shader or image that it was compared with instead.
+    pub reference: Option<&'a str>,
+    /// The findings, or why there is no image.
+    pub findings: Result<&'a Findings, &'a Failure>,
+    /// The files of the positions in the findings.
+    pub files: &'a Files,
+    /// The diagnostics on the shader and its scene.
+    pub diagnostics: Vec<diagnostic::Json>,
+    /// How far float32 is from double precision after several frames.
+    pub growth: Option<GrowthRecord>,
+    /// A sentence about the media that the shader reads and that are not available.
+    pub missing_media: Option<String>,
+    /// What only a reference shader uses, and its files.
+    pub unused: Option<(Unused, &'a Files)>,
+}
+
 impl Record {
-    /// Creates the record of a shader that was not checked yet.
+    /// Creates the record of a shader in one frame.
     #[must_use]
-    pub fn new(shader: String) -> Self {
+    pub fn new(result: FrameResult) -> Self {
+        let mut record = Self {
+            scene: result.scene.map(str::to_owned),
+            reference: result.reference.map(str::to_owned),
+            diagnostics: result.diagnostics,
+            growth: result.growth,
+            ..Self::unchecked(result.shader.to_owned())
+        };
+        match result.findings {
+            Ok(findings) => record.set_findings(findings, result.files),
+            Err(failure) => record.set_failure(failure, result.files),
+        }
+        if let Some(missing) = result.missing_media {
+            record.set_missing_media(missing);
+        }
+        if let Some((unused, files)) = &result.unused {
+            record.set_unused(unused, files);
+        }
+        record
+    }
+
+    /// Creates the record of a shader that was not checked.
+    #[must_use]
+    pub fn unchecked(shader: String) -> Self {
         Self {
             shader,
             scene: None,
@@ -192,7 +240,7 @@ impl Record {
     }
 
     /// Adds the findings, apart from their notes.
-    pub fn set_findings(&mut self, findings: &Findings, files: &Files) {
+    fn set_findings(&mut self, findings: &Findings, files: &Files) {
         let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
@@ -224,16 +272,30 @@ impl Record {
 
     /// States that media are missing, if the shader is compared with nothing: a successful rendering then
     /// means little.
-    pub fn set_missing_media(&mut self, missing: String) {
+    fn set_missing_media(&mut self, missing: String) {
         if self.verdict == Verdict::Ok {
             self.verdict = Verdict::Inconclusive;
             self.reason = missing;
         }
     }
 
+    /// Adds what only the reference uses, if the shader is wrong. `files` are those of the reference.
+    pub(super) fn set_unused(&mut self, unused: &Unused, files: &Files) {
+        if self.verdict == Verdict::Wrong {
+            self.unused = sentences(unused, files);
+        }
+    }
+
+    /// Returns the record with the results of a search for a fix.
+    #[must_use]
+    pub fn with_search(mut self, search: &SearchResult, files: &Files) -> Self {
+        self.set_search(search, files);
+        self
+    }
+
     /// Adds the results of the search for a fix. The fix names the mistake, unless a known one alone explains
     /// the image.
-    pub fn set_search(&mut self, search: &SearchResult, files: &Files) {
+    fn set_search(&mut self, search: &SearchResult, files: &Files) {
         self.fix = Repair::first_of(&search.repairs, files);
         let suspects = search.suspects.iter();
         self.suspects = suspects.map(|suspect| Suspect::new(suspect, files)).collect();
@@ -245,14 +307,20 @@ impl Record {
         }
     }
 
-    /// States that no fix was searched for, because the image depends on other passes.
-    pub fn set_unsearched(&mut self) {
+    /// Returns the record with the statement that no fix was searched for, because the image depends on other
+    /// passes.
+    #[must_use]
+    pub fn with_unsearched(mut self) -> Self {
         self.details.push(UNSEARCHED.to_owned());
+        self
     }
 
     /// Records why there is no image, apart from the diagnostics.
-    pub fn set_failure(&mut self, failure: Failure, files: &Files) {
-        let (verdict, because) = decide(Evidence::NoImage(failure));
+    fn set_failure(&mut self, failure: &Failure, files: &Files) {
+        if matches!(failure, Failure::Gpu(failure) if failure.is_without_driver()) {
+            self.help = Some("toyproof doctor".to_owned());
+        }
+        let (verdict, because) = decide(Evidence::NoImage(failure.clone()));
         self.verdict = verdict;
         if let Reason::NoImage(Failure::Cpu(
             eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at },
@@ -422,7 +490,7 @@ pub(super) mod samples {
                 eval: Some(0.5),
                 ..Seconds::default()
             },
-            ..Record::new(verdict.to_string())
+            ..Record::unchecked(verdict.to_string())
         }
     }
 
@@ -529,9 +597,7 @@ mod tests {
         };
         let mut records = every_verdict();
         records.extend([with_checks, repaired(), suspected()]);
-        let mut hidden = repaired();
-        hidden.redact(Hints::Line);
-        records.push(hidden);
+        records.push(repaired().redacted(Hints::Line));
         records.push(in_frames([Verdict::Correct, Verdict::Wrong]));
         records.push(Record {
             growth: Some(growth::samples::chaotic(5)),
@@ -610,7 +676,7 @@ mod tests {
             is_symptom: false,
             alternatives: Vec::new(),
         });
-        known.set_search(&result, &files);
+        let known = known.with_search(&result, &files);
         assert_eq!(known.mistake.unwrap().id, "no-shadows");
         assert_eq!(known.fix.unwrap().id, "wrong-operator");
     }

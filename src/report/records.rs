@@ -158,11 +158,8 @@ impl Records {
 
     /// Returns all records as students see them.
     pub(super) fn redacted(&self, hints: Hints) -> impl Iterator<Item = io::Result<Record>> + '_ {
-        self.iter().map(move |record| {
-            let mut record = record?.into_owned();
-            record.redact(hints);
-            Ok(record)
-        })
+        self.iter()
+            .map(move |record| Ok(record?.into_owned().redacted(hints)))
     }
 
     fn store(&mut self, record: Record, in_memory: bool) -> Entry {

@@ -302,8 +302,7 @@ pub(super) mod samples {
     fn searched(files: &Files, result: &SearchResult) -> Record {
         let mut record = record(Verdict::Wrong);
         record.algorithm = Some(check_summary([500, 0, 0]));
-        record.set_search(result, files);
-        record
+        record.with_search(result, files)
     }
 }
 

@@ -2,20 +2,9 @@
 
 use toyproof_diagnostic::Files;
 use toyproof_explain::unused::Unused;
-use toyproof_verify::Verdict;
 
-use super::Record;
-
-impl Record {
-    /// Adds what only the reference uses, if the shader is wrong. `files` are those of the reference.
-    pub fn add_unused(&mut self, unused: &Unused, files: &Files) {
-        if self.verdict == Verdict::Wrong {
-            self.unused = sentences(unused, files);
-        }
-    }
-}
-
-fn sentences(unused: &Unused, files: &Files) -> Vec<String> {
+/// Sentences for the details of a wrong shader. `files` are those of the reference.
+pub(super) fn sentences(unused: &Unused, files: &Files) -> Vec<String> {
     let names: Vec<_> = unused.inputs.iter().map(|name| format!("`{name}`")).collect();
     let inputs = match &names[..] {
         [] => None,
@@ -33,10 +22,11 @@ fn sentences(unused: &Unused, files: &Files) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use toyproof_diagnostic::{File, Span};
+    use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::Hints;
     use crate::record::samples::{correct, record};
+    use crate::{Hints, Record};
 
     #[test]
     fn only_a_wrong_shader_gets_the_sentences() {
@@ -48,9 +38,8 @@ mod tests {
         };
         let details = |mut record: Record, hints| {
             record.details.clear();
-            record.add_unused(&unused, &files);
-            record.redact(hints);
-            record.details
+            record.set_unused(&unused, &files);
+            record.redacted(hints).details
         };
         let expected = [
             "the reference reads `iMouse` and `iTime`, the shader does not",

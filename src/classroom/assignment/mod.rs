@@ -29,7 +29,7 @@ mod template;
 use std::path::PathBuf;
 
 use toyproof_image::FrameInputs;
-use toyproof_report::{Record, Rubric};
+use toyproof_report::{FunctionRecord, Rubric, RulesRecord};
 use toyproof_verify::Difference;
 
 pub use self::function::{DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, Subject};
@@ -60,10 +60,11 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// Tests the functions of a shader, and checks its rules; adds the results to its record. `subject` is
-    /// `None` if the shader does not compile.
-    pub fn check_text(&self, subject: Option<&Subject>, record: &mut Record) {
-        record.rules = self.rules.as_ref().map(|rules| match subject {
+    /// Checks the rules of a shader, if there are any, and tests its functions. `subject` is `None` if the
+    /// shader does not compile.
+    #[must_use]
+    pub fn check_text(&self, subject: Option<&Subject>) -> (Option<RulesRecord>, Vec<FunctionRecord>) {
+        let rules = self.rules.as_ref().map(|rules| match subject {
             Some(subject) => rules.check(subject.files, subject.checked, subject.text),
             None => rules.unchecked(),
         });
@@ -71,7 +72,7 @@ impl Assignment {
             Some(subject) => test.run(subject),
             None => test.untested(),
         });
-        record.functions = functions.collect();
+        (rules, functions.collect())
     }
 }
 

@@ -14,7 +14,7 @@ use toyproof_verify::contain::{Part, contain};
 
 use super::checker::{Checker, WorkerContext};
 use super::options::{BatchOptions, CheckFormat};
-use super::outcome::{Message, Outcome};
+use super::outcome::{Log, Message, Outcome};
 use super::reference::unused_scene;
 use super::reports;
 use super::results::{Line, Results};
@@ -194,8 +194,8 @@ impl<'a> Batch<'a> {
     /// Appends a record to `results.jsonl`, unless `--resume` has to check its shader again.
     fn keep(&mut self, submission: &Submission, outcome: &Outcome) {
         if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
-            && !outcome.lacks_image
-            && let Err(error) = results.add(key, &outcome.record, outcome.device.as_deref())
+            && !outcome.log.lacks_image
+            && let Err(error) = results.add(key, &outcome.record, outcome.log.device.as_deref())
         {
             self.terminal.error(format_args!("cannot write {error}"));
             self.failed = true;
@@ -230,43 +230,44 @@ impl<'a> Batch<'a> {
         let results = self.results.as_mut().zip(submission.key.as_deref());
         let (results, key) = results.ok_or(io::ErrorKind::NotFound)?;
         let Line { record, device, .. } = results.known(key)?;
-        let mut known = Outcome::known(record);
-        known.device = device;
-        Ok(known)
+        let log = Log {
+            device,
+            ..Log::default()
+        };
+        Ok(Outcome { record, log })
     }
 
     /// Prints the messages and the result line of a shader.
-    fn report_outcome(&mut self, submissions: &[Submission], index: usize, mut outcome: Outcome) {
-        outcome.record.submitted.clone_from(&submissions[index].submitted);
-        if outcome.record.verdict == Verdict::Wrong && outcome.record.fix.is_none() {
+    fn report_outcome(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
+        let Outcome { record, log } = outcome;
+        if record.verdict == Verdict::Wrong && record.fix.is_none() {
             self.unrepaired.insert(index);
         }
-        outcome.record.redact(self.options.teachers_hints);
-        for message in &outcome.messages {
-            self.print(message, outcome.record.verdict);
+        let submitted = submissions[index].submitted.clone();
+        let record = Record { submitted, ..record }.redacted(self.options.teachers_hints);
+        for message in &log.messages {
+            self.print(message, record.verdict);
         }
         match self.options.format {
-            CheckFormat::Human => {
-                match contain(Part::Summary, || report::lines(&outcome.record, &self.layout)) {
-                    Ok(lines) => self.terminal.result(&lines),
-                    Err(panic) => {
-                        let Record { shader, verdict, .. } = &outcome.record;
-                        self.terminal.result(&format!("{verdict:<12} {shader}"));
-                        self.terminal.error(format_args!("{shader}: {panic}"));
-                        self.failed = true;
-                    }
+            CheckFormat::Human => match contain(Part::Summary, || report::lines(&record, &self.layout)) {
+                Ok(lines) => self.terminal.result(&lines),
+                Err(panic) => {
+                    let Record { shader, verdict, .. } = &record;
+                    self.terminal.result(&format!("{verdict:<12} {shader}"));
+                    self.terminal.error(format_args!("{shader}: {panic}"));
+                    self.failed = true;
                 }
-            }
+            },
             CheckFormat::Short => {
-                for diagnostic in &outcome.record.diagnostics {
+                for diagnostic in &record.diagnostics {
                     self.terminal.result(&diagnostic.to_string());
                 }
             }
             CheckFormat::Json => {}
         }
-        self.failed |= outcome.failed;
-        self.device = outcome.device.or(self.device.take());
-        self.records.push(outcome.record);
+        self.failed |= log.failed;
+        self.device = log.device.or(self.device.take());
+        self.records.push(record);
         self.reported.push(index);
     }
 

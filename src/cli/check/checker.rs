@@ -16,7 +16,7 @@ use toyproof_glsl::tree::SamplerShape;
 use toyproof_gpu::Worker;
 use toyproof_image::{FRAME_RATE, Frame};
 use toyproof_project::{CompiledProject, PassKind};
-use toyproof_report::{self as report, CheckedFrame, GrowthRecord, Record};
+use toyproof_report::{self as report, CheckedFrame, FrameResult, GrowthRecord, Record, Seconds};
 use toyproof_scene::Scene;
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, accumulate, bind, default_frame};
@@ -24,7 +24,7 @@ use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unboun
 
 use super::images::{FIXED, IMAGES, keep};
 use super::options::CheckOptions;
-use super::outcome::{Message, Outcome};
+use super::outcome::{Log, Message, Outcome};
 use super::plan::{Plan, PlannedFrame};
 use super::reference::{CachedReference, Reference, References, SceneCache, other_scenes};
 use super::submission::Submission;
@@ -106,35 +106,49 @@ impl<'a> Checker<'a> {
     pub(super) fn check(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
         let start = Instant::now();
         let checked = contain(Part::Shader, || self.check_shader(context, submission));
-        let mut outcome = checked.unwrap_or_else(|panic| {
+        let Outcome { record, log } = checked.unwrap_or_else(|panic| {
             // The worker was interrupted in an unknown state.
             context.worker = context
                 .worker
                 .take()
                 .and_then(|_| new_worker(&self.options.driver));
-            let mut record = Record::new(submission.name.clone());
-            record.set_failure(panic.into(), &Files::default());
-            Outcome::known(record)
+            let record = Record::new(FrameResult {
+                shader: &submission.name,
+                scene: None,
+                reference: None,
+                findings: Err(&panic.into()),
+                files: &Files::default(),
+                diagnostics: Vec::new(),
+                growth: None,
+                missing_media: None,
+                unused: None,
+            });
+            Outcome {
+                record,
+                log: Log::default(),
+            }
         });
         // Unreadable inputs are not kept for `merge`, which reads them again; its report does not change.
-        if submission.key.is_some() {
-            outcome.record.seconds.all = Some(start.elapsed().as_secs_f64());
+        let all = submission.key.is_some().then(|| start.elapsed().as_secs_f64());
+        let seconds = Seconds {
+            all,
+            ..record.seconds
+        };
+        Outcome {
+            record: Record { seconds, ..record },
+            log,
         }
-        outcome
     }
 
     fn check_shader(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
         let shader = self.load(submission);
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
-        let mut outcome = Outcome::known(Record::new(shader.name.clone()));
-        if let Some(reference) = &reference {
-            reference.record(&mut outcome.record);
-        }
-        outcome.report(shader.lints.warnings.clone(), &shader.files);
-        let findings = self.check_frames(context, &mut outcome, &shader, reference.as_ref());
-        if outcome.record.verdict == Verdict::Wrong && self.options.search > 0.0 && has_history(&shader) {
-            outcome.record.set_unsearched();
+        let mut log = Log::default();
+        log.report(shader.lints.warnings.clone(), &shader.files);
+        let (mut record, findings) = self.check_frames(context, &mut log, &shader, reference.as_ref());
+        if record.verdict == Verdict::Wrong && self.options.search > 0.0 && has_history(&shader) {
+            record = record.with_unsearched();
         }
         if let Some((assignment, _)) = &self.plan.assignment {
             let subject = image(&shader).ok().map(|checked| Subject {
@@ -144,90 +158,103 @@ impl<'a> Checker<'a> {
                 lenient: self.options.language.is_lenient(),
                 timeout: self.options.driver.timeout(),
             });
-            let subject = subject.filter(|_| outcome.record.verdict.is_compiled());
-            let mut check_text = || assignment.check_text(subject.as_ref(), &mut outcome.record);
-            match &context.pool {
+            let subject = subject.filter(|_| record.verdict.is_compiled());
+            let check_text = || assignment.check_text(subject.as_ref());
+            let (rules, functions) = match &context.pool {
                 Some(pool) => pool.install(check_text),
                 None => check_text(),
-            }
+            };
+            record = Record {
+                rules,
+                functions,
+                ..record
+            };
         }
         if let (Some(out), Some(stem)) = (&self.options.out, &submission.output_stem) {
-            keep(out, stem, &IMAGES, findings.as_ref(), &mut outcome);
+            keep(out, stem, &IMAGES, findings.as_ref(), &mut log);
         }
-        if outcome.record.help.is_none() {
-            outcome.record.help = self.help(&outcome);
+        let help = record
+            .help
+            .clone()
+            .or_else(|| self.help(&record, log.is_late_on_gpu));
+        Outcome {
+            record: Record { help, ..record },
+            log,
         }
-        outcome
     }
 
-    /// Checks a shader in all frames, up to the first without an image. Returns the findings in the first
-    /// frame with the worst verdict, which the record then has as well.
+    /// Checks a shader in all frames, up to the first without an image. Returns its record, and the findings
+    /// in the first frame with the worst verdict, which is that of the record.
     fn check_frames(
         &self,
         context: &mut WorkerContext,
-        outcome: &mut Outcome,
+        log: &mut Log,
         shader: &Shader,
         reference: Option<&Reference<'_>>,
-    ) -> Option<Findings> {
-        let start = outcome.record.clone();
+    ) -> (Record, Option<Findings>) {
+        let of_shader = log.diagnostics.clone();
+        let (scene_name, reference_name) = reference.map(Reference::names).unwrap_or_default();
+        let solution = match reference {
+            Some(Reference::Given(given)) => given.shader(),
+            _ => None,
+        };
         let mut checked: Vec<CheckedFrame> = Vec::new();
         let mut worst: Option<(Verdict, Option<Findings>)> = None;
         for (index, PlannedFrame { inputs, frame }) in self.plan.frames.iter().enumerate() {
             let mut frame = frame.clone();
-            outcome.record = start.clone();
+            let mut growth = None;
             // The explanation of the first wrong image is reported.
             let explains = !checked.iter().any(|frame| frame.record.verdict == Verdict::Wrong);
-            let findings = self.verify(context, outcome, shader, reference, (index, &mut frame), explains);
-            let findings = match (findings, reference) {
-                (Ok(findings), _) => {
-                    outcome.set_findings(&findings, &shader.files);
-                    if let Some(missing) = missing_media(shader, &frame) {
-                        outcome.record.set_missing_media(missing);
-                    }
-                    if let Some(Reference::Given(given)) = reference
-                        && let Some(solution) = given.shader()
-                    {
-                        let unused = Unused::new(&shader.trees(), &solution.trees());
-                        outcome.record.add_unused(&unused, &solution.files);
-                    }
-                    Some(findings)
-                }
-                (Err(failure @ Failure::InvalidScene(_)), Some(Reference::Scene(scene))) => {
-                    outcome.set_failure(failure, &scene.files);
-                    None
-                }
-                (Err(failure), _) => {
-                    outcome.set_failure(failure, &shader.files);
-                    None
-                }
+            let planned = (index, &mut frame);
+            let findings = self.verify(context, (log, &mut growth), shader, reference, planned, explains);
+            let files = match (&findings, reference) {
+                (Err(Failure::InvalidScene(_)), Some(Reference::Scene(scene))) => &scene.files,
+                _ => &shader.files,
             };
-            let verdict = outcome.record.verdict;
-            let has_image = findings.is_some();
-            if worst.as_ref().is_none_or(|(worst, _)| verdict < *worst) {
-                worst = Some((verdict, findings));
+            match &findings {
+                Ok(findings) => log.report_findings(&shader.name, findings),
+                Err(failure) => log.report_failure(failure, files),
+            }
+            let solution = solution.filter(|_| findings.is_ok());
+            let record = Record::new(FrameResult {
+                shader: &shader.name,
+                scene: scene_name,
+                reference: reference_name,
+                findings: findings.as_ref(),
+                files,
+                diagnostics: std::mem::replace(&mut log.diagnostics, of_shader.clone()),
+                growth,
+                missing_media: missing_media(shader, &frame),
+                unused: solution.map(|solution| {
+                    let unused = Unused::new(&shader.trees(), &solution.trees());
+                    (unused, &solution.files)
+                }),
+            });
+            let has_image = findings.is_ok();
+            if worst.as_ref().is_none_or(|(worst, _)| record.verdict < *worst) {
+                worst = Some((record.verdict, findings.ok()));
             }
             checked.push(CheckedFrame {
                 inputs,
                 size: frame.size,
-                record: std::mem::replace(&mut outcome.record, start.clone()),
+                record,
             });
             if !has_image {
                 break;
             }
         }
-        outcome.record = match (&self.plan.assignment, checked.pop()) {
+        let record = match (&self.plan.assignment, checked.pop()) {
             (None, Some(only)) => only.record,
             (_, last) => {
                 checked.extend(last);
                 Record::of_frames(checked, self.plan.frames.len())
             }
         };
-        worst.and_then(|(_, findings)| findings)
+        (record, worst.and_then(|(_, findings)| findings))
     }
 
     /// The command that shows more of a fault.
-    fn help(&self, outcome: &Outcome) -> Option<String> {
-        let record = &outcome.record;
+    fn help(&self, record: &Record, is_late_on_gpu: bool) -> Option<String> {
         let explain = |code: &str| Some(format!("toyproof explain {code}"));
         let check = match record.verdict {
             Verdict::Wrong => match &record.mistake {
@@ -249,9 +276,7 @@ impl<'a> Checker<'a> {
                 return match diagnostic.and_then(|one| report::explain(&one.code)) {
                     Some(explanation) => explain(explanation.code),
                     // The evaluator names the line of the loop.
-                    None if outcome.is_late_on_gpu => {
-                        Some(self.command("check", record, "--device cpu".to_owned()))
-                    }
+                    None if is_late_on_gpu => Some(self.command("check", record, "--device cpu".to_owned())),
                     None => None,
                 };
             }
@@ -279,7 +304,7 @@ impl<'a> Checker<'a> {
     fn verify(
         &self,
         context: &mut WorkerContext,
-        outcome: &mut Outcome,
+        (log, growth): (&mut Log, &mut Option<GrowthRecord>),
         shader: &Shader,
         reference: Option<&Reference<'_>>,
         (index, frame): (usize, &mut Frame),
@@ -303,15 +328,16 @@ impl<'a> Checker<'a> {
         let cached = reference.map(|reference| self.cached(reference, (index, key), has_history, frame));
         let cached = cached.transpose()?;
         let from_start = match &shader.passes {
-            Some(passes) => self.bind(context, outcome, shader, passes, (frame, reference.is_some()))?,
+            Some(passes) => self.bind(context, log, shader, passes, (frame, reference.is_some()))?,
             None => None,
         };
+        *growth = from_start.as_ref().map(|bound| GrowthRecord::new(&bound.growth));
         let frame = &*frame;
         if let (Some(Reference::Scene(scene)), Some(cached)) = (reference, &cached)
             && let Some(conditioning) = cached.conditioning()
         {
             let warning = ill_conditioned(&scene.name, frame.size, &conditioning);
-            outcome.messages.push(Message::Warning(warning));
+            log.messages.push(Message::Warning(warning));
         }
         let hypotheses = contain(Part::Mistake, || {
             // A mistake of another pass is not one of the image.
@@ -319,7 +345,7 @@ impl<'a> Checker<'a> {
             cached.and_then(|cached| cached.hypotheses(frame))
         });
         let hypotheses = hypotheses.unwrap_or_else(|panic| {
-            outcome.fail(format!("{}: {panic}", outcome.record.shader));
+            log.fail(format!("{}: {panic}", shader.name));
             None
         });
         let case = Case {
@@ -354,7 +380,7 @@ impl<'a> Checker<'a> {
             && self.options.driver.may_fall_back()
         {
             if !self.fell_back.swap(true, Ordering::Relaxed) {
-                outcome.messages.push(Message::Warning(format!(
+                log.messages.push(Message::Warning(format!(
                     "{failure}; shaders are evaluated on the CPU, without the toolchain check (see `toyproof doctor`)"
                 )));
             }
@@ -365,13 +391,13 @@ impl<'a> Checker<'a> {
         if let (Some(Reference::Given(prepared)), Some(cached)) = (reference, &cached)
             && let Some(warning) = prepared.march_warning(&cached.expected)
         {
-            outcome.messages.push(Message::Warning(warning));
+            log.messages.push(Message::Warning(warning));
         }
         for panic in findings.panics.drain(..) {
-            outcome.fail(format!("{}: {panic}", outcome.record.shader));
+            log.fail(format!("{}: {panic}", shader.name));
         }
         let denied = denied(&mut findings.notes, self.options.language.denied());
-        outcome.report(std::mem::take(&mut findings.notes), &shader.files);
+        log.report(std::mem::take(&mut findings.notes), &shader.files);
         if denied.is_empty() {
             Ok(findings)
         } else {
@@ -384,7 +410,7 @@ impl<'a> Checker<'a> {
     fn bind(
         &self,
         context: &mut WorkerContext,
-        outcome: &mut Outcome,
+        log: &mut Log,
         shader: &Shader,
         passes: &CompiledProject,
         (frame, has_reference): (&mut Frame, bool),
@@ -400,17 +426,16 @@ impl<'a> Checker<'a> {
         let Some(mut bound) = bind(&pass_shader, frame, has_reference, renderers)? else {
             return Ok(None);
         };
-        outcome.report(std::mem::take(&mut bound.notes), &shader.files);
-        outcome.record.growth = Some(GrowthRecord::new(&bound.growth));
+        log.report(std::mem::take(&mut bound.notes), &shader.files);
         let errors = bound.growth.frames.iter().map(|error| error.max_abs);
-        outcome.messages.push(Message::Detail(format!(
+        log.messages.push(Message::Detail(format!(
             "{}: over frames 0 to {}, float32 and double precision differ by at most {:.2e}",
             shader.name,
             frame.frame,
             errors.fold(0.0, f64::max)
         )));
         if let Some(difference) = bound.difference {
-            outcome.messages.push(Message::Warning(format!(
+            log.messages.push(Message::Warning(format!(
                 "{}: the driver and the CPU render {} differently in frame {} ({} pixels); such pixels depend on \
                  undefined behavior, or the driver is wrong",
                 shader.name, difference.pass, difference.frame, difference.pixels
@@ -457,13 +482,16 @@ impl<'a> Checker<'a> {
             .search
             .as_ref()
             .filter(|search| !search.repairs.is_empty())?;
-        let mut outcome = Outcome::known(record.clone());
-        outcome.record.set_search(search, &shader.files);
-        outcome.record.help = self.help(&outcome);
+        let record = record.clone().with_search(search, &shader.files);
+        let help = self.help(&record, false);
+        let mut log = Log::default();
         if let (Some(out), Some(stem)) = (&self.options.out, &submission.output_stem) {
-            keep(out, stem, &[FIXED], Some(&findings), &mut outcome);
+            keep(out, stem, &[FIXED], Some(&findings), &mut log);
         }
-        Some(outcome)
+        Some(Outcome {
+            record: Record { help, ..record },
+            log,
+        })
     }
 
     fn load(&self, submission: &Submission) -> Shader {

@@ -130,17 +130,16 @@ impl Batch<'_> {
             grouped(count),
             plural(count, "shader is repaired by", "shaders are repaired by")
         ));
-        for (place, mut outcome) in found {
-            outcome.record.redact(self.options.teachers_hints);
-            for message in &outcome.messages {
+        for (place, Outcome { record, log }) in found {
+            let record = record.redacted(self.options.teachers_hints);
+            for message in &log.messages {
                 message.print(self.terminal);
             }
             if self.options.format == CheckFormat::Human {
-                self.terminal
-                    .result(&report::lines(&outcome.record, &self.layout));
+                self.terminal.result(&report::lines(&record, &self.layout));
             }
-            self.failed |= outcome.failed;
-            self.records.replace(place, outcome.record);
+            self.failed |= log.failed;
+            self.records.replace(place, record);
         }
     }
 }

@@ -13,7 +13,7 @@ use toyproof_verify::CheckResult;
 use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
 use toyproof_verify::contain::{Part, contain};
 
-use super::outcome::Outcome;
+use super::outcome::Log;
 use super::submission::Submission;
 use crate::cli::names::with_suffix;
 
@@ -81,13 +81,7 @@ fn difference<'a>(findings: &Findings, marks: &[DiffLevel], legend: Legend) -> C
 }
 
 /// Writes images of these kinds, and removes stale ones of an earlier run.
-pub(super) fn keep(
-    out: &Path,
-    stem: &Path,
-    kinds: &[ImageKind],
-    findings: Option<&Findings>,
-    outcome: &mut Outcome,
-) {
+pub(super) fn keep(out: &Path, stem: &Path, kinds: &[ImageKind], findings: Option<&Findings>, log: &mut Log) {
     for kind in kinds {
         let path = with_suffix(stem, kind.suffix);
         let kept = contain(Part::Image, || match findings.and_then(kind.make) {
@@ -98,8 +92,8 @@ pub(super) fn keep(
         let kept =
             kept.unwrap_or_else(|panic| Err(io::Error::other(format!("{}: {panic}", path_name(&path)))));
         if let Err(error) = kept {
-            outcome.fail(format!("cannot write {error}"));
-            outcome.lacks_image |= is_made;
+            log.fail(format!("cannot write {error}"));
+            log.lacks_image |= is_made;
         }
     }
 }

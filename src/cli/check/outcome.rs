@@ -26,10 +26,19 @@ impl Message {
     }
 }
 
-/// The result of checking a shader: its record, and the messages to print.
+/// The result of checking a shader.
 pub(super) struct Outcome {
     pub(super) record: Record,
+    pub(super) log: Log,
+}
+
+/// What is known of the check of a shader apart from its record.
+#[derive(Default)]
+pub(super) struct Log {
+    /// The messages to print.
     pub(super) messages: Vec<Message>,
+    /// The diagnostics of the frame in progress.
+    pub(super) diagnostics: Vec<diagnostic::Json>,
     pub(super) device: Option<String>,
     /// Whether something failed that the verdict does not show.
     pub(super) failed: bool,
@@ -39,25 +48,11 @@ pub(super) struct Outcome {
     pub(super) is_late_on_gpu: bool,
 }
 
-impl Outcome {
-    /// A record without messages, such as one of an earlier run.
-    pub(super) fn known(record: Record) -> Self {
-        Self {
-            record,
-            messages: Vec::new(),
-            device: None,
-            failed: false,
-            lacks_image: false,
-            is_late_on_gpu: false,
-        }
-    }
-
-    pub(super) fn set_findings(&mut self, findings: &Findings, files: &Files) {
-        self.record.set_findings(findings, files);
+impl Log {
+    pub(super) fn report_findings(&mut self, shader: &str, findings: &Findings) {
         if let Some(gpu_run) = &findings.results.gpu_run {
             self.messages.push(Message::Detail(format!(
-                "{}: translated in {:.4} s, compiled in {:.3} s, rendered in {:.3} s on {}",
-                self.record.shader,
+                "{shader}: translated in {:.4} s, compiled in {:.3} s, rendered in {:.3} s on {}",
                 gpu_run.translate.as_secs_f64(),
                 gpu_run.compile.as_secs_f64(),
                 gpu_run.draw.as_secs_f64(),
@@ -67,22 +62,18 @@ impl Outcome {
         }
     }
 
-    pub(super) fn set_failure(&mut self, failure: Failure, files: &Files) {
+    pub(super) fn report_failure(&mut self, failure: &Failure, files: &Files) {
         self.report(failure.diagnostics(), files);
-        if matches!(&failure, Failure::Gpu(failure) if failure.is_without_driver()) {
-            self.record.help = Some("toyproof doctor".to_owned());
-        }
-        self.is_late_on_gpu = match &failure {
+        self.is_late_on_gpu = match failure {
             Failure::LoopTruncated(_) => true,
             Failure::Gpu(failure) => failure.is_timeout(),
             _ => false,
         };
-        self.record.set_failure(failure, files);
     }
 
     pub(super) fn report(&mut self, diagnostics: Vec<Diagnostic>, files: &Files) {
         let json = diagnostics.iter().map(|one| diagnostic::json(one, files));
-        self.record.diagnostics.extend(json);
+        self.diagnostics.extend(json);
         // Diagnostics that are the same in several frames are printed once.
         let is_new = |diagnostic: &Diagnostic| {
             !self.messages.iter().any(|message| match message {

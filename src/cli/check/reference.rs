@@ -10,7 +10,6 @@ use toyproof_explain::known::Hypotheses;
 use toyproof_explain::whole_image::OtherScenes;
 use toyproof_image::Frame;
 use toyproof_project::files::{self, Input, InputSource, ReadError, Skipped};
-use toyproof_report::Record;
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
@@ -44,11 +43,11 @@ pub(super) enum Reference<'a> {
 }
 
 impl Reference<'_> {
-    /// Records the name.
-    pub(super) fn record(&self, record: &mut Record) {
+    /// The name of a scene, and that of another reference.
+    pub(super) fn names(&self) -> (Option<&str>, Option<&str>) {
         match self {
-            Self::Scene(scene) => record.scene = Some(scene.name.clone()),
-            Self::Given(prepared) => record.reference = Some(prepared.given.name.clone()),
+            Self::Scene(scene) => (Some(&scene.name), None),
+            Self::Given(prepared) => (None, Some(&prepared.given.name)),
         }
     }
 }

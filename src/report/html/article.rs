@@ -437,15 +437,13 @@ mod tests {
         assert!(html.contains("Suspect lines</a>:</strong> 4, 2</p>"), "{html}");
         assert!(html.contains("= <mark>1.0</mark>;"), "{html}");
         assert!(!html.contains("data-fixed"), "{html}");
-        let mut hidden = repaired();
-        hidden.redact(Hints::Line);
+        let hidden = repaired().redacted(Hints::Line);
         let html = shown(&hidden);
         assert!(
             html.contains("an edit of line 2") && !html.contains("b - c"),
             "{html}"
         );
-        hidden.redact(Hints::None);
-        let html = shown(&hidden);
+        let html = shown(&hidden.redacted(Hints::None));
         assert!(!html.contains("data-fixed") && !html.contains("<mark>"), "{html}");
     }
 

@@ -56,7 +56,10 @@ mod tests {
     use crate::Records;
 
     fn records(names: &[&str]) -> Records {
-        names.iter().map(|&name| Record::new(name.to_owned())).collect()
+        names
+            .iter()
+            .map(|&name| Record::unchecked(name.to_owned()))
+            .collect()
     }
 
     #[test]
