@@ -1,9 +1,9 @@
 //! `toyproof similar`: shaders that are near-identical.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
 use toyproof_classroom::similar::fingerprint::Fingerprints;
+use toyproof_classroom::similar::pairs::{Pair, Subject, groups, leave_out_common, pairs};
 use toyproof_diagnostic::{Deadline, grouped, plural};
 use toyproof_project::files;
 
@@ -37,46 +37,20 @@ pub(super) struct Args {
     language: LanguageArgs,
 }
 
-/// Shaders with fewer fingerprints are too small to compare.
-const MIN_FINGERPRINTS: usize = 8;
-
 /// The time limit for reading a shader.
 const TIME_LIMIT: std::time::Duration = std::time::Duration::from_secs(10);
-
-/// A shader to compare.
-struct Subject {
-    name: String,
-    /// The fingerprints of its tree; `None` if it does not compile.
-    tree: Option<Fingerprints>,
-    /// Those of its text.
-    text: Fingerprints,
-}
-
-impl Subject {
-    /// The fingerprints with which it is compared, unless the other shader does not compile.
-    fn own(&self) -> &Fingerprints {
-        self.tree.as_ref().unwrap_or(&self.text)
-    }
-
-    /// The common fingerprints: of trees, or else of texts.
-    fn comparable<'a>(&'a self, other: &'a Self) -> [&'a Fingerprints; 2] {
-        match (&self.tree, &other.tree) {
-            (Some(one), Some(other)) => [one, other],
-            _ => [&self.text, &other.text],
-        }
-    }
-}
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     let mut shaders = read(&args.shaders, &args.language, terminal);
     let mut excepted = read(&args.except, &args.language, terminal);
-    leave_out(&mut shaders, &mut excepted, |shader| shader.tree.as_mut());
-    leave_out(&mut shaders, &mut excepted, |shader| Some(&mut shader.text));
-    let (shaders, small): (Vec<_>, Vec<_>) = shaders
-        .into_iter()
-        .partition(|shader| shader.own().len() >= MIN_FINGERPRINTS);
+    leave_out_common(&mut shaders, &mut excepted);
+    let (shaders, small): (Vec<_>, Vec<_>) = shaders.into_iter().partition(Subject::is_large_enough);
     let pairs = pairs(&shaders, f64::from(args.threshold) / 100.0);
-    for &(a, b, share) in &pairs {
+    for &Pair {
+        shaders: [a, b],
+        share,
+    } in &pairs
+    {
         let (one, other) = (&shaders[a], &shaders[b]);
         let [of_one, of_other] = one.comparable(other);
         let [lines, other_lines] =
@@ -166,66 +140,6 @@ fn read(paths: &[PathBuf], language: &LanguageArgs, terminal: &Terminal) -> Vec<
     shaders
 }
 
-/// Removes one kind of fingerprints: those that everyone may have, and those that more than half of the shaders
-/// have, if there are enough to say so.
-fn leave_out(
-    shaders: &mut [Subject],
-    excepted: &mut [Subject],
-    kind: fn(&mut Subject) -> Option<&mut Fingerprints>,
-) {
-    const ENOUGH: usize = 6;
-    let mut all: Vec<_> = shaders.iter_mut().filter_map(kind).collect();
-    let mut counts: HashMap<u64, usize> = HashMap::new();
-    for hash in all.iter().flat_map(|fingerprints| fingerprints.hashes()) {
-        *counts.entry(hash).or_default() += 1;
-    }
-    let is_common = |&(_, count): &(u64, usize)| all.len() >= ENOUGH && 2 * count > all.len();
-    let common = counts.into_iter().filter(is_common).map(|(hash, _)| hash);
-    let excepted = excepted.iter_mut().filter_map(kind);
-    let left_out: HashSet<u64> = common
-        .chain(excepted.flat_map(|fingerprints| fingerprints.hashes().collect::<Vec<_>>()))
-        .collect();
-    for fingerprints in &mut all {
-        fingerprints.remove(&left_out);
-    }
-}
-
-/// The pairs that share at least a part of the smaller shader, the most similar first.
-fn pairs(shaders: &[Subject], threshold: f64) -> Vec<(usize, usize, f64)> {
-    let mut pairs = Vec::new();
-    for (b, other) in shaders.iter().enumerate() {
-        for (a, one) in shaders[..b].iter().enumerate() {
-            let [of_one, of_other] = one.comparable(other);
-            let smaller = of_one.len().min(of_other.len());
-            let share = of_one.shared(of_other) as f64 / smaller as f64;
-            if smaller >= MIN_FINGERPRINTS && share >= threshold {
-                pairs.push((a, b, share));
-            }
-        }
-    }
-    pairs.sort_by(|a, b| b.2.total_cmp(&a.2).then((a.0, a.1).cmp(&(b.0, b.1))));
-    pairs
-}
-
-/// The connected shaders of all pairs.
-fn groups(pairs: &[(usize, usize, f64)]) -> Vec<Vec<usize>> {
-    let mut of: BTreeMap<usize, usize> = BTreeMap::new();
-    for &(a, b, _) in pairs {
-        let [first, second] = [a, b].map(|at| of.get(&at).copied().unwrap_or(at));
-        let group = first.min(second);
-        of.entry(a).or_insert(first);
-        of.entry(b).or_insert(second);
-        for value in of.values_mut().filter(|value| [first, second].contains(value)) {
-            *value = group;
-        }
-    }
-    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (at, group) in of {
-        groups.entry(group).or_default().push(at);
-    }
-    groups.into_values().collect()
-}
-
 /// Ranges of lines, for people.
 fn list(ranges: &[[usize; 2]]) -> String {
     let range = |[first, last]: &[usize; 2]| {
@@ -236,15 +150,4 @@ fn list(ranges: &[[usize; 2]]) -> String {
         }
     };
     ranges.iter().map(range).collect::<Vec<_>>().join(",")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pairs_with_a_common_shader_are_a_group() {
-        let groups = groups(&[(0, 1, 1.0), (4, 5, 0.9), (2, 3, 0.8), (1, 3, 0.7)]);
-        assert_eq!(groups, [vec![0, 1, 2, 3], vec![4, 5]]);
-    }
 }
