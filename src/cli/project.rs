@@ -2,39 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{Diagnostics, Files, path_name};
-use toyproof_glsl as glsl;
-use toyproof_image as image;
-use toyproof_lint::Lints;
+use toyproof_diagnostic::{Files, path_name};
 use toyproof_player::Target;
 use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
-use toyproof_project::{self as project, CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
+use toyproof_project::{CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_toml::list_of;
 use toyproof_verify::Failure;
 use toyproof_verify::project::playback::PassShader;
 
 use super::inputs::check_output;
-use super::shader::{Unreadable, Unusable};
+use super::shader::Unreadable;
 use super::terminal::file_size;
 use super::{CliError, Exit, Terminal};
-
-/// Reads a project from its texts, which are added to `files`.
-fn parse(texts: ProjectTexts, files: &mut Files) -> Result<Project, Diagnostics> {
-    match texts {
-        ProjectTexts::Json(file) => {
-            let file = files.add(file);
-            Project::from_json(files, file)
-        }
-        ProjectTexts::Folder { toml, tabs, .. } => {
-            let toml = toml.map(|file| files.add(file));
-            let tabs: Vec<_> = tabs
-                .into_iter()
-                .map(|(tab, file)| (tab, files.add(file)))
-                .collect();
-            Project::from_folder(files, toml, &tabs)
-        }
-    }
-}
 
 /// The passes of a rendering, to evaluate or render them.
 pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rendering) -> PassShader<'a> {
@@ -80,7 +59,7 @@ pub(super) fn image_files(input: &Input) -> Vec<PathBuf> {
     let Ok(Texts::Project(texts @ ProjectTexts::Folder { .. })) = files::read(input) else {
         return Vec::new();
     };
-    let (Some(folder), Ok(project)) = (input.path(), parse(texts, &mut Files::default())) else {
+    let (Some(folder), Ok(project)) = (input.path(), texts.parse(&mut Files::default())) else {
         return Vec::new();
     };
     let names = project.image_inputs().map(|(_, name)| name);
@@ -94,40 +73,8 @@ pub(super) fn has_passes(input: &Input) -> bool {
     let Ok(Texts::Project(texts)) = files::read(input) else {
         return false;
     };
-    let project = parse(texts, &mut Files::default());
+    let project = texts.parse(&mut Files::default());
     project.is_ok_and(|project| !project.needed_by_image().is_empty())
-}
-
-/// Checks all tabs of a project. The warnings are those about all tabs.
-pub(super) fn check(
-    texts: ProjectTexts,
-    files: &mut Files,
-    lints: &mut Lints,
-    options: &glsl::Options,
-) -> Result<CompiledProject, Unusable> {
-    let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());
-    let folder = match &texts {
-        ProjectTexts::Folder { folder, .. } => folder.clone(),
-        ProjectTexts::Json(_) => None,
-    };
-    let mut project = parse(texts, files).map_err(invalid)?;
-    if let Some(folder) = folder {
-        let added = project.add_images(|name| {
-            let path = files::project_image(&folder, name)?;
-            image::read(&path).map_err(|error| error.to_string())
-        });
-        added.map_err(|errors| invalid(Diagnostics::new(errors, files)))?;
-    }
-    let passes = project::check(&project, files, options).map_err(invalid)?;
-    let mut checked = Vec::with_capacity(passes.passes.len());
-    for pass in passes.passes {
-        if pass.kind == PassKind::Image {
-            *lints = pass.lints;
-        }
-        checked.push(pass.checked);
-    }
-    lints.warnings = passes.warnings;
-    Ok(CompiledProject { project, checked })
 }
 
 /// Import a project from ShaderToy's JSON into a folder
@@ -192,7 +139,8 @@ pub(super) fn create(
 fn load(path: &Path, files: &mut Files) -> Result<Project, CliError> {
     let found = files::find(path).inputs.into_iter().next();
     let input = found.ok_or_else(CliError::silent)??;
-    parse(read(&input)?, files).map_err(|errors| CliError::diagnostics(errors, files))
+    let project = read(&input)?.parse(files);
+    project.map_err(|errors| CliError::diagnostics(errors, files))
 }
 
 /// Reads the texts of a project; those of a shader are its Image tab.

@@ -184,7 +184,10 @@ fn read(
             Ok(checked)
         }
         Ok(Texts::Project(texts)) => {
-            let project = passes.insert(project::check(texts, files, lints, options)?);
+            let compiled = CompiledProject::compile(texts, files, options);
+            let (project, of_project) = compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
+            *lints = of_project;
+            let project = passes.insert(project);
             match project::unrendered(&project, &found.name()) {
                 None => Ok(project.image().clone()),
                 Some(unrendered) => Err(Unusable::Unrendered(unrendered)),

@@ -1,7 +1,12 @@
 //! A project whose tabs compile.
 
-use toyproof_glsl::Checked;
+use toyproof_diagnostic::{Diagnostics, Files};
+use toyproof_glsl::{Checked, Options};
+use toyproof_image as image;
+use toyproof_lint::Lints;
 
+use crate::check::check;
+use crate::files::{ProjectTexts, project_image};
 use crate::graph::{NotRendered, Rendering};
 use crate::pass::PassKind;
 use crate::project::Project;
@@ -16,6 +21,41 @@ pub struct CompiledProject {
 }
 
 impl CompiledProject {
+    /// Reads a project from its texts, which are added to `files`, and from the images in its folder, and compiles
+    /// all its tabs. The lints are those of the image, with the warnings about all tabs.
+    ///
+    /// # Errors
+    /// The project is invalid, or one of its tabs.
+    pub fn compile(
+        texts: ProjectTexts,
+        files: &mut Files,
+        options: &Options,
+    ) -> Result<(Self, Lints), Diagnostics> {
+        let folder = match &texts {
+            ProjectTexts::Folder { folder, .. } => folder.clone(),
+            ProjectTexts::Json(_) => None,
+        };
+        let mut project = texts.parse(files)?;
+        if let Some(folder) = folder {
+            let added = project.add_images(|name| {
+                let path = project_image(&folder, name)?;
+                image::read(&path).map_err(|error| error.to_string())
+            });
+            added.map_err(|errors| Diagnostics::new(errors, files))?;
+        }
+        let passes = check(&project, files, options)?;
+        let mut lints = Lints::default();
+        let mut checked = Vec::with_capacity(passes.passes.len());
+        for pass in passes.passes {
+            if pass.kind == PassKind::Image {
+                lints = pass.lints;
+            }
+            checked.push(pass.checked);
+        }
+        lints.warnings = passes.warnings;
+        Ok((Self { project, checked }, lints))
+    }
+
     /// What renders the image and another pass.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use std::fs::File as OsFile;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::{File, path_name};
+use toyproof_diagnostic::{Diagnostics, File, Files, path_name};
 use toyproof_image::input;
 
 use super::search::Skipped;
@@ -60,6 +60,29 @@ fn read_folder(folder: &Path) -> Result<ProjectTexts, ReadError> {
         tabs,
         folder: Some(folder.to_owned()),
     })
+}
+
+impl ProjectTexts {
+    /// Reads a project from its texts, which are added to `files`.
+    ///
+    /// # Errors
+    /// The texts are not those of a project.
+    pub fn parse(self, files: &mut Files) -> Result<Project, Diagnostics> {
+        match self {
+            Self::Json(file) => {
+                let file = files.add(file);
+                Project::from_json(files, file)
+            }
+            Self::Folder { toml, tabs, .. } => {
+                let toml = toml.map(|file| files.add(file));
+                let tabs: Vec<_> = tabs
+                    .into_iter()
+                    .map(|(tab, file)| (tab, files.add(file)))
+                    .collect();
+                Project::from_folder(files, toml, &tabs)
+            }
+        }
+    }
 }
 
 /// The image of a project in its folder: a regular file, to which no link leads out of the folder.
