@@ -4,11 +4,13 @@
 //! - `download`, `text`, `naming`: what is in a download, which texts are shaders, and whose they are
 //! - `collection`: the submissions of all students
 //! - `roster`: the list of the students in a folder of submissions
+//! - `storage`: writes the shaders of each student
 
 pub mod class;
 pub mod collection;
 mod download;
 pub mod naming;
 pub mod roster;
+pub mod storage;
 mod students;
 pub mod text;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{path_name, printable};
-use toyproof_image::input;
+use toyproof_image::{input, output};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_report::{Late, Submitted};
 
@@ -83,6 +83,16 @@ impl Roster {
         parsed
             .map(Some)
             .map_err(|error| format!("{} is not a list of students: {error}", path_name(&path)))
+    }
+
+    /// Writes the roster into a folder.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), String> {
+        let text = serde_json::to_string_pretty(self).map_err(|error| error.to_string())? + "\n";
+        let written = output::write_inside(folder, &folder.join(FILE_NAME), text.as_bytes());
+        written.map_err(|error| format!("cannot write {error}"))
     }
 }
 

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use toyproof_classroom::collect::class::{Class, Purpose};
 use toyproof_classroom::collect::collection::Collection;
 use toyproof_classroom::collect::roster::Roster;
+use toyproof_classroom::collect::storage::remove_earlier;
 use toyproof_diagnostic::{path_name, printable};
 
-use self::writer::{Listing, Writer, remove_earlier};
+use self::writer::{Listing, Writer};
 use super::inputs::shell_word;
 use super::shader::parse_named;
 use super::{CliError, Exit, Terminal};
