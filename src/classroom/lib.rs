@@ -7,6 +7,7 @@
 //! - [`collect`]: the submissions of a class, from the downloads of a learning management system
 //! - [`autograder`]: the archive of an autograder for Gradescope
 //! - [`similar`]: similarity of shaders by their trees
+//! - [`shards`]: the parts of a large batch
 //!
 //! # Example
 //!
@@ -25,4 +26,5 @@
 pub mod assignment;
 pub mod autograder;
 pub mod collect;
+pub mod shards;
 pub mod similar;

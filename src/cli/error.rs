@@ -1,10 +1,19 @@
-//! The error that ends a command.
+//! The exit status of a command, and the error that ends it.
 
 use std::fmt::Display;
 
 use toyproof_diagnostic::{Diagnostic, Files};
 
-use super::Exit;
+/// The exit status of a command; the codes have the meanings that they have in grep, diff and cmp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Exit {
+    /// Exit code 0.
+    Success,
+    /// Exit code 1: a shader is at fault, or images differ.
+    ShaderFault,
+    /// Exit code 2: any other error.
+    Error,
+}
 
 /// The error that ends a command, or the part of it that concerns one input. Functions return it, and the
 /// command line prints it in one place, with [`Terminal::fail`](super::Terminal::fail).

@@ -45,6 +45,7 @@ use toyproof_gpu as gpu;
 use toyproof_verify::contain::{Part, contain};
 
 use self::error::CliError;
+pub use self::error::Exit;
 use self::terminal::Terminal;
 
 /// Check, render and convert ShaderToy shaders
@@ -117,17 +118,6 @@ enum Command {
     Doctor(doctor::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
-}
-
-/// The exit status of a command; the codes have the meanings that they have in grep, diff and cmp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Exit {
-    /// Exit code 0.
-    Success,
-    /// Exit code 1: a shader is at fault, or images differ.
-    ShaderFault,
-    /// Exit code 2: any other error.
-    Error,
 }
 
 /// The argument with which this program serves as the worker process of a command. It is not a command, so

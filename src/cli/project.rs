@@ -11,7 +11,6 @@ use toyproof_verify::Failure;
 use toyproof_verify::project::playback::PassShader;
 
 use super::inputs::check_output;
-use super::shader::Unreadable;
 use super::terminal::file_size;
 use super::{CliError, Exit, Terminal};
 
@@ -39,19 +38,6 @@ pub(super) fn target(kind: PassKind) -> Target {
         PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
         _ => Target::Image,
     }
-}
-
-/// Why a command that renders the image alone cannot use the project; `None` if the image reads no pass.
-pub(super) fn unrendered(project: &CompiledProject, name: &str) -> Option<Unreadable> {
-    let needed = project.project.needed_by_image();
-    let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
-    (!names.is_empty()).then(|| Unreadable {
-        name: name.to_owned(),
-        reason: format!(
-            "the image reads {}, which this command does not render",
-            names.join(", ")
-        ),
-    })
 }
 
 /// The files of the images that a project reads from its folder.

@@ -15,7 +15,6 @@ use toyproof_project::files::{self, Input, ReadError, Search, Texts, content_dia
 use super::inputs::{Deny, LanguageArgs};
 use super::scenes::with_builtin_hint;
 use super::{CliError, Exit, Terminal};
-use crate::cli::project;
 
 /// The lints may take one part in this many of a shader's time limit.
 const LINT_TIME_SHARE: u32 = 4;
@@ -188,13 +187,26 @@ fn read(
             let (project, of_project) = compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
             *lints = of_project;
             let project = passes.insert(project);
-            match project::unrendered(&project, &found.name()) {
+            match unrendered(&project, &found.name()) {
                 None => Ok(project.image().clone()),
                 Some(unrendered) => Err(Unusable::Unrendered(unrendered)),
             }
         }
         Err(error) => Err(Unusable::of(error, files)),
     }
+}
+
+/// Why a command that renders the image alone cannot use the project; `None` if the image reads no pass.
+fn unrendered(project: &CompiledProject, name: &str) -> Option<Unreadable> {
+    let needed = project.project.needed_by_image();
+    let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
+    (!names.is_empty()).then(|| Unreadable {
+        name: name.to_owned(),
+        reason: format!(
+            "the image reads {}, which this command does not render",
+            names.join(", ")
+        ),
+    })
 }
 
 /// Finds all shaders that the arguments name, in their order; standard input is read once. Warns of links

@@ -19,7 +19,7 @@ use toyproof_diagnostic::{
 use toyproof_image::output;
 use toyproof_verify::contain;
 
-use super::{CliError, Exit};
+use super::error::{CliError, Exit};
 
 /// The number of warnings of one code that are shown for one shader.
 const WARNINGS_SHOWN: usize = 3;

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use toyproof_classroom::shards::{Item, distribute};
 use toyproof_diagnostic::path_name;
 use toyproof_image::{input, output};
 
@@ -16,10 +17,6 @@ use super::submission::Submission;
 
 /// The name of the file in a shard's folder that describes the shard.
 pub(super) const MANIFEST_NAME: &str = "shard.json";
-
-/// A shard may exceed its share of the costs by this part, so that most shaders stay in their shard when
-/// others come and go.
-const SLACK: f64 = 0.05;
 
 /// Fixed cost of a shader, for rendering and comparing it, in equivalent bytes of source.
 const BASE_COST: u64 = 4096;
@@ -51,46 +48,6 @@ pub(super) fn assign(submissions: &[Submission], shards: u32) -> Vec<u32> {
 fn hash(text: &str) -> u64 {
     let hash: [u8; 32] = Sha256::digest(text).into();
     hash.first_chunk().copied().map_or(0, u64::from_be_bytes)
-}
-
-/// An item of the distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Item {
-    /// Expensive items are placed first, cheap ones fill the gaps.
-    cost: u64,
-    hash: u64,
-}
-
-/// Each item goes to the shard with its largest weight that has room: consistent hashing with bounded loads
-/// (Mirrokni, Thorup and Zadimoghaddam 2018), by rendezvous hashing (Thaler and Ravishankar 1998). The order
-/// of the items does not matter.
-fn distribute(items: &[Item], shards: u32) -> Vec<u32> {
-    let mut order: Vec<usize> = (0..items.len()).collect();
-    order.sort_by_key(|&at| std::cmp::Reverse(items[at]));
-    let total: u64 = items.iter().map(|item| item.cost).sum();
-    let capacity = (total as f64 / f64::from(shards) * (1.0 + SLACK)) as u64;
-    let mut loads = vec![0; shards as usize];
-    let mut result = vec![0; items.len()];
-    for at in order {
-        let Item { cost, hash } = items[at];
-        let all = (0_u32..).zip(&loads);
-        let with_room = all.clone().filter(|&(_, load)| load + cost <= capacity);
-        let (shard, _) = with_room
-            .max_by_key(|&(shard, _)| mix(hash ^ mix(u64::from(shard))))
-            .or_else(|| all.min_by_key(|&(_, load)| load))
-            .expect("there is at least one shard");
-        loads[shard as usize] += cost;
-        result[at] = shard + 1;
-    }
-    result
-}
-
-/// The finalizer of `SplitMix64` (Steele, Lea and Flood 2014).
-fn mix(bits: u64) -> u64 {
-    let bits = bits.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^ (bits >> 31)
 }
 
 // The description of the batch in a shard's folder.
@@ -212,61 +169,6 @@ fn common(arguments: Vec<String>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// 400 items; every tenth is 20 times as expensive as the others.
-    fn items() -> Vec<Item> {
-        let cost = |at: u64| 1000 + at % 7 + if at.is_multiple_of(10) { 19_000 } else { 0 };
-        (0..400)
-            .map(|at| Item {
-                hash: mix(at),
-                cost: cost(at),
-            })
-            .collect()
-    }
-
-    #[test]
-    fn shards_have_equal_costs() {
-        for shards in [1, 2, 8, 13] {
-            let items = items();
-            let mut loads = vec![0; shards as usize];
-            for (item, shard) in items.iter().zip(distribute(&items, shards)) {
-                loads[shard as usize - 1] += item.cost;
-            }
-            let mean = items.iter().map(|item| item.cost).sum::<u64>() as f64 / f64::from(shards);
-            let most = *loads.iter().max().unwrap() as f64;
-            assert!(most <= mean * (1.0 + SLACK), "{shards}: {loads:?}");
-        }
-    }
-
-    #[test]
-    fn more_shards_than_shaders_leave_some_empty() {
-        let items = &items()[..3];
-        let mut shards = distribute(items, 8);
-        shards.sort_unstable();
-        shards.dedup();
-        assert_eq!(shards.len(), 3);
-        assert!(distribute(&[], 8).is_empty());
-    }
-
-    #[test]
-    fn the_order_does_not_matter_and_a_new_item_moves_few_others() {
-        let items = items();
-        let before = distribute(&items, 8);
-        let mut reversed = items.clone();
-        reversed.reverse();
-        let mut after = distribute(&reversed, 8);
-        after.reverse();
-        assert_eq!(before, after);
-        let mut more = items;
-        let new = Item {
-            hash: mix(1000),
-            cost: 1003,
-        };
-        more.push(new);
-        let moved = before.iter().zip(distribute(&more, 8)).filter(|(a, b)| **a != *b);
-        let moved = moved.count();
-        assert!(moved <= 20, "{moved} of 400");
-    }
 
     #[test]
     fn what_differs_from_shard_to_shard_is_not_recorded() {
