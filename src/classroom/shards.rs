@@ -13,8 +13,8 @@ pub struct Item {
     pub hash: u64,
 }
 
-/// Distributes items over shards of nearly equal cost; returns the shard of each item, from 1. The order of the items
-/// does not matter.
+/// Distributes items over shards of nearly equal cost; returns the shard of each item, from 1. The order of
+/// the items does not matter.
 ///
 /// Each item goes to the shard with its largest weight that has room: consistent hashing with bounded loads
 /// (Mirrokni, Thorup and Zadimoghaddam 2018), by rendezvous hashing (Thaler and Ravishankar 1998).

@@ -21,8 +21,8 @@ pub struct CompiledProject {
 }
 
 impl CompiledProject {
-    /// Reads a project from its texts, which are added to `files`, and from the images in its folder, and compiles
-    /// all its tabs. The lints are those of the image, with the warnings about all tabs.
+    /// Reads a project from its texts, which are added to `files`, and from the images in its folder, and
+    /// compiles all its tabs. The lints are those of the image, with the warnings about all tabs.
     ///
     /// # Errors
     /// The project is invalid, or one of its tabs.

@@ -15,8 +15,8 @@ use super::text::Content;
 /// The largest number of skipped files of a student that have sentences of their own.
 const MAX_NOTES: usize = 10;
 
-/// Writes the shaders of a student into `folder`, in the student's own folder: those of an assignment, if one is
-/// given. Returns the student's entry in the roster, and a sentence about each file that was changed or skipped.
+/// Writes the shaders of a student into the student's own folder in `folder`: those of an assignment, if one
+/// is given. Returns the student's entry in the roster, and a sentence about each changed or skipped file.
 ///
 /// # Errors
 /// A file cannot be written.

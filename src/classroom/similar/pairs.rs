@@ -40,8 +40,8 @@ impl Subject {
     }
 }
 
-/// Removes the fingerprints that everyone may have: those of the `excepted` shaders, and those that more than half
-/// of the shaders have, if there are enough shaders for this.
+/// Removes the fingerprints that everyone may have: those of the `excepted` shaders, and those that more than
+/// half of the shaders have, if there are enough shaders for this.
 pub fn leave_out_common(shaders: &mut [Subject], excepted: &mut [Subject]) {
     leave_out(shaders, excepted, |shader| shader.tree.as_mut());
     leave_out(shaders, excepted, |shader| Some(&mut shader.text));

@@ -58,10 +58,8 @@ fn hash(text: &str) -> u64 {
 /// The file cannot be read.
 pub(super) fn program() -> Result<String, String> {
     let mut hash = Sha256::new();
-    std::env::current_exe()
-        .and_then(File::open)
-        .and_then(|mut file| io::copy(&mut file, &mut hash))
-        .map_err(|error| format!("the program's own file cannot be read: {error}"))?;
+    let mut copy = || io::copy(&mut File::open(std::env::current_exe()?)?, &mut hash);
+    copy().map_err(|error| format!("the program's own file cannot be read: {error}"))?;
     Ok(format!("{:x}", hash.finalize()))
 }
 
