@@ -187,7 +187,7 @@ fn read(
             let (project, of_project) = compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
             *lints = of_project;
             let project = passes.insert(project);
-            match unrendered(&project, &found.name()) {
+            match unrendered(project, &found.name()) {
                 None => Ok(project.image().clone()),
                 Some(unrendered) => Err(Unusable::Unrendered(unrendered)),
             }

@@ -208,6 +208,7 @@ impl<'a> HostGraph<'a> {
     }
 
     /// The file for passes in this language, with these names.
+    #[must_use]
     pub fn file(&self, shader: &str, language: &str, entry_point: &str, names: &[String]) -> GraphFile {
         let passes = self
             .graph
@@ -235,6 +236,7 @@ impl<'a> HostGraph<'a> {
     }
 
     /// What a channel of a pass reads, and how.
+    #[must_use]
     pub fn entry(&self, pass: usize, channel: usize) -> Option<InputEntry> {
         let input = self.input(pass, channel)?;
         let sampling = self.checked[pass].sampling[channel];
@@ -253,6 +255,7 @@ impl<'a> HostGraph<'a> {
     }
 
     /// What a pass needs that wgpu-shadertoy 0.2 does not have.
+    #[must_use]
     pub fn missing_in_wgpu_shadertoy(&self, pass: usize) -> Option<String> {
         let kind = self.project.passes[self.rendering.passes[pass]].kind;
         let checked = self.checked[pass];
@@ -337,11 +340,13 @@ impl<'a> HostGraph<'a> {
 
 impl InputEntry {
     /// Whether texels are not interpolated.
+    #[must_use]
     pub fn is_nearest(&self) -> bool {
         self.filter == FilterName::Nearest
     }
 
     /// Whether the texture is repeated.
+    #[must_use]
     pub fn repeats(&self) -> bool {
         self.wrap == WrapName::Repeat
     }
@@ -349,6 +354,7 @@ impl InputEntry {
 
 impl GraphFile {
     /// The text of the file.
+    #[must_use]
     pub fn to_json(&self) -> String {
         // Strings, lists and options always serialize.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"

@@ -161,6 +161,7 @@ fn passes(head: &mut String, proof: &PassesProof) {
 }
 
 /// Describes how many pixels of all passes are equal.
+#[must_use]
 pub fn describe_passes(proof: &PassesProof) -> String {
     let passes = proof.passes.len() as u64;
     let (pixels, undefined) = (proof.pixels(), proof.undefined());
@@ -188,6 +189,7 @@ fn describe_browser(shown: Rgb8Comparison) -> String {
 }
 
 /// Describes how many pixels are equal.
+#[must_use]
 pub fn describe_proof(proof: &Proof) -> String {
     describe_equal(proof.equal(), proof.pixels(), proof.undefined())
 }

@@ -107,10 +107,6 @@ pub(super) struct ForeignSpirv {
 }
 
 /// A converted shader, as its file holds it.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there are few of them, and each holds a whole shader"
-)]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum ShaderArtifact {
     /// A WGSL file, with a replacement for its host.

@@ -330,6 +330,9 @@ impl Mode {
 }
 
 /// Packs files, each with its path. The same files give the same bytes: times are those of no file.
+///
+/// # Errors
+/// If a file is too large for the format.
 pub fn pack(files: &[(&str, Mode, &[u8])]) -> io::Result<Vec<u8>> {
     /// 1980-01-01, the first day of the format, in the order of time and date.
     const NO_TIME: [u8; 4] = [0, 0, 0x21, 0];

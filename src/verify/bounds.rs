@@ -31,16 +31,19 @@ const MAX_SEARCH_SECONDS: f64 = 1e8;
 
 /// The largest number of loop iterations of a pixel of an edited shader, by those of the shader; of one that is
 /// evaluated at few pixels.
+#[must_use]
 pub fn iterations_of_edited(iterations: u32, least: u32) -> u32 {
     iterations.saturating_mul(ITERATION_FACTOR).max(least)
 }
 
 /// The same of one whose whole image is evaluated: pixels that were not tried may need more.
+#[must_use]
 pub fn iterations_of_image(iterations: u32) -> u32 {
     iterations_of_edited(iterations, MIN_IMAGE_ITERATIONS)
 }
 
 /// The deadline of an explanation with a search of this budget.
+#[must_use]
 pub fn explanation_deadline(budget: f64) -> Instant {
     // A budget from the command line may be any number.
     let search = (TIMEOUT_PER_UNIT * budget).clamp(0.0, MAX_SEARCH_SECONDS);

@@ -53,6 +53,9 @@ pub fn explain<'a>(
 }
 
 /// Like [`explain`], but also fails if the pixel runs more loop iterations.
+///
+/// # Errors
+/// Fails if the shader is too large, or exceeds a limit.
 pub fn explain_within<'a>(
     program: &'a Program,
     frame: &'a Frame,

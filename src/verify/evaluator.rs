@@ -111,11 +111,13 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Renders another frame in f64: one with what earlier frames render in double precision.
+    #[must_use]
     pub fn with_double(self, double_frame: Option<&'a Frame>) -> Self {
         Self { double_frame, ..self }
     }
 
     /// Fails if a pixel runs more loop iterations.
+    #[must_use]
     pub fn with_max_iterations(self, max_iterations: u32) -> Self {
         Self {
             max_iterations,
@@ -130,12 +132,18 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Renders some rows in f32 alone.
+    ///
+    /// # Errors
+    /// If the evaluator fails or is interrupted.
     pub fn single(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
         let rendered = self.render_as::<f32>(self.frame, rows, UndefinedPolicy::Observed, &self.single)?;
         self.with_undefined::<f32>(self.frame, rows, rendered)
     }
 
     /// Renders some rows in f64 alone.
+    ///
+    /// # Errors
+    /// If the evaluator fails or is interrupted.
     pub fn double(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
         let frame = self.double_frame.unwrap_or(self.frame);
         let start = Instant::now();

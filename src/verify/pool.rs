@@ -21,6 +21,7 @@ pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
 }
 
 /// Waits for a thread, and panics with its panic.
+#[must_use]
 pub fn join<T>(thread: ScopedJoinHandle<T>) -> T {
     thread
         .join()

@@ -61,6 +61,7 @@ pub enum Purpose {
 
 impl ClassAssignment {
     /// Whether a file with this path in a submission, with `/`, belongs to the assignment.
+    #[must_use]
     pub fn has(&self, path: &str) -> bool {
         let path = path.to_lowercase();
         self.patterns

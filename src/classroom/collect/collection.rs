@@ -66,6 +66,7 @@ pub enum Lateness {
 
 impl Submission {
     /// How late the shaders of an assignment are, or those of all assignments.
+    #[must_use]
     pub fn lateness(&self, assignment: Option<&ClassAssignment>) -> Lateness {
         let belongs = |file: &&SubmittedFile| {
             let path = file.original_path();

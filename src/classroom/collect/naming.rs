@@ -29,6 +29,10 @@ pub struct Student {
 /// The student of a file, by its path in the download, which is not empty: what the system wrote into the
 /// name of the file, of its archive or of its folder, else the folder, else the file's name without its
 /// extension.
+///
+/// # Panics
+/// If the path is empty.
+#[must_use]
 pub fn submitted(path: &[String]) -> Submitted {
     let (first, rest) = path.split_first().expect("the path is not empty");
     let is_file = rest.is_empty() || is_archive(first);
@@ -67,12 +71,14 @@ fn by_place(first: &str, is_file: bool) -> Named {
 }
 
 /// Whether a name is that of an archive.
+#[must_use]
 pub fn is_archive(name: &str) -> bool {
     let extension = Path::new(name).extension();
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
 }
 
 /// Whether a name is one that Moodle or Canvas gives.
+#[must_use]
 pub fn is_of_system(name: &str) -> bool {
     moodle(name).or_else(|| canvas(name)).is_some()
 }
@@ -133,6 +139,7 @@ const MAX_NAME_BYTES: usize = 120;
 
 /// A name as a component of a path on any system, without spaces: letters, digits, `-`, `_` and `.`, but no
 /// hidden file, no device of Windows, and of limited length.
+#[must_use]
 pub fn file_name(name: &str) -> String {
     let plain = name.nfc().map(|character| match character {
         _ if character.is_alphanumeric() || "-_.".contains(character) => character,
@@ -192,6 +199,7 @@ pub struct Paths {
 
 impl Paths {
     /// Starts with names that are in use.
+    #[must_use]
     pub fn with_reserved(names: &[&str]) -> Self {
         Self {
             used: names.iter().map(|name| without_case(name)).collect(),

@@ -136,6 +136,7 @@ impl Owners {
     }
 
     /// The student who submitted an input, if any.
+    #[must_use]
     pub fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
         let path = path_of(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))

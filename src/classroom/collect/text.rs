@@ -23,6 +23,7 @@ pub enum Content {
 
 /// The kind of a file, by its name and its content; at most one byte more than [`MAX_BYTES`] is given. A
 /// file with the extension of a shader is one, other text is one if it has a `mainImage`.
+#[must_use]
 pub fn content(name: &str, bytes: &[u8]) -> Content {
     let path = Path::new(name);
     let is_expected = is_shader(path) || name.eq_ignore_ascii_case("project.toml");

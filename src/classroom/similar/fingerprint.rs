@@ -51,6 +51,7 @@ impl Fingerprints {
 
     /// The fingerprints of a text's tokens, which exist even for a shader that does not compile. They are
     /// comparable with each other only.
+    #[must_use]
     pub fn of_text(text: &str) -> Self {
         let tokens = tokens(text);
         let kinds: Vec<u64> = tokens.iter().map(|&(kind, _)| kind).collect();
@@ -61,7 +62,7 @@ impl Fingerprints {
 
     /// Their number.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.0.len()
     }
 
@@ -76,11 +77,13 @@ impl Fingerprints {
     }
 
     /// The number of fingerprints that two shaders share.
+    #[must_use]
     pub fn shared(&self, other: &Self) -> usize {
         self.hashes().filter(|hash| other.0.contains_key(hash)).count()
     }
 
     /// The ranges of lines that another shader has too.
+    #[must_use]
     pub fn shared_lines(&self, other: &Self) -> Vec<[usize; 2]> {
         let shared = self.0.iter().filter(|(hash, _)| other.0.contains_key(hash));
         let mut ranges: Vec<[usize; 2]> = shared.map(|(_, &lines)| lines).collect();
@@ -327,7 +330,7 @@ mod tests {
     #[test]
     fn names_numbers_layout_and_order_do_not_matter() {
         let original = of(ORIGINAL);
-        assert!(original.len() > 10, "{}", original.len());
+        assert!(original.count() > 10, "{}", original.count());
         let (march, main) = ORIGINAL.split_once("void mainImage").unwrap();
         let reordered = format!("float march(vec3 o, vec3 d);\nvoid mainImage{main}\n{march}");
         let renamed = ORIGINAL
@@ -342,12 +345,12 @@ mod tests {
         for copy in [reordered, renamed, renumbered, flat] {
             let copy = of(&copy);
             assert_eq!(
-                (original.shared(&copy), copy.len()),
-                (original.len(), original.len())
+                (original.shared(&copy), copy.count()),
+                (original.count(), original.count())
             );
         }
         let named = format!("const float STEP = 0.001;\n{}", ORIGINAL.replace("0.001", "STEP"));
-        assert_eq!(original.shared(&of(&named)), original.len());
+        assert_eq!(original.shared(&of(&named)), original.count());
     }
 
     #[test]
@@ -360,13 +363,13 @@ mod tests {
             .replace("0.001", "1e-3 /* small */")
             .replace("t += h;", "t += h; // step\n");
         let broken = Fingerprints::of_text(&copy.replace("return t;", "return t"));
-        let share = original.shared(&broken) as f64 / original.len() as f64;
+        let share = original.shared(&broken) as f64 / original.count() as f64;
         assert!(
-            original.len() > 10 && share > 0.7,
+            original.count() > 10 && share > 0.7,
             "{share} of {}",
-            original.len()
+            original.count()
         );
-        assert_eq!(original.shared(&Fingerprints::of_text(&copy)), original.len());
+        assert_eq!(original.shared(&Fingerprints::of_text(&copy)), original.count());
     }
 
     #[test]

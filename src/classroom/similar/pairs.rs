@@ -27,7 +27,7 @@ impl Subject {
     /// Whether it has enough fingerprints to be compared.
     #[must_use]
     pub fn is_large_enough(&self) -> bool {
-        self.own().len() >= MIN_FINGERPRINTS
+        self.own().count() >= MIN_FINGERPRINTS
     }
 
     /// The fingerprints of both shaders that are compared: of trees, or else of texts.
@@ -86,7 +86,7 @@ pub fn pairs(shaders: &[Subject], threshold: f64) -> Vec<Pair> {
     for (b, other) in shaders.iter().enumerate() {
         for (a, one) in shaders[..b].iter().enumerate() {
             let [of_one, of_other] = one.comparable(other);
-            let smaller = of_one.len().min(of_other.len());
+            let smaller = of_one.count().min(of_other.count());
             let share = of_one.shared(of_other) as f64 / smaller as f64;
             if smaller >= MIN_FINGERPRINTS && share >= threshold {
                 pairs.push(Pair {

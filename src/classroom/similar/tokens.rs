@@ -18,6 +18,7 @@ enum Token<'a> {
 }
 
 /// The tokens of a text, each as a hash with its line, from 1.
+#[must_use]
 pub fn tokens(text: &str) -> Vec<(u64, usize)> {
     let mut tokens = Vec::new();
     let mut line = 1;

@@ -1,4 +1,4 @@
-//! Converts the passes of a project, and writes how they are host_graph.
+//! Converts the passes of a project, and writes how they are `host_graph`.
 
 use toyproof_convert::graph::{GRAPH_FILE, HostGraph, target_name};
 use toyproof_convert::header::{self, ProofStatus};

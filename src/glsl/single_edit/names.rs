@@ -135,9 +135,7 @@ fn undeclared(source: &Source, errors: &Diagnostics) -> Vec<usize> {
         Code::NoOverload,
         Code::Undefined,
     ];
-    let reported = errors
-        .iter()
-        .filter(|error| codes.contains(&error.code));
+    let reported = errors.iter().filter(|error| codes.contains(&error.code));
     let indices = reported.flat_map(|error| {
         // In a macro, the related span has the name.
         let related = error.related.iter().map(|(span, _)| *span);

@@ -254,7 +254,7 @@ fn render_on_cpu<N: Number>(
     let [width, height] = frame.size;
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     Ok(places
-        .map(|(x, y)| framebuffer.get(x, y).map(|part| part.to_f64()))
+        .map(|(x, y)| framebuffer.get(x, y).map(toyproof_eval::Arithmetic::to_f64))
         .collect())
 }
 

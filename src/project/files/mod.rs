@@ -70,6 +70,7 @@ pub enum ProjectTexts {
 
 impl Texts {
     /// All files.
+    #[must_use]
     pub fn files(&self) -> Vec<&File> {
         match self {
             Self::Shader(file) | Self::Project(ProjectTexts::Json(file)) => vec![file],
@@ -141,6 +142,7 @@ fn is_project_json(path: &Path) -> bool {
 }
 
 /// Returns whether a text or an archive, which is not searched, has a shader.
+#[must_use]
 pub fn has_shader(path: &Path) -> bool {
     const MAX_ENTRIES: usize = 10_000;
     if !has_extension(path, "zip") {
@@ -169,6 +171,7 @@ fn is_input(path: &Path) -> bool {
 
 /// Returns whether a file or folder is hidden, as `.git` is, or is the `__MACOSX` folder that macOS adds to
 /// archives.
+#[must_use]
 pub fn is_hidden(name: &OsStr) -> bool {
     name.as_encoded_bytes().starts_with(b".") || name == "__MACOSX"
 }

@@ -112,6 +112,7 @@ pub struct Search {
 
 /// Searches a folder and its subfolders, except hidden ones. Each folder is searched once, however many links
 /// lead to it.
+#[must_use]
 pub fn search(folder: &Path) -> Search {
     let mut walk = Walk {
         folder,

@@ -51,6 +51,7 @@ fn color<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f32; 3], D::Erro
 
 impl Pixel {
     /// The pixel at `index`, bottom row first, in two images of one size.
+    #[must_use]
     pub fn at(index: usize, expected: &Image, actual: &Image) -> Self {
         let width = expected.size()[0] as usize;
         let rgb = |image: &Image| {

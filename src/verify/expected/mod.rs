@@ -94,6 +94,7 @@ impl Expected {
     }
 
     /// The shader, if it is one.
+    #[must_use]
     pub fn shader(&self) -> Option<&Checked> {
         match self {
             Self::Shader(shader) => Some(shader.checked()),
@@ -102,6 +103,7 @@ impl Expected {
     }
 
     /// The reference in another frame; none if it is an image, or cannot be rendered there.
+    #[must_use]
     pub fn in_frame(&self, frame: &Frame) -> Option<Self> {
         match self {
             Self::Scene(scene) => Some(Self::of_scene(scene.scene().clone(), frame)),
@@ -111,6 +113,7 @@ impl Expected {
     }
 
     /// The colors at some places of another frame; none for an image.
+    #[must_use]
     pub fn colors_in(&self, frame: &Frame, places: &Places) -> Option<Image> {
         match self {
             Self::Scene(scene) => {
@@ -125,6 +128,7 @@ impl Expected {
     }
 
     /// Whether random numbers decide where and how pixels are sampled.
+    #[must_use]
     pub fn is_stochastic(&self) -> bool {
         match self {
             Self::Scene(scene) => scene.tracer().sampler().is_some(),
@@ -135,6 +139,7 @@ impl Expected {
 
     /// The colors at some positions within pixels, row by row, of a reference that is not stochastic; none for an
     /// image.
+    #[must_use]
     pub fn colors_within(&self, positions: &Places) -> Option<Vec<[f64; 3]>> {
         match self {
             Self::Scene(scene) => {
@@ -207,6 +212,7 @@ impl Expected {
     }
 
     /// The color of a pixel; NaN where it is not known.
+    #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
         match self {
             Self::Scene(scene) => scene.tracer().pixel(x, y),
@@ -216,6 +222,7 @@ impl Expected {
     }
 
     /// The accepted colors of a pixel: others agree if they are within [`EXACT_TOLERANCE`] of these.
+    #[must_use]
     pub fn color_range(&self, x: u32, y: u32) -> ColorRange {
         match self {
             Self::Scene(scene) => scene.color_range(x, y, EpsilonSet::Alike),
@@ -239,6 +246,7 @@ impl Expected {
     }
 
     /// Whether the image depends on the time.
+    #[must_use]
     pub fn is_animated(&self) -> bool {
         match self {
             Self::Scene(scene) => !scene.scene().motions.is_empty(),
@@ -283,6 +291,7 @@ impl Expected {
 
     /// Of the `wanted` pixels of some rows, those in which the reference itself changes color by rounding in
     /// this number type, whatever a shader's formulas.
+    #[must_use]
     pub fn tied(&self, rows: &Range<u32>, wanted: &[bool], number_type: NumberType) -> Vec<bool> {
         match self {
             Self::Scene(scene) => scene.tied(rows, wanted, number_type),

@@ -68,6 +68,7 @@ impl SceneReference {
     }
 
     /// The reference of another scene in the same frame.
+    #[must_use]
     pub fn with_scene(&self, scene: Scene) -> Self {
         let frame = Frame {
             size: self.scene.film.size,

@@ -6,7 +6,8 @@ use std::fmt::Display;
 use std::thread;
 
 use toyproof::eval::{
-    Engine, Failure, Fault, Number, Observations, Program, Rendered, Settings, Substitute, UndefinedPolicy,
+    Arithmetic, Engine, Failure, Fault, Number, Observations, Program, Rendered, Settings, Substitute,
+    UndefinedPolicy,
 };
 use toyproof::glsl::Checked;
 use toyproof::image::Frame;
@@ -146,7 +147,7 @@ impl Comparison<'_> {
                 Outcome::Color(_) if is_discarded => Some("discarded by the evaluator".to_owned()),
                 Outcome::Color([r, g, b, a]) => {
                     let expected = [r, g, b].map(Real::to_f64);
-                    let actual = rendered.framebuffer.get(x, y).map(|part| part.to_f64());
+                    let actual = rendered.framebuffer.get(x, y).map(Arithmetic::to_f64);
                     let alpha = [f64::from(a.to_f32()), image.get(x, y)[3].into()];
                     let mut pairs = expected.into_iter().zip(actual).chain([(alpha[0], alpha[1])]);
                     let are_same = pairs.all(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan());
@@ -182,7 +183,7 @@ impl Comparison<'_> {
             let [a, b] = [handlers, native].map(|one| {
                 let buffer = &one.framebuffer;
                 (
-                    buffer.get(x, y).map(|part| part.to_f64()),
+                    buffer.get(x, y).map(Arithmetic::to_f64),
                     buffer.is_discarded(x, y),
                 )
             });
