@@ -19,7 +19,7 @@
 //!
 //! let mut files = Files::default();
 //! let file = files.add(File::new("assignment.toml", "scene = \"02-sphere.toml\"\n"));
-//! let assignment = Assignment::parse(&files, file, Path::new("glsl")).unwrap();
+//! let assignment = Assignment::parse(&files, file, Path::new("../../glsl")).unwrap();
 //! assert_eq!(assignment.frames.len(), 1);
 //! ```
 

@@ -35,8 +35,9 @@
 //!
 //! # Diagnostics
 //!
-//! The parser continues after errors. Each error has a stable code ([`Code`]), a span, and often a suggestion;
-//! [`toyproof_diagnostic`] renders it for people, editors and programs. The error of [`check`] displays them:
+//! The parser continues after errors. Each error has a stable [code](toyproof_diagnostic::Code), a span, and often
+//! a suggestion; [`toyproof_diagnostic`] renders it for people, editors and programs. The error of [`check`]
+//! displays them:
 //!
 //! ```
 //! # use toyproof_diagnostic::{File, Files};

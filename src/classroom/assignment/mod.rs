@@ -10,7 +10,7 @@
 //! let text = "scene = \"02-sphere.toml\"\n[[frame]]\nsize = [64, 36]\n[[frame]]\nsize = [36, 64]\n";
 //! let file = files.add(File::new("assignment.toml", text));
 //! // The paths in the file are relative to its folder.
-//! let assignment = Assignment::parse(&files, file, Path::new("glsl")).unwrap();
+//! let assignment = Assignment::parse(&files, file, Path::new("../../glsl")).unwrap();
 //! assert_eq!(assignment.frames.len(), 2);
 //! ```
 //!

@@ -7,7 +7,7 @@ use crate::exec::lanes::LANES;
 use crate::exec::number::Arithmetic;
 use crate::ir::EventId;
 
-/// A dynamic event: one execution of an [`Event`].
+/// A dynamic event: one execution of a static one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceEvent {
     /// The static event.

@@ -31,7 +31,7 @@ pub enum ReadError {
         /// The operating system's error.
         error: io::Error,
     },
-    /// More than [`MAX_BYTES`], or for JSON [`MAX_JSON_BYTES`].
+    /// More than [`MAX_BYTES`], or 8 MiB for JSON.
     TooLarge {
         /// The file.
         name: String,

@@ -192,7 +192,7 @@ pub(crate) struct ReferenceComparison {
     pub(crate) reseeding: Reseeding,
 }
 
-/// The number of sets of random numbers of [`noisy_pixels`].
+/// The number of sets of random numbers in which noisy pixels are sought.
 pub const MEAN_SETS: usize = 2 * REPLICATES;
 
 /// The means of a shader and of the reference at other places, each over [`MEAN_SETS`] sets of random numbers.
