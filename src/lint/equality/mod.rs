@@ -53,8 +53,8 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
     }
 }
 
-/// The comparisons in `x == 0.0 && y == 0.0`: together they test a vector for zero length, and are not
-/// reported one by one.
+/// The comparisons in `x == 0.0 && y == 0.0` and longer conjunctions: together they test a vector for zero
+/// length, and are not reported one by one.
 fn zero_vector_tests(program: &Program, function: FunctionId) -> HashSet<ExprId> {
     let tree = program.tree;
     let is_zero = |expr: ExprId| match tree[expr].kind {
@@ -70,18 +70,22 @@ fn zero_vector_tests(program: &Program, function: FunctionId) -> HashSet<ExprId>
         }),
         _ => false,
     };
-    let pairs = program
-        .exprs(function)
-        .iter()
-        .filter_map(|expr| match tree[*expr].kind {
-            ExprKind::Binary {
-                op: BinaryOp::And,
-                left,
-                right,
-            } if is_zero(left) && is_zero(right) => Some([left, right]),
-            _ => None,
-        });
-    pairs.flatten().collect()
+    // The comparisons and their conjunctions. Operands come before the expressions that have them.
+    let mut tests = HashSet::new();
+    for &expr in program.exprs(function) {
+        if let ExprKind::Binary {
+            op: BinaryOp::And,
+            left,
+            right,
+        } = tree[expr].kind
+            && [left, right]
+                .iter()
+                .all(|&side| is_zero(side) || tests.contains(&side))
+        {
+            tests.extend([left, right, expr]);
+        }
+    }
+    tests
 }
 
 /// The divisors in a function: a test for zero that guards a division is not reported.

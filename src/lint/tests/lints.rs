@@ -210,6 +210,9 @@ fn equality_of_floats() {
         W0011 if (any(notEqual(f * iTime + 0.1, vec2(1.0)))) c.x = 1.0;
         W0011 if (mod(iTime, 2.0) == 0.0) c.x = 1.0;
         W0011 float x = f.x * 0.1 - f.y * 0.3, y = f.x * 0.7 + f.y; if (x == 0.0 && y == 0.5) c.x = 1.0;
+        -     vec3 v = f.x * vec3(0.1, 0.7, 0.3) - f.y; if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) c.x = 1.0;
+        -     vec3 v = f.x * vec3(0.1, 0.7, 0.3) - f.y; if (v.x == 0.0 && (v.y == 0.0 && v.z == 0.0)) c.x = 1.0;
+        W0011 vec3 v = f.x * vec3(0.1, 0.7, 0.3) - f.y; if (v.x == 0.0 && (v.y > 0.0 && v.z > 0.0)) c.x = 1.0;
         -     float x = f.x * 0.1 - f.y * 0.3, y = f.x * 0.7 - f.y; if (x == 0.0 && y == 0.0) c.x = 1.0;
         -     if (iTime == 0.0) c.x = 1.0;
         -     if (mod(floor(f.x), 2.0) == 1.0) c.x = 1.0;
