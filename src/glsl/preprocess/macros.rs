@@ -196,12 +196,15 @@ impl Preprocessor<'_> {
             return Ok((parameters, body));
         }
         loop {
-            let [name, after, tail @ ..] = rest else {
-                let at = rest.first().map_or(open, |token| token.at);
-                return Code::MalformedDirective.refuse(at, "unclosed parameter list of a macro");
+            let unclosed = |at| Code::MalformedDirective.refuse(at, "unclosed parameter list of a macro");
+            let [name, tail @ ..] = rest else {
+                return unclosed(open);
             };
             let TokenKind::Word(parameter) = name.kind else {
                 return Code::MalformedDirective.refuse(name.at, "expected the name of a parameter");
+            };
+            let [after, tail @ ..] = tail else {
+                return unclosed(name.at);
             };
             if parameters.contains(&parameter) {
                 let message = format!("duplicate parameter `{}`", self.interner.text(parameter));

@@ -75,6 +75,22 @@ fn macros_are_rescanned_but_never_expand_recursively() {
 }
 
 #[test]
+fn messages_on_parameter_lists() {
+    for (text, wanted) in [
+        ("#define F(", "unclosed parameter list of a macro"),
+        ("#define F(x", "unclosed parameter list of a macro"),
+        ("#define F(x,", "unclosed parameter list of a macro"),
+        ("#define F(x,)", "expected the name of a parameter"),
+        ("#define F(x y", "expected `,` or `)`"),
+    ] {
+        let mut files = Files::default();
+        let file = files.add(File::new("a", text));
+        let result = preprocess(&files, file, Stage::Image, &Deadline::default());
+        assert_eq!(result.diagnostics[0].message, wanted, "{text}");
+    }
+}
+
+#[test]
 fn predefined_macros() {
     check(&[
         (
