@@ -419,17 +419,32 @@ fn nested_else_ifs_are_linearized_in_linear_time() {
     assert!(steps.is_ok_and(|steps| steps > arms as usize));
 }
 
+/// Compiles the body of `mainImage(out vec4 c, in vec2 p)`.
+fn compile(body: &str, limit: Option<std::time::Duration>) -> Result<(), Refusal> {
+    let mut files = Files::default();
+    let text = format!("void mainImage(out vec4 c, in vec2 p) {{ {body} }}");
+    let file = files.add(File::new("a", text));
+    let checked = toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default()).unwrap();
+    Program::compile(&checked, UndefinedPolicy::Plain, limit, None).map(drop)
+}
+
+#[test]
+fn too_many_variables_are_refused() {
+    let indexed = |count| {
+        let declarations =
+            (0..count).map(|number| format!("float a{number}[65536]; a{number}[int(p.x)] = p.y;"));
+        let body = declarations.collect::<String>() + "c = vec4(a0[int(p.y)]);";
+        compile(&body, None)
+    };
+    assert_eq!(indexed(1), Ok(()));
+    assert_eq!(indexed(3), Err(Refusal::TooLong));
+}
+
 #[test]
 fn compilation_respects_its_deadline() {
     use std::time::Duration;
 
-    let mut files = Files::default();
-    let file = files.add(File::new(
-        "a",
-        "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }",
-    ));
-    let checked = toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default()).unwrap();
-    let within = |limit| Program::compile(&checked, UndefinedPolicy::Plain, Some(limit), None).map(drop);
+    let within = |limit| compile("c = vec4(p, 0, 1);", Some(limit));
     let late = within(Duration::ZERO);
     assert!(matches!(late, Err(Refusal::TooSlow(_))), "{late:?}");
     assert!(within(Duration::from_secs(3600)).is_ok());

@@ -44,7 +44,7 @@ const STACK_BYTES: usize = 128 << 20;
 /// Why a shader cannot be evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// It has too many values after inlining.
+    /// It has too many values or variables after inlining.
     #[error("the shader is too large after inlining to be evaluated on the CPU")]
     TooLong,
     /// It is nested too deeply after inlining.
@@ -354,9 +354,8 @@ impl Builder<'_> {
     fn allocate_type(&mut self, ty: Type) -> Result<Cells> {
         let scalars = self.tree.scalars(ty);
         if self.cells.len() + component_count(self.tree, ty) > MAX_CELLS {
-            return Err(Refusal::NoMemory);
+            return Err(Refusal::TooLong);
         }
-
         let first = self.cells.len() as u32;
         self.cells
             .extend(scalars.iter().map(|&scalar| scalar_kind(scalar)));
