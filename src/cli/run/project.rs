@@ -58,7 +58,7 @@ fn report_replaced(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &s
     }
 }
 
-/// The number of frames before the first one that is shown from which on they are reported.
+/// Progress is reported if at least this many frames must be rendered before the first one that is shown.
 const MANY_FRAMES: u64 = 60;
 
 /// Frames in progress.
@@ -66,6 +66,19 @@ enum Playback<'a> {
     Device(DevicePlayback<'a>),
     Single(CpuPlayback<'a, f32>),
     Double(CpuPlayback<'a, f64>),
+}
+
+/// What renders the frames.
+enum Renderer<'w> {
+    Device(DevicePlayback<'w>),
+    /// The evaluator, with the programs of the passes.
+    Evaluator(Vec<Program>),
+}
+
+/// What renders the frames, and whether a driver was needed and not found.
+struct Backend<'w> {
+    renderer: Renderer<'w>,
+    has_no_driver: bool,
 }
 
 /// Why a frame was not rendered.
@@ -257,36 +270,23 @@ impl Runner<'_> {
         });
         let interrupt = self.args.state.is_none().then_some(&*interrupted);
         let limit = self.args.driver.explicit_timeout();
-        let evaluates = worker.is_none()
-            || self.args.precision == Precision::F64
-            || self.prefers_evaluator && !(has_history && scheduled.is_filtering());
-        let mut programs = None;
-        if evaluates {
-            match scheduled.programs(limit) {
-                Err((_, refusal)) if worker.is_some() && is_too_large(&refusal.into()) => {}
-                result => programs = Some(compiled_programs(result, shader)?),
-            }
-        }
-        let opened = match worker {
-            Some(worker) if programs.is_none() => self.open(worker, &scheduled, state.as_ref(), shader)?,
-            _ => None,
-        };
-        let has_no_driver = opened.is_none() && programs.is_none();
-        let compiled;
-        let playback = if let Some(playback) = opened {
-            Playback::Device(playback)
-        } else {
-            compiled = match programs {
-                Some(programs) => programs,
-                None => compiled_programs(scheduled.programs(limit), shader)?,
-            };
-            let state = state.as_ref();
-            match self.args.precision {
-                Precision::F32 => {
-                    Playback::Single(CpuPlayback::new(&scheduled, &compiled, state, limit, interrupt))
-                }
-                Precision::F64 => {
-                    Playback::Double(CpuPlayback::new(&scheduled, &compiled, state, limit, interrupt))
+        let state = state.as_ref();
+        let Backend {
+            renderer,
+            has_no_driver,
+        } = self.backend(worker, shader, &scheduled, state, has_history)?;
+        let programs;
+        let playback = match renderer {
+            Renderer::Device(playback) => Playback::Device(playback),
+            Renderer::Evaluator(compiled) => {
+                programs = compiled;
+                match self.args.precision {
+                    Precision::F32 => {
+                        Playback::Single(CpuPlayback::new(&scheduled, &programs, state, limit, interrupt))
+                    }
+                    Precision::F64 => {
+                        Playback::Double(CpuPlayback::new(&scheduled, &programs, state, limit, interrupt))
+                    }
                 }
             }
         };
@@ -315,6 +315,46 @@ impl Runner<'_> {
             *worker = None;
         }
         saved.map(|()| exit)
+    }
+
+    /// Chooses what renders the frames: the evaluator if it suffices, else the driver, and the evaluator also if
+    /// no driver is found.
+    fn backend<'w>(
+        &self,
+        worker: &'w mut Option<Worker>,
+        shader: &Shader,
+        scheduled: &PassShader<'_>,
+        state: Option<&State>,
+        has_history: bool,
+    ) -> Result<Backend<'w>, CliError> {
+        let limit = self.args.driver.explicit_timeout();
+        let evaluates = worker.is_none()
+            || self.args.precision == Precision::F64
+            || self.prefers_evaluator && !(has_history && scheduled.is_filtering());
+        if evaluates {
+            match scheduled.programs(limit) {
+                Err((_, refusal)) if worker.is_some() && is_too_large(&refusal.into()) => {}
+                programs => {
+                    return Ok(Backend {
+                        renderer: Renderer::Evaluator(compiled_programs(programs, shader)?),
+                        has_no_driver: false,
+                    });
+                }
+            }
+        }
+        let opened = match worker {
+            Some(worker) => self.open(worker, scheduled, state, shader)?,
+            None => None,
+        };
+        let has_no_driver = opened.is_none();
+        let renderer = match opened {
+            Some(playback) => Renderer::Device(playback),
+            None => Renderer::Evaluator(compiled_programs(scheduled.programs(limit), shader)?),
+        };
+        Ok(Backend {
+            renderer,
+            has_no_driver,
+        })
     }
 
     /// What renders a pass, with the textures that the user binds to the channels of the image.
