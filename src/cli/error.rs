@@ -36,8 +36,8 @@ impl CliError {
         }
     }
 
-    /// An error of which nothing is printed: standard output failed, which has been reported, or the user
-    /// interrupted the command.
+    /// An error that prints nothing: writing to standard output failed, which has been reported, or the
+    /// user interrupted the command.
     pub(super) fn silent() -> Self {
         Self {
             diagnostics: None,

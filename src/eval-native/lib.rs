@@ -40,9 +40,9 @@ const COMPILER: Option<&'static dyn NativeCompiler> = None;
 
 /// A [`toyproof_eval::Program`] with machine code.
 ///
-/// The evaluator does not depend on a compiler to machine code, but is given one. That is decided by the type,
-/// not by a parameter at each of the fifty calls that compile a shader, nor by a registration at run time,
-/// which could come too late: whoever imports this type has machine code.
+/// The evaluator does not depend on a compiler to machine code; the type of the program chooses one. A
+/// parameter would be repeated at each of the fifty calls that compile a shader, and a registration at run
+/// time could come too late.
 #[derive(Debug)]
 pub struct Program(toyproof_eval::Program);
 

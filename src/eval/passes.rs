@@ -78,7 +78,7 @@ impl<'a, N: Number> PassRenderer<'a, N> {
     }
 }
 
-/// A frame with these channels, of which some read `media`.
+/// A frame with these channels, some of which read `media`.
 #[must_use]
 pub fn bound(frame: &Frame, channels: [Channel<'_, Texture>; 4], media: &[Texture]) -> Frame {
     Frame {

@@ -84,13 +84,13 @@ impl<'a> Search<'a> {
         if let Some(permitted) = self.permitted(&evidence) {
             return permitted;
         }
-        // From here on, the verdict is final.
         let Settled {
             ruling,
             mistake,
             reseeding,
             compares_means,
         } = self.settle(evidence);
+        // From here on, the verdict is final.
         let tolerated_mistake = if compares_means {
             None
         } else {

@@ -22,7 +22,7 @@
 //! - `program`: facts that all lints share: reachable functions, definitions of variables.
 //! - `uninit`, `unset`, `unused`, `uncalled`: variables, inputs, values and functions.
 //! - `equality`, `edges`, `fraction`, `randomness`: results that rounding decides, or that are undefined.
-//! - `direction`, `quadratic`: formulas for rays and spheres.
+//! - `direction`: directions of rays that are not normalized.
 //! - `iteration`, `uniformity`: loops, and derivatives in non-uniform control flow.
 //! - `allow`: comments that suppress warnings.
 

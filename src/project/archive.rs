@@ -329,7 +329,7 @@ impl Mode {
     }
 }
 
-/// Packs files, each with its path. The same files give the same bytes: times are those of no file.
+/// Packs files, each with its path. The same files give the same bytes, since no times of files are stored.
 ///
 /// # Errors
 /// If a file is too large for the format.

@@ -61,7 +61,7 @@ pub struct Input {
     pub source: Source,
     /// How it is sampled.
     pub sampler: Sampler,
-    /// Where it stands in the project's JSON or TOML; none if it is assumed.
+    /// Where it stands in the project's JSON or TOML, or `None` if it is assumed.
     pub span: Option<Span>,
 }
 

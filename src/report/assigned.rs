@@ -42,7 +42,7 @@ pub struct FunctionRecord {
     pub name: String,
     /// The points for a function that is right in all cases.
     pub points: f64,
-    /// Whether it is.
+    /// Whether the function is right in all cases.
     pub passed: bool,
     /// The number of cases; 0 if the function was not tested.
     pub cases: u64,

@@ -9,7 +9,7 @@ pub enum Hints {
     None,
     /// The likely mistake, the lines of the fix or the suspect lines, and what only the reference uses.
     Line,
-    /// Also the edits.
+    /// All of that, and the edits.
     Fix,
 }
 

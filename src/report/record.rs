@@ -160,7 +160,7 @@ pub struct Record {
     pub seconds: Seconds,
 }
 
-/// The result of the checks of a shader in one frame, of which a record is made.
+/// The result of the checks of a shader in one frame, from which [`Record::new`] makes a record.
 #[derive(Debug)]
 pub struct FrameResult<'a> {
     /// The name of the shader, as the user gave it.

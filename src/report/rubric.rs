@@ -61,10 +61,10 @@ pub enum Visibility {
 /// The images that students see next to their marks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum StudentImages {
-    /// Their own, the reference, and the difference.
+    /// The rendered image, the reference, and the difference.
     #[default]
     All,
-    /// Their own.
+    /// The rendered image.
     Rendered,
     /// None.
     None,

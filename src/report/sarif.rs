@@ -203,7 +203,7 @@ fn verdict_result(
     }
 }
 
-/// A late submission, also if its shader is right.
+/// The result for a late submission, whether its shader is right or wrong.
 fn late_result(record: &Record, late: Late, rules: &mut Rules) -> SarifResult {
     const TITLE: &str = "The submission is late";
     SarifResult {

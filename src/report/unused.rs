@@ -3,7 +3,8 @@
 use toyproof_diagnostic::Files;
 use toyproof_explain::unused::Unused;
 
-/// Sentences for the details of a wrong shader. `files` are those of the reference.
+/// Sentences on the inputs and functions that only the reference uses, for the details of a wrong shader.
+/// `files` are the reference's.
 pub(super) fn sentences(unused: &Unused, files: &Files) -> Vec<String> {
     let names: Vec<_> = unused.inputs.iter().map(|name| format!("`{name}`")).collect();
     let inputs = match &names[..] {

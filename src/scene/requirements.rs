@@ -21,7 +21,7 @@ pub struct Requirements {
     pub patterns: bool,
     /// A camera that is turned.
     pub turned_camera: bool,
-    /// So many spheres that an acceleration structure pays.
+    /// Enough spheres that an acceleration structure saves time.
     pub many_spheres: bool,
     /// Secondary rays: mirrors, glass, sampled directions.
     pub secondary_rays: bool,

@@ -259,8 +259,7 @@ impl<'r, 't> Table<'r, 't> {
         found
     }
 
-    /// Returns the value of a key that may be missing; `None`, also if it has another type, which is
-    /// reported.
+    /// Returns the value of an optional key. A value of another type is reported and gives `None`.
     pub fn optional<T: Value>(&mut self, key: &'static str) -> Option<Located<T>> {
         if matches!(self.place, Place::Root) {
             self.reader.top_level.borrow_mut().push(key);

@@ -38,8 +38,8 @@ pub enum Model<'a> {
 }
 
 impl Model<'_> {
-    /// The frames in which shaders should be compared with the model: one, and another for the time and for the
-    /// mouse if the image may depend on them.
+    /// The frames in which shaders should be compared with the model: the first frame, one at
+    /// another time if the image may depend on time, and one with the mouse if it may depend on the mouse.
     #[must_use]
     pub fn frames(&self) -> Vec<FrameInputs> {
         let size = match self {
@@ -98,7 +98,7 @@ impl Model<'_> {
             .map(|(_, function)| function);
         let defined = functions.filter(|function| function.body.is_some() && function.name != "mainImage");
         let mut names: Vec<_> = defined.map(|function| function.name.as_str()).collect();
-        // Overloads follow each other or not.
+        // Overloads need not follow each other.
         names.sort_unstable();
         names.dedup();
         names

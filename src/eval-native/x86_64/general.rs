@@ -105,7 +105,7 @@ impl Assembler {
         self.bytes(&[count]);
     }
 
-    /// The number of the lowest bit that is set, of 32.
+    /// The index of the lowest set bit of a 32-bit word.
     pub(super) fn lowest_bit32(&mut self, to: Gpr, from: Gpr) {
         self.legacy(&[0xF3], &[0x0F, 0xBC], false, to.0, Source::Register(from.0), 0);
     }

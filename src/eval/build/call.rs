@@ -11,7 +11,7 @@ use crate::ir::{CallId, Cells, Node, Value};
 /// An evaluated argument.
 struct Argument {
     values: Vec<Value>,
-    /// The channel of a sampler; none if it is not bound.
+    /// The channel of a sampler, or `None` if it is not bound.
     channel: Option<u8>,
     /// The part of a variable that is copied in when the call begins, if the values are not read before.
     copy_in: Option<LValue>,
@@ -129,7 +129,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Returns the channel of a sampler; none if it is not bound.
+    /// Returns the channel of a sampler, or `None` if it is not bound.
     pub(super) fn channel(&mut self, sampler: ExprId) -> Option<u8> {
         let ExprKind::Variable(variable) = self.tree[sampler].kind else {
             return None;

@@ -69,7 +69,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Returns the word of a predicate; none if it depends on more than values, or if the result is defined.
+    /// Returns the word of a predicate, or `None` if it depends on more than values or the result is defined.
     fn predicate_value(&self, predicate: Predicate, [a, b]: [Value; 2]) -> Option<Value> {
         use Operation as O;
         let outside = |low: f64, high: f64| {

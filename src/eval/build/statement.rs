@@ -263,7 +263,7 @@ impl Builder<'_> {
         a.map_or(b, |a| self.binary(Operation::Or, a, b))
     }
 
-    /// Returns whether the selector matches one of the labels; none if there are no labels.
+    /// Returns whether the selector matches one of the labels, or `None` if there are no labels.
     fn any_label<'b>(&self, selector: Value, labels: impl IntoIterator<Item = &'b Label>) -> Option<Value> {
         let mut any = None;
         for label in labels {

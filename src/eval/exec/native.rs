@@ -21,8 +21,8 @@ pub trait NativeCompiler: Debug + Sync {
 
 /// The machine code of a program.
 pub trait NativeProgram: Debug + Send + Sync {
-    /// Returns the code for a frame; none if there is none for the program, the format, the engine or this
-    /// processor. All calls are given the same program.
+    /// Returns the code for a frame, or `None` if the program, the format, the engine or this processor has
+    /// none. All calls are given the same program.
     fn frame<'a>(&'a self, code: NativeInput<'a>, engine: Engine) -> Option<Box<dyn NativeFrame + 'a>>;
 }
 

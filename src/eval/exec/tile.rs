@@ -28,7 +28,7 @@ use crate::lower::regalloc::Location;
 const CHUNK_COLUMNS: usize = TILE_COLUMNS / 2;
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
-/// The number of pixels from which on making machine code pays.
+/// The smallest number of pixels for which compiling to machine code takes less time than it saves.
 const MIN_NATIVE_PIXELS: u64 = 4096;
 
 /// A frame that is being rendered.

@@ -261,7 +261,7 @@ impl Constant {
         }
     }
 
-    /// Makes a scalar, vector or matrix of its components, in column order.
+    /// Makes a scalar, vector or matrix from its components, in column order.
     #[must_use]
     pub fn of_components(ty: Type, components: Vec<Value>) -> Self {
         let content = match components[..] {
@@ -271,7 +271,7 @@ impl Constant {
         Self { ty, content }
     }
 
-    /// Makes a structure or array of its members or elements.
+    /// Makes a structure or array from its members or elements.
     #[must_use]
     pub fn of_parts(ty: Type, parts: Vec<Self>) -> Self {
         let counts = parts.iter().map(Self::scalar_count);

@@ -11,7 +11,7 @@ pub(super) fn vector([x, y, z]: [f64; 3]) -> String {
     format!("vec3({}, {}, {})", number(x), number(y), number(z))
 }
 
-/// Returns the functions that move points; none if nothing moves.
+/// Returns the functions that move points, or no functions if nothing moves.
 pub(super) fn motion_functions(motions: &[Motion]) -> Vec<String> {
     if motions.is_empty() {
         return Vec::new();

@@ -72,7 +72,8 @@ impl ValidModule {
                     .collect::<Vec<_>>()
             })?;
         naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-        // naga's Metal writer adds declarations to modules with a policy of zeros, whether these fetch or not.
+        // naga's Metal writer adds declarations to modules with a policy of zeros, whether or not they fetch
+        // texels.
         let fetches = if lowered.checks_fetches() || !has_fetches(&module) {
             Fetches::Checked
         } else {

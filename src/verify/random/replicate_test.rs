@@ -53,11 +53,11 @@ pub struct ReplicateTest {
     pub is_uniform: bool,
 }
 
-/// The significance threshold in standard deviations; some hundred sums are tested.
+/// The significance threshold in standard deviations, for some hundred tests of sums.
 const SIGMA_LIMIT: f64 = 5.0;
 
-/// The same where neighbors use the same random numbers, so that the variance of sums is estimated from the
-/// eight replicates alone: Student's t with seven degrees of freedom exceeds it with a probability of
+/// The threshold where neighbors use the same random numbers, so that the variance of sums is estimated from
+/// the eight replicates alone: Student's t with seven degrees of freedom exceeds it with a probability of
 /// 1/50,000.
 const CORRELATED_SIGMA_LIMIT: f64 = 10.0;
 

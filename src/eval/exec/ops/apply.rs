@@ -216,7 +216,7 @@ fn to_uint(x: f64) -> u32 {
     }
 }
 
-/// Evaluates an operation on words; none if it is an operation on floats.
+/// Evaluates an operation on words. Returns `None` for an operation on floats.
 pub(crate) fn fold(operation: Operation, [a, b, c]: [u32; 3]) -> Option<u32> {
     macro_rules! word {
         ($name:ident(W) W) => {

@@ -18,7 +18,7 @@ use crate::opt::rollback::RollbackMap;
 /// Alias groups of more cells are not tracked cell by cell.
 const MAX_TRACKED_CELLS: u32 = 256;
 
-/// Evaluates an operation on words; none if it is an operation on floats.
+/// Evaluates an operation on words. Returns `None` for an operation on floats.
 pub(crate) type Fold = fn(Operation, [u32; 3]) -> Option<u32>;
 
 /// Rewrites a function; `fold` has the semantics of operations. A traced run may replace values, so that

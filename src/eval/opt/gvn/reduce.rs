@@ -26,7 +26,8 @@ impl ValueNumbering<'_> {
         }
     }
 
-    /// Returns the reciprocal of a constant power of two, unless one of both is not normal in f32.
+    /// Returns the reciprocal of a constant power of two, unless the constant or its reciprocal is not normal
+    /// in f32.
     fn exact_reciprocal(&self, value: Value) -> Option<f64> {
         let ValueDef::Float(bits) = self.function.def(value) else {
             return None;
