@@ -1,8 +1,8 @@
 //! Checks, renders and converts ShaderToy shaders, and states how far each image can be trusted.
 //!
-//! A ShaderToy shader is a GLSL function `mainImage(out vec4 color, in vec2 position)` that is called for each
-//! pixel. If its image differs from the expected one, three things can be at fault, and one comparison cannot
-//! tell them apart. So there are three **checks**, each of which compares two images pixel by pixel:
+//! A ShaderToy shader is a GLSL function `mainImage(out vec4 color, in vec2 position)` that is called for
+//! each pixel. If its image differs from the expected one, three things can be at fault, and one comparison
+//! cannot tell them apart. So there are three **checks**, each of which compares two images pixel by pixel:
 //!
 //! | check | expected | actual | a difference means |
 //! |---|---|---|---|
@@ -10,17 +10,17 @@
 //! | precision | the shader in double precision | the shader in float32 | float32 is not enough for this formula |
 //! | toolchain | the shader in float32 on the CPU | the shader in float32 on the GPU, to the bit | naga, our translation or the driver is wrong |
 //!
-//! In double precision two equivalent formulas agree to far below what an eye can see, whatever their style, and
-//! a bug does not. Some pixels are special:
+//! In double precision two equivalent formulas agree to far below what an eye can see, whatever their style,
+//! and a bug does not. Some pixels are special:
 //!
 //! - A pixel that changes when every operation is perturbed by a unit in the last place is **ill-conditioned**:
 //!   no precision would settle it, and it is not held against the shader.
 //! - A pixel that depends on **undefined behavior** (an index out of bounds, `pow` of a negative base, a
 //!   derivative across an edge) is counted separately and left out of the checks.
 //!
-//! A **strict** run makes the bits of float32 comparable: operations carry SPIR-V's `NoContraction`, and `sin`,
-//! `exp`, `pow` and their like are expanded to operations that all drivers and CPUs round alike. A **fast** run
-//! gives the shader to the driver unchanged; it has no toolchain check.
+//! A **strict** run makes the bits of float32 comparable: operations carry SPIR-V's `NoContraction`, and
+//! `sin`, `exp`, `pow` and their like are expanded to operations that all drivers and CPUs round alike. A
+//! **fast** run gives the shader to the driver unchanged; it has no toolchain check.
 //!
 //! # Features
 //!

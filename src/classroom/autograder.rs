@@ -1,4 +1,5 @@
-//! The archive of an autograder for Gradescope: an assignment, the program, and the scripts that Gradescope runs.
+//! The archive of an autograder for Gradescope: an assignment, the program, and the scripts that Gradescope
+//! runs.
 
 use std::io;
 use std::path::{Component, Path, PathBuf};

@@ -1,5 +1,5 @@
-//! What a teacher needs beyond the check of one shader: assignments, submissions of a class, autograders, and the
-//! similarity of shaders.
+//! What a teacher needs beyond the check of one shader: assignments, submissions of a class, autograders, and
+//! the similarity of shaders.
 //!
 //! # Parts
 //!

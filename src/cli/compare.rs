@@ -12,8 +12,8 @@ use super::{CliError, Exit, Terminal};
 
 /// Compare two images: exit code 0 if they agree, 1 if they differ
 ///
-/// Pixels differ if a component differs by more than 0.001, or, if an image is a PNG, by more than one of its 256
-/// levels: that is rounding.
+/// Pixels differ if a component differs by more than 0.001, or, if an image is a PNG, by more than one of its
+/// 256 levels: that is rounding.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Example:

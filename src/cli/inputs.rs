@@ -227,7 +227,8 @@ pub(super) struct DriverArgs {
     /// same bits on every device. fast: native functions, and the driver may rearrange arithmetic.
     #[arg(long, value_enum, value_name = "MODE", hide_possible_values = true)]
     float: Option<Float>,
-    /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m) [default: 10s; for `run`: none]
+    /// The time limit for one shader: seconds, or a number with a unit (500ms, 2m) [default: 10s; for `run`:
+    /// none]
     #[arg(long, value_name = "TIME", value_parser = parse_time_limit)]
     timeout: Option<Duration>,
 }

@@ -35,14 +35,16 @@ enum What {
     Scene(SceneArgs),
     /// Create an assignment: a folder with a model solution, what shaders are checked against, and thumbnails
     ///
-    /// From a shader, the model solution is the reference, in one frame and in further ones for the time and the
-    /// mouse if it reads them. From a scene, the scene is the reference, and the model solution is exported from it.
+    /// From a shader, the model solution is the reference, in one frame and in further ones for the time and
+    /// the mouse if it reads them. From a scene, the scene is the reference, and the model solution is
+    /// exported from it.
     #[command(
         after_long_help = "Example:\n  toyproof new assignment shadows --from solution.glsl\n  \
                            toyproof check homework --assignment shadows/assignment.toml"
     )]
     Assignment(AssignmentArgs),
-    /// Create a class: its students, and the files, assignments and deadlines of its submissions, with comments
+    /// Create a class: its students, and the files, assignments and deadlines of its submissions, with
+    /// comments
     #[command(after_long_help = "Example:\n  toyproof new class spring\n  \
                            toyproof check moodle.zip --class spring.toml --out marks")]
     Class(ClassArgs),
@@ -166,8 +168,8 @@ fn new_class(args: &ClassArgs, terminal: &Terminal) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Creates a file from a template, `NAME.toml` unless another is given, which may be standard output; returns the
-/// path of a file.
+/// Creates a file from a template, `NAME.toml` unless another is given, which may be standard output; returns
+/// the path of a file.
 fn create_file(
     name: &str,
     output: Option<&Path>,

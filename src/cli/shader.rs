@@ -231,8 +231,8 @@ pub(super) fn find_one(
     }
 }
 
-/// Finds shaders as [`find`] does. A folder in a searched one whose only shaders are in texts and archives has an
-/// error, so that no student is overlooked.
+/// Finds shaders as [`find`] does. A folder in a searched one whose only shaders are in texts and archives
+/// has an error, so that no student is overlooked.
 pub(super) fn find_submissions(arguments: &[PathBuf], terminal: &Terminal) -> Vec<Result<Input, ReadError>> {
     find_in(arguments, terminal, add_unread)
 }

@@ -1,6 +1,6 @@
-//! Conversions of shaders with several passes, and their proofs: the written files are played for some frames,
-//! in the order and with the samplers of the written graph, together with the original shader, and the bits
-//! of all passes are compared.
+//! Conversions of shaders with several passes, and their proofs: the written files are played for some
+//! frames, in the order and with the samplers of the written graph, together with the original shader, and
+//! the bits of all passes are compared.
 
 use std::fmt;
 
@@ -135,8 +135,8 @@ impl PassesProof {
 }
 
 impl Converter {
-    /// Converts the passes of a shader; `translator` runs naga. With a prover, the conversion is proved too, as
-    /// `graph` determines how it is played. If plain WGSL is not proved, naga writes all passes.
+    /// Converts the passes of a shader; `translator` runs naga. With a prover, the conversion is proved too,
+    /// as `graph` determines how it is played. If plain WGSL is not proved, naga writes all passes.
     ///
     /// # Errors
     /// The number of the first pass that cannot be converted, and why.
@@ -268,8 +268,8 @@ impl PassComparison {
         }
     }
 
-    /// Compares the pass in a frame, and returns whether all bits are equal. The sign of a zero and the bits of
-    /// NaN are open.
+    /// Compares the pass in a frame, and returns whether all bits are equal. The sign of a zero and the bits
+    /// of NaN are open.
     pub(super) fn add(&mut self, frame: &PlayedFrame, actual: &Image, undefined: &[bool]) -> bool {
         let expected = frame.texture(self.target);
         let same = |a: f32, b: f32| a == b || a.is_nan() && b.is_nan();

@@ -28,8 +28,8 @@ pub fn wrap(prefix: &str, indent: usize, text: &str, width: Option<usize>) -> St
     textwrap::fill(text, options).trim_end().to_owned()
 }
 
-/// Aligns the cells of a table; the columns of the indices `right` are aligned to the right. Each line starts with
-/// `indent` and does not end with spaces.
+/// Aligns the cells of a table; the columns of the indices `right` are aligned to the right. Each line starts
+/// with `indent` and does not end with spaces.
 #[must_use]
 pub fn columns(indent: &str, rows: &[Vec<String>], right: &[usize]) -> Vec<String> {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);

@@ -13,8 +13,8 @@ use crate::{Edit, Files, Fix, Span, wrap};
 /// Maximum length of a displayed source line in bytes; a longer line would bury the message.
 const MAX_SHOWN_LINE_BYTES: usize = 400;
 
-/// Renders the message with its source lines, carets, notes and help, which are wrapped at `width` columns, if
-/// any; with ANSI colors if `color`.
+/// Renders the message with its source lines, carets, notes and help, which are wrapped at `width` columns,
+/// if any; with ANSI colors if `color`.
 #[must_use]
 pub fn human(diagnostic: &Diagnostic, files: &Files, width: Option<usize>, color: bool) -> String {
     let diagnostic = &diagnostic.in_origin(files);
@@ -93,9 +93,9 @@ pub fn short(diagnostic: &Diagnostic, files: &Files) -> String {
     json(diagnostic, files).to_string()
 }
 
-/// The JSON form of a diagnostic. Lines and columns count from 1, columns in characters (Unicode scalar values,
-/// not bytes or UTF-16 units). As in the Language Server Protocol, the end is exclusive: the position after the
-/// last character. A missing text has equal start and end.
+/// The JSON form of a diagnostic. Lines and columns count from 1, columns in characters (Unicode scalar
+/// values, not bytes or UTF-16 units). As in the Language Server Protocol, the end is exclusive: the position
+/// after the last character. A missing text has equal start and end.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Json {
     /// The severity.
@@ -177,7 +177,8 @@ pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
     }
 }
 
-/// Merges all edits of a diagnostic's fixes into one replacement: of the text from the first edit to the last.
+/// Merges all edits of a diagnostic's fixes into one replacement: of the text from the first edit to the
+/// last.
 fn json_fix(diagnostic: &Diagnostic, files: &Files) -> Option<JsonFix> {
     let whole = diagnostic.fixes.iter().filter_map(Fix::span).reduce(Span::to)?;
     let mut edits: Vec<&Edit> = diagnostic.fixes.iter().flat_map(|fix| &fix.edits).collect();

@@ -43,8 +43,8 @@ fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(escaped)
 }
 
-/// A text for a cell of a spreadsheet: without control characters, as from [`printable`], and with an apostrophe
-/// before text that a spreadsheet reads as a formula.
+/// A text for a cell of a spreadsheet: without control characters, as from [`printable`], and with an
+/// apostrophe before text that a spreadsheet reads as a formula.
 #[must_use]
 pub fn spreadsheet_text(text: &str) -> String {
     let text = printable(text);

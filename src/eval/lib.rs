@@ -1,7 +1,7 @@
 //! Evaluates a checked shader on the CPU, without a driver: in float32 with the bits of the strict GPU run,
-//! in double precision, or in double precision with randomly rounded operations. The input is the typed tree of
-//! the source, not the lowered one and not naga's module, so that errors of the lowering, of naga and of drivers
-//! appear as differences.
+//! in double precision, or in double precision with randomly rounded operations. The input is the typed tree
+//! of the source, not the lowered one and not naga's module, so that errors of the lowering, of naga and of
+//! drivers appear as differences.
 //!
 //! Each instruction is applied to a batch of pixels, which amortizes the cost of dispatch; values that are
 //! uniform in a batch are computed once.
@@ -52,17 +52,18 @@
 //!
 //! # Undefined behavior
 //!
-//! GLSL leaves some operations undefined: an index out of bounds, an integer division by zero, a shift by 32 or
-//! more, a conversion of a float that does not fit, `smoothstep` with equal edges, `pow` of a negative base.
-//! [`UndefinedPolicy`] chooses what they give. The shader is rendered with different substitutes, and a pixel
-//! depends on undefined behavior only if its color does: an unused out-of-bounds element does not count.
-//! [`Observations`] counts such operations by source position, as well as reads of uninitialized
+//! GLSL leaves some operations undefined: an index out of bounds, an integer division by zero, a shift by 32
+//! or more, a conversion of a float that does not fit, `smoothstep` with equal edges, `pow` of a negative
+//! base. [`UndefinedPolicy`] chooses what they give. The shader is rendered with different substitutes, and a
+//! pixel depends on undefined behavior only if its color does: an unused out-of-bounds element does not
+//! count. [`Observations`] counts such operations by source position, as well as reads of uninitialized
 //! variables, which give zero as in WebGL, and iterations of loops.
 //!
 //! # Traces
 //!
-//! [`PixelDebugger`] runs single pixels and records what they compute ([`ExecutionTrace`]). A [`ForcedPrefix`]
-//! imposes recorded values on a run in another number type, which finds the operation that loses the digits.
+//! [`PixelDebugger`] runs single pixels and records what they compute ([`ExecutionTrace`]). A
+//! [`ForcedPrefix`] imposes recorded values on a run in another number type, which finds the operation that
+//! loses the digits.
 
 #![expect(
     clippy::inline_always,

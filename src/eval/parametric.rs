@@ -1,6 +1,6 @@
 //! Shaders with parameters: uniforms whose values are given for each point. Many variants of a shader,
-//! selected by parameters, are compiled once, and evaluated side by side at a few points each, without machine
-//! code, which does not pay.
+//! selected by parameters, are compiled once, and evaluated side by side at a few points each, without
+//! machine code, which does not pay.
 
 use std::cell::RefCell;
 use std::time::Duration;

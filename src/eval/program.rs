@@ -24,8 +24,8 @@ pub struct Program {
     plain: OnceLock<Result<Executable, Refusal>>,
     /// The variant that records traces; compiled on first use.
     traced: OnceLock<Result<Executable, Refusal>>,
-    /// The time limit for compiling the first variant. The others are about as large, and what they are compiled
-    /// for must not depend on the load of the machine.
+    /// The time limit for compiling the first variant. The others are about as large, and what they are
+    /// compiled for must not depend on the load of the machine.
     limit: Option<Duration>,
 }
 

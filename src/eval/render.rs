@@ -53,8 +53,8 @@ impl Program {
         })
     }
 
-    /// Renders a band of rows of a frame, such as those of [`Frame::bands`], rounded to f32. Observations have
-    /// positions in the frame; the image's coordinates are relative to the band.
+    /// Renders a band of rows of a frame, such as those of [`Frame::bands`], rounded to f32. Observations
+    /// have positions in the frame; the image's coordinates are relative to the band.
     ///
     /// # Errors
     /// As [`Self::render`].

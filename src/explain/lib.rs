@@ -1,9 +1,9 @@
 //! Explains why an image is wrong or imprecise: [`check`] runs the three checks of `toyproof_verify`, and
 //! [`explain`] searches for what explains a difference.
 //!
-//! A wrong image is compared with those of classic mistakes ([`known`]) and with the expected image as a whole
-//! ([`whole_image`]); edits of the shader's text are tried until its image is the expected one ([`repair`]). An
-//! imprecise image is traced to the operation that loses the digits.
+//! A wrong image is compared with those of classic mistakes ([`known`]) and with the expected image as a
+//! whole ([`whole_image`]); edits of the shader's text are tried until its image is the expected one
+//! ([`repair`]). An imprecise image is traced to the operation that loses the digits.
 //!
 //! # Example
 //!
@@ -77,7 +77,8 @@ pub struct Explanation {
     pub search: Option<SearchResult>,
     /// The known mistake that explains the few differing pixels of a correct image.
     pub tolerated_mistake: Option<Diagnosis>,
-    /// Whether the explanation was cut by its time limit, which only a hang reaches: it may be another one elsewhere.
+    /// Whether the explanation was cut by its time limit, which only a hang reaches: it may be another one
+    /// elsewhere.
     pub is_cut_by_time: bool,
     /// Notes about unbound channels and about the place where the shader loses precision.
     pub notes: Vec<Diagnostic>,
@@ -137,8 +138,8 @@ impl Findings {
     }
 }
 
-/// Runs the three checks, and explains a difference. Without a `driver`, the evaluator renders the image, and there
-/// is no toolchain check.
+/// Runs the three checks, and explains a difference. Without a `driver`, the evaluator renders the image, and
+/// there is no toolchain check.
 ///
 /// # Errors
 /// Returns why there is no image of the shader.

@@ -24,8 +24,8 @@ const MAX_PAIRS: usize = 512;
 /// The largest numbers of columns and of rows of pixels with which repairs of a stochastic shader are tried.
 const NOISY_SIDE: u32 = 24;
 
-/// Explains why an image is wrong or imprecise. The verdict is that of the checks, unless the difference is permitted
-/// (`correct`), or no mistake explains it and the means or the rays of the shader do.
+/// Explains why an image is wrong or imprecise. The verdict is that of the checks, unless the difference is
+/// permitted (`correct`), or no mistake explains it and the means or the rays of the shader do.
 #[must_use]
 pub fn explain(verified: &Verified, options: &Options) -> Explanation {
     let Some(subject) = verified.subject() else {

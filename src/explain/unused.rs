@@ -12,8 +12,8 @@ use toyproof_verify::random::reachable_expressions;
 pub struct Unused {
     /// The names of the inputs that only the reference reads, such as `iMouse`.
     pub inputs: Vec<String>,
-    /// The names of functions that the shader defines and never calls, each with the first call of a function of
-    /// this name in the reference.
+    /// The names of functions that the shader defines and never calls, each with the first call of a function
+    /// of this name in the reference.
     pub functions: Vec<(String, Span)>,
 }
 

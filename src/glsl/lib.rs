@@ -1,5 +1,5 @@
-//! A front end for GLSL ES 3.00 as ShaderToy runs it: turns source text into a typed tree, or into diagnostics
-//! that a student can act on. It does not depend on any consumer of the tree.
+//! A front end for GLSL ES 3.00 as ShaderToy runs it: turns source text into a typed tree, or into
+//! diagnostics that a student can act on. It does not depend on any consumer of the tree.
 //!
 //! ```text
 //! text ─► preprocess ─► tokens ─► parse ─(calls)─► check ─► tree
@@ -12,10 +12,11 @@
 //!
 //! # The tree
 //!
-//! [`Checked`] holds a [`tree::Tree`]: functions, variables and expressions lie in arenas and are named by ids,
-//! such as [`tree::ExprId`]. Every expression has a type, one parent, and its place in the source, also if a
-//! macro expanded to it. Literals stay as they are written, so that a consumer can read `0.1` as float32 or as
-//! double precision. Implicit initializations, such as ShaderToy's black color, are not part of the tree.
+//! [`Checked`] holds a [`tree::Tree`]: functions, variables and expressions lie in arenas and are named by
+//! ids, such as [`tree::ExprId`]. Every expression has a type, one parent, and its place in the source, also
+//! if a macro expanded to it. Literals stay as they are written, so that a consumer can read `0.1` as float32
+//! or as double precision. Implicit initializations, such as ShaderToy's black color, are not part of the
+//! tree.
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};
@@ -35,9 +36,9 @@
 //!
 //! # Diagnostics
 //!
-//! The parser continues after errors. Each error has a stable [code](toyproof_diagnostic::Code), a span, and often
-//! a suggestion; [`toyproof_diagnostic`] renders it for people, editors and programs. The error of [`check`]
-//! displays them:
+//! The parser continues after errors. Each error has a stable [code](toyproof_diagnostic::Code), a span, and
+//! often a suggestion; [`toyproof_diagnostic`] renders it for people, editors and programs. The error of
+//! [`check`] displays them:
 //!
 //! ```
 //! # use toyproof_diagnostic::{File, Files};
@@ -134,8 +135,8 @@ pub struct Checked {
     pub control_comments: Vec<ControlComment>,
     /// The macros, which diagnostics name.
     pub expansions: Expansions,
-    /// Names in branches of `#if` that are not compiled, and in the replacements of macros: with other macros,
-    /// or a use of them, the shader may use what these names declare.
+    /// Names in branches of `#if` that are not compiled, and in the replacements of macros: with other
+    /// macros, or a use of them, the shader may use what these names declare.
     pub unexpanded_names: HashSet<String>,
 }
 

@@ -31,8 +31,8 @@ const TRANSLATOR_STACK_BYTES: usize = 256 << 20;
 const STACK_BYTES: usize = 8 << 20;
 
 /// Serves jobs until `input` ends. Call it in a separate process that does nothing else, before it starts
-/// threads: it limits the process's memory, its access to files and its system calls, ties its lifetime to the
-/// parent's, and silences panics.
+/// threads: it limits the process's memory, its access to files and its system calls, ties its lifetime to
+/// the parent's, and silences panics.
 ///
 /// # Errors
 /// If a reply cannot be written, since the parent is gone.

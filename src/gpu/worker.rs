@@ -47,9 +47,9 @@ enum PlainCode {
     Always,
 }
 
-/// Maximum number of pixels of an image that takes less time without LLVM's optimizations. Of 24 public shaders
-/// at 256×144, compiling took 5.3 s with and 3.2 s without them, and rendering 1.3 and 2.2 s: both are equal at
-/// 88,000 pixels.
+/// Maximum number of pixels of an image that takes less time without LLVM's optimizations. Of 24 public
+/// shaders at 256×144, compiling took 5.3 s with and 3.2 s without them, and rendering 1.3 and 2.2 s: both
+/// are equal at 88,000 pixels.
 const MAX_PLAIN_PIXELS: u64 = 320 * 240;
 /// Minimum time limit for the start of a driver: a busy machine needs a second or two.
 const START_TIMEOUT: Duration = Duration::from_secs(10);

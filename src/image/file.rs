@@ -100,8 +100,8 @@ impl Format {
     }
 }
 
-/// Writes a PNG from rows in top-down order. The fast compression makes noise a third larger, so that an image
-/// which it does not make smaller is stored as it is.
+/// Writes a PNG from rows in top-down order. The fast compression makes noise a third larger, so that an
+/// image which it does not make smaller is stored as it is.
 fn png<'a>(
     size: [u32; 2],
     rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>> + Clone,

@@ -40,8 +40,8 @@ pub fn write_inside(folder: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> 
     stream_inside(folder, path, |file| file.write_all(bytes))
 }
 
-/// Writes a file into an output folder as [`write_inside`] does, with the bytes that a function writes, so that
-/// a large file is never completely in memory. If the function fails, the file is not replaced.
+/// Writes a file into an output folder as [`write_inside`] does, with the bytes that a function writes, so
+/// that a large file is never completely in memory. If the function fails, the file is not replaced.
 ///
 /// # Errors
 /// As for [`write_inside`], and those of the function.

@@ -13,10 +13,10 @@ pub trait Driver: fmt::Debug + Send {
     /// The code of a shader in the form that this driver takes.
     type Code;
 
-    /// Renders a frame, and passes the bands of [`Frame::bands`] to `on_band`, one after the other; the time that it
-    /// takes does not count. The check of loops that the driver may have terminated runs only if `watch` returns
-    /// true; it receives the result and the time that rendering took. Callers may know that no pixel runs more than
-    /// [`Self::safe_iterations`].
+    /// Renders a frame, and passes the bands of [`Frame::bands`] to `on_band`, one after the other; the time
+    /// that it takes does not count. The check of loops that the driver may have terminated runs only if
+    /// `watch` returns true; it receives the result and the time that rendering took. Callers may know that
+    /// no pixel runs more than [`Self::safe_iterations`].
     ///
     /// # Errors
     /// Why there is no image: [`DriverFailure::Invalid`] also for a shader that nests deeper than drivers support.
@@ -34,9 +34,9 @@ pub trait Driver: fmt::Debug + Send {
     /// Releases the driver's memory until the next image.
     fn stop(&mut self);
 
-    /// Compiles the passes of a shader, in the order of their graph, with the samplers of each and the textures that
-    /// do not change, and resumes from a state, if there is one. Returns the name of the device.
-    /// [`Self::play`] then renders the frames, until another image is rendered.
+    /// Compiles the passes of a shader, in the order of their graph, with the samplers of each and the
+    /// textures that do not change, and resumes from a state, if there is one. Returns the name of the
+    /// device. [`Self::play`] then renders the frames, until another image is rendered.
     ///
     /// # Errors
     /// Why the passes cannot be rendered.
@@ -55,8 +55,8 @@ pub trait Driver: fmt::Debug + Send {
     /// Why the state's textures cannot be created.
     fn restore_player(&mut self, state: State) -> Result<(), DriverFailure>;
 
-    /// Renders the next frame of the opened passes, if one is given, and returns the `wanted` textures. The channels
-    /// of the frame are ignored.
+    /// Renders the next frame of the opened passes, if one is given, and returns the `wanted` textures. The
+    /// channels of the frame are ignored.
     ///
     /// # Errors
     /// Why there is no image. The passes must then be opened again, and start with the first frame.
@@ -72,8 +72,8 @@ pub struct DrawOutput {
     pub bands: Vec<Image>,
     /// Adapter and driver.
     pub device: String,
-    /// Whether the shader has loops and the driver is of a kind that terminates long loops, so that a check is
-    /// needed.
+    /// Whether the shader has loops and the driver is of a kind that terminates long loops, so that a check
+    /// is needed.
     pub may_truncate_loops: bool,
     /// Number of pixels in which the driver terminated a loop, whose colors are meaningless. `None` if that
     /// could not be determined in time; 0 if it was not checked.

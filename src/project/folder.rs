@@ -1,5 +1,5 @@
-//! The folder of a project: a file for each tab, and `project.toml`, which holds the rest of the site's JSON, key by
-//! key in the same order. The source of an input is written by name: `source = "buffer-a"`.
+//! The folder of a project: a file for each tab, and `project.toml`, which holds the rest of the site's JSON,
+//! key by key in the same order. The source of an input is written by name: `source = "buffer-a"`.
 
 use std::collections::HashMap;
 
@@ -21,8 +21,8 @@ use crate::read::{Renderpass, default_sampler, read};
 pub const PROJECT_FILE: &str = "project.toml";
 
 impl Project {
-    /// Reads a project from the files of its folder: the tabs, and `project.toml`, if there is one. Without it, channel
-    /// *n* of every pass but Sound reads the *n*th buffer, where that buffer exists.
+    /// Reads a project from the files of its folder: the tabs, and `project.toml`, if there is one. Without
+    /// it, channel *n* of every pass but Sound reads the *n*th buffer, where that buffer exists.
     ///
     /// # Errors
     /// Those of `project.toml`.
@@ -280,8 +280,8 @@ fn decimal(number: &DeInteger) -> Option<String> {
     Some(value.to_string())
 }
 
-/// The keys of `project.toml` and of its tables that are known; others are copied to the JSON only if `format` says
-/// that the file was imported.
+/// The keys of `project.toml` and of its tables that are known; others are copied to the JSON only if
+/// `format` says that the file was imported.
 const KEYS: [&str; 7] = ["ver", "info", "flags", "pass", "renderpass", "format", "wrapper"];
 const PASS_KEYS: [&str; 6] = ["tab", "inputs", "outputs", "name", "description", "type"];
 const INPUT_KEYS: [&str; 11] = [

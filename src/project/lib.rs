@@ -1,9 +1,9 @@
-//! `ShaderToy` projects: their tabs, the order of their passes, and the inputs of these, read from a folder or from the
-//! site's JSON, and written as either.
+//! `ShaderToy` projects: their tabs, the order of their passes, and the inputs of these, read from a folder
+//! or from the site's JSON, and written as either.
 //!
-//! A project is the Image tab and up to seven others: Common, whose text precedes every other tab, Buffers A to D,
-//! Cube A and Sound. Importing and exporting are inverse: the code stays as it is, byte for byte, and whatever else the
-//! JSON holds is kept.
+//! A project is the Image tab and up to seven others: Common, whose text precedes every other tab, Buffers A
+//! to D, Cube A and Sound. Importing and exporting are inverse: the code stays as it is, byte for byte, and
+//! whatever else the JSON holds is kept.
 //!
 //! ```
 //! use toyproof_diagnostic::{File, Files};

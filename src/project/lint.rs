@@ -93,8 +93,8 @@ fn missing_passes(project: &Project, reads: &[Read], warnings: &mut Vec<Diagnost
     }
 }
 
-/// Samplers belong to textures on the site, not to inputs: the filter is that of the highest channel of a pass, and
-/// the wrap mode that of the last input of all passes.
+/// Samplers belong to textures on the site, not to inputs: the filter is that of the highest channel of a
+/// pass, and the wrap mode that of the last input of all passes.
 fn conflicting_samplers(buffer: Buffer, reads: &[&Read], warnings: &mut Vec<Diagnostic>) {
     for (at, first) in reads.iter().enumerate() {
         let later = reads[at + 1..].iter().filter(|later| later.index == first.index);
@@ -137,7 +137,8 @@ fn with_related(warning: Diagnostic, other: &Read) -> Diagnostic {
     }
 }
 
-/// Buffers that read each other and do not run in the order of their names: which frame is read depends on the order.
+/// Buffers that read each other and do not run in the order of their names: which frame is read depends on
+/// the order.
 fn order(project: &Project, reads: &[Read], warnings: &mut Vec<Diagnostic>) {
     for read in reads {
         let (PassKind::Buffer(by), Source::Buffer(source)) = (read.by, &read.input.source) else {

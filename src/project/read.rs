@@ -20,8 +20,8 @@ const MAX_ERRORS: usize = 20;
 const VERSION: &str = "0.1";
 
 impl Project {
-    /// Reads the site's JSON: of its API, of its page data, or of the editor's export. The texts of the tabs are added
-    /// to `files`, named as files in a folder that has the name of the JSON.
+    /// Reads the site's JSON: of its API, of its page data, or of the editor's export. The texts of the tabs
+    /// are added to `files`, named as files in a folder that has the name of the JSON.
     ///
     /// # Errors
     /// The first error of the syntax, or those of the content.
@@ -144,7 +144,8 @@ pub(crate) struct Renderpass {
     pub(crate) tabs: Vec<(Tab, FileId)>,
 }
 
-/// Reads the passes of a document. `text` takes the text of a tab out of its node, or reports why there is none.
+/// Reads the passes of a document. `text` takes the text of a tab out of its node, or reports why there is
+/// none.
 pub(crate) fn read(
     root: &mut Node,
     errors: &mut Vec<Diagnostic>,
@@ -235,7 +236,8 @@ fn tab(pass: &Node) -> Result<Tab, Box<Diagnostic>> {
     }
 }
 
-/// The buffer that a pass writes: that of its output's id. Its name is for people only, and often another one.
+/// The buffer that a pass writes: that of its output's id. Its name is for people only, and often another
+/// one.
 fn buffer(pass: &Node) -> Result<Buffer, Box<Diagnostic>> {
     let help = "the id of Buffer A is \"4dXGR8\" or 257, of B \"XsXGR8\" or 258, of C \"4sXGR8\" or 259, of D \"XdfGR8\" or 260";
     let Some(outputs) = pass.get("outputs") else {

@@ -37,8 +37,8 @@ const NAMED_KEYS: [(&str, u8); 20] = [
     ("minus", 189),
 ];
 
-/// Parses a script: `[[mouse]]` events with `press`, `move` or `release`, and `[[key]]` events with `press` or
-/// `release`, each in a `frame`, from 0.
+/// Parses a script: `[[mouse]]` events with `press`, `move` or `release`, and `[[key]]` events with `press`
+/// or `release`, each in a `frame`, from 0.
 ///
 /// # Errors
 /// The first syntax error of the TOML, or all other errors.

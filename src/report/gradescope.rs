@@ -1,7 +1,7 @@
 //! `results.json`: marks in the format of Gradescope's autograder.
 //!
-//! Students see the `output`s; names are the rubric's own keys. The texts of tests are plain text. With images,
-//! the output of the submission is HTML, in which all texts are escaped.
+//! Students see the `output`s; names are the rubric's own keys. The texts of tests are plain text. With
+//! images, the output of the submission is HTML, in which all texts are escaped.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};

@@ -82,8 +82,8 @@ struct LateDeduction {
 /// The points that a shader earned for one check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function; `late`
-    /// for the deduction for a late submission.
+    /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function;
+    /// `late` for the deduction for a late submission.
     pub name: Cow<'static, str>,
     /// The points earned, in [0, `of`], rounded to hundredths; negative for `late`.
     pub points: f64,

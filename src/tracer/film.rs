@@ -85,9 +85,9 @@ impl Tracer<f64> {
         mean.map(|component| tone_map_slope(&self.film, component))
     }
 
-    /// Computes the tone-mapped color of one sample at a position in pixels from the bottom left, y up. Only scenes
-    /// without a [sampler](Self::sampler) have a color at each position; others use the same random numbers
-    /// everywhere.
+    /// Computes the tone-mapped color of one sample at a position in pixels from the bottom left, y up. Only
+    /// scenes without a [sampler](Self::sampler) have a color at each position; others use the same random
+    /// numbers everywhere.
     #[must_use]
     pub fn color_at(&self, position: [f64; 2]) -> [f64; 3] {
         let sample = Sample {

@@ -63,8 +63,8 @@ impl<T: Real> Material<T> {
         self.pattern.is_none().then_some(self.color)
     }
 
-    /// Returns the color at a point of the surface, which is given with the normal there, and computed only if
-    /// the color depends on it.
+    /// Returns the color at a point of the surface, which is given with the normal there, and computed only
+    /// if the color depends on it.
     pub(super) fn color(&self, at: impl FnOnce() -> [T::Vec3; 2]) -> T::Vec3 {
         if let Some(pattern) = &self.pattern {
             let [point, normal] = at();
@@ -122,8 +122,8 @@ pub(super) struct Scattering<T, S: Lanes<T>> {
 }
 
 impl<T: Real> Brdf<T> {
-    /// Evaluates the BRDF and the density of its samples for light from the directions `light`, where N·L > 0, in
-    /// the lanes in `active`.
+    /// Evaluates the BRDF and the density of its samples for light from the directions `light`, where N·L >
+    /// 0, in the lanes in `active`.
     #[inline(always)]
     pub(super) fn scattering<S: Lanes<T>>(
         &self,
@@ -167,8 +167,8 @@ impl<T: Real> Brdf<T> {
         }
     }
 
-    /// Samples an angle from the axis of the lobe: proportional to the cosine to the normal, or to the lobe of a
-    /// glossy BRDF. Returns that axis, and the cosine and the sine of the angle.
+    /// Samples an angle from the axis of the lobe: proportional to the cosine to the normal, or to the lobe
+    /// of a glossy BRDF. Returns that axis, and the cosine and the sine of the angle.
     #[inline(always)]
     pub(super) fn sample<S: Lanes<T>>(
         &self,

@@ -73,8 +73,8 @@ impl<T: Real> Pattern<T> {
 }
 
 impl<T: Real> Frame<T> {
-    /// Returns the coordinates of a point. On a flat surface, the coordinate across it is 0, not what rounding
-    /// leaves of it.
+    /// Returns the coordinates of a point. On a flat surface, the coordinate across it is 0, not what
+    /// rounding leaves of it.
     fn place(&self, point: T::Vec3, normal: T::Vec3) -> T::Vec3 {
         let relative = point - self.origin;
         let is_across = |axis: T::Vec3| self.is_flat && axis.dot(normal).abs() > T::from_f64(0.5);

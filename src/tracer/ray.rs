@@ -55,7 +55,8 @@ impl<T: Real> FirstHit<T> {
     }
 }
 
-/// Completes the unit vectors w to orthonormal bases: a = normalize(up × w), b = w × a, where up is y, or x if
+/// Completes the unit vectors w to orthonormal bases: a = normalize(up × w), b = w × a, where up is y, or x
+/// if
 /// |w.y| > 0.9.
 #[inline(always)]
 fn tangent_basis<T: Real, S: Lanes<T>>(simd: S, w: Wide3<T, S>) -> [Wide3<T, S>; 2] {

@@ -2,9 +2,9 @@
 //!
 //! The tracer has no epsilons: it knows the surface on which a ray starts and ignores the hit at that point.
 //! Shaders do not, so they offset the origin from the surface or ignore hits near it. Both are legal, and
-//! change the color where surfaces touch, at shadow edges and in mirrors. [`Tracer::color_range`](crate::Tracer::color_range) evaluates a
-//! pixel under all such policies. The scene states the largest legal offset:
-//! [`toyproof_scene::Scene::max_offset`].
+//! change the color where surfaces touch, at shadow edges and in mirrors.
+//! [`Tracer::color_range`](crate::Tracer::color_range) evaluates a pixel under all such policies. The scene
+//! states the largest legal offset: [`toyproof_scene::Scene::max_offset`].
 
 use crate::real::Real;
 

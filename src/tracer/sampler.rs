@@ -283,7 +283,8 @@ impl Strata {
         permute(self.grid.index, self.grid.count, self.seed)
     }
 
-    /// Returns the streams of samples of several pixels, by their indices and pixels, after their first pair, and those pairs.
+    /// Returns the streams of samples of several pixels, by their indices and pixels, after their first pair,
+    /// and those pairs.
     pub(super) fn first_pairs(
         level: Level,
         [count, set]: [u32; 2],

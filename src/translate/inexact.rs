@@ -1,5 +1,5 @@
-//! The functions whose last bits are implementation-defined, by function and by instruction. Both expansions derive
-//! from them, that of the tree (`lower::polyfill`) and that of SPIR-V (`backend::spirv`).
+//! The functions whose last bits are implementation-defined, by function and by instruction. Both expansions
+//! derive from them, that of the tree (`lower::polyfill`) and that of SPIR-V (`backend::spirv`).
 
 use std::sync::LazyLock;
 

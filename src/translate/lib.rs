@@ -1,8 +1,8 @@
 //! Translates checked shaders to GPU languages.
 //!
 //! There are two paths. The first lowers the tree to GLSL 450, in the subset that naga parses correctly; naga
-//! writes it as SPIR-V, WGSL, MSL, HLSL or GLSL. The second ([`wgsl`]) prints WGSL straight from the tree, with
-//! the author's names, loops and comments.
+//! writes it as SPIR-V, WGSL, MSL, HLSL or GLSL. The second ([`wgsl`]) prints WGSL straight from the tree,
+//! with the author's names, loops and comments.
 //!
 //! ```text
 //! tree ─► lower ─► print (GLSL 450) ─► naga_ir ─► backend (SPIR-V, WGSL, MSL, HLSL, GLSL)
@@ -29,22 +29,22 @@
 //! # Lowering
 //!
 //! Each pass of [`lower()`] rewrites one construct that naga or a driver gets wrong, and a test shows that it
-//! still does without the pass, so that the pass can be removed some day. [`Lowered`] leads from naga's messages
-//! back to the author's lines. naga's validator stays the gate: backends take only a [`naga_ir::ValidModule`],
-//! and text that naga refuses is our error, never the shader's.
+//! still does without the pass, so that the pass can be removed some day. [`Lowered`] leads from naga's
+//! messages back to the author's lines. naga's validator stays the gate: backends take only a
+//! [`naga_ir::ValidModule`], and text that naga refuses is our error, never the shader's.
 //!
 //! # Strict and fast
 //!
 //! GLSL lets drivers rearrange sums, fuse products and choose the last bits of `sin`. With
 //! [`FloatMode::Strict`], arithmetic is evaluated as written: such functions are expanded to exact operations
-//! ([`lower_strict`]), and float operations carry `NoContraction` ([`backend::spirv::strict`]). All drivers then
-//! give the bits that `toyproof_eval` computes in `f32`. With [`FloatMode::Fast`] the driver is free.
+//! ([`lower_strict`]), and float operations carry `NoContraction` ([`backend::spirv::strict`]). All drivers
+//! then give the bits that `toyproof_eval` computes in `f32`. With [`FloatMode::Fast`] the driver is free.
 //!
 //! # Interface of a translated shader
 //!
-//! The entry point is `main`, with the color at location 0. Group 0 has the uniform block of ShaderToy's inputs
-//! at binding 0, in std140 layout (at the offsets of [`Input`](toyproof_glsl::tree::Input)), the texture of channel K
-//! at binding 1 + 2K and its sampler at 2 + 2K. A shader declares only what it uses.
+//! The entry point is `main`, with the color at location 0. Group 0 has the uniform block of ShaderToy's
+//! inputs at binding 0, in std140 layout (at the offsets of [`Input`](toyproof_glsl::tree::Input)), the
+//! texture of channel K at binding 1 + 2K and its sampler at 2 + 2K. A shader declares only what it uses.
 //!
 //! # Crashes
 //!

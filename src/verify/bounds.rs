@@ -6,31 +6,31 @@ use std::time::{Duration, Instant};
 /// The evaluator's time limit as a multiple of the GPU's: a slow evaluator is not the shader's fault.
 pub const EVALUATOR_TIME_FACTOR: u32 = 4;
 
-/// The factor by which a pixel of an edited shader, or of a shader in another frame, may run more loop iterations
-/// than the shader's pixels do.
+/// The factor by which a pixel of an edited shader, or of a shader in another frame, may run more loop
+/// iterations than the shader's pixels do.
 const ITERATION_FACTOR: u32 = 8;
 
 /// The number of loop iterations of a pixel that an image may always have: twice what Mesa before version 23
 /// allows. A pixel that reaches the limit takes milliseconds.
 pub const MIN_IMAGE_ITERATIONS: u32 = 1 << 17;
 
-/// The number of loop iterations after which a pixel of a mutant, of a variant of a reference or of a shader with
-/// other random numbers is given up. It takes seconds.
+/// The number of loop iterations after which a pixel of a mutant, of a variant of a reference or of a shader
+/// with other random numbers is given up. It takes seconds.
 pub const MAX_ITERATIONS: u32 = 1 << 22;
 
 /// The number of loop iterations after which a pixel is not traced: recording its values takes seconds.
 pub const MAX_TRACED_ITERATIONS: u32 = 1 << 18;
 
-/// The time for explaining a difference, and for each unit of a search's budget, which takes a second on an idle
-/// core. Machines are seldom fifty times slower.
+/// The time for explaining a difference, and for each unit of a search's budget, which takes a second on an
+/// idle core. Machines are seldom fifty times slower.
 pub const EXPLANATION_TIMEOUT: Duration = Duration::from_secs(600);
 const TIMEOUT_PER_UNIT: f64 = 60.0;
 
 /// The largest time for a search: three years.
 const MAX_SEARCH_SECONDS: f64 = 1e8;
 
-/// The largest number of loop iterations of a pixel of an edited shader, by those of the shader; of one that is
-/// evaluated at few pixels.
+/// The largest number of loop iterations of a pixel of an edited shader, by those of the shader; of one that
+/// is evaluated at few pixels.
 #[must_use]
 pub fn iterations_of_edited(iterations: u32, least: u32) -> u32 {
     iterations.saturating_mul(ITERATION_FACTOR).max(least)

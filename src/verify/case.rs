@@ -34,8 +34,8 @@ pub struct Case<'a> {
 }
 
 impl<'a> Case<'a> {
-    /// Creates the case of a shader in a frame without a reference: strict, within 10 s for an image, and in rayon's
-    /// global pool.
+    /// Creates the case of a shader in a frame without a reference: strict, within 10 s for an image, and in
+    /// rayon's global pool.
     #[must_use]
     pub fn new(checked: &'a Checked, lints: &'a Lints, frame: &'a Frame) -> Self {
         Self {

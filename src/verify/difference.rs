@@ -6,8 +6,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// A difference between a shader's image and the expected one that concerns the whole image. A check may permit
-/// it; otherwise it is reported as the likely mistake.
+/// A difference between a shader's image and the expected one that concerns the whole image. A check may
+/// permit it; otherwise it is reported as the likely mistake.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Difference {

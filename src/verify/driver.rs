@@ -32,8 +32,8 @@ impl GpuRun {
     }
 }
 
-/// Whether the evaluator may take the place of a worker that failed. How long the driver takes shows nothing about
-/// the shader. Without a reference, other failures are what the check is about.
+/// Whether the evaluator may take the place of a worker that failed. How long the driver takes shows nothing
+/// about the shader. Without a reference, other failures are what the check is about.
 #[must_use]
 pub fn is_replaceable(failure: &DriverFailure, has_reference: bool) -> bool {
     let is_decisive = failure.is_invalid() || failure.is_without_driver();

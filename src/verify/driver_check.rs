@@ -22,9 +22,9 @@ use crate::spool::Spool;
 /// one takes seconds, in which the driver would hold 100 MB; starting it again takes a fraction of that time.
 const MAX_PIXELS_OF_IDLE_WORKER: u64 = 1 << 22;
 
-/// Checks all bands with a driver. `stop` ends the evaluator, whose `iteration_counts` show whether loops are short.
-/// Where the driver fails, the evaluator takes its place if it can. Returns the driver's times, or the note about its
-/// failure.
+/// Checks all bands with a driver. `stop` ends the evaluator, whose `iteration_counts` show whether loops are
+/// short. Where the driver fails, the evaluator takes its place if it can. Returns the driver's times, or the
+/// note about its failure.
 pub(super) fn check(
     driver: &mut Driver,
     case: &Case,

@@ -12,8 +12,8 @@ use toyproof_eval::{
 use toyproof_eval_native::Program;
 use toyproof_image::{Frame, Image};
 
-/// Evaluates a shader in f64 at some places of a frame; none if a pixel runs more loop iterations. The result does
-/// not depend on the load of the machine: iterations are counted, and there is no deadline.
+/// Evaluates a shader in f64 at some places of a frame; none if a pixel runs more loop iterations. The result
+/// does not depend on the load of the machine: iterations are counted, and there is no deadline.
 pub fn evaluate_at(program: &Program, frame: &Frame, places: &Places, max_iterations: u32) -> Option<Image> {
     let settings = Settings::<f64> {
         undefined: UndefinedPolicy::Plain,
@@ -26,8 +26,8 @@ pub fn evaluate_at(program: &Program, frame: &Frame, places: &Places, max_iterat
 /// The time limit of the evaluations that a comparison needs in addition to the images, as a multiple of an
 /// image's. They decide what a pixel's difference means, so that only a hang may exceed it.
 const OTHER_TIME_FACTOR: u32 = 4;
-/// The same as a multiple of the time that the image in f64 took: up to [`PERTURBATIONS`] images, each of which takes
-/// about eight times as long.
+/// The same as a multiple of the time that the image in f64 took: up to [`PERTURBATIONS`] images, each of
+/// which takes about eight times as long.
 ///
 /// [`PERTURBATIONS`]: crate::compare::PERTURBATIONS
 const PERTURBED_TIME_FACTOR: u32 = 64;

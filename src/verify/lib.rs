@@ -11,8 +11,8 @@
 //! | toolchain | the shader in float32 on the CPU | the shader in float32 on the GPU, to the bit |
 //!
 //! Without a reference there is no algorithm check; without a GPU the evaluator's image in float32 takes the
-//! place of the GPU's, and there is no toolchain check; neither is there in a fast run, which leaves the order of
-//! operations to the driver. Images are compared in bands of rows, while they are rendered.
+//! place of the GPU's, and there is no toolchain check; neither is there in a fast run, which leaves the
+//! order of operations to the driver. Images are compared in bands of rows, while they are rendered.
 //!
 //! # Pixels that are not held against a shader
 //!
@@ -63,8 +63,8 @@
 //! # }
 //! ```
 //!
-//! With a driver, such as `toyproof_gpu::Worker`, the shader runs in a worker process, so that a hang or a crash
-//! takes nothing else with it.
+//! With a driver, such as `toyproof_gpu::Worker`, the shader runs in a worker process, so that a hang or a
+//! crash takes nothing else with it.
 
 pub mod bounds;
 mod case;
@@ -121,8 +121,8 @@ pub use self::session::BandReference;
 use self::session::VerifySession;
 pub use self::verified::{CheckResults, MeansEvidence, Ruling, Subject, Verified};
 
-/// Runs the three checks. Without a `driver`, or where it renders no image of a shader that has a reference, the
-/// evaluator renders the image, and there is no toolchain check.
+/// Runs the three checks. Without a `driver`, or where it renders no image of a shader that has a reference,
+/// the evaluator renders the image, and there is no toolchain check.
 ///
 /// # Errors
 /// Returns why there is no image of the shader: [`Failure::Gpu`], [`Failure::Cpu`], [`Failure::Overdue`] or
@@ -162,9 +162,9 @@ pub fn verify<'a>(driver: Option<&mut Driver>, case: &'a Case<'a>) -> Result<Ver
     Ok(verified(case, finished, program.ok()))
 }
 
-/// Verifies an edit of a shader, or the like, with the evaluator. The result does not depend on the load of the
-/// machine: what takes long are pixels with more than `max_iterations` loop iterations, which fail. The deadline
-/// is only there against a hang.
+/// Verifies an edit of a shader, or the like, with the evaluator. The result does not depend on the load of
+/// the machine: what takes long are pixels with more than `max_iterations` loop iterations, which fail. The
+/// deadline is only there against a hang.
 ///
 /// # Errors
 /// Returns why there is no image of the shader.

@@ -34,9 +34,9 @@ pub(crate) const MAX_BIAS_BOUND: f64 = 0.01;
 /// not detected.
 pub(crate) const MIN_RANDOM_PIXELS: u64 = 1000;
 
-/// Whether the driver's image visibly differs from the evaluator's, so that naga, the driver or toyproof is at
-/// fault. Not every pixel that depends on undefined behavior is detected: where most pixels do, a few others prove
-/// nothing.
+/// Whether the driver's image visibly differs from the evaluator's, so that naga, the driver or toyproof is
+/// at fault. Not every pixel that depends on undefined behavior is detected: where most pixels do, a few
+/// others prove nothing.
 #[must_use]
 pub(crate) fn is_toolchain_fault(toolchain: &CheckSummary) -> bool {
     toolchain.max_abs > SEEN

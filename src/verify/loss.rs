@@ -16,8 +16,8 @@ use crate::debug::{Explanation, digits, explain_within};
 /// The largest number of differing pixels that are explained to find the cause.
 const MAX_EXPLAINED_PIXELS: usize = 5;
 
-/// Returns the place at which most of the explained pixels diverge between f32 and f64; none if the deadline is
-/// exceeded.
+/// Returns the place at which most of the explained pixels diverge between f32 and f64; none if the deadline
+/// is exceeded.
 #[must_use]
 pub fn cause(program: &Program, frame: &Frame, deadline: Instant, check: &CheckResult) -> Option<Diagnostic> {
     let pixels = check.sample_pixels(frame.size, MAX_EXPLAINED_PIXELS);

@@ -25,8 +25,8 @@ const MIN_SHARE_IN_SINGLE: f64 = 0.01;
 /// The tolerance of colors, in float32 too.
 const COLOR_TOLERANCE: f64 = 4.0 / 255.0;
 
-/// Returns the pixels that differ in the check in which most do because rays hit the surfaces they start from,
-/// if there is one.
+/// Returns the pixels that differ in the check in which most do because rays hit the surfaces they start
+/// from, if there is one.
 pub(super) fn detect(
     tracer: &Tracer<f64>,
     size: [u32; 2],

@@ -100,8 +100,8 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         self.evaluator.is_ok()
     }
 
-    /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, the evaluator
-    /// continues alone, and there is no toolchain check.
+    /// Checks all bands. A GPU renders all of them before it returns them, one by one; if it fails, the
+    /// evaluator continues alone, and there is no toolchain check.
     ///
     /// # Errors
     /// Returns why there is no image, where no GPU renders one, and the errors of `gpu`.
@@ -173,7 +173,8 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         let offset = rows.start;
         let pixels = self.case.frame.size.map(|side| side as usize).iter().product();
         let single = band.map(|band| &band.single);
-        // Strict runs have the evaluator's bits, unless the toolchain is at fault: then these are the shader's.
+        // Strict runs have the evaluator's bits, unless the toolchain is at fault: then these are the
+        // shader's.
         let judged = match self.case.float {
             FloatMode::Strict => single.or(drawn),
             FloatMode::Fast => drawn.or(single),
@@ -227,7 +228,8 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         self.observed.merge(&band.observed);
     }
 
-    /// Compares the shader with the reference in double precision, or in float32 where only that was evaluated.
+    /// Compares the shader with the reference in double precision, or in float32 where only that was
+    /// evaluated.
     fn check_algorithm(&mut self, rows: &Range<u32>, band: &Band, reference: &ReferenceBand) {
         let (Some(expected), Ok(evaluator)) = (self.case.expected, &self.evaluator) else {
             return;
@@ -295,8 +297,9 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         self.precision.extend(precise, actual, &statuses, rows.start);
     }
 
-    /// Returns the results, why the evaluator failed if it did, and what is recorded to compare means. `drawn` is the
-    /// GPU that rendered the image, or the note about the driver's failure; `program` is the evaluator's.
+    /// Returns the results, why the evaluator failed if it did, and what is recorded to compare means.
+    /// `drawn` is the GPU that rendered the image, or the note about the driver's failure; `program` is the
+    /// evaluator's.
     pub(super) fn finish(
         self,
         drawn: Option<Result<GpuRun, Diagnostic>>,

@@ -150,8 +150,8 @@ impl<'a> Verified<'a> {
         evidence.into()
     }
 
-    /// The verdict without any search for a mistake: that of the checks, of the comparison of means if the shader
-    /// has other random numbers than its reference, and of the test for self-intersection.
+    /// The verdict without any search for a mistake: that of the checks, of the comparison of means if the
+    /// shader has other random numbers than its reference, and of the test for self-intersection.
     #[must_use]
     pub fn ruling(&self) -> Ruling {
         match self.subject() {
@@ -206,8 +206,8 @@ impl Subject<'_> {
         evidence
     }
 
-    /// Compares the means of a shader that differs only in pixels that depend on random numbers; `None` if it differs
-    /// in others, or if nothing is random.
+    /// Compares the means of a shader that differs only in pixels that depend on random numbers; `None` if it
+    /// differs in others, or if nothing is random.
     #[must_use]
     pub fn compare_means(&self, evidence: &CheckEvidence, deadline: Instant) -> Option<MeansEvidence> {
         let (stochastic, algorithm) = (self.stochastic?, self.results.algorithm.as_ref()?);
@@ -240,8 +240,8 @@ impl Subject<'_> {
         self_intersection::detect(tracer, self.case.frame.size, algorithm, precision)
     }
 
-    /// A reseeding that changes pixels of a shader that differs; `None` if the shader has no random numbers, or the
-    /// reference has none.
+    /// A reseeding that changes pixels of a shader that differs; `None` if the shader has no random numbers,
+    /// or the reference has none.
     #[must_use]
     pub fn reseeding(&self, deadline: Instant) -> Option<Reseeding> {
         let algorithm = self.results.algorithm.as_ref()?;

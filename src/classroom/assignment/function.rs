@@ -36,8 +36,8 @@ pub struct FunctionTest {
 pub enum FunctionCases {
     /// These, at least one.
     Listed(Vec<FunctionCase>),
-    /// The rays and spheres of [`stress`](toyproof_lab::stress) of typical size, for a function that intersects a
-    /// ray with a sphere, whatever its signature.
+    /// The rays and spheres of [`stress`](toyproof_lab::stress) of typical size, for a function that
+    /// intersects a ray with a sphere, whatever its signature.
     Stress,
 }
 
@@ -293,8 +293,8 @@ fn prototype(tree: &Tree, function: &Function) -> String {
 
 /// A function that can be called in all cases, and how.
 pub(super) struct Call {
-    /// Statements that set the arguments of each case, call the function, and write the compared components into
-    /// the color: those of case x in column x, three for each row.
+    /// Statements that set the arguments of each case, call the function, and write the compared components
+    /// into the color: those of case x in column x, three for each row.
     text: String,
     /// The number of compared components.
     components: usize,

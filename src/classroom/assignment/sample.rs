@@ -16,8 +16,8 @@ const DECIMALS: i32 = 6;
 /// The largest number of components of sample arguments and results.
 const MAX_COMPONENTS: usize = 16;
 
-/// The tables of a test, as comments: of the first function of the solution that has arguments and a result, and
-/// whose result in a sample call is finite. `None` if there is no such function.
+/// The tables of a test, as comments: of the first function of the solution that has arguments and a result,
+/// and whose result in a sample call is finite. `None` if there is no such function.
 #[must_use]
 pub(super) fn sample(subject: &Subject) -> Option<String> {
     let tree = &subject.checked.tree;

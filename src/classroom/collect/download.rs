@@ -1,5 +1,5 @@
-//! The files of a download: a folder or an archive, with archives in it. Limits hold for each student, so that
-//! one submission does not use up the limits of others.
+//! The files of a download: a folder or an archive, with archives in it. Limits hold for each student, so
+//! that one submission does not use up the limits of others.
 
 use std::collections::HashMap;
 use std::fs;
@@ -48,8 +48,8 @@ pub(super) struct Found {
     pub time: Option<FileTime>,
 }
 
-/// Reads all files of a download, without hidden ones and those that macOS adds. A folder that has the folders
-/// of several students, as in an archive of a folder, is not part of their paths.
+/// Reads all files of a download, without hidden ones and those that macOS adds. A folder that has the
+/// folders of several students, as in an archive of a folder, is not part of their paths.
 ///
 /// # Errors
 /// It cannot be read, or has too many files.

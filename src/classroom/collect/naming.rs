@@ -207,7 +207,8 @@ impl Paths {
         }
     }
 
-    /// The path of a file with this name in a folder: the given one, or one with a number before the extension.
+    /// The path of a file with this name in a folder: the given one, or one with a number before the
+    /// extension.
     pub fn file(&mut self, folder: &[String], name: &str) -> String {
         let folder = self.folder(folder);
         self.free(&folder, name)

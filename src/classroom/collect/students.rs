@@ -16,9 +16,9 @@ pub struct Students {
 }
 
 impl Students {
-    /// Reads a table as spreadsheets and learning management systems write it (RFC 4180, also with `;` or tabs).
-    /// Without a row that names the columns, the first column has the number or the name of the download, and
-    /// the second the name to show.
+    /// Reads a table as spreadsheets and learning management systems write it (RFC 4180, also with `;` or
+    /// tabs). Without a row that names the columns, the first column has the number or the name of the
+    /// download, and the second the name to show.
     pub fn parse(text: &str) -> Self {
         // Excel may state the separator in a separate line.
         let text = match text.split_once('\n') {
@@ -79,9 +79,9 @@ impl Students {
         &self.listed
     }
 
-    /// Finds the students of a download in the list, by number or else by name; also returns the places in the
-    /// list that are found. Where the download or the list has several students with one name, their numbers
-    /// in the download distinguish them.
+    /// Finds the students of a download in the list, by number or else by name; also returns the places in
+    /// the list that are found. Where the download or the list has several students with one name, their
+    /// numbers in the download distinguish them.
     pub fn find<'a>(
         &self,
         students: impl IntoIterator<Item = &'a Student>,

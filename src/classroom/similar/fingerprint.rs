@@ -99,7 +99,8 @@ impl Fingerprints {
     }
 }
 
-/// Keeps the fingerprints of consecutive kinds, each of which covers a number of them; `line` is the line of one.
+/// Keeps the fingerprints of consecutive kinds, each of which covers a number of them; `line` is the line of
+/// one.
 fn keep(kept: &mut HashMap<u64, [usize; 2]>, kinds: &[u64], covered: usize, line: impl Fn(usize) -> usize) {
     let grams: Vec<u64> = kinds.windows(covered).map(|kinds| hash(&kinds)).collect();
     for at in winnow(&grams) {

@@ -177,8 +177,8 @@ const MAX_SHADERS_OF_STUDENT: usize = 4;
 /// The largest width that is shown, in pixels: three images stand side by side.
 const MAX_THUMBNAIL_WIDTH: u32 = 320;
 
-/// The largest size of all PNGs, in bytes, which base64 enlarges by a third. The format states no limit; a page
-/// of this size opens quickly.
+/// The largest size of all PNGs, in bytes, which base64 enlarges by a third. The format states no limit; a
+/// page of this size opens quickly.
 const MAX_THUMBNAIL_BYTES: usize = 400_000;
 
 /// The images of a student's shaders, subsampled until they fit.

@@ -196,8 +196,8 @@ impl Scenes {
 /// The largest number of scene files in the folder of a given one that are read.
 const MAX_NEIGHBORS: usize = 32;
 
-/// The scenes that a shader may render instead of its own: the built-in ones, and those in the folder of the scene
-/// that `--scene` names.
+/// The scenes that a shader may render instead of its own: the built-in ones, and those in the folder of the
+/// scene that `--scene` names.
 pub(super) fn other_scenes(named: Option<&Path>) -> OtherScenes {
     let folder = named.filter(|path| path.is_file()).and_then(Path::parent);
     let folder = folder.map(|folder| {

@@ -28,8 +28,9 @@ pub(super) const REPORT_NAMES: [&str; 7] = [
 ];
 
 /// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
-/// records, in the same order. `results.json` is written only with a rubric of all shaders and unless they are
-/// those of several students, and `class.csv` only for a class. Students read `junit.xml` and `results.json`, which show the `hints`.
+/// records, in the same order. `results.json` is written only with a rubric of all shaders and unless they
+/// are those of several students, and `class.csv` only for a class. Students read `junit.xml` and
+/// `results.json`, which show the `hints`.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],

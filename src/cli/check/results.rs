@@ -32,8 +32,8 @@ pub(super) struct Span {
     length: usize,
 }
 
-/// Calls `on_line` for each complete line of a file, with its place, its bytes, and its result unless it cannot
-/// be parsed. A killed run leaves an incomplete last line. A file that does not exist has no lines.
+/// Calls `on_line` for each complete line of a file, with its place, its bytes, and its result unless it
+/// cannot be parsed. A killed run leaves an incomplete last line. A file that does not exist has no lines.
 pub(super) fn for_each_line(
     path: &Path,
     mut on_line: impl FnMut(Span, &[u8], Option<Line>) -> io::Result<()>,

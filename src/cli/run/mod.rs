@@ -72,8 +72,8 @@ pub(in crate::cli) struct Args {
     pass: Option<PassKind>,
     /// The number of frames of a project to render before the first one that is shown, instead of all
     ///
-    /// For shaders whose buffers forget what was long ago. Buffers are zero at first, and what a shader does in
-    /// frame 0 alone does not happen.
+    /// For shaders whose buffers forget what was long ago. Buffers are zero at first, and what a shader does
+    /// in frame 0 alone does not happen.
     #[arg(long, value_name = "N", conflicts_with = "state", hide_short_help = true)]
     warm_up: Option<u32>,
     /// The buffers of a project: read from this file, if it exists, and written to it after the last frame
@@ -89,7 +89,8 @@ pub(in crate::cli) struct Args {
     driver: DriverArgs,
 }
 
-/// The rows of an image, for each thread, between two steps of its progress bar: a multiple of a tile's height.
+/// The rows of an image, for each thread, between two steps of its progress bar: a multiple of a tile's
+/// height.
 const ROWS_PER_THREAD: u32 = 64;
 
 /// The number type of floats.

@@ -317,8 +317,8 @@ impl Runner<'_> {
         saved.map(|()| exit)
     }
 
-    /// Chooses what renders the frames: the evaluator if it suffices, else the driver, and the evaluator also if
-    /// no driver is found.
+    /// Chooses what renders the frames: the evaluator if it suffices, else the driver, and the evaluator also
+    /// if no driver is found.
     fn backend<'w>(
         &self,
         worker: &'w mut Option<Worker>,

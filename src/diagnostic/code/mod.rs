@@ -1,5 +1,5 @@
-//! The codes of all diagnostics of the program. The explanation of each stands above it: a file for each topic has
-//! a macro that adds its codes to the table.
+//! The codes of all diagnostics of the program. The explanation of each stands above it: a file for each
+//! topic has a macro that adds its codes to the table.
 
 #[macro_use]
 mod files;
@@ -57,8 +57,8 @@ macro_rules! codes {
                 }
             }
 
-            /// What it means and how to fix it, in Markdown. Examples are in fences, each after a line `Wrong:`
-            /// or `Right:`.
+            /// What it means and how to fix it, in Markdown. Examples are in fences, each after a line
+            /// `Wrong:` or `Right:`.
             #[must_use]
             pub fn explanation(self) -> String {
                 let text = match self {

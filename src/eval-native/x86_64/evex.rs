@@ -1,5 +1,5 @@
-//! Instructions of AVX-512 in the EVEX encoding (Intel, “Software Developer's Manual”, volume 2, section 2.7),
-//! all on 512 bits. Comparisons set mask registers there; the code keeps vectors instead, as with AVX2.
+//! Instructions of AVX-512 in the EVEX encoding (Intel, “Software Developer's Manual”, volume 2, section
+//! 2.7), all on 512 bits. Comparisons set mask registers there; the code keeps vectors instead, as with AVX2.
 
 use super::assemble::{Assembler, Source, Vector};
 use super::op::{self, Opcode, long, opcode};

@@ -22,8 +22,8 @@ pub enum Substitute {
     Number,
     /// NaN.
     NotANumber,
-    /// What other implementations return for `pow`, which is the power of the absolute value, and zero for all
-    /// other operations.
+    /// What other implementations return for `pow`, which is the power of the absolute value, and zero for
+    /// all other operations.
     OtherImplementation,
 }
 

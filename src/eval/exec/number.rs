@@ -6,8 +6,8 @@ use toyproof_image::{Image, Texture};
 use toyproof_math::double;
 use toyproof_math::native::{self, flush};
 
-/// Applies a function to the numbers in each lane. A macro, since a function or a closure is a call in the loop
-/// if it is large.
+/// Applies a function to the numbers in each lane. A macro, since a function or a closure is a call in the
+/// loop if it is large.
 macro_rules! each {
     ($function:expr, $($x:expr),+) => {{
         let mut results = [Default::default(); L];

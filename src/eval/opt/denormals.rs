@@ -1,7 +1,7 @@
 //! Denormal operands. Processors that flush denormal results also take denormal operands for zeros where they
-//! compute, but move them unchanged. Results are flushed, so only constants and bit patterns can be denormal, and
-//! values that are selected or loaded from these. Where an operation computes with such a value, the value is
-//! multiplied by 1 first, which flushes it in f32 and is exact in every other number type.
+//! compute, but move them unchanged. Results are flushed, so only constants and bit patterns can be denormal,
+//! and values that are selected or loaded from these. Where an operation computes with such a value, the
+//! value is multiplied by 1 first, which flushes it in f32 and is exact in every other number type.
 
 use crate::ir::{AliasGroups, Block, Cell, Function, NONE, Node, Operation, Value, ValueDef};
 

@@ -1,4 +1,5 @@
-//! The form of what the guide and `toyproof explain` say about mistakes, which stands beside their definitions.
+//! The form of what the guide and `toyproof explain` say about mistakes, which stands beside their
+//! definitions.
 
 /// A mistake, as the guide lists it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

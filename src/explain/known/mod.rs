@@ -126,8 +126,8 @@ impl Diagnosis {
     }
 }
 
-/// A part of the search for the mistake, in the order of the parts. The later ones find nothing where a single
-/// mistake matches, even if it is not reported.
+/// A part of the search for the mistake, in the order of the parts. The later ones find nothing where a
+/// single mistake matches, even if it is not reported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// The mistakes of the catalogue, and changes of the scene.
@@ -243,8 +243,8 @@ impl Hypotheses {
         })
     }
 
-    /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. The result does
-    /// not depend on the machine's load.
+    /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. The result
+    /// does not depend on the machine's load.
     #[must_use]
     pub fn recognize(&self, student: &Program, frame: &Frame, pairs: usize) -> Option<Diagnosis> {
         let stages = [Stage::Single, Stage::Number, Stage::Pair(pairs)];

@@ -1,4 +1,5 @@
-//! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a mistake.
+//! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a
+//! mistake.
 
 use std::sync::OnceLock;
 

@@ -1,8 +1,8 @@
 //! Small images of a wrong shader and of mutants, and which mutants explain the wrong image.
 //!
 //! A [`View`] is a selection of few pixels of a frame. A mutant explains a [`WrongImage`] of that view if the
-//! two differ in few pixels. A [`Thumbnail`] has still fewer pixels; it rules out most pairs of mistakes before
-//! they are rendered for a view.
+//! two differ in few pixels. A [`Thumbnail`] has still fewer pixels; it rules out most pairs of mistakes
+//! before they are rendered for a view.
 
 use rayon::prelude::*;
 use toyproof_eval::Places;

@@ -53,8 +53,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the repair if the edited shader is right in both frames, and no pixel depends on undefined behavior
-    /// that did not before. `iterations` bounds the loop iterations of most of its pixels.
+    /// Returns the repair if the edited shader is right in both frames, and no pixel depends on undefined
+    /// behavior that did not before. `iterations` bounds the loop iterations of most of its pixels.
     pub(super) fn confirm(&self, fix: Fix, kinds: &[EditKind], iterations: u32) -> Option<Repair> {
         let (_, checked) = self.edited(&fix)?;
         let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
@@ -123,8 +123,9 @@ impl<'a> Judge<'a> {
         (is_right && verified.results.precision.is_some()).then_some((verified.results, ruling))
     }
 
-    /// Whether the edited shader has more faults of a kind than the shader: reads of elements that do not exist or
-    /// of variables without a value, which are no repair, or other undefined operations on which colors depend.
+    /// Whether the edited shader has more faults of a kind than the shader: reads of elements that do not
+    /// exist or of variables without a value, which are no repair, or other undefined operations on which
+    /// colors depend.
     fn adds_fault(&self, faults: &[Fault], excludes_more: bool) -> bool {
         let count = |faults: &[Fault], fault: Fault| faults.iter().filter(|&&other| other == fault).count();
         faults.iter().any(|&fault| {

@@ -1,5 +1,5 @@
-//! Fits numbers of edits to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2), for
-//! a group of edits side by side.
+//! Fits numbers of edits to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2),
+//! for a group of edits side by side.
 
 use super::group::{Group, Run};
 use super::probe::Probes;
@@ -99,8 +99,8 @@ impl Secant {
     }
 }
 
-/// Returns numbers that make some wrong pixel right, each with the index of its fit. `before` are the colors of
-/// the shader at the probes.
+/// Returns numbers that make some wrong pixel right, each with the index of its fit. `before` are the colors
+/// of the shader at the probes.
 pub(super) fn fitted(
     probes: &Probes,
     group: &mut Group,

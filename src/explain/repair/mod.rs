@@ -92,7 +92,7 @@ pub struct SearchResult {
     pub repairs: Vec<Repair>,
     /// At most three suspects, on different lines, the most suspicious first; also if there are repairs.
     pub suspects: Vec<Suspect>,
-    /// Whether the budget ended before all edits were tried. That a search ended at its deadline, which only a hang
-    /// exceeds, is in [`Findings::is_cut_by_time`](crate::Findings::is_cut_by_time).
+    /// Whether the budget ended before all edits were tried. That a search ended at its deadline, which only
+    /// a hang exceeds, is in [`Findings::is_cut_by_time`](crate::Findings::is_cut_by_time).
     pub is_cut: bool,
 }

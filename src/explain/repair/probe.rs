@@ -15,8 +15,8 @@ use toyproof_verify::random::MEAN_SETS;
 use toyproof_verify::random::NoisyPixel;
 use toyproof_verify::{CheckResult, Expected};
 
-/// The number of wrong pixels at which all candidates are evaluated, and of a stochastic shader's, whose bias is
-/// the most significant. Most candidates change nothing there.
+/// The number of wrong pixels at which all candidates are evaluated, and of a stochastic shader's, whose bias
+/// is the most significant. Most candidates change nothing there.
 const SCREENING: usize = 4;
 const SCREENING_MEANS: usize = 8;
 
@@ -24,8 +24,8 @@ const SCREENING_MEANS: usize = 8;
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 120;
 
-/// The number of probes that are evaluated next, and how many of them are wrong pixels. Most of the others fail
-/// there.
+/// The number of probes that are evaluated next, and how many of them are wrong pixels. Most of the others
+/// fail there.
 const FIRST: usize = 16;
 const FIRST_WRONG: usize = 12;
 
@@ -36,8 +36,8 @@ const MIXED_RIGHT: usize = 3;
 /// The share of probes that a repair may leave wrong: an edit moves edges, and a probe may lie on one.
 const MAX_LEFT_SHARE: f64 = 0.01;
 
-/// The estimated share of the image's pixels that a repair may leave wrong, and of the wrong pixels: a verdict
-/// tolerates some, whose kinds have more probes than pixels. The confirmation compares all pixels.
+/// The estimated share of the image's pixels that a repair may leave wrong, and of the wrong pixels: a
+/// verdict tolerates some, whose kinds have more probes than pixels. The confirmation compares all pixels.
 const MAX_LEFT_OF_IMAGE: f64 = 2.0 * MAX_DIFFERING;
 const MAX_LEFT_OF_WRONG: f64 = 0.25;
 

@@ -96,7 +96,8 @@ pub(crate) fn search(
     };
     let budget = options.budget * WORK_PER_UNIT;
     let exact = Probes::select(check, expected, case.frame.size[0] as usize)?;
-    // A shader with other random numbers has no exact colors, unless its mistake is in the reference's own hash.
+    // A shader with other random numbers has no exact colors, unless its mistake is in the reference's own
+    // hash.
     let follows_reference = search.constants.has_hash_of(case.checked);
     let mut noisy = if follows_reference { None } else { means() };
     let exact_share = match (compares_means, &noisy) {

@@ -1,5 +1,5 @@
-//! The trials of a group of candidates: all of them are screened at a few wrong pixels side by side, and those
-//! that make progress there are tested at all probes.
+//! The trials of a group of candidates: all of them are screened at a few wrong pixels side by side, and
+//! those that make progress there are tested at all probes.
 
 use super::edit::{Candidate, Trials};
 use super::fit::{Fit, fitted, fitted_colors, roundings};
@@ -25,8 +25,8 @@ struct Attempt {
     cost: u32,
 }
 
-/// Tries the candidates of a group, and returns those that pass or make progress. `before` are the colors of the
-/// shader at the probes.
+/// Tries the candidates of a group, and returns those that pass or make progress. `before` are the colors of
+/// the shader at the probes.
 pub(super) fn try_group(
     group: &mut Group,
     candidates: &[&Candidate],

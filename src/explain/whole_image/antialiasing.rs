@@ -1,8 +1,8 @@
 //! Shaders that take several samples of each pixel, where the reference takes one.
 //!
-//! The usual regular grids are tried as they are. Other samples are recognized by what all means of samples have
-//! in common: a pixel's color lies between the colors within the pixel, and nearer to their mean than a single
-//! sample does. A blur has colors from other pixels; a shifted image has single samples.
+//! The usual regular grids are tried as they are. Other samples are recognized by what all means of samples
+//! have in common: a pixel's color lies between the colors within the pixel, and nearer to their mean than a
+//! single sample does. A blur has colors from other pixels; a shifted image has single samples.
 
 use rayon::prelude::*;
 use toyproof_eval::Places;
@@ -53,8 +53,9 @@ const MIN_EDGE_PIXELS: u64 = 24;
 /// The smallest number of independent samples whose means scatter as little as the colors do.
 const MIN_EFFECTIVE_SAMPLES: f64 = 2.0;
 
-/// The largest sum of squared distances to the means within the pixels, as a share of that to the colors at their
-/// centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are equal.
+/// The largest sum of squared distances to the means within the pixels, as a share of that to the colors at
+/// their centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are
+/// equal.
 const MAX_UNEXPLAINED: f64 = 0.4;
 
 /// The smallest share of edge pixels with an intermediate color.

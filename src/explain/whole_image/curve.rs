@@ -1,5 +1,5 @@
-//! Curves that change each color component by itself: the usual ones by their formulas, and any monotone one by
-//! isotonic regression.
+//! Curves that change each color component by itself: the usual ones by their formulas, and any monotone one
+//! by isotonic regression.
 
 use toyproof_verify::compare::TOLERANCE;
 
@@ -116,9 +116,9 @@ impl Block {
 }
 
 impl Isotonic {
-    /// Fits points [x, y] that are sorted by x, with the least squares of all nondecreasing functions: pool adjacent
-    /// violators (Ayer et al., "An empirical distribution function for sampling with incomplete information",
-    /// 1955).
+    /// Fits points [x, y] that are sorted by x, with the least squares of all nondecreasing functions: pool
+    /// adjacent violators (Ayer et al., "An empirical distribution function for sampling with incomplete
+    /// information", 1955).
     pub(super) fn fit(points: &[[f64; 2]]) -> Self {
         let mut blocks: Vec<Block> = Vec::new();
         for &[_, y] in points {

@@ -96,8 +96,8 @@ impl View {
 
 // Symmetries.
 
-/// Finds a symmetry of a rectangle that explains the image. Rotations by 90° either keep shapes or stretch the
-/// image to the frame.
+/// Finds a symmetry of a rectangle that explains the image. Rotations by 90° either keep shapes or stretch
+/// the image to the frame.
 pub(super) fn symmetries(wrong: &WrongShader, difference: Difference) -> Option<Alternative> {
     let [width, height] = wrong.size();
     let frame = wrong.frame();
@@ -118,7 +118,8 @@ pub(super) fn symmetries(wrong: &WrongShader, difference: Difference) -> Option<
             let half_turn = explained(View::moved(frame, reversed, false), HALF_TURN);
             half_turn.or_else(|| {
                 TRANSPOSITIONS.iter().find_map(|&(signs, text)| {
-                    // Shapes are kept where both axes have one scale, and distorted where the image is stretched.
+                    // Shapes are kept where both axes have one scale, and distorted where the image is
+                    // stretched.
                     [[1.0, 1.0], [width / height, height / width]]
                         .into_iter()
                         .find_map(|scales| {

@@ -27,8 +27,8 @@ pub(super) const PROBES: [u32; 2] = [16, 12];
 /// epsilons move the edges of shadows and reflections.
 const MAX_PROBES_OFF: f64 = 0.05;
 
-/// The largest share of the wrong pixels that may differ under a hypothesis. An explanation that leaves more is an
-/// accident where few pixels are wrong at all.
+/// The largest share of the wrong pixels that may differ under a hypothesis. An explanation that leaves more
+/// is an accident where few pixels are wrong at all.
 const MAX_UNEXPLAINED_SHARE: f64 = 0.05;
 
 /// A wrong shader, with its image and the expected one in f64.
@@ -168,8 +168,8 @@ impl<'a> WrongShader<'a> {
         self.accepted(check.with_regions(width), mistake)
     }
 
-    /// Compares the image with another one, which a hypothesis expects; `agrees` decides for each pixel that is
-    /// defined.
+    /// Compares the image with another one, which a hypothesis expects; `agrees` decides for each pixel that
+    /// is defined.
     pub(super) fn compared(
         &self,
         other: &Image,

@@ -1,5 +1,5 @@
-//! The built-in functions (GLSL ES 3.00.6 §8): one row for each, with everything that other stages need to know
-//! about it. Only the evaluator's implementation is elsewhere.
+//! The built-in functions (GLSL ES 3.00.6 §8): one row for each, with everything that other stages need to
+//! know about it. Only the evaluator's implementation is elsewhere.
 
 mod constant;
 mod table;
@@ -13,16 +13,16 @@ use crate::tree::{BinaryOp, Constant, Type, Value};
 /// What is known of a function.
 struct Row {
     name: &'static str,
-    /// In the notation of the specification. `genType` and similar types match a scalar and its vectors, `vec`
-    /// the vectors alone, `mat` any matrix, `g` before `sampler` and `vec4` any of the three texel types; each
-    /// has the same binding throughout one signature. `[float]` is optional; `const` requires a constant
-    /// expression. The first signature that matches applies.
+    /// In the notation of the specification. `genType` and similar types match a scalar and its vectors,
+    /// `vec` the vectors alone, `mat` any matrix, `g` before `sampler` and `vec4` any of the three texel
+    /// types; each has the same binding throughout one signature. `[float]` is optional; `const` requires a
+    /// constant expression. The first signature that matches applies.
     signatures: &'static [&'static str],
     /// Its value for constants.
     constant: ConstantFunction,
     wgsl: Wgsl,
-    /// The definitions that replace it where the last bits must not depend on the implementation: one for each
-    /// number of arguments. Empty for functions that all implementations compute alike.
+    /// The definitions that replace it where the last bits must not depend on the implementation: one for
+    /// each number of arguments. Empty for functions that all implementations compute alike.
     exact: &'static [ExactDefinition],
 }
 
@@ -33,8 +33,8 @@ pub enum Wgsl {
     Same,
     /// A function of another name.
     Named(&'static str),
-    /// A function of the same name, whose arguments have the type of the result: scalars in place of vectors are
-    /// extended.
+    /// A function of the same name, whose arguments have the type of the result: scalars in place of vectors
+    /// are extended.
     Splat,
     /// An operator between two operands.
     Operator(BinaryOp),
@@ -157,8 +157,8 @@ impl BuiltIn {
         self.row().wgsl
     }
 
-    /// Its definitions by exact operations, if its last bits are implementation-defined: one for each number of
-    /// arguments.
+    /// Its definitions by exact operations, if its last bits are implementation-defined: one for each number
+    /// of arguments.
     #[must_use]
     pub fn exact_definitions(self) -> &'static [ExactDefinition] {
         self.row().exact

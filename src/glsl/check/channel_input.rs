@@ -1,6 +1,6 @@
-//! `iCh0` to `iCh3`, which the site declares in Image tabs as structures with a sampler:
-//! `uniform struct { sampler2D sampler; vec3 size; float time; int loaded; } iCh0;`. Only their members can be
-//! used, and these are the other inputs.
+//! `iCh0` to `iCh3`, which the site declares in Image tabs as structures with a sampler: `uniform struct {
+//! sampler2D sampler; vec3 size; float time; int loaded; } iCh0;`. Only their members can be used, and these
+//! are the other inputs.
 
 use toyproof_diagnostic::{Code, nearest};
 

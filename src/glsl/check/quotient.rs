@@ -10,8 +10,8 @@ use crate::tree::{BinaryOp, ExprId, ExprKind, Type, UnaryOp, VariableKind};
 const MAX_NODES: usize = 16;
 
 impl Checker<'_> {
-    /// The fix of a constant expression with a division of integers, which converts the operands, or only advice
-    /// where a macro contains some of them; `None` for other expressions.
+    /// The fix of a constant expression with a division of integers, which converts the operands, or only
+    /// advice where a macro contains some of them; `None` for other expressions.
     pub(super) fn float_quotient(&self, expr: ExprId) -> Option<Result<Fix, String>> {
         if self.ty(expr) != Type::INT || !self.tree[expr].constant || !self.divides(expr) {
             return None;
@@ -50,9 +50,9 @@ impl Checker<'_> {
         false
     }
 
-    /// The text of an integer expression with all its operands as floats, where an operator of this precedence
-    /// surrounds it, and the edits that convert them. `None` if an operand is not a number or a constant that
-    /// is written here.
+    /// The text of an integer expression with all its operands as floats, where an operator of this
+    /// precedence surrounds it, and the edits that convert them. `None` if an operand is not a number or a
+    /// constant that is written here.
     fn in_floats(&self, expr: ExprId, outer: u8, edits: &mut Vec<Edit>) -> Option<String> {
         let at = self.tree[expr].at;
         if at.is_expanded() {

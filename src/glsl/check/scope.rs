@@ -208,8 +208,8 @@ impl Checker<'_> {
         }
     }
 
-    /// After parsing: changes the errors about names that are declared later in the text accordingly. The first
-    /// name that is declared nowhere, and resembles nothing, may be declared in another tab.
+    /// After parsing: changes the errors about names that are declared later in the text accordingly. The
+    /// first name that is declared nowhere, and resembles nothing, may be declared in another tab.
     pub(super) fn find_late_declarations(&mut self) {
         let mut names_tab = false;
         for UnknownName { name, at, is_call } in std::mem::take(&mut self.unknown) {

@@ -1,11 +1,13 @@
-//! Variables that Mesa 22.3 overwrites in pixels that have left a loop: see [`LOOP_EXITS`](super::LOOP_EXITS).
+//! Variables that Mesa 22.3 overwrites in pixels that have left a loop: see
+//! [`LOOP_EXITS`](super::LOOP_EXITS).
 
 use spirv::Op;
 use toyproof_translate::backend::spirv::{instructions, opcode};
 
 use super::opaque::{Opaque, push};
 
-/// Adds an exit that is never taken to the head of each loop that may assign a variable before its first exit.
+/// Adds an exit that is never taken to the head of each loop that may assign a variable before its first
+/// exit.
 ///
 /// Mesa promotes variables to values. A value of a loop's body that is also used after the loop must be kept
 /// for a pixel that leaves while others, computed together with it, continue. Mesa 22.3 keeps it only if the

@@ -72,8 +72,8 @@ impl Opaque {
         self.value(code, Op::Bitcast, one, &[depth])
     }
 
-    /// Appends instructions that compute an unknown `false`: whether the zero is 1. If they compared it with 0, Mesa
-    /// would know that it is 0 wherever this is `false`.
+    /// Appends instructions that compute an unknown `false`: whether the zero is 1. If they compared it with
+    /// 0, Mesa would know that it is 0 wherever this is `false`.
     pub(super) fn never(&mut self, code: &mut Vec<u32>) -> u32 {
         let int = self.int_type(1);
         let boolean = self.boolean.unwrap_or_else(|| {

@@ -207,7 +207,8 @@ impl Rewriter {
         hidden
     }
 
-    /// The indices of the operands that are hidden because of what Mesa does with the results of an operation.
+    /// The indices of the operands that are hidden because of what Mesa does with the results of an
+    /// operation.
     fn hidden_by_operation(&self, op: Op, instruction: &[u32], known: &Operands) -> Vec<usize> {
         use GlslStd450Op as G;
         let from = |first: usize, is_hidden: &dyn Fn(Known) -> bool| -> Vec<usize> {

@@ -1,8 +1,8 @@
 //! The restrictions of a worker process. A driver runs compilers on untrusted shaders; a fault in one of them
 //! must not give a shader access to files, to the network or to other processes.
 //!
-//! Linux only, where the kernel supports it: Landlock limits access to files, seccomp limits system calls. Both
-//! apply before the driver is loaded, and to all of its threads.
+//! Linux only, where the kernel supports it: Landlock limits access to files, seccomp limits system calls.
+//! Both apply before the driver is loaded, and to all of its threads.
 
 #[cfg(target_os = "linux")]
 mod files;

@@ -2,8 +2,8 @@
 //!
 //! A definite-assignment analysis ([`flow`]) distinguishes components and members, and follows calls by
 //! summaries of their parameters. A read that no assignment precedes on any path is an error of the author's,
-//! and a warning. One that assignments precede on some paths only is often right, as with a hit record that is
-//! read only if a flag is set: it is reported if a run of the shader observes it.
+//! and a warning. One that assignments precede on some paths only is often right, as with a hit record that
+//! is read only if a flag is set: it is reported if a run of the shader observes it.
 
 mod flow;
 mod missing_return;

@@ -36,7 +36,8 @@ impl Slots {
 /// The parts that are unassigned on some path to a point, and those that are assigned on some path.
 ///
 /// Once a path reads an unassigned part, it counts as neither for this part: the read is reported, and what
-/// follows from it is not. So `sum += x` in a loop does not assign the `sum` that its own next iteration reads.
+/// follows from it is not. So `sum += x` in a loop does not assign the `sum` that its own next iteration
+/// reads.
 #[derive(Debug, Clone, Default)]
 pub(super) struct State {
     /// Whether any path leads here.

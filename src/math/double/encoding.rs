@@ -34,8 +34,8 @@ pub(super) fn is_normal_positive(x: f64) -> bool {
     (x >= f64::MIN_POSITIVE) & (x < f64::INFINITY)
 }
 
-/// Computes all results by the path without branches, and those of irregular arguments again. A macro, since a
-/// closure is a call in the loop if it is large.
+/// Computes all results by the path without branches, and those of irregular arguments again. A macro, since
+/// a closure is a call in the loop if it is large.
 macro_rules! each {
     ($lane:ident, $is_regular:expr, $regular:expr, $other:expr) => {{
         let mut results = [0.0; L];

@@ -1,7 +1,7 @@
 //! The exponential and the logarithm.
 //!
-//! The methods and coefficients are those of fdlibm (Sun Microsystems, 1993; `e_exp.c` and `e_log.c`), so that
-//! results have libm's bits.
+//! The methods and coefficients are those of fdlibm (Sun Microsystems, 1993; `e_exp.c` and `e_log.c`), so
+//! that results have libm's bits.
 
 use super::encoding::{FRACTION, each, exponent, is_normal_positive, scaled};
 

@@ -1,8 +1,8 @@
 //! Functions of f64 for several arguments at once: the accuracy of libm, without a call for each argument.
 //!
-//! Most arguments take one path without branches, calls or tables, so that loops over them are vectorized. The
-//! others are computed one by one: infinite, denormal and very large ones, and results that overflow. A result
-//! does not depend on the other arguments, nor on the processor: products and sums are never fused.
+//! Most arguments take one path without branches, calls or tables, so that loops over them are vectorized.
+//! The others are computed one by one: infinite, denormal and very large ones, and results that overflow. A
+//! result does not depend on the other arguments, nor on the processor: products and sums are never fused.
 //!
 //! ```
 //! use toyproof_math::double;

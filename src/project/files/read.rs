@@ -128,8 +128,8 @@ pub fn read_named(path: &Path) -> Result<File, ReadError> {
     decode(read_bytes(path)?, path_name(path), MAX_BYTES)
 }
 
-/// Reads a file that the user named, or a pipe of the shell, which is in `/dev` or `/proc`, but at most one byte
-/// more than the maximum. Other pipes may be among files that a pattern of the shell named.
+/// Reads a file that the user named, or a pipe of the shell, which is in `/dev` or `/proc`, but at most one
+/// byte more than the maximum. Other pipes may be among files that a pattern of the shell named.
 ///
 /// # Errors
 /// Those of [`ReadError`].

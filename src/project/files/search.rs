@@ -1,4 +1,5 @@
-//! Finds the shaders that a command line names. Links are followed as long as they stay inside the searched folder.
+//! Finds the shaders that a command line names. Links are followed as long as they stay inside the searched
+//! folder.
 
 use std::collections::HashSet;
 use std::ffi::OsStr;

@@ -40,8 +40,8 @@ fn parent(path: &str) -> &str {
     &path[..end]
 }
 
-/// The folder that is common to a folder and a path, each with its final separator; `None` is the folder of no
-/// path.
+/// The folder that is common to a folder and a path, each with its final separator; `None` is the folder of
+/// no path.
 pub(crate) fn common_folder(folder: Option<&str>, path: &str) -> String {
     let mut common = folder.unwrap_or_else(|| parent(path));
     while !path.starts_with(common) {

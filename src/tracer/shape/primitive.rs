@@ -21,8 +21,8 @@ pub(crate) trait Primitive<T: Real>: Debug + Send + Sync {
     /// Returns the point at t and the normal there.
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2];
 
-    /// Updates the hits of the rays of a packet that do not start on the surface, if there is a kernel for it;
-    /// otherwise returns false.
+    /// Updates the hits of the rays of a packet that do not start on the surface, if there is a kernel for
+    /// it; otherwise returns false.
     fn update_packet(&self, _: Level, _: &Packet<T>, _: &mut PacketHits<T>, _number: u32) -> bool {
         false
     }

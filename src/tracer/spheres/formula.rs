@@ -1,8 +1,8 @@
 //! Ray–sphere intersection in lanes: one ray and several spheres, or several rays and one sphere.
 //!
 //! The recentered discriminant and the stable roots of Haines, Günther and Akenine-Möller, “Precision
-//! Improvements for Ray/Sphere Intersection”, Ray Tracing Gems (2019), chapter 7: with f = o − c and b = −f·d,
-//! disc = r² − |f + (b/a) d|², q = b + sign(b) √(a·disc), t₀ = (f·f − r²)/q, t₁ = q/a.
+//! Improvements for Ray/Sphere Intersection”, Ray Tracing Gems (2019), chapter 7: with f = o − c and b =
+//! −f·d, disc = r² − |f + (b/a) d|², q = b + sign(b) √(a·disc), t₀ = (f·f − r²)/q, t₁ = q/a.
 //!
 //! Lengths are in units of the sphere: the largest power of two not above its radius, by which division is
 //! exact. So the accuracy is the same for spheres of any size.

@@ -175,8 +175,8 @@ impl<'a, T: Real, S: Lanes<T>> LaneQuery<'a, T, S> {
         }
     }
 
-    /// Intersects all rays with one sphere. Returns t, which is infinite where there is no hit, or nothing if no
-    /// active ray hits it.
+    /// Intersects all rays with one sphere. Returns t, which is infinite where there is no hit, or nothing if
+    /// no active ray hits it.
     #[inline(always)]
     fn intersect(&self, block: &Block<T>, slot: usize) -> Option<Wide<T, S>> {
         let simd = self.simd;

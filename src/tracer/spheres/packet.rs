@@ -109,8 +109,8 @@ impl<T: Real> PacketHits<T> {
         }
     }
 
-    /// Replaces the hits of all rays of a packet by those of a surface where these are nearer. `intersect` maps
-    /// origins and directions to t, which is not finite if there is no hit.
+    /// Replaces the hits of all rays of a packet by those of a surface where these are nearer. `intersect`
+    /// maps origins and directions to t, which is not finite if there is no hit.
     #[inline(always)]
     pub(in super::super) fn update_packet<S: Lanes<T>>(
         &mut self,
@@ -129,8 +129,8 @@ impl<T: Real> PacketHits<T> {
         }
     }
 
-    /// Replaces the hits of one ray per lane, from index `at` on, where the given ones are nearer; at equal t,
-    /// the smaller index wins. Returns whether any t decreased.
+    /// Replaces the hits of one ray per lane, from index `at` on, where the given ones are nearer; at equal
+    /// t, the smaller index wins. Returns whether any t decreased.
     #[inline(always)]
     fn update_lanes<S: Lanes<T>>(&mut self, simd: S, at: usize, t: Wide<T, S>, number: u32) -> bool {
         let before = Wide::load(simd, &self.t[at..]);

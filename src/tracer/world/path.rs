@@ -37,9 +37,9 @@ struct SelectedEmitters<T, S: Lanes<T>> {
 }
 
 impl<T: Real, P: Primitive<T>> World<T, P> {
-    /// Traces paths along camera rays with the given first hits, in the `active` lanes. Each point with a BRDF
-    /// consumes, in this order: a number (which emitter), a pair (the direction in its cone), a pair (the
-    /// direction for the BRDF). Without emitters, only the last pair is consumed.
+    /// Traces paths along camera rays with the given first hits, in the `active` lanes. Each point with a
+    /// BRDF consumes, in this order: a number (which emitter), a pair (the direction in its cone), a pair
+    /// (the direction for the BRDF). Without emitters, only the last pair is consumed.
     #[inline(always)]
     pub(super) fn path<S: Lanes<T>>(
         &self,

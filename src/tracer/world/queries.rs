@@ -28,8 +28,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         rays
     }
 
-    /// Finds the nearest surfaces along the secondary rays in `active` lanes; at equal t, those with the smallest
-    /// index.
+    /// Finds the nearest surfaces along the secondary rays in `active` lanes; at equal t, those with the
+    /// smallest index.
     #[inline(always)]
     pub(super) fn nearest_in_lanes<S: Lanes<T>>(
         &self,
@@ -87,9 +87,9 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         t.select(t_min.less(t), infinity)
     }
 
-    /// Returns the `active` lanes in which anything except the surface `light` lies strictly between the origin of
-    /// the ray and `distance`, or in which the ray misses that surface and the policy requires a hit. `light` is
-    /// encoded by [`Real::tag`].
+    /// Returns the `active` lanes in which anything except the surface `light` lies strictly between the
+    /// origin of the ray and `distance`, or in which the ray misses that surface and the policy requires a
+    /// hit. `light` is encoded by [`Real::tag`].
     #[inline(always)]
     pub(super) fn occluded_in_lanes<S: Lanes<T>>(
         &self,

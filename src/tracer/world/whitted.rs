@@ -33,8 +33,8 @@ impl<T: Real, S: Lanes<T>> Branches<T, S> {
     }
 }
 
-/// The refracted rays that are traced later. Those of a sample form a stack with at most one ray for each number
-/// of segments: a ray that splits comes back to its refracted part when all longer ones are done.
+/// The refracted rays that are traced later. Those of a sample form a stack with at most one ray for each
+/// number of segments: a ray that splits comes back to its refracted part when all longer ones are done.
 pub(super) struct Deferred<T, S: Lanes<T>> {
     /// By the number of segments of the ray that was split, with the lanes that have one.
     levels: Vec<(Branches<T, S>, u32)>,
@@ -178,8 +178,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
     }
 
-    /// Returns the ambient light, and direct light from all visible lights, reflected at points to rays of the
-    /// given directions, in the lanes `lit`.
+    /// Returns the ambient light, and direct light from all visible lights, reflected at points to rays of
+    /// the given directions, in the lanes `lit`.
     #[inline(always)]
     fn direct_light<S: Lanes<T>>(
         &self,

@@ -1,7 +1,7 @@
-//! Constant expressions that naga or tint cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`), overflowing
-//! shifts (`1 << 31`), shifts by 32 bits or more, undefined integer quotients, `clamp` with crossed bounds,
-//! `smoothstep` with equal edges, `pow` of a base that is not positive, packed halves; and denormal operands and
-//! results, which naga does not flush to zero.
+//! Constant expressions that naga or tint cannot evaluate: infinities and NaNs (`1./0.`, `log(0.)`),
+//! overflowing shifts (`1 << 31`), shifts by 32 bits or more, undefined integer quotients, `clamp` with
+//! crossed bounds, `smoothstep` with equal edges, `pow` of a base that is not positive, packed halves; and
+//! denormal operands and results, which naga does not flush to zero.
 //!
 //! naga evaluates every expression of literals and refuses these results; so do WGSL compilers. An operand
 //! passed through a helper function that returns it unchanged is evaluated at run time instead. naga also

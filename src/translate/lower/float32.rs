@@ -2,8 +2,8 @@
 //!
 //! The front end computes constants in double precision, which hides that `length(vec3(1e20))` overflows, and
 //! has other last bits. Here every operation is rounded: `+ − × ÷` and `sqrt` of 32-bit floats, computed in
-//! double precision, round to the same bits as in one step. Denormals are flushed in functions only, since naga does not
-//! flush the others.
+//! double precision, round to the same bits as in one step. Denormals are flushed in functions only, since
+//! naga does not flush the others.
 
 use std::collections::HashMap;
 

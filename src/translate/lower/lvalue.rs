@@ -311,8 +311,9 @@ fn write_through_copy(cx: &mut LoweringContext, id: ExprId, discarded: &HashSet<
 /// Evaluates the right side of a compound assignment first if it may change the target: `t += f(t *= 2.0)`
 /// adds to the changed `t`, and `t[i] += i++` adds to the element that `i` selected before.
 ///
-/// GLSL does not specify when the target is read: naga reads it first, WebGL 2's translators and glslang last.
-/// All of them evaluate its indices first; since the right side moves before them here, they move as well.
+/// GLSL does not specify when the target is read: naga reads it first, WebGL 2's translators and glslang
+/// last. All of them evaluate its indices first; since the right side moves before them here, they move as
+/// well.
 pub(super) fn lower_compound_assignments(cx: &mut LoweringContext) {
     cx.each_expression_postorder(|cx, id| {
         if let ExprKind::Assign {

@@ -350,8 +350,8 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Declares variables for the encodings of infinities and NaNs: compilers refuse constant expressions with
-    /// such values (tint: "value nan cannot be represented as 'f32'").
+    /// Declares variables for the encodings of infinities and NaNs: compilers refuse constant expressions
+    /// with such values (tint: "value nan cannot be represented as 'f32'").
     fn declare_encodings(&mut self) {
         let encodings: BTreeSet<u32> = self
             .uses

@@ -72,8 +72,8 @@ pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline)
 }
 
 /// Whether compilers evaluate a function of constants in the same way, or leave it to the driver:
-/// `normalize(vec3f(1.0, 2.0,
-/// 3.0))` stays readable. naga, which proofs read WGSL with, computes the last bits of all others in its own way.
+/// `normalize(vec3f(1.0, 2.0, 3.0))` stays readable. naga, which proofs read WGSL with, computes the last
+/// bits of all others in its own way.
 fn is_computed_alike(function: BuiltIn) -> bool {
     use BuiltIn as B;
     matches!(

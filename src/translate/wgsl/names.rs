@@ -161,8 +161,8 @@ fn type_label(cx: &LoweringContext, names: &Names, ty: Type) -> String {
         .join("_")
 }
 
-/// Types and functions that WGSL predeclares and that printed code may use. Authors may redeclare all others of
-/// `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`.
+/// Types and functions that WGSL predeclares and that printed code may use. Authors may redeclare all others
+/// of `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`.
 const PREDECLARED: &[&str] = &[
     "abs",
     "acos",
@@ -277,8 +277,8 @@ pub(super) fn may_be_hidden(word: &str) -> bool {
     BuiltIn::ALL.iter().any(|function| function.name() == word) && !PRINTED.contains(&word)
 }
 
-/// Whether the name is unavailable to members too, which clash with nothing after a dot: a keyword or reserved
-/// word (§15).
+/// Whether the name is unavailable to members too, which clash with nothing after a dot: a keyword or
+/// reserved word (§15).
 pub(super) fn is_reserved(word: &str) -> bool {
     RESERVED_SET.contains(word) || word == "_" || word.starts_with("__")
 }

@@ -94,8 +94,8 @@ impl Style {
         code.split(' ')
     }
 
-    /// Whether y points down in the host's coordinates, which inverts the sign of its derivatives. Buffers are
-    /// as in GLSL in every host that has them.
+    /// Whether y points down in the host's coordinates, which inverts the sign of its derivatives. Buffers
+    /// are as in GLSL in every host that has them.
     pub(super) fn is_upside_down(self, stage: Stage) -> bool {
         self != Self::Plain && stage == Stage::Image
     }
@@ -207,9 +207,9 @@ impl Writer<'_> {
         let brings = tree[main_image].parameters.first().map(|&color| tree[color].kind);
         let brings_color = brings == Some(VariableKind::Parameter(Direction::InOut));
         let holds = |condition: &str| match condition {
-            // GLSL allows derivatives in non-uniform control flow and leaves their values undefined. Other hosts
-            // than ours put declarations before the text, after which directives are not allowed; they use naga,
-            // which does not check this.
+            // GLSL allows derivatives in non-uniform control flow and leaves their values undefined. Other
+            // hosts than ours put declarations before the text, after which directives are not allowed; they
+            // use naga, which does not check this.
             "derivatives" => self.uses_derivatives,
             "inputs" => !uniforms.is_empty(),
             "channels" => !channels.is_empty(),

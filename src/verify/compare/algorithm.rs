@@ -40,8 +40,8 @@ pub struct Undefined<'a> {
 }
 
 impl Undefined<'_> {
-    /// The status of a pixel whose color differs from the expected one if it `differs` in the shader's image. A
-    /// pixel that is wrong whatever the undefined operations return is wrong.
+    /// The status of a pixel whose color differs from the expected one if it `differs` in the shader's image.
+    /// A pixel that is wrong whatever the undefined operations return is wrong.
     fn status(&self, at: usize, differs: impl Fn(&Image) -> bool, actual: &Image) -> PixelStatus {
         let is_wrong = match self.substituted {
             None => false,
@@ -108,13 +108,12 @@ fn spend(budget: &mut f64, pixels: usize) -> bool {
 /// Compares a band of the shader in f64, `actual`, with the reference in f64, `expected`, bottom row first;
 /// coordinates are in the band.
 ///
-/// A pixel agrees if no component is farther than the tolerance from the reference's color, or from those that
-/// it has for other ray epsilons. A pixel that depends on undefined behavior is excluded, unless it is outside
-/// whatever the undefined operations return. A pixel outside is excluded if it lies on an
-/// edge across which the shader takes derivatives, whose values GLSL leaves to the driver. It is also
-/// excluded if the reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's
-/// own color changes by more than the tolerance in one of the images of `perturbed`, see
-/// `changed_by_rounding`.
+/// A pixel agrees if no component is farther than the tolerance from the reference's color, or from those
+/// that it has for other ray epsilons. A pixel that depends on undefined behavior is excluded, unless it is
+/// outside whatever the undefined operations return. A pixel outside is excluded if it lies on an edge across
+/// which the shader takes derivatives, whose values GLSL leaves to the driver. It is also excluded if the
+/// reference itself is ill-conditioned there. Otherwise it is ill-conditioned if the shader's own color
+/// changes by more than the tolerance in one of the images of `perturbed`, see `changed_by_rounding`.
 ///
 /// # Panics
 /// If the sizes differ.
@@ -170,8 +169,8 @@ fn replace(statuses: &mut [PixelStatus], selected: &[bool], other: PixelStatus) 
     }
 }
 
-/// Excludes differing pixels in which the reference itself changes with the number type: no shader can resolve
-/// them in float32.
+/// Excludes differing pixels in which the reference itself changes with the number type: no shader can
+/// resolve them in float32.
 pub(crate) fn exclude_tied(statuses: &mut [PixelStatus], tied: impl FnOnce(&[bool]) -> Vec<bool>) {
     let tied = tied(&are_differing(statuses));
     replace(statuses, &tied, PixelStatus::Tied);
@@ -246,8 +245,8 @@ impl Band<'_> {
 }
 
 /// Accepts the colors of a scene for the legal ray epsilons: first for a few. More epsilons are tried only
-/// where pixels are still outside: `mixed` ones if few are, then the shader's own, which are fitted to some of
-/// the pixels, then all that authors use, in each pixel by itself.
+/// where pixels are still outside: `mixed` ones if few are, then the shader's own, which are fitted to some
+/// of the pixels, then all that authors use, in each pixel by itself.
 pub fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut Mixed) {
     let is_within = |pixel: &Pixel, epsilons| {
         let range = colors.color_range(pixel.x, pixel.y, epsilons);

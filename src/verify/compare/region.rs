@@ -10,7 +10,8 @@ use crate::compare::PixelStatus;
 /// The side of the smallest block of pixels that is a compact region.
 const MIN_SIDE: u32 = 3;
 
-/// The regions of an image in which pixels have a status, such as differing. Pixels that share an edge or a corner are connected.
+/// The regions of an image in which pixels have a status, such as differing. Pixels that share an edge or a
+/// corner are connected.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Regions {
     /// How many there are.

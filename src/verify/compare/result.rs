@@ -23,8 +23,8 @@ pub struct CheckResult {
 }
 
 impl CheckResult {
-    /// Returns at most `max_count` of the differing pixels, spread over the image; of the ill-conditioned ones if
-    /// none differs, and else of those in which the reference is ill-conditioned.
+    /// Returns at most `max_count` of the differing pixels, spread over the image; of the ill-conditioned
+    /// ones if none differs, and else of those in which the reference is ill-conditioned.
     #[must_use]
     pub fn sample_pixels(&self, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
         let width = size[0] as usize;
@@ -48,8 +48,8 @@ impl CheckResult {
             .collect()
     }
 
-    /// The result of no band, with the memory for an image of that many pixels: growing step by step would leave
-    /// unused parts behind.
+    /// The result of no band, with the memory for an image of that many pixels: growing step by step would
+    /// leave unused parts behind.
     #[must_use]
     pub fn of_pixels(count: usize) -> Self {
         Self {

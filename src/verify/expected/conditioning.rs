@@ -19,13 +19,14 @@ const TESTED_PIXELS: u32 = 6000;
 /// The largest number of lights, and of patterns, that are edited.
 const MAX_EDITS: usize = 16;
 
-/// The pixels of a reference in which rounding decides its own color, as where the edge of a tile passes exactly
-/// through the sample point. They are left out of comparisons.
+/// The pixels of a reference in which rounding decides its own color, as where the edge of a tile passes
+/// exactly through the sample point. They are left out of comparisons.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Conditioning {
     /// The ill-conditioned ones of the tested pixels, which are spread over the image.
     pub ill_conditioned: Share,
-    /// The edit of a scene that prevents them, such as “move the eye from [0.0, 0.0, 0.0] to [0.0013, 0.0009, 0.0005]”.
+    /// The edit of a scene that prevents them, such as “move the eye from [0.0, 0.0, 0.0] to [0.0013, 0.0009,
+    /// 0.0005]”.
     pub edit: Option<String>,
 }
 

@@ -27,8 +27,8 @@ impl ImageReference {
     /// Half of an 8-bit level: what rounding to 8 bits changes.
     const HALF_LEVEL: f64 = 0.5 / 255.0;
 
-    /// Creates the reference. Colors agree if no component differs by more than `tolerance`, in [0, 1], besides
-    /// the rounding of the image.
+    /// Creates the reference. Colors agree if no component differs by more than `tolerance`, in [0, 1],
+    /// besides the rounding of the image.
     #[must_use]
     pub fn new(image: Image, quantization: Quantization, tolerance: f64) -> Self {
         let lost = match quantization {

@@ -137,8 +137,8 @@ impl Expected {
         }
     }
 
-    /// The colors at some positions within pixels, row by row, of a reference that is not stochastic; none for an
-    /// image.
+    /// The colors at some positions within pixels, row by row, of a reference that is not stochastic; none
+    /// for an image.
     #[must_use]
     pub fn colors_within(&self, positions: &Places) -> Option<Vec<[f64; 3]>> {
         match self {

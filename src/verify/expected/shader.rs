@@ -219,8 +219,8 @@ impl ShaderReference {
         }
     }
 
-    /// Accepts the colors that the shader has for other ray epsilons and marches, where few pixels differ; where
-    /// many do, these are not the cause.
+    /// Accepts the colors that the shader has for other ray epsilons and marches, where few pixels differ;
+    /// where many do, these are not the cause.
     pub(super) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band) {
         if band.differing_share() > MAX_ACCEPTED_SHARE {
             return;

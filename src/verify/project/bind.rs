@@ -62,8 +62,8 @@ pub struct BoundFrame {
 
 /// Binds the inputs of the image of a shader in this frame: the textures that do not change, and the buffers
 /// after all passes of this frame and of those before it, in float32. Returns what the frames before it
-/// contribute, if the image depends on them. A driver that fails is left out if there is a reference, as in the check
-/// of the image.
+/// contribute, if the image depends on them. A driver that fails is left out if there is a reference, as in
+/// the check of the image.
 ///
 /// # Errors
 /// Why the buffers cannot be rendered.

@@ -280,8 +280,8 @@ fn differing_texels(double: &Texture, single: &Texture) -> Vec<[u32; 2]> {
 /// sums.
 const EXPONENTIAL: f64 = 16.0;
 
-/// A difference of double precision beyond which growth is not measured: where `fract` or a comparison decides
-/// differently, an error jumps, whatever its cause.
+/// A difference of double precision beyond which growth is not measured: where `fract` or a comparison
+/// decides differently, an error jumps, whatever its cause.
 const JUMP: f64 = 1.0 / 1024.0;
 
 /// The ratio of the errors of float32 and of double precision where both are amplified equally: that of their

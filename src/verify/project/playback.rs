@@ -183,8 +183,8 @@ impl<'a> DevicePlayback<'a> {
         Ok(Self::opened(driver, device, shader.graph))
     }
 
-    /// The playback of the passes that a driver has opened, in the order of their graph. `device` is the name that
-    /// it returned.
+    /// The playback of the passes that a driver has opened, in the order of their graph. `device` is the name
+    /// that it returned.
     #[must_use]
     pub fn opened(driver: &'a mut Driver, device: String, graph: &Graph) -> Self {
         Self {

@@ -24,9 +24,9 @@ pub(crate) const ESTIMATE_SETS: Range<u32> = 9..17;
 /// The halves of these sets.
 const ESTIMATE_HALVES: [Range<u32>; 2] = [9..13, 13..17];
 
-/// The number of sets in which a pixel is compared with itself. A feature that covers the part a of a pixel is
-/// hit by a sample of a shader and missed by n other samples with a probability of a·(1 − a)ⁿ, which is below
-/// 1/(e·n).
+/// The number of sets in which a pixel is compared with itself. A feature that covers the part a of a pixel
+/// is hit by a sample of a shader and missed by n other samples with a probability of a·(1 − a)ⁿ, which is
+/// below 1/(e·n).
 pub(crate) const RESAMPLES: u32 = 16;
 
 /// The largest numbers of samples, of paths and of pixels of a replicate.
@@ -34,8 +34,8 @@ const MAX_SAMPLES: u32 = 1 << 18;
 const MAX_PATHS: u32 = 1 << 17;
 const MAX_PIXELS: u32 = 1 << 15;
 
-/// The largest number of pixels of a replicate of a shader: seventeen of them take about as long as an image of
-/// 640×360.
+/// The largest number of pixels of a replicate of a shader: seventeen of them take about as long as an image
+/// of 640×360.
 const MAX_PIXELS_OF_SHADERS: u32 = 1 << 14;
 
 /// A reference whose pixels may depend on random numbers. Colors are those of pixels; means are those of a

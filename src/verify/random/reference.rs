@@ -27,8 +27,8 @@ const MAX_RATIO: f64 = MAX_DISTANCE_RATIO * (TRIED_SETS + 1) as f64 / (TRIED_SET
 /// The largest variance of correlated noise as a share of the variance of the image's pixels.
 const MAX_NOISE_SHARE: f64 = 0.5;
 
-/// The least correlation of neighbors, in x and in y, of noise that is smooth: value noise of several octaves has
-/// more, though the cells of the last ones are as small as pixels.
+/// The least correlation of neighbors, in x and in y, of noise that is smooth: value noise of several octaves
+/// has more, though the cells of the last ones are as small as pixels.
 const MIN_SMOOTHNESS: f64 = 0.6;
 
 type Colors = Vec<[f64; 3]>;

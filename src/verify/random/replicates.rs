@@ -195,7 +195,8 @@ pub(crate) struct ReferenceComparison {
 /// The number of sets of random numbers in which noisy pixels are sought.
 pub const MEAN_SETS: usize = 2 * REPLICATES;
 
-/// The means of a shader and of the reference at other places, each over [`MEAN_SETS`] sets of random numbers.
+/// The means of a shader and of the reference at other places, each over [`MEAN_SETS`] sets of random
+/// numbers.
 pub(crate) fn noisy_pixels(
     program: &Program,
     case: &Case,

@@ -68,8 +68,9 @@ impl Reseeding {
         checked
     }
 
-    /// Whether some of these operations compute with the position of the pixel, by the flow of data. A sampler that
-    /// counts its numbers in each pixel alike does not, though a loop may take more of them in some pixels.
+    /// Whether some of these operations compute with the position of the pixel, by the flow of data. A
+    /// sampler that counts its numbers in each pixel alike does not, though a loop may take more of them in
+    /// some pixels.
     pub(crate) fn depends_on_pixel(self, checked: &Checked) -> bool {
         let mut salted = checked.tree.clone();
         let mut is_changed = |id: ExprId| {

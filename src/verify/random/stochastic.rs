@@ -68,7 +68,8 @@ pub(crate) struct ComparedMeans {
 }
 
 impl<'a> Stochastic<'a> {
-    /// Selects what is recorded of an image of that size; none if the reference is a scene without random numbers.
+    /// Selects what is recorded of an image of that size; none if the reference is a scene without random
+    /// numbers.
     pub(crate) fn new(expected: &'a Expected, size: [u32; 2]) -> Option<Self> {
         let of = |reference: &'a dyn Resampled, rows| Self {
             reference,
@@ -93,8 +94,8 @@ impl<'a> Stochastic<'a> {
         }
     }
 
-    /// Compares the means of a shader that differs from its reference only in random pixels; none if it differs
-    /// elsewhere too. The precision check of the other pixels is left out.
+    /// Compares the means of a shader that differs from its reference only in random pixels; none if it
+    /// differs elsewhere too. The precision check of the other pixels is left out.
     pub(crate) fn compare_means(
         &self,
         algorithm: &CheckResult,
@@ -204,8 +205,8 @@ impl<'a> Stochastic<'a> {
         }
     }
 
-    /// A reseeding that changes pixels of a shader that differs; none if the shader has no random numbers, or the
-    /// reference has none.
+    /// A reseeding that changes pixels of a shader that differs; none if the shader has no random numbers, or
+    /// the reference has none.
     pub(crate) fn reseeding(
         &self,
         program: &Program,

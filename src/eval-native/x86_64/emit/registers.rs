@@ -1,8 +1,8 @@
 //! Assignment of registers to the nodes of a region.
 //!
-//! Nodes are kept in fifteen of the vector registers (the sixteenth is scratch); if none of these is free, the
-//! node whose next use is farthest away is moved to the stack (Belady, “A Study of Replacement Algorithms for
-//! a Virtual-Storage Computer”, IBM Systems Journal 5(2), 1966).
+//! Nodes are kept in fifteen of the vector registers (the sixteenth is scratch); if none of these is free,
+//! the node whose next use is farthest away is moved to the stack (Belady, “A Study of Replacement Algorithms
+//! for a Virtual-Storage Computer”, IBM Systems Journal 5(2), 1966).
 
 use toyproof_eval::native::{Kind, Map};
 

@@ -117,8 +117,8 @@ pub(crate) fn sine_and_cosine<N: Arithmetic>(level: Level, sine_first: bool) -> 
     }
 }
 
-/// Any operation on scalars, into a scalar. `to` is the operation: scalars take so little of the time that one
-/// handler serves all.
+/// Any operation on scalars, into a scalar. `to` is the operation: scalars take so little of the time that
+/// one handler serves all.
 struct Scalars;
 
 impl<N: Arithmetic> Run<N> for Scalars {

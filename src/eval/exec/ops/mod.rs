@@ -1,5 +1,5 @@
-//! The interpreter: each instruction holds the function that executes it, monomorphized for its operation, the
-//! number type and, of frequent operations, which operands are rows and which are scalars.
+//! The interpreter: each instruction holds the function that executes it, monomorphized for its operation,
+//! the number type and, of frequent operations, which operands are rows and which are scalars.
 //!
 //! Rows are copied out a chunk at a time and then written, so that the compiler knows that nothing aliases,
 //! and vectorizes. Chunks without active pixels are skipped.
@@ -48,8 +48,9 @@ pub(crate) enum Level {
     /// AVX2 and FMA: eight floats at once.
     #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// AVX-512 for functions such as `pow`, else AVX2. A function is a chain of operations that is longer than
-    /// the out-of-order window of many processors, and takes these as long for sixteen floats as for eight.
+    /// AVX-512 for functions such as `pow`, else AVX2. A function is a chain of operations that is longer
+    /// than the out-of-order window of many processors, and takes these as long for sixteen floats as for
+    /// eight.
     #[cfg(target_arch = "x86_64")]
     Avx512,
 }

@@ -79,9 +79,9 @@ pub(super) fn documented() -> impl Iterator<Item = Documented> {
     })
 }
 
-/// `id: description, [Part = template, OtherPart = template];` after a comment with the fix, unless the mistake is
-/// documented elsewhere. A mistake that can be made in several ways, or that concerns different parts of different
-/// shaders, has alternatives: `id: description, [edits], [other edits];`
+/// `id: description, [Part = template, OtherPart = template];` after a comment with the fix, unless the
+/// mistake is documented elsewhere. A mistake that can be made in several ways, or that concerns different
+/// parts of different shaders, has alternatives: `id: description, [edits], [other edits];`
 macro_rules! mistakes {
     ($(
         $(#[doc = $fix:literal])*

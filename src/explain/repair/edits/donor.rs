@@ -1,5 +1,5 @@
-//! Donors: expressions of the shader that renders the scene, or of other correct shaders, with the names of the
-//! author's shader in place of their own. They repair mistakes that no small edit repairs.
+//! Donors: expressions of the shader that renders the scene, or of other correct shaders, with the names of
+//! the author's shader in place of their own. They repair mistakes that no small edit repairs.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};

@@ -13,7 +13,8 @@ const COMPARISON: u32 = 12;
 const EXCHANGE: u32 = 12;
 const DELETION: u32 = 15;
 
-/// The cost of deleting a factor and a term at once, which is more natural than another operator by which they cancel.
+/// The cost of deleting a factor and a term at once, which is more natural than another operator by which
+/// they cancel.
 const UNSCALED: u32 = 9;
 
 impl Writer<'_> {

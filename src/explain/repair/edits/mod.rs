@@ -134,8 +134,8 @@ impl<'a> Writer<'a> {
         values
     }
 
-    /// Whether a statement computes with pixels: with the resolution, or with the position in `mainImage`. In others,
-    /// which compute with lengths of the scene, a resolution has no meaning.
+    /// Whether a statement computes with pixels: with the resolution, or with the position in `mainImage`. In
+    /// others, which compute with lengths of the scene, a resolution has no meaning.
     fn reads_pixels(&self, statement: usize) -> bool {
         let text = self.shader.text(self.shader.statements[statement].span);
         let position = self.tree[self.shader.checked.main_image].parameters.get(1);

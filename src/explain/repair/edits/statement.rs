@@ -1,4 +1,5 @@
-//! Edits of statements: deleted, moved, repeated and inserted ones, and other targets and operators of assignments.
+//! Edits of statements: deleted, moved, repeated and inserted ones, and other targets and operators of
+//! assignments.
 
 use toyproof_glsl::tree::{
     BinaryOp, Direction, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind, walk,
@@ -9,8 +10,8 @@ use super::super::shader::Shape;
 use super::super::term::{Term, TermKind, binary_type};
 use super::Writer;
 
-/// The costs: another operator of an assignment, another target, another value, deletions, moves, repetitions,
-/// copies to another place, and insertions of assignments of values, and of others.
+/// The costs: another operator of an assignment, another target, another value, deletions, moves,
+/// repetitions, copies to another place, and insertions of assignments of values, and of others.
 const OPERATOR: u32 = 11;
 const TARGET: u32 = 16;
 const VALUE: u32 = 20;

@@ -180,8 +180,8 @@ impl Model {
 }
 
 /// Recognizes the mistake that explains a function's outcomes for unit directions (`unit`) and for directions
-/// of other lengths (`other`). A function that never hits anything for another reason has the outcomes of one that
-/// adds the squared radius, so that its text decides (`adds_squared_radius`).
+/// of other lengths (`other`). A function that never hits anything for another reason has the outcomes of one
+/// that adds the squared radius, so that its text decides (`adds_squared_radius`).
 pub(super) fn recognize(
     unit: &[(RaySphere, Outcome)],
     other: &[(RaySphere, Outcome)],

@@ -163,8 +163,8 @@ pub struct TypicalResults {
     pub mistake: Option<Mistake>,
 }
 
-/// Tests a function in f64, for rays of length 1 and spheres of typical size. `timeout` is the time limit of its
-/// compilation and of its evaluation.
+/// Tests a function in f64, for rays of length 1 and spheres of typical size. `timeout` is the time limit of
+/// its compilation and of its evaluation.
 ///
 /// # Errors
 ///

@@ -2,9 +2,9 @@
 //! operations that they compute in the same way, in SPIR-V of any producer.
 //!
 //! A module that still contains the author's functions can then be compared bit by bit with the evaluator's
-//! image. The expansions come from a library: a generated shader in strict form (`crate::lower_strict`), whose
-//! functions are linked into the module. Each expanded instruction becomes a call, and all others remain
-//! unchanged.
+//! image. The expansions come from a library: a generated shader in strict form (`crate::lower_strict`),
+//! whose functions are linked into the module. Each expanded instruction becomes a call, and all others
+//! remain unchanged.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -206,7 +206,8 @@ mod tests {
         words(&ValidModule::of_wgsl(text).unwrap()).unwrap()
     }
 
-    /// The numbers of instructions with these opcodes in the module's own functions, which precede the library's.
+    /// The numbers of instructions with these opcodes in the module's own functions, which precede the
+    /// library's.
     fn counts<const N: usize>(spirv: &[u32], own: usize, ops: [Op; N]) -> [usize; N] {
         let code = || {
             let mut function = 0;
