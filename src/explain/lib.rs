@@ -33,6 +33,7 @@
 //! # }
 //! ```
 
+pub mod departure;
 pub mod known;
 pub mod repair;
 mod search;
@@ -45,6 +46,7 @@ use toyproof_verify::compare::CheckSummary;
 use toyproof_verify::contain::Panic;
 use toyproof_verify::{Case, CheckResults, Driver, Failure, Reason, Ruling, Verdict, verify};
 
+use crate::departure::Departure;
 use crate::known::{Diagnosis, Hypotheses};
 use crate::repair::{SearchOptions, SearchResult};
 pub use crate::search::explain;
@@ -73,6 +75,8 @@ pub struct Explanation {
     pub cause: Option<Span>,
     /// The known mistake, or the two, that explain a wrong image.
     pub mistake: Option<Diagnosis>,
+    /// Where a wrong shader's values depart from those of its reference.
+    pub departure: Option<Departure>,
     /// The repairs of a wrong shader and its suspect lines; `None` if they were not searched for.
     pub search: Option<SearchResult>,
     /// The known mistake that explains the few differing pixels of a correct image.
@@ -99,6 +103,8 @@ pub struct Findings {
     pub cause: Option<Span>,
     /// The known mistake, or the two, that explain a wrong image.
     pub mistake: Option<Diagnosis>,
+    /// Where a wrong shader's values depart from those of its reference.
+    pub departure: Option<Departure>,
     /// The repairs of a wrong shader and its suspect lines; `None` if they were not searched for.
     pub search: Option<SearchResult>,
     /// The known mistake that explains the few differing pixels of a correct image.
@@ -129,6 +135,7 @@ impl Findings {
             results,
             cause: explanation.cause,
             mistake: explanation.mistake,
+            departure: explanation.departure,
             search: explanation.search,
             tolerated_mistake: explanation.tolerated_mistake,
             is_cut_by_time: explanation.is_cut_by_time,

@@ -13,6 +13,7 @@ use toyproof_verify::{
     within,
 };
 
+use crate::departure::{self, Departure};
 use crate::known::{self, Diagnosis, Stage};
 use crate::repair::{self, Before, NoisyImage, SearchResult};
 use crate::whole_image::{self, Alternative, Alternatives, WrongShader};
@@ -42,6 +43,7 @@ impl Explanation {
             permitted: None,
             cause: None,
             mistake: None,
+            departure: None,
             search: None,
             tolerated_mistake: None,
             is_cut_by_time: false,
@@ -96,6 +98,7 @@ impl<'a> Search<'a> {
         } else {
             self.of_few_pixels(&ruling)
         };
+        let departure = self.departure(&ruling);
         let search = self.repairs(&ruling, reseeding);
         let case = self.subject.case;
         let cause = self.loss_of_precision(&ruling);
@@ -107,6 +110,7 @@ impl<'a> Search<'a> {
         Explanation {
             cause: span,
             mistake,
+            departure,
             search,
             tolerated_mistake,
             // What gave up because of the deadline did so after it.
@@ -254,6 +258,24 @@ impl<'a> Search<'a> {
         self.contained(Part::Mistake, || {
             let pixels = subject.noisy_pixels(reseeding, hypotheses.places(), deadline)?;
             hypotheses.recognize_noisy(&pixels)
+        })
+    }
+
+    /// Searches for the place where the values of a wrong shader depart from those of its reference.
+    fn departure(&mut self, ruling: &Ruling) -> Option<Departure> {
+        let Subject {
+            case,
+            program,
+            results,
+            ..
+        } = self.subject;
+        let (algorithm, expected) = (results.algorithm.as_ref()?, case.expected?);
+        if ruling.verdict != Verdict::Wrong || ruling.reason.compares_means() {
+            return None;
+        }
+        let deadline = self.deadline;
+        self.contained(Part::Mistake, || {
+            departure::find(program, case.frame, expected, algorithm, deadline)
         })
     }
 

@@ -22,12 +22,18 @@ impl Record {
         {
             fix.hide_edits();
         }
+        if hints < Hints::Fix
+            && let Some(departure) = &mut self.departure
+        {
+            departure.hide_reference();
+        }
         let unused = std::mem::take(&mut self.unused);
         if hints >= Hints::Line {
             self.details.extend(unused);
         } else {
             self.fix = None;
             self.suspects.clear();
+            self.departure = None;
             self.is_search_cut = false;
             if self.mistake.take().is_some() {
                 // The command explains the mistake.

@@ -13,6 +13,7 @@
 mod assigned;
 mod class;
 mod csv;
+mod departure;
 mod earlier;
 mod explanation;
 mod frames;
@@ -36,6 +37,7 @@ mod unused;
 pub use assigned::{FunctionRecord, RulesRecord, Violation};
 pub use class::ClassTable;
 pub use csv::csv;
+pub use departure::{Departure, MissingValue, UnknownValue};
 pub use earlier::{Change, Earlier};
 pub use explanation::{Explanation, explain, explanations};
 pub use frames::{CheckedFrame, FrameRecord};

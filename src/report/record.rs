@@ -14,6 +14,7 @@ use toyproof_explain::unused::Unused;
 use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Verdict, decide};
 
+use super::departure::Departure;
 use super::reason::{Statement, state, state_reason};
 use super::unused::sentences;
 use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRecord, Submitted, Suspect};
@@ -127,6 +128,9 @@ pub struct Record {
     /// The statements of a wrong shader that most likely contain the mistake, the most suspicious first.
     #[serde(default)]
     pub suspects: Vec<Suspect>,
+    /// Where the values of a wrong shader depart from those of its reference shader; null if that is unknown.
+    #[serde(default)]
+    pub departure: Option<Departure>,
     /// Whether the search for a fix ended before all edits were tried.
     #[serde(default)]
     pub is_search_cut: bool,
@@ -203,6 +207,11 @@ impl Record {
         }
         if let Some((unused, files)) = &result.unused {
             record.set_unused(unused, files);
+            let departure = result
+                .findings
+                .ok()
+                .and_then(|findings| findings.departure.as_ref());
+            record.departure = departure.map(|found| Departure::new(found, result.files, files));
         }
         record
     }
@@ -226,6 +235,7 @@ impl Record {
             mistake: None,
             fix: None,
             suspects: Vec::new(),
+            departure: None,
             is_search_cut: false,
             is_cut_by_time: false,
             cause: None,

@@ -20,7 +20,7 @@ pub struct SourceRange {
 }
 
 impl SourceRange {
-    fn of(span: Span, files: &Files) -> Self {
+    pub(super) fn of(span: Span, files: &Files) -> Self {
         let (start, end) = (files.position(span), files.end_position(span));
         Self {
             line: start.line,

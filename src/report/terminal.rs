@@ -10,7 +10,7 @@ use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison, Pixel};
 
 use super::repair::suspect_lines;
-use super::{Mistake, Record};
+use super::{Departure, Mistake, Record};
 
 /// How much is printed of each shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -211,10 +211,12 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
     symptom.into_iter().chain([heading]).chain(ranked).collect()
 }
 
-/// The fix of a wrong shader and its alternatives, else its suspect lines: each with its label.
+/// The fix of a wrong shader and its alternatives, else where it departs from the reference, and its suspect
+/// lines: each with its label.
 pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
     let Some(fix) = &record.fix else {
-        return suspect_lines(&record.suspects).into_iter().collect();
+        let departure = record.departure.iter().flat_map(Departure::sentences);
+        return departure.chain(suspect_lines(&record.suspects)).collect();
     };
     let alternatives = fix.alternatives.iter().map(|other| ("or", other.summary()));
     [("fix", fix.sentence())]

@@ -10,7 +10,7 @@ use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
 use crate::repair::suspect_lines;
 use crate::terminal::{CUT_BY_TIME, CUT_SEARCH};
-use crate::{Mistake, Record, Repair, Rubrics};
+use crate::{Departure, Mistake, Record, Repair, Rubrics};
 
 /// The contents of the article of a shader.
 pub(super) struct Article<'a> {
@@ -153,6 +153,7 @@ impl Article<'_> {
     fn fix(&self) -> String {
         let Record {
             fix,
+            departure,
             suspects,
             is_search_cut,
             is_cut_by_time,
@@ -175,7 +176,18 @@ impl Article<'_> {
                 let other = explained(other, &other.summary());
                 let _ = writeln!(html, "<p><strong>Or:</strong> {other}</p>");
             }
-        } else if let Some((_, lines)) = suspect_lines(suspects) {
+        }
+        let departure = departure.iter().filter(|_| fix.is_none());
+        for (label, text) in departure.flat_map(Departure::sentences) {
+            let label = match label {
+                "first difference" => "First difference",
+                _ => "Missing value",
+            };
+            let _ = writeln!(html, "<p><strong>{label}:</strong> {}</p>", sentence(&text));
+        }
+        if fix.is_none()
+            && let Some((_, lines)) = suspect_lines(suspects)
+        {
             let label = match suspects[..] {
                 [_] => "Suspect line",
                 _ => "Suspect lines",

@@ -27,22 +27,29 @@ impl CheckResult {
     /// ones if none differs, and else of those in which the reference is ill-conditioned.
     #[must_use]
     pub fn sample_pixels(&self, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
-        let width = size[0] as usize;
-        let of = |status| {
-            let statuses = self.statuses.iter().enumerate();
-            statuses.filter(move |&(_, &own)| own == status).map(|(at, _)| at)
-        };
         let statuses = [
             PixelStatus::Differs,
             PixelStatus::IllConditioned,
             PixelStatus::Tied,
         ];
-        let status = statuses.into_iter().find(|&status| of(status).next().is_some());
-        let Some(status) = status else {
-            return Vec::new();
+        let status = statuses.into_iter().find(|status| self.statuses.contains(status));
+        status.map_or_else(Vec::new, |status| self.sample(status, size, max_count))
+    }
+
+    /// Returns at most `max_count` of the pixels that agree, spread over the image.
+    #[must_use]
+    pub fn sample_agreeing(&self, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
+        self.sample(PixelStatus::Agrees, size, max_count)
+    }
+
+    fn sample(&self, status: PixelStatus, size: [u32; 2], max_count: usize) -> Vec<[u32; 2]> {
+        let width = size[0] as usize;
+        let all = || {
+            let statuses = self.statuses.iter().enumerate();
+            statuses.filter(move |&(_, &own)| own == status).map(|(at, _)| at)
         };
-        let mut left = of(status).enumerate();
-        spread(of(status).count(), max_count)
+        let mut left = all().enumerate();
+        spread(all().count(), max_count)
             .filter_map(|chosen| left.find(|&(number, _)| number == chosen))
             .map(|(_, at)| [(at % width) as u32, (at / width) as u32])
             .collect()

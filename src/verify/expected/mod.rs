@@ -16,6 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use toyproof_eval::{self as eval, Places};
+use toyproof_eval_native::Program;
 use toyproof_glsl::Checked;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::{FrameTime, Scene};
@@ -98,6 +99,15 @@ impl Expected {
     pub fn shader(&self) -> Option<&Checked> {
         match self {
             Self::Shader(shader) => Some(shader.checked()),
+            Self::Scene(_) | Self::Image(_) => None,
+        }
+    }
+
+    /// The program of the reference and its frame, if it is a shader.
+    #[must_use]
+    pub fn program(&self) -> Option<(&Program, &Frame)> {
+        match self {
+            Self::Shader(shader) => Some((&shader.program, &shader.frame)),
             Self::Scene(_) | Self::Image(_) => None,
         }
     }
