@@ -155,7 +155,7 @@ mod tests {
         let other = reference.add(File::new("r.glsl", "x = c - d;"));
         let found = departure::Departure {
             unknown: Some(departure::UnknownValue {
-                span: Span::new(file, 13, 20),
+                span: Span::new(file, 13, 19),
                 call: Some(Span::new(file, 0, 5)),
                 value: vec![0.123_456, f64::NAN],
                 pixel: [3, 4],
