@@ -3,7 +3,9 @@
 //!
 //! A wrong image is compared with those of classic mistakes ([`known`]) and with the expected image as a
 //! whole ([`whole_image`]); edits of the shader's text are tried until its image is the expected one
-//! ([`repair`]). An imprecise image is traced to the operation that loses the digits.
+//! ([`repair`]). All three are hypotheses of one search engine (`engine`): its probes, its tournament, its fit of
+//! numbers, its confirmation on whole images and its budget of work. An imprecise image is traced to the operation
+//! that loses the digits.
 //!
 //! # Example
 //!
@@ -23,7 +25,7 @@
 //! let checked = toyproof_glsl::check(&files, shader, &Default::default())?;
 //! let lints = toyproof_lint::lint(&files, &checked, &Deadline::default());
 //! let frame = Frame { size: [16, 9], ..Frame::default() };
-//! let hypotheses = Hypotheses::of(&scene, &frame);
+//! let hypotheses = Hypotheses::new(&scene, &frame);
 //! let expected = Expected::of_scene(scene, &frame);
 //! let case = Case::new(&checked, &lints, &frame).with_expected(&expected);
 //! let options = Options { hypotheses: hypotheses.as_ref(), ..Options::default() };
@@ -34,6 +36,7 @@
 //! ```
 
 pub mod departure;
+mod engine;
 pub mod known;
 pub mod repair;
 mod search;

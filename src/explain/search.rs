@@ -14,9 +14,10 @@ use toyproof_verify::{
 };
 
 use crate::departure::{self, Departure};
+use crate::engine::confirm::Confirmer;
 use crate::known::{self, Diagnosis, Stage};
-use crate::repair::{self, Before, NoisyImage, SearchResult};
-use crate::whole_image::{self, Alternative, Alternatives, WrongShader};
+use crate::repair::{self, NoisyImage, SearchResult};
+use crate::whole_image::{self, Alternative, Alternatives, Submission};
 use crate::{Explanation, Options};
 
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
@@ -30,14 +31,14 @@ const NOISY_SIDE: u32 = 24;
 #[must_use]
 pub fn explain(verified: &Verified, options: &Options) -> Explanation {
     let Some(subject) = verified.subject() else {
-        return Explanation::of(verified.evidence().into());
+        return Explanation::without_search(verified.evidence().into());
     };
     within(subject.case.pool, || Search::new(subject, options).run())
 }
 
 impl Explanation {
     /// A verdict that needs no explanation.
-    fn of(ruling: Ruling) -> Self {
+    fn without_search(ruling: Ruling) -> Self {
         Self {
             ruling,
             permitted: None,
@@ -109,15 +110,15 @@ impl<'a> Search<'a> {
         notes.extend(cause.filter(|cause| !is_reported && !case.lints.allows(cause)));
         Explanation {
             cause: span,
-            mistake,
             departure,
+            mistake: mistake.filter(|mistake| is_preferred(mistake, search.as_ref())),
             search,
             tolerated_mistake,
             // What gave up because of the deadline did so after it.
             is_cut_by_time: Instant::now() >= self.deadline,
             notes,
             panics: self.panics,
-            ..Explanation::of(ruling)
+            ..Explanation::without_search(ruling)
         }
     }
 
@@ -128,8 +129,8 @@ impl<'a> Search<'a> {
         if ruling.verdict != Verdict::Wrong || permitted.is_empty() {
             return None;
         }
-        let (difference, found) = self.in_wrong_shader(&evidence.checks, |wrong| {
-            whole_image::find_permitted(wrong, permitted)
+        let (difference, found) = self.in_submission(&evidence.checks, |submission| {
+            whole_image::find_permitted(submission, permitted)
         })?;
         let algorithm = found.algorithm;
         let differing = Share::differing(&algorithm);
@@ -150,7 +151,7 @@ impl<'a> Search<'a> {
         Some(Explanation {
             permitted: Some(algorithm),
             panics: std::mem::take(&mut self.panics),
-            ..Explanation::of(ruling)
+            ..Explanation::without_search(ruling)
         })
     }
 
@@ -189,7 +190,7 @@ impl<'a> Search<'a> {
             evidence.self_intersection = self.subject.self_intersection();
             settled.ruling = evidence.into();
             if matches!(settled.ruling.reason, Reason::SelfIntersection(_)) {
-                settled.mistake = Some(Diagnosis::of(known::self_intersection()));
+                settled.mistake = Some(Diagnosis::single(known::self_intersection()));
             }
         }
         if may_be_stochastic && !settled.compares_means && settled.mistake.is_none() {
@@ -216,7 +217,7 @@ impl<'a> Search<'a> {
         ruling: &Ruling,
         checks: &Checks,
         known: Option<Diagnosis>,
-        find: impl FnOnce(&WrongShader, &Alternatives) -> Option<Alternative>,
+        find: impl FnOnce(&Submission, &Alternatives) -> Option<Alternative>,
     ) -> Option<Diagnosis> {
         let is_symptom = |mistake: &Diagnosis| mistake.mistakes.iter().all(|mistake| mistake.is_symptom);
         let differs = matches!(ruling.reason, Reason::AlgorithmDiffers { .. });
@@ -226,25 +227,20 @@ impl<'a> Search<'a> {
         if !known.as_ref().is_none_or(is_symptom) {
             return known;
         }
-        let found = self.in_wrong_shader(checks, |wrong| find(wrong, &alternatives));
-        found.map_or(known, |found| Some(Diagnosis::of(found.mistake)))
+        let found = self.in_submission(checks, |submission| find(submission, &alternatives));
+        found.map_or(known, |found| Some(Diagnosis::single(found.mistake)))
     }
 
     /// Searches among hypotheses about the whole image of the shader.
-    fn in_wrong_shader<T>(
+    fn in_submission<T>(
         &mut self,
         checks: &Checks,
-        find: impl FnOnce(&WrongShader) -> Option<T>,
+        find: impl FnOnce(&Submission) -> Option<T>,
     ) -> Option<T> {
-        let Subject {
-            case,
-            program,
-            results,
-            ..
-        } = self.subject;
-        let algorithm = results.algorithm.as_ref()?;
+        let (subject, deadline) = (self.subject, self.deadline);
         self.contained(Part::Mistake, || {
-            find(&WrongShader::new(case, program, algorithm, checks)?)
+            let confirmer = Confirmer::new(subject, checks, deadline)?;
+            find(&Submission::new(&confirmer, subject.program)?)
         })
     }
 
@@ -283,7 +279,6 @@ impl<'a> Search<'a> {
     /// there if the shader's means were compared.
     fn repairs(&mut self, ruling: &Ruling, reseeding: Option<Reseeding>) -> Option<SearchResult> {
         let (subject, deadline) = (self.subject, self.deadline);
-        let algorithm = subject.results.algorithm.as_ref()?;
         let options = self.options.search?;
         if ruling.verdict != Verdict::Wrong {
             return None;
@@ -295,13 +290,10 @@ impl<'a> Search<'a> {
             let pixels = subject.noisy_pixels(reseeding, &places, deadline)?;
             Some(NoisyImage { pixels, places })
         };
-        let before = Before {
-            check: algorithm,
-            faults: &subject.results.faults,
-            compares_means: ruling.reason.compares_means(),
-        };
         self.contained(Part::Repair, || {
-            repair::search(subject.case, options, before, &image, deadline)
+            let checks = subject.results.checks();
+            let confirmer = Confirmer::new(subject, &checks, deadline)?;
+            repair::search(&confirmer, options, ruling.reason.compares_means(), &image)
         })
     }
 
@@ -348,6 +340,14 @@ impl<'a> Search<'a> {
             T::default()
         })
     }
+}
+
+/// Whether known mistakes are reported beside the repairs that were found. An edit after which whole images are right
+/// in all frames beats two mistakes that explain most pixels of one; a single mistake names what the edit corrects.
+fn is_preferred(mistake: &Diagnosis, search: Option<&SearchResult>) -> bool {
+    let first = search.and_then(|search| search.repairs.first());
+    let is_repaired = first.is_some_and(|repair| repair.is_complete() && repair.is_single());
+    mistake.mistakes.len() == 1 || !is_repaired
 }
 
 impl Settled {

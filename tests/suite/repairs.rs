@@ -245,7 +245,7 @@ fn an_expression_of_another_shader_repairs_what_no_small_edit_does() {
     };
     let [clamped, doubled] = ["clamp(dot(l, n), 0.0, 1.0)", "2.0 * dot(n, l) - 1.0"].map(lambert);
     let fixes = |shaders: &[&Checked]| {
-        let donors = Donors::of(shaders.iter().copied());
+        let donors = Donors::new(shaders.iter().copied());
         let result = search(check_and_repair_with(Some(&donors), &shader, &SHADING));
         let repairs = result.repairs.into_iter();
         repairs.map(|repair| repair.fix.message).collect::<Vec<_>>()

@@ -579,7 +579,7 @@ pub fn faults() -> impl Iterator<Item = Fault> {
 
 /// The known mistakes of an exercise's scene.
 pub fn hypotheses(exercise: &Exercise) -> Hypotheses {
-    Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).expect("the scene renders quickly")
+    Hypotheses::new(&scene(exercise), &frame(exercise, exercise.size)).expect("the scene renders quickly")
 }
 
 /// The name of the mistake that explains a shader's image for an exercise's scene, or an empty name; at most

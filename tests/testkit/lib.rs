@@ -238,7 +238,7 @@ pub fn check_exercise_with(worker: Option<&mut Worker>, shader: &str, exercise: 
 /// # Panics
 /// Like [`check_exercise`].
 pub fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) -> Findings {
-    let hypotheses = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    let hypotheses = Hypotheses::new(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
     check_against(Some(&hypotheses), Some(worker), shader, exercise)
 }
 
@@ -247,7 +247,7 @@ pub fn check_and_name(worker: &mut Worker, shader: &str, exercise: &Exercise) ->
 /// # Panics
 /// Like [`check_exercise`].
 pub fn check_and_name_on_cpu(shader: &str, exercise: &Exercise) -> Findings {
-    let hypotheses = Hypotheses::of(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
+    let hypotheses = Hypotheses::new(&scene(exercise), &frame(exercise, exercise.size)).unwrap();
     check_against(Some(&hypotheses), None, shader, exercise)
 }
 
@@ -284,7 +284,7 @@ pub fn check_and_repair_within(
 ) -> Option<Findings> {
     let frame = frame(exercise, exercise.size);
     let expected = Expected::of_scene(scene(exercise), &frame);
-    let hypotheses = Hypotheses::of(&scene(exercise), &frame).expect("the scene is cheap");
+    let hypotheses = Hypotheses::new(&scene(exercise), &frame).expect("the scene is cheap");
     let (checked, lints) = linted(shader);
     let options = Options {
         hypotheses: Some(&hypotheses),

@@ -56,7 +56,7 @@ fn read_donors(folder: &Path, number: &str) -> Donors {
         .iter()
         .map(|file| fs::read_to_string(file).expect("the shader can be read"));
     let shaders: Vec<Checked> = texts.map(|text| checked(&text)).collect();
-    Donors::of(&shaders)
+    Donors::new(&shaders)
 }
 
 /// Prints each sample's repairs, and the rates of each group. Without a manifest the samples are the planted
@@ -155,7 +155,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
     };
     let checked = checked(&sample.shader);
     let expected = Expected::of_scene(scene.clone(), &frame);
-    let hypotheses = names.then(|| Hypotheses::of(&scene, &frame)).flatten();
+    let hypotheses = names.then(|| Hypotheses::new(&scene, &frame)).flatten();
     let search = SearchOptions {
         source: &sample.shader,
         lenient: false,

@@ -505,7 +505,7 @@ impl<'a> Checker<'a> {
     /// Collects the expressions of correct shaders.
     pub(super) fn donors<'s>(&self, correct: impl Iterator<Item = &'s Submission>) -> Donors {
         let shaders: Vec<Shader> = correct.map(|submission| self.load(submission)).collect();
-        Donors::of(shaders.iter().filter_map(|shader| shader.checked.as_ref().ok()))
+        Donors::new(shaders.iter().filter_map(|shader| shader.checked.as_ref().ok()))
     }
 
     fn search_options<'s>(&self, shader: &'s Shader, checked: &Checked) -> SearchOptions<'s> {

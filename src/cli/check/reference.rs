@@ -292,7 +292,7 @@ impl CachedReference {
 
     /// The hypotheses that a wrong image is compared with; `None` without a scene.
     pub(super) fn hypotheses(&self, frame: &Frame) -> Option<&Hypotheses> {
-        let hypotheses = || Hypotheses::of(self.expected.scene()?, frame);
+        let hypotheses = || Hypotheses::new(self.expected.scene()?, frame);
         self.hypotheses.get_or_init(hypotheses).as_ref()
     }
 }

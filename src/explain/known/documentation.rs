@@ -1,7 +1,7 @@
 //! What the guide and `toyproof explain` say about each mistake, collected from beside the definitions.
 
 pub use super::documented::{Documented, Topic};
-use super::{catalogue, change, fit};
+use super::{catalogue, change, numbers};
 use crate::{repair, whole_image};
 
 /// Returns every mistake that can be reported, by topic.
@@ -16,7 +16,7 @@ fn by_definition() -> impl Iterator<Item = Documented> {
         super::SELF_INTERSECTION,
         whole_image::DIFFERENCES,
         whole_image::SCENES,
-        fit::DOCUMENTED,
+        numbers::DOCUMENTED,
         repair::DOCUMENTED,
     ];
     let others = others.into_iter().flatten().copied();
@@ -58,7 +58,7 @@ mod tests {
             let changes = general.into_iter().chain(change::all(&scene, frame_time));
             all.extend(changes.map(|change| change.mistake));
             let shader = mutant::variants(&scene).into_iter().next();
-            all.extend(fit::examples(&scene, frame_time, shader.as_ref()));
+            all.extend(numbers::examples(&scene, frame_time, shader.as_ref()));
         }
         all
     }

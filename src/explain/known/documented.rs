@@ -1,6 +1,8 @@
 //! The form of what the guide and `toyproof explain` say about mistakes, which stands beside their
 //! definitions.
 
+use std::borrow::Cow;
+
 /// A mistake, as the guide lists it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Documented {
@@ -12,6 +14,24 @@ pub struct Documented {
     pub form: &'static str,
     /// How to fix it: sentences in Markdown.
     pub fix: &'static str,
+}
+
+impl Documented {
+    /// The description of a mistake, with these texts in place of the ellipses of its form; more are ignored.
+    pub(crate) fn description(&self, parts: &[String]) -> Cow<'static, str> {
+        if !self.form.contains('…') {
+            return self.form.into();
+        }
+        let pieces = self.form.split('…');
+        let parts = parts.iter().map(String::as_str).chain(std::iter::repeat(""));
+        let count = self.form.matches('…').count();
+        let between = parts.take(count).chain([""]);
+        pieces
+            .zip(between)
+            .flat_map(|(piece, part)| [piece, part])
+            .collect::<String>()
+            .into()
+    }
 }
 
 /// A table of [`Documented`]: `Topic "id": "form";` after a comment with the fix.

@@ -1,34 +1,34 @@
 //! Finds the mistake that explains a wrong image: the image is compared with those of mutants, tracers with
 //! one classic mistake, and with two at once where no single one explains it. A mistake replaces parts of the
-//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`fit`).
+//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`numbers`).
 
 mod catalogue;
 mod change;
 pub mod documentation;
 pub(crate) mod documented;
-mod fit;
 mod mutant;
+mod numbers;
 mod pair;
-mod stochastic;
-mod thumbnail;
+mod view;
 
 use std::borrow::Cow;
-use std::sync::OnceLock;
+use std::collections::BTreeSet;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 use toyproof_diagnostic::Span;
 use toyproof_eval::Places;
 use toyproof_eval_native::Program;
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Image};
 use toyproof_scene::export::MarkedShader;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_verify::MAX_DIFFERING;
+use toyproof_verify::random::NoisyPixel;
 
+use crate::engine::bias::remaining_bias;
 use crate::known::documented::{Documented, documented};
-use crate::known::mutant::{Mutant, MutantSource, render};
-use crate::known::thumbnail::{
-    Thumbnail, View, WrongImage, cost_per_pixel, differing, max_unexplained, pixels,
-};
+use crate::known::mutant::{Mutant, MutantSource};
+use crate::known::view::{COMPLETELY, MOSTLY, Observation, ROUGHLY, View, cost_per_pixel};
 
 /// A mistake that a shader may have, or a symptom of many mistakes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,18 +52,10 @@ impl KnownMistake {
             at: None,
         }
     }
-
-    /// A symptom of many mistakes.
-    fn symptom(id: &'static str, description: &'static str) -> Self {
-        Self {
-            is_symptom: true,
-            ..Self::new(id, description)
-        }
-    }
 }
 
 /// What the guide says about rays that hit the surface they start from.
-pub(crate) const SELF_INTERSECTION: &[Documented] = documented! {
+pub(crate) const SELF_INTERSECTION: &[Documented; 1] = documented! {
     /// Start the ray at `point + 1e-3 * normal` (`point - 1e-3 * normal` for rays that enter glass), or
     /// accept only hits with `t > 1e-3`.
     SelfIntersection "self-intersection":
@@ -72,11 +64,8 @@ pub(crate) const SELF_INTERSECTION: &[Documented] = documented! {
 
 /// Rays that hit the surface they start from.
 pub(crate) fn self_intersection() -> KnownMistake {
-    KnownMistake::new(
-        "self-intersection",
-        "self-intersection (shadow acne): secondary rays start on the surface; offset the origin along the normal \
-         or use a minimum t of about 1e-3",
-    )
+    let [documented] = SELF_INTERSECTION;
+    KnownMistake::new(documented.id, documented.form)
 }
 
 /// What explains a wrong image.
@@ -93,7 +82,7 @@ const MAX_ALTERNATIVES: usize = 3;
 
 impl Diagnosis {
     /// A single mistake without alternatives.
-    pub(crate) fn of(mistake: KnownMistake) -> Self {
+    pub(crate) fn single(mistake: KnownMistake) -> Self {
         Self {
             mistakes: vec![mistake],
             alternatives: Vec::new(),
@@ -151,11 +140,11 @@ const MIN_VIEW_PIXELS: u32 = 256;
 
 /// The number of wrong pixels below which larger images are compared, and the factor of their width and
 /// height.
-const MIN_WRONG_PIXELS_SMALL: u64 = 32;
+const MIN_WRONG_PIXELS_SMALL: usize = 32;
 const FINE_FACTOR: u32 = 3;
 
 /// The number of wrong pixels below which the cause may be anything, even other ray epsilons.
-const MIN_WRONG_PIXELS: u64 = 8;
+const MIN_WRONG_PIXELS: usize = 8;
 
 /// The largest number of mistakes, besides the first, that render the same image; with more, there are too
 /// many explanations and no mistake is reported.
@@ -166,8 +155,19 @@ const MAX_OTHER_MISTAKES: usize = 3;
 const MIN_EXPLAINED_PIXELS: usize = 4;
 const MAX_COMPARED_PIXELS: usize = 40;
 
-/// The number of pairs of mistakes that are rendered before they are compared.
+/// The factor by which a near miss may exceed the unexplained pixels, and the largest number of near misses
+/// that are tried with other ray epsilons.
+const NEAR_MISS_FACTOR: usize = 6;
+const MAX_NEAR_MISSES: usize = 8;
+
+/// The number of pairs of mistakes that are rendered before they are compared, and the largest width and height of
+/// the image by which most pairs are ruled out.
 const PAIR_BATCH: usize = 32;
+const PAIR_SIDE: u32 = 24;
+
+/// The largest difference of the remaining bias from the least one, of mistakes that explain a stochastic shader as
+/// well.
+const MAX_REMAINING_DIFFERENCE: f64 = 0.05;
 
 /// The mutants of a scene. Their images are rendered once, on first use.
 #[derive(Debug)]
@@ -175,7 +175,7 @@ pub struct Hypotheses {
     scene: Scene,
     frame_time: FrameTime,
     /// The view of the first comparison.
-    small: View,
+    small: Arc<View>,
     /// The tracer and the shaders without a mistake.
     correct: Vec<Mutant>,
     /// Mutants that lose most of the image, so that many mistakes may be the cause.
@@ -191,35 +191,34 @@ impl Hypotheses {
     /// Creates the hypotheses for images of a frame; `None` if the scene is so expensive that no image worth
     /// comparing is small enough.
     #[must_use]
-    pub fn of(scene: &Scene, frame: &Frame) -> Option<Self> {
-        let small = View::of(frame, SMALL_SIDE, SMALL_WORK / cost_per_pixel(scene));
-        let is_enough = small.pixels() >= u64::from(MIN_VIEW_PIXELS).min(pixels(frame));
-        is_enough.then(|| Self::in_size(scene, small, Some(OnceLock::new())))
+    pub fn new(scene: &Scene, frame: &Frame) -> Option<Self> {
+        let small = View::new(frame, SMALL_SIDE, SMALL_WORK / cost_per_pixel(scene));
+        let pixels: u64 = frame.size.into_iter().map(u64::from).product();
+        let is_enough = small.pixels() >= u64::from(MIN_VIEW_PIXELS).min(pixels);
+        is_enough.then(|| Self::in_view(scene, small, Some(OnceLock::new())))
     }
 
-    fn in_size(scene: &Scene, small: View, fine: Option<OnceLock<Box<Self>>>) -> Self {
+    fn in_view(scene: &Scene, small: View, fine: Option<OnceLock<Box<Self>>>) -> Self {
         let frame_time = FrameTime::from(&small.frame);
+        let small = Arc::new(small);
         let shaders = mutant::variants(scene);
         let tracer = MutantSource::Scene(Box::new(scene.clone()), frame_time);
-        let correct_images = [tracer]
+        let correct = [tracer]
             .into_iter()
             .chain(shaders.iter().cloned().map(MutantSource::Shader));
         let changed = |change: change::Change| {
-            Mutant::new(
-                vec![change.mistake],
-                MutantSource::Scene(Box::new(change.scene), change.frame_time),
-            )
+            let source = MutantSource::Scene(Box::new(change.scene), change.frame_time);
+            Mutant::new(vec![change.mistake], source, &small)
         };
-        let edited = shaders
-            .iter()
-            .flat_map(|shader| catalogue::all().filter_map(|mistake| Mutant::edited(shader, mistake)));
+        let edited = shaders.iter().flat_map(|shader| {
+            catalogue::all().filter_map(|mistake| Mutant::edited(shader, mistake, &small))
+        });
         let changes = change::all(scene, frame_time).into_iter().map(changed);
         Self {
             scene: scene.clone(),
             frame_time,
-            small,
-            correct: correct_images
-                .map(|source| Mutant::new(Vec::new(), source))
+            correct: correct
+                .map(|source| Mutant::new(Vec::new(), source, &small))
                 .collect(),
             general: change::general(scene, frame_time)
                 .into_iter()
@@ -228,6 +227,7 @@ impl Hypotheses {
             wrong: edited.chain(changes).collect(),
             shaders,
             fine,
+            small: Arc::clone(&small),
         }
     }
 
@@ -235,12 +235,14 @@ impl Hypotheses {
     fn fine(&self, frame: &Frame) -> Option<&Self> {
         let fine = self.fine.as_ref()?;
         let work = u64::from(FINE_FACTOR * FINE_FACTOR) * SMALL_WORK / cost_per_pixel(&self.scene);
-        let large = View::of(frame, FINE_FACTOR * SMALL_SIDE, work);
-        let has_more_pixels = large.pixels() > self.small.pixels();
-        has_more_pixels.then(|| {
-            fine.get_or_init(|| Box::new(Self::in_size(&self.scene, large, None)))
-                .as_ref()
-        })
+        let large = View::new(frame, FINE_FACTOR * SMALL_SIDE, work);
+        let create = || Box::new(Self::in_view(&self.scene, large.clone(), None));
+        (large.pixels() > self.small.pixels()).then(|| fine.get_or_init(create).as_ref())
+    }
+
+    /// General mistakes first: of those that render the same image, they claim least.
+    fn mutants(&self) -> impl Iterator<Item = &Mutant> {
+        self.general.iter().chain(&self.wrong)
     }
 
     /// Returns the mistake, or the two, that render the `student`'s image of that frame, in f64. The result
@@ -256,15 +258,9 @@ impl Hypotheses {
     /// Returns what [`Self::recognize`] finds in one of its stages.
     #[must_use]
     pub fn recognize_in(&self, stage: Stage, student: &Program, frame: &Frame) -> Option<Diagnosis> {
-        let small = render(student, &self.small)?;
-        let pixels = small.pixels().len();
-        let correct_images = self
-            .correct
-            .iter()
-            .filter_map(|correct| correct.image(&self.small));
-        let (differing, correct) = correct_images
-            .map(|correct| (thumbnail::differing(&small, correct), correct))
-            .min_by_key(|&(differing, _)| differing)?;
+        let correct = self.correct.iter().filter_map(Mutant::image);
+        let observed = Observation::new(student, &self.small, correct, MOSTLY)?;
+        let (pixels, differing) = (observed.probes.all.len(), observed.probes.wrong());
         if differing < MIN_WRONG_PIXELS_SMALL
             && let Some(fine) = self.fine(frame)
         {
@@ -273,19 +269,14 @@ impl Hypotheses {
         if differing < MIN_WRONG_PIXELS || differing as f64 <= pixels as f64 * MAX_DIFFERING {
             return None;
         }
-        let wrong_image = WrongImage {
-            differing,
-            small: &small,
-            view: &self.small,
-        };
         let confirmed = |mutant: &Mutant, others: &[&Mutant]| {
-            self.is_confirmed(mutant, student, frame)
-                .then(|| Diagnosis::new(mutant, others))
+            let is_confirmed = self.is_confirmed(mutant, student, frame);
+            is_confirmed.then(|| Diagnosis::new(mutant, others))
         };
-        let general_matches = wrong_image.matching(&self.general);
-        let single_matches = wrong_image.matching(&self.wrong);
+        let general = matching(&observed, &self.general);
+        let single = matching(&observed, &self.wrong);
         if stage == Stage::Single {
-            return match (general_matches.first(), &single_matches[..]) {
+            return match (general.first(), &single[..]) {
                 (Some(_), [single]) => confirmed(single, &[]),
                 (Some(general), singles) => confirmed(general, singles),
                 (None, [first, others @ ..]) if others.len() <= MAX_OTHER_MISTAKES => {
@@ -294,64 +285,86 @@ impl Hypotheses {
                 _ => None,
             };
         }
-        if !general_matches.is_empty() || !single_matches.is_empty() {
-            return None;
-        }
         // Some numbers remove all color from any image, and so do many pairs: an image of one color allows no
         // further conclusion.
-        if small.pixels().windows(2).all(|pair| pair[0] == pair[1]) {
+        let is_of_one_color = observed.image.pixels().windows(2).all(|pair| pair[0] == pair[1]);
+        if !general.is_empty() || !single.is_empty() || is_of_one_color {
             return None;
         }
-        let Stage::Pair(pairs) = stage else {
-            let shader = self.shaders.first();
-            let fitted = fit::fitted_mutants(&self.scene, self.frame_time, shader, &wrong_image, correct);
-            if let Some(mutant) = wrong_image.matching(&fitted).first() {
-                return confirmed(mutant, &[]);
-            }
-            let near_misses = wrong_image.near_misses(self.general.iter().chain(&self.wrong));
-            let with_other_epsilons: Vec<Mutant> = near_misses
-                .iter()
-                .flat_map(|mutant| mutant.with_other_epsilons(self.frame_time, self.scene.max_offset))
-                .collect();
-            let matching = wrong_image.matching(&with_other_epsilons);
-            return matching.first().and_then(|mutant| confirmed(mutant, &[]));
-        };
-        // General mistakes first: of those that render the same image, they claim least.
-        let thumbnail = Thumbnail::render(student, &self.correct, &self.small)?;
-        let mut likely = pair::likely(self.general.iter().chain(&self.wrong), &wrong_image, correct);
-        likely.truncate(pairs);
-        likely.chunks(PAIR_BATCH).find_map(|pairs| {
-            let rendered: Vec<Mutant> = pairs
-                .par_iter()
-                .filter_map(|&pair| pair::both(pair, self.frame_time))
-                .filter(|pair| thumbnail.may_explain(pair) && wrong_image.unexplained_pixels(pair).is_some())
-                .collect();
-            wrong_image
-                .matching(&rendered)
+        let explaining = |mutants: &[Mutant]| {
+            matching(&observed, mutants)
                 .first()
-                .and_then(|pair| confirmed(pair, &[]))
+                .and_then(|mutant| confirmed(mutant, &[]))
+        };
+        match stage {
+            Stage::Pair(most) => self.pairs(student, &observed, most, &explaining),
+            _ => {
+                let shader = self.shaders.first();
+                let fitted = numbers::fitted_mutants(
+                    &self.scene,
+                    self.frame_time,
+                    shader,
+                    &observed.probes,
+                    &self.small,
+                );
+                if !matching(&observed, &fitted).is_empty() {
+                    return explaining(&fitted);
+                }
+                explaining(&self.near_misses(&observed))
+            }
+        }
+    }
+
+    /// Tries two mistakes at once.
+    fn pairs(
+        &self,
+        student: &Program,
+        observed: &Observation,
+        most: usize,
+        explaining: &dyn Fn(&[Mutant]) -> Option<Diagnosis>,
+    ) -> Option<Diagnosis> {
+        let view = View::new(&self.small.frame, PAIR_SIDE, u64::MAX);
+        let correct = self.correct.first()?.source.render(&view)?;
+        let few = Observation::new(student, &view, [&correct].into_iter(), ROUGHLY)?;
+        let mut likely = pair::likely(self.mutants(), &observed.probes);
+        likely.truncate(most);
+        likely.chunks(PAIR_BATCH).find_map(|pairs| {
+            let mutants = pairs
+                .par_iter()
+                .filter_map(|&pair| Mutant::both(pair, self.frame_time));
+            let mutants: Vec<Mutant> = mutants.filter(|pair| few.is_explained_by(pair)).collect();
+            explaining(&mutants)
         })
+    }
+
+    /// Mutants that leave few pixels more than they may, with other ray epsilons, which might explain these.
+    fn near_misses(&self, observed: &Observation) -> Vec<Mutant> {
+        let limit = NEAR_MISS_FACTOR * observed.most().max(1);
+        let near_misses = self
+            .mutants()
+            .filter_map(|mutant| Some((observed.unexplained(mutant)?.0, mutant)));
+        let near_misses = near_misses.filter(|&(left, _)| left <= limit && left < observed.probes.wrong());
+        let mut near_misses: Vec<_> = near_misses.collect();
+        near_misses.sort_by_key(|&(left, _)| left);
+        let nearest = near_misses.into_iter().take(MAX_NEAR_MISSES);
+        nearest
+            .flat_map(|(_, mutant)| mutant.with_other_epsilons(self.frame_time, self.scene.max_offset))
+            .collect()
     }
 
     /// Whether a mutant explains a larger image as well, perhaps with other ray epsilons.
     fn is_confirmed(&self, mutant: &Mutant, student: &Program, frame: &Frame) -> bool {
-        let large = View::of(frame, u32::MAX, LARGE_WORK / cost_per_pixel(&self.scene));
-        let correct = || self.correct.first()?.source.render(&large);
-        let (Some(wrong), Some(correct)) = (render(student, &large), correct()) else {
-            return false;
-        };
-        let all = differing(&wrong, &correct);
-        let limit = max_unexplained(all, wrong.pixels().len());
-        drop(correct);
-        let explains = |mutant: &Mutant| {
-            let image = mutant.source.render(&large);
-            image.is_some_and(|image| differing(&wrong, &image) <= limit)
-        };
-        let explains_with_other_epsilons = || {
-            let others = mutant.with_other_epsilons(self.frame_time, self.scene.max_offset);
-            others.par_iter().any(explains)
-        };
-        explains(mutant) || explains_with_other_epsilons()
+        let large = View::new(frame, u32::MAX, LARGE_WORK / cost_per_pixel(&self.scene));
+        let correct = self
+            .correct
+            .first()
+            .and_then(|correct| correct.source.render(&large));
+        let observed = Observation::new(student, &large, correct.iter(), MOSTLY);
+        observed.is_some_and(|observed| {
+            let others = || mutant.with_other_epsilons(self.frame_time, self.scene.max_offset);
+            let explains = |mutant: &Mutant| observed.is_explained_by(mutant);
+            explains(mutant) || others().par_iter().any(explains)
+        })
     }
 
     /// Returns the mistake that explains a few pixels in which the `student`'s shader has a wrong color, and
@@ -363,31 +376,86 @@ impl Hypotheses {
         }
         let step = pixels.len().div_ceil(MAX_COMPARED_PIXELS);
         let coordinates = |axis: usize| {
-            let places = pixels.iter().step_by(step).map(|pixel| pixel[axis]);
-            let places: std::collections::BTreeSet<u32> = places.collect();
+            let places: BTreeSet<u32> = pixels.iter().step_by(step).map(|pixel| pixel[axis]).collect();
             places.into_iter().map(|place| f64::from(place) + 0.5).collect()
+        };
+        let places = Places {
+            columns: coordinates(0),
+            rows: coordinates(1),
         };
         let view = View {
             frame: self.small.frame.clone(),
-            places: Places {
-                columns: coordinates(0),
-                rows: coordinates(1),
-            },
+            places,
         };
-        let own = render(student, &view)?;
         let correct = self.correct.first()?.source.render(&view)?;
-        let wrong = differing(&own, &correct);
-        let explains = |mutant: &&Mutant| {
-            let image = mutant.source.render(&view);
-            image.is_some_and(|image| differing(&own, &image) == 0)
-        };
-        if wrong < MIN_EXPLAINED_PIXELS as u64 {
+        let observed = Observation::new(student, &view, [&correct].into_iter(), COMPLETELY)?;
+        if observed.probes.wrong() < MIN_EXPLAINED_PIXELS {
             return None;
         }
-        let explaining: Vec<&Mutant> = self.wrong.par_iter().filter(explains).collect();
+        let explaining = self
+            .wrong
+            .par_iter()
+            .filter(|mutant| observed.is_explained_by(mutant));
+        let explaining: Vec<&Mutant> = explaining.collect();
         let (first, others) = explaining.split_first()?;
         (others.len() <= MAX_OTHER_MISTAKES).then(|| Diagnosis::new(first, others))
     }
+
+    // Stochastic shaders, whose pixels equal no mutant's.
+
+    /// The pixels that [`Self::recognize_noisy`] takes.
+    #[must_use]
+    pub fn places(&self) -> &Places {
+        &self.small.places
+    }
+
+    /// Returns the mistake of a stochastic shader, from its pixels at [`Self::places`]: the mean difference of such
+    /// a shader is projected onto the change of each mistake, which is the most powerful test for it.
+    #[must_use]
+    pub fn recognize_noisy(&self, pixels: &[NoisyPixel]) -> Option<Diagnosis> {
+        let correct = self.correct.first()?.image()?;
+        let part = |image: &Image, at: usize, i: usize| f64::from(image.pixels()[at][i]).clamp(0.0, 1.0);
+        let remaining = |mutant: &Mutant| {
+            let wrong = mutant.image()?;
+            let change = |at| std::array::from_fn(|i| part(wrong, at, i) - part(correct, at, i));
+            remaining_bias(pixels, (0..pixels.len()).map(change))
+        };
+        let all = self.general.par_iter().chain(&self.wrong);
+        let fitting: Vec<(f64, &Mutant)> = all
+            .filter_map(|mutant| Some((remaining(mutant)?, mutant)))
+            .collect();
+        let least = fitting
+            .iter()
+            .map(|&(remaining, _)| remaining)
+            .min_by(f64::total_cmp)?;
+        let best = fitting
+            .into_iter()
+            .filter(|&(remaining, _)| remaining <= least + MAX_REMAINING_DIFFERENCE);
+        let best = first_of_each_id(best.map(|(_, mutant)| mutant));
+        let (first, others) = best.split_first()?;
+        (others.len() <= MAX_OTHER_MISTAKES).then(|| Diagnosis::new(first, others))
+    }
+}
+
+/// Returns the mutants that explain an image best, one of each id.
+fn matching<'m>(observed: &Observation, mutants: &'m [Mutant]) -> Vec<&'m Mutant> {
+    let all = mutants
+        .par_iter()
+        .filter_map(|mutant| Some((observed.unexplained(mutant)?, mutant)));
+    let all: Vec<_> = all.filter(|((_, are_few), _)| *are_few).collect();
+    let least = all.iter().map(|((left, _), _)| *left).min();
+    let best = all.into_iter().filter(|((left, _), _)| Some(*left) == least);
+    first_of_each_id(best.map(|(_, mutant)| mutant))
+}
+
+fn first_of_each_id<'m>(mutants: impl Iterator<Item = &'m Mutant>) -> Vec<&'m Mutant> {
+    let mut first: Vec<&Mutant> = Vec::new();
+    for mutant in mutants {
+        if first.iter().all(|other| other.ids().ne(mutant.ids())) {
+            first.push(mutant);
+        }
+    }
+    first
 }
 
 /// The scenes of the exercises.
@@ -491,7 +559,8 @@ mod tests {
         let scene = scenes().next().unwrap();
         let mutant = |id, description: &'static str| {
             let source = MutantSource::Scene(Box::new(scene.clone()), FrameTime::default());
-            Mutant::new(vec![KnownMistake::new(id, description)], source)
+            let view = Arc::new(View::new(&Frame::default(), 1, 1));
+            Mutant::new(vec![KnownMistake::new(id, description)], source, &view)
         };
         let first = mutant("a", "one");
         let others = [

@@ -1,22 +1,24 @@
 //! Mutants: tracers with mistakes in them, and the variants of the shader that students write without a
 //! mistake.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use toyproof_diagnostic::{File, Files};
-use toyproof_eval::UndefinedPolicy;
+use toyproof_eval::{Places, UndefinedPolicy};
 use toyproof_eval_native::Program;
 use toyproof_glsl as glsl;
-use toyproof_image::Image;
+use toyproof_image::{Frame, Image};
 use toyproof_scene::export::{self, MarkedShader, Slot};
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 use toyproof_verify::bounds::MAX_ITERATIONS;
 use toyproof_verify::evaluator::evaluate_at;
 
+use crate::engine::probes::Probes;
+use crate::engine::{Colors, colors_of};
 use crate::known::KnownMistake;
 use crate::known::catalogue::Mistake;
-use crate::known::thumbnail::View;
+use crate::known::view::View;
 
 /// The subject that a mutant renders.
 #[derive(Debug, Clone)]
@@ -28,67 +30,99 @@ pub(super) enum MutantSource {
 }
 
 impl MutantSource {
+    fn program(shader: &MarkedShader) -> Option<Program> {
+        let mut files = Files::default();
+        let file = files.add(File::new("<mistake>", shader.text.as_str()));
+        let checked = glsl::check(&files, file, &glsl::Options::default()).ok()?;
+        Program::prepared(&checked, UndefinedPolicy::Plain).ok()
+    }
+
+    fn tracer(scene: &Scene, frame_time: FrameTime, frame: &Frame) -> Tracer<f64> {
+        let mut scene = scene.clone();
+        scene.film.size = frame.size;
+        Tracer::at(&scene, frame_time)
+    }
+
     /// Renders a view; `None` if the shader is invalid or runs too many loop iterations.
     pub(super) fn render(&self, view: &View) -> Option<Image> {
         match self {
+            Self::Shader(shader) => view.render(&Self::program(shader)?),
+            Self::Scene(scene, frame_time) => {
+                let [columns, rows] = view.places.pixels();
+                Some(Self::tracer(scene, *frame_time, &view.frame).sampled(&columns, &rows))
+            }
+        }
+    }
+
+    /// The colors at some probes of a frame; `None` like [`Self::render`].
+    pub(super) fn colors(&self, frame: &Frame, probes: &Probes) -> Option<Colors> {
+        if let Some(places) = probes.grid.clone() {
+            return Some(colors_of(&self.render(&View {
+                frame: frame.clone(),
+                places,
+            })?));
+        }
+        let points = probes.all.iter().map(|probe| probe.point);
+        match self {
             Self::Shader(shader) => {
-                let mut files = Files::default();
-                let file = files.add(File::new("<mistake>", shader.text.as_str()));
-                let checked = glsl::check(&files, file, &glsl::Options::default()).ok()?;
-                render(&Program::prepared(&checked, UndefinedPolicy::Plain).ok()?, view)
+                let program = Self::program(shader)?;
+                let color = |[x, y]: [f64; 2]| {
+                    let place = Places {
+                        columns: vec![x],
+                        rows: vec![y],
+                    };
+                    let image = evaluate_at(&program, frame, &place, MAX_ITERATIONS)?;
+                    colors_of(&image).pop()
+                };
+                points.map(color).collect()
             }
             Self::Scene(scene, frame_time) => {
-                let mut scene = scene.as_ref().clone();
-                scene.film.size = view.frame.size;
-                let [columns, rows] = view.places.pixels();
-                Some(Tracer::<f64>::at(&scene, *frame_time).sampled(&columns, &rows))
+                let tracer = Self::tracer(scene, *frame_time, frame);
+                Some(points.map(|[x, y]| tracer.pixel(x as u32, y as u32)).collect())
             }
         }
     }
 }
 
-/// Renders a view of a shader in f64.
-pub(super) fn render(program: &Program, view: &View) -> Option<Image> {
-    evaluate_at(program, &view.frame, &view.places, MAX_ITERATIONS)
-}
-
-/// A tracer with mistakes in it. Its image is rendered once, on first use.
-#[derive(Debug)]
+/// A tracer with mistakes in it. Its image of one view is rendered once, on first use.
+#[derive(Debug, Clone)]
 pub(super) struct Mutant {
     pub(super) mistakes: Vec<KnownMistake>,
     pub(super) source: MutantSource,
     /// The mistake of the catalogue, if it is a single one.
     pub(super) edit: Option<&'static Mistake>,
+    view: Arc<View>,
     image: OnceLock<Option<Image>>,
 }
 
 impl Mutant {
-    pub(super) fn new(mistakes: Vec<KnownMistake>, source: MutantSource) -> Self {
+    pub(super) fn new(mistakes: Vec<KnownMistake>, source: MutantSource, view: &Arc<View>) -> Self {
         Self {
             mistakes,
             source,
             edit: None,
+            view: Arc::clone(view),
             image: OnceLock::new(),
         }
     }
 
     /// Creates a mutant with one mistake of the catalogue in that shader; `None` if it does not apply.
-    pub(super) fn edited(shader: &MarkedShader, mistake: &'static Mistake) -> Option<Self> {
+    pub(super) fn edited(shader: &MarkedShader, mistake: &'static Mistake, view: &Arc<View>) -> Option<Self> {
         let source = MutantSource::Shader(mistake.apply(shader)?);
         Some(Self {
             edit: Some(mistake),
-            ..Self::new(vec![mistake.known()], source)
+            ..Self::new(vec![mistake.known()], source, view)
         })
     }
 
     /// The same mistakes in shaders with other ray epsilons.
     pub(super) fn with_other_epsilons(&self, frame_time: FrameTime, max_offset: f64) -> Vec<Self> {
-        let Some(shader) = self.shader(frame_time) else {
-            return Vec::new();
-        };
-        let variants = epsilon_variants(&shader, max_offset).into_iter();
+        let variants = self
+            .shader(frame_time)
+            .map(|shader| epsilon_variants(&shader, max_offset));
+        let variants = variants.into_iter().flatten().map(MutantSource::Shader);
         variants
-            .map(|shader| Self::new(self.mistakes.clone(), MutantSource::Shader(shader)))
+            .map(|source| Self::new(self.mistakes.clone(), source, &self.view))
             .collect()
     }
 
@@ -96,14 +130,22 @@ impl Mutant {
         self.mistakes.iter().map(|mistake| mistake.id)
     }
 
-    /// The image of a view, which must be the same in all calls. It does not wait for another thread's: a
-    /// thread of rayon's that waits while it renders for another task might wait for itself.
-    pub(super) fn image(&self, view: &View) -> Option<&Image> {
+    /// The image of the view. It does not wait for another thread's: a thread of rayon's that waits while it renders
+    /// for another task might wait for itself.
+    pub(super) fn image(&self) -> Option<&Image> {
         if self.image.get().is_none() {
             // Another thread may have been faster, with the same image.
-            let _ = self.image.set(self.source.render(view));
+            let _ = self.image.set(self.source.render(&self.view));
         }
         self.image.get()?.as_ref()
+    }
+
+    /// The colors at some probes.
+    pub(super) fn colors(&self, probes: &Probes) -> Option<Colors> {
+        if probes.grid.as_ref() == Some(&self.view.places) {
+            return self.image().map(colors_of);
+        }
+        self.source.colors(&self.view.frame, probes)
     }
 
     /// The shader of this mutant, as students write it; `None` at another time.
@@ -113,6 +155,30 @@ impl Mutant {
             MutantSource::Scene(scene, own) if *own == frame_time => variants(scene).into_iter().next(),
             MutantSource::Scene(..) => None,
         }
+    }
+
+    /// A mutant with both mistakes; `None` if they replace the same part, or both change the scene.
+    pub(super) fn both(pair: [&Self; 2], frame_time: FrameTime) -> Option<Self> {
+        let [one, other] = pair;
+        [[one, other], [other, one]]
+            .into_iter()
+            .find_map(|[first, second]| {
+                let shader = second.edit?.apply(&first.shader(frame_time)?)?;
+                // Descriptions of changes are longer, and come last.
+                let order = if first.edit.is_none() {
+                    [second, first]
+                } else {
+                    pair
+                };
+                let mistakes = order
+                    .into_iter()
+                    .flat_map(|mutant| mutant.mistakes.iter().cloned());
+                Some(Self::new(
+                    mistakes.collect(),
+                    MutantSource::Shader(shader),
+                    &one.view,
+                ))
+            })
     }
 }
 
@@ -142,32 +208,29 @@ pub(super) fn variants(scene: &Scene) -> Vec<MarkedShader> {
     [Some(shader), with_min_t].into_iter().flatten().collect()
 }
 
+/// A loop over all spheres, for shadow rays in a direction.
+macro_rules! any_sphere {
+    ($direction:literal) => {
+        concat!(
+            "Ray ray = Ray(origin, ",
+            $direction,
+            ");
+    for (int i = 0; i < SPHERES; i++) {
+        if (intersectSphere(ray, spheres[i]) < «ShadowLength») {
+            return true;
+        }
+    }
+    return false;"
+        )
+    };
+}
+
 /// A single sphere casts no shadow on itself.
 const NO_SHADOWS: &[(Slot, &str)] = &[(Slot::LitAndVisible, "«Lit»")];
 
-/// A shadow ray tests each sphere instead of finding the nearest hit.
-const ANY_SPHERE: &[(Slot, &str)] = &[(
-    Slot::ShadowStatement,
-    "Ray ray = Ray(origin, «ShadowDirection»);
-    for (int i = 0; i < SPHERES; i++) {
-        if (intersectSphere(ray, spheres[i]) < «ShadowLength») {
-            return true;
-        }
-    }
-    return false;",
-)];
-
-/// The same for lights with a radius.
-const ANY_SPHERE_SOFT: &[(Slot, &str)] = &[(
-    Slot::SoftShadowStatement,
-    "Ray ray = Ray(origin, toLight);
-    for (int i = 0; i < SPHERES; i++) {
-        if (intersectSphere(ray, spheres[i]) < «ShadowLength») {
-            return true;
-        }
-    }
-    return false;",
-)];
+/// A shadow ray tests each sphere instead of finding the nearest hit; also of lights with a radius.
+const ANY_SPHERE: &[(Slot, &str)] = &[(Slot::ShadowStatement, any_sphere!("«ShadowDirection»"))];
+const ANY_SPHERE_SOFT: &[(Slot, &str)] = &[(Slot::SoftShadowStatement, any_sphere!("toLight"))];
 
 /// Returns the shader whose reflected and refracted rays start on their surface and ignore nearer hits;
 /// `None` if it has no such rays and no quadrics, on which a shadow ray may also start.

@@ -4,11 +4,8 @@
 //! not change most likely has the color that the other alone gives it. If the wrong image has another
 //! color, it contradicts the pair; the pairs with the fewest such pixels come first.
 
-use toyproof_image::Image;
-use toyproof_scene::FrameTime;
-
-use crate::known::mutant::{Mutant, MutantSource};
-use crate::known::thumbnail::{WrongImage, differs};
+use crate::engine::probes::Probes;
+use crate::known::mutant::Mutant;
 
 /// The largest number of pairs that are rendered: those with the fewest contradicting pixels.
 const MAX_RANKED_PAIRS: usize = 256;
@@ -26,11 +23,13 @@ const MAX_CONTRADICTED_SHARE: f64 = 0.5;
 struct PixelSet(Vec<u64>);
 
 impl PixelSet {
-    /// The pixels in which two images differ.
-    fn differing(one: &Image, other: &Image) -> Self {
-        let mut words = vec![0; one.pixels().len().div_ceil(64)];
-        for at in 0..one.pixels().len() {
-            words[at / 64] |= u64::from(differs(at, one, other)) << (at % 64);
+    fn new(pixels: impl Iterator<Item = bool>) -> Self {
+        let mut words = Vec::new();
+        for (at, is_in) in pixels.enumerate() {
+            if at % 64 == 0 {
+                words.push(0);
+            }
+            words[at / 64] |= u64::from(is_in) << (at % 64);
         }
         Self(words)
     }
@@ -58,12 +57,13 @@ struct SingleEffect<'a> {
 }
 
 impl<'a> SingleEffect<'a> {
-    fn of(mutant: &'a Mutant, wrong_image: &WrongImage, correct: &Image) -> Option<Self> {
-        let image = mutant.image(wrong_image.view)?;
+    fn new(mutant: &'a Mutant, probes: &Probes) -> Option<Self> {
+        let colors = mutant.colors(probes)?;
+        let pixels = || probes.all.iter().zip(&colors);
         Some(Self {
             mutant,
-            changed: PixelSet::differing(image, correct),
-            unexplained: PixelSet::differing(image, wrong_image.small),
+            changed: PixelSet::new(pixels().map(|(probe, &color)| probes.is_changed(probe, color))),
+            unexplained: PixelSet::new(pixels().map(|(probe, &color)| probes.is_wrong(probe, color))),
         })
     }
 
@@ -74,13 +74,9 @@ impl<'a> SingleEffect<'a> {
 }
 
 /// Returns the pairs of mistakes that are worth rendering, the most likely first.
-pub(super) fn likely<'a>(
-    mutants: impl Iterator<Item = &'a Mutant>,
-    wrong_image: &WrongImage,
-    correct: &Image,
-) -> Vec<[&'a Mutant; 2]> {
+pub(super) fn likely<'a>(mutants: impl Iterator<Item = &'a Mutant>, probes: &Probes) -> Vec<[&'a Mutant; 2]> {
     let all: Vec<SingleEffect> = mutants
-        .filter_map(|mutant| SingleEffect::of(mutant, wrong_image, correct))
+        .filter_map(|mutant| SingleEffect::new(mutant, probes))
         .collect();
     let pairs = (0..all.len()).flat_map(|second| (0..second).map(move |first| [first, second]));
     let pairs = pairs.filter(|pair| {
@@ -94,7 +90,7 @@ pub(super) fn likely<'a>(
     let mut nearest: Vec<usize> = (0..all.len()).collect();
     nearest.sort_by_key(|&at| all[at].unexplained.count());
     nearest.truncate(NEAREST_MISTAKES);
-    let limit = (wrong_image.differing as f64 * MAX_CONTRADICTED_SHARE) as u64;
+    let limit = (probes.wrong() as f64 * MAX_CONTRADICTED_SHARE) as u64;
     let is_likely = |&(rank, (pair, contradicted)): &(usize, ([usize; 2], u64))| {
         (rank < MAX_RANKED_PAIRS && contradicted <= limit) || pair.iter().any(|at| nearest.contains(at))
     };
@@ -102,24 +98,4 @@ pub(super) fn likely<'a>(
     likely
         .map(|(_, (pair, _))| pair.map(|at| all[at].mutant))
         .collect()
-}
-
-/// Returns a mutant with both mistakes; `None` if they replace the same part, or both change the scene.
-pub(super) fn both(pair: [&Mutant; 2], frame_time: FrameTime) -> Option<Mutant> {
-    let [one, other] = pair;
-    [[one, other], [other, one]]
-        .into_iter()
-        .find_map(|[first, second]| {
-            let shader = second.edit?.apply(&first.shader(frame_time)?)?;
-            // Descriptions of changes are longer, and come last.
-            let order = if first.edit.is_none() {
-                [second, first]
-            } else {
-                pair
-            };
-            let mistakes = order
-                .into_iter()
-                .flat_map(|mutant| mutant.mistakes.iter().cloned());
-            Some(Mutant::new(mistakes.collect(), MutantSource::Shader(shader)))
-        })
 }

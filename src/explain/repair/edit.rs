@@ -7,7 +7,9 @@ use toyproof_glsl::tree::ExprId;
 
 use super::scan;
 use super::shader::{Shader, Shape};
-use super::term::{Numbers, PRIMARY, Term, context, is_parenthesized};
+use super::term::{PRIMARY, Term, context, is_parenthesized};
+use crate::engine::Numbers;
+use crate::engine::tournament::{Entrant, Values};
 use crate::known::KnownMistake;
 use crate::known::documented::{Documented, documented};
 
@@ -15,26 +17,12 @@ use crate::known::documented::{Documented, documented};
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
     pub(super) change: Change,
-    pub(super) trials: Trials,
+    /// The numbers that it tries.
+    pub(super) values: Values,
     /// How unlikely the edit is, before its place is considered: larger edits, and edits of a kind that
     /// mistakes seldom have, cost more.
     pub(super) cost: u32,
     pub(super) kind: EditKind,
-}
-
-/// The values that an edit tries for its number.
-#[derive(Debug, Clone)]
-pub(super) enum Trials {
-    /// It has no number to be found.
-    Once,
-    /// Some numbers, each with its cost; and if it may be fitted, the cost of that, and the number with which
-    /// the edit changes nothing.
-    Values {
-        values: Vec<(f64, u32)>,
-        fit: Option<(u32, f64)>,
-    },
-    /// A fitted number for each component of a color, which is now this.
-    Color(Numbers),
 }
 
 /// What an edit changes.
@@ -143,6 +131,13 @@ impl Candidate {
         }
     }
 
+    pub(super) fn entrant(&self) -> Entrant<'_> {
+        Entrant {
+            values: &self.values,
+            cost: self.cost,
+        }
+    }
+
     /// The candidate with its numbers, at their cost.
     pub(super) fn with_numbers(&self, numbers: &Numbers, cost: u32) -> Self {
         let mut fitted = self.clone();
@@ -150,17 +145,17 @@ impl Candidate {
         if let Change::Expression { term, .. } = &mut fitted.change {
             *term = term.with_fitted(numbers);
         }
-        fitted.trials = Trials::Once;
+        fitted.values = Values::Fixed;
         fitted
     }
 
     /// Several candidates, each with the numbers of one cost.
     pub(super) fn by_cost(self) -> Vec<Self> {
-        let Trials::Values { values, fit } = &self.trials else {
+        let Values::Tried { values, fit } = &self.values else {
             return vec![self];
         };
         let with = |values: Vec<(f64, u32)>, fit, cost| Self {
-            trials: Trials::Values { values, fit },
+            values: Values::Tried { values, fit },
             cost,
             ..self.clone()
         };
@@ -172,7 +167,7 @@ impl Candidate {
             .into_iter()
             .map(|(cost, values)| with(values, None, cost))
             .collect();
-        all.extend(fit.map(|(cost, start)| with(Vec::new(), Some((cost, start)), cost)));
+        all.extend(fit.map(|(cost, fit)| with(Vec::new(), Some((cost, fit)), cost)));
         all
     }
 

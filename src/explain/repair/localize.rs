@@ -8,10 +8,12 @@
 
 use toyproof_glsl::tree::{BinaryOp, ExprKind, Scalar, Type, UnaryOp};
 
-use super::edit::{Candidate, Change, EditKind, Trials};
-use super::probe::Probe;
+use super::edit::{Candidate, Change, EditKind};
 use super::shader::{Shader, Shape};
 use super::term::Term;
+use crate::engine::differ;
+use crate::engine::probes::Probe;
+use crate::engine::tournament::Values;
 
 /// A change of a float: a factor and a term.
 #[derive(Debug, Clone, Copy)]
@@ -64,7 +66,7 @@ pub(super) fn disturbed(shader: &Shader, site: usize, by: Disturbance) -> Option
     };
     Some(Candidate {
         change: Change::Expression { site, term },
-        trials: Trials::Once,
+        values: Values::Fixed,
         cost: 0,
         kind: EditKind::Expression,
     })
@@ -95,15 +97,11 @@ impl Suspicion {
     }
 }
 
-/// The suspicion of a value whose change changes these colors to those.
-pub(super) fn suspicion(probes: &[Probe], before: &[[f64; 3]], after: &[[f64; 3]], weight: f64) -> Suspicion {
+/// The suspicion of a value whose change changes the colors at the probes to these.
+pub(super) fn suspicion(probes: &[Probe], after: &[[f64; 3]], weight: f64) -> Suspicion {
     let (mut wrong, mut right) = (0.0, 0.0);
-    for ((probe, old), new) in probes.iter().zip(before).zip(after) {
-        let has_changed = (0..3).any(|i| {
-            let same = (old[i].clamp(0.0, 1.0) - new[i].clamp(0.0, 1.0)).abs() <= CHANGED;
-            !(same || old[i].is_nan() && new[i].is_nan())
-        });
-        if has_changed {
+    for (probe, &new) in probes.iter().zip(after) {
+        if differ(probe.before, new, CHANGED) {
             *(if probe.is_wrong { &mut wrong } else { &mut right }) += 1.0;
         }
     }
@@ -151,7 +149,7 @@ pub(super) fn suspicions(shader: &Shader, measured: &[Option<Suspicion>]) -> Vec
 
 /// The suspicion of each statement: that of its most suspicious value. A jump has that of the statement in
 /// front of it, which is the head of its `if`.
-pub(super) fn of_statements(shader: &Shader, sites: &[Suspicion]) -> Vec<Suspicion> {
+pub(super) fn suspicions_of_statements(shader: &Shader, sites: &[Suspicion]) -> Vec<Suspicion> {
     let mut suspicions = vec![Suspicion::default(); shader.statements.len()];
     for (site, &suspicion) in shader.sites.iter().zip(sites) {
         let own = &mut suspicions[site.statement];
@@ -171,14 +169,14 @@ mod tests {
 
     #[test]
     fn suspicion_is_ochiais_coefficient_over_the_pixels_that_change() {
-        let probes: Vec<Probe> = (0..8).map(|at| Probe::exact([0.5; 3], at < 4)).collect();
         let before = [[0.5; 3]; 8];
+        let probes: Vec<Probe> = (0..8).map(|at| Probe::exact(before[at], at < 4)).collect();
         let changed = |pixels: &[usize]| {
             let mut after = before;
             for &at in pixels {
                 after[at][1] = 0.6;
             }
-            suspicion(&probes, &before, &after, 1.0)
+            suspicion(&probes, &after, 1.0)
         };
         assert_eq!(
             changed(&[0, 1, 2, 3]),

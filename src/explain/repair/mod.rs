@@ -1,27 +1,22 @@
 //! Repair: finds the lines that a wrong image depends on, and the smallest edits of the shader's own text
 //! after which its image is the expected one.
 
-mod confirm;
 mod edit;
 mod edits;
-mod fit;
-mod group;
+mod evaluation;
 mod localize;
-mod probe;
 mod scan;
 mod schema;
 mod search;
 mod shader;
 mod term;
-mod trials;
-mod under_test;
 
 use toyproof_diagnostic::{Fix, Span};
 use toyproof_glsl::Checked;
 use toyproof_image::Rgb8Image;
 
 pub(crate) use self::edit::DOCUMENTED;
-pub(crate) use self::search::{Before, NoisyImage, search};
+pub(crate) use self::search::{NoisyImage, search};
 use crate::known::KnownMistake;
 
 /// The mistakes that repairs are named after.
@@ -51,7 +46,7 @@ pub struct Donors(Vec<edits::Donor>);
 
 impl Donors {
     /// Collects the expressions of some shaders; their order does not matter.
-    pub fn of<'a>(shaders: impl IntoIterator<Item = &'a Checked>) -> Self {
+    pub fn new<'a>(shaders: impl IntoIterator<Item = &'a Checked>) -> Self {
         Self(edits::donors(shaders.into_iter().map(|shader| &shader.tree)))
     }
 }

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::time::Duration;
 
-use toyproof_eval::{ParametricProgram, Refusal};
+use toyproof_eval::{ParametricProgram, Point, PointEvaluator, Refusal};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{
     Arm, Block, ExprId, ExprKind, FunctionId, Place, Statement, StatementKind, Tree, Type, Variable,
@@ -15,28 +15,75 @@ use toyproof_image::Frame;
 
 use super::edit::{Action, Candidate, Change};
 use super::shader::{Shader, StatementId, find, renumbered};
-use super::term::{Numbers, Term, push};
+use super::term::{Term, push};
+use crate::engine::probes::Probes;
+use crate::engine::{Colors, Field, Numbers, Run};
 
 /// The number of fitted numbers.
 const NUMBERS: usize = std::mem::size_of::<Numbers>() / std::mem::size_of::<f64>();
 
-/// The parameters' values that select edits, one for each, and the fitted numbers at the end.
-#[derive(Debug, Clone)]
-pub(super) struct Selection(Vec<f64>);
+/// The edits of a compiled schema, evaluated side by side.
+pub(super) struct SchemaField<'a, 'e> {
+    evaluator: &'a mut PointEvaluator<'e>,
+    /// The number of edits.
+    count: usize,
+}
 
-impl Selection {
-    /// Selects an edit of a program with `count` edits, or no edit.
-    pub(super) fn of(count: usize, selected: Option<usize>, numbers: &Numbers) -> Self {
-        let mut values = vec![0.0; count];
-        if let Some(at) = selected {
-            values[at] = 1.0;
-        }
-        values.extend(numbers);
-        Self(values)
+impl<'a, 'e> SchemaField<'a, 'e> {
+    pub(super) fn new(evaluator: &'a mut PointEvaluator<'e>, count: usize) -> Self {
+        Self { evaluator, count }
     }
 
-    pub(super) fn values(&self) -> &[f64] {
-        &self.0
+    /// The largest number of loop iterations of the last colors.
+    pub(super) fn iterations(&self) -> u32 {
+        self.evaluator.iterations()
+    }
+
+    /// The work so far.
+    pub(super) fn work(&self) -> f64 {
+        self.evaluator.work()
+    }
+
+    /// The values of the parameters of a run: those that select edits, one for each, then the fitted numbers.
+    fn values(&self, run: &Run) -> Vec<f64> {
+        let mut values = vec![0.0; self.count];
+        if let Some(at) = run.candidate {
+            values[at] = 1.0;
+        }
+        values.extend(run.numbers);
+        values
+    }
+}
+
+impl Field for SchemaField<'_, '_> {
+    fn colors(&mut self, probes: &Probes, runs: &[Run]) -> Vec<Option<Colors>> {
+        let values: Vec<Vec<f64>> = runs.iter().map(|run| self.values(run)).collect();
+        let of_run = |(run, values): (&Run, _)| {
+            let points = probes.all[run.probes.clone()].iter();
+            points.map(move |probe| Point {
+                at: probe.point,
+                values,
+            })
+        };
+        let points: Vec<Point> = runs
+            .iter()
+            .zip(values.iter().map(Vec::as_slice))
+            .flat_map(of_run)
+            .collect();
+        let Ok(colors) = self.evaluator.colors(&points) else {
+            return vec![None; runs.len()];
+        };
+        let mut colors = colors.into_iter();
+        runs.iter()
+            .map(|run| {
+                colors
+                    .by_ref()
+                    .take(run.probes.len())
+                    .collect::<Vec<_>>()
+                    .into_iter()
+                    .collect()
+            })
+            .collect()
     }
 }
 

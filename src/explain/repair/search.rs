@@ -1,21 +1,21 @@
 //! The search for repairs: candidates are tried in the order of their cost and of the suspicion of their
 //! place, until some are confirmed or the budget is spent; then pairs of them.
 
-use std::time::Instant;
+use std::cmp::Ordering;
 
 use toyproof_diagnostic::Fix;
-use toyproof_eval::{Fault, Places};
+use toyproof_eval::Places;
+use toyproof_glsl as glsl;
 use toyproof_verify::random::NoisyPixel;
-use toyproof_verify::{Case, CheckResult};
 
-use super::confirm::{Judge, compose};
 use super::edit::{Candidate, EditKind};
 use super::edits::{Constants, candidates, donor_candidates};
-use super::probe::Probes;
+use super::evaluation::{Evaluation, TriedEdit, UNLIMITED};
 use super::shader::Shader;
-use super::trials::Trial;
-use super::under_test::{ShaderUnderTest, UNLIMITED};
 use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
+use crate::engine::budget::Budget;
+use crate::engine::confirm::{Confirmer, apply, compose};
+use crate::engine::probes::Probes;
 
 /// How much more than the first repair a candidate may cost to be tried as an alternative.
 const ALTERNATIVE_MARGIN: f64 = 5.0;
@@ -53,49 +53,45 @@ const DONORS_SHARE: f64 = 0.8;
 const MAX_DONOR_SITES: usize = 120;
 
 /// The largest number of edits that are tried as the first of two, and of those in one statement.
-const MAX_FIRSTS: usize = 8;
-const MAX_FIRSTS_OF_STATEMENT: usize = 2;
+const MAX_FIRST_EDITS: usize = 8;
+const MAX_FIRST_EDITS_OF_STATEMENT: usize = 2;
 
-/// The work of a unit of the budget: about a second of one core.
-const WORK_PER_UNIT: f64 = 3e8;
+/// Some pixels of a shader that has its own random numbers.
+pub(crate) struct NoisyImage {
+    pub(crate) pixels: Vec<NoisyPixel>,
+    pub(crate) places: Places,
+}
 
 /// Searches for the repairs of a wrong shader; `None` if there is nothing to search for. `means` evaluates
 /// pixel means; it returns `None` unless shader and reference are both stochastic. If means were compared,
-/// their seeds differ, possibly because of the bug. Work is counted; the search also ends at the `deadline`,
-/// which only a hang exceeds.
+/// their seeds differ, possibly because of the bug.
 pub(crate) fn search(
-    case: &Case,
+    confirmer: &Confirmer,
     options: SearchOptions,
-    before: Before,
+    compares_means: bool,
     means: &dyn Fn() -> Option<NoisyImage>,
-    deadline: Instant,
 ) -> Option<SearchResult> {
-    let Before {
-        check,
-        compares_means,
+    let Confirmer {
+        case,
+        expected,
+        before,
         ..
-    } = before;
-    let expected = case.expected?;
+    } = *confirmer;
     let shader = Shader::new(case.checked, options.source);
     let mut search = Search {
-        case,
+        confirmer,
+        options,
         shader: &shader,
-        constants: Constants::of(expected),
-        donors: options.donors,
-        judge: Judge::new(case, expected, options, before, deadline),
-        deadline,
+        constants: Constants::new(expected),
+        budget: Budget::of_units(options.budget, confirmer.deadline),
         found: Vec::new(),
         best: f64::INFINITY,
         attempts: 0,
         confirmations: 0,
-        confirmation_work: 0.0,
-        budget: options.budget * WORK_PER_UNIT,
-        confirmation_budget: CONFIRMATION_SHARE * options.budget * WORK_PER_UNIT,
         suspects: None,
         is_cut: false,
     };
-    let budget = options.budget * WORK_PER_UNIT;
-    let exact = Probes::select(check, expected, case.frame.size[0] as usize)?;
+    let exact = Probes::select(before, expected, case.frame.size[0] as usize)?;
     // A shader with other random numbers has no exact colors, unless its mistake is in the reference's own
     // hash.
     let follows_reference = search.constants.has_hash_of(case.checked);
@@ -106,7 +102,7 @@ pub(crate) fn search(
         (false, None) => 1.0,
     };
     if exact_share > 0.0 {
-        search.run(&exact, exact_share * budget);
+        search.run(&exact, exact_share);
     }
     if compares_means && search.found.is_empty() && noisy.is_none() {
         noisy = means();
@@ -115,7 +111,7 @@ pub(crate) fn search(
         && let Some(probes) = Probes::of_means(&image.pixels, &image.places)
     {
         search.attempts = MAX_ATTEMPTS - MAX_ATTEMPTS_BY_MEANS;
-        search.run(&probes, (1.0 - exact_share) * budget);
+        search.run(&probes, 1.0 - exact_share);
     }
     Some(SearchResult {
         suspects: search.suspects.take()?,
@@ -124,43 +120,20 @@ pub(crate) fn search(
     })
 }
 
-/// The results of the shader before any edit.
-#[derive(Clone, Copy)]
-pub(crate) struct Before<'a> {
-    /// The algorithm check.
-    pub(crate) check: &'a CheckResult,
-    /// The faults that were observed, each at one place.
-    pub(crate) faults: &'a [Fault],
-    /// Whether its means were compared.
-    pub(crate) compares_means: bool,
-}
-
-/// Some pixels of a shader that has its own random numbers.
-pub(crate) struct NoisyImage {
-    pub(crate) pixels: Vec<NoisyPixel>,
-    pub(crate) places: Places,
-}
-
 /// A search in progress.
 struct Search<'a> {
-    case: &'a Case<'a>,
+    confirmer: &'a Confirmer<'a>,
+    options: SearchOptions<'a>,
     shader: &'a Shader<'a>,
     constants: Constants,
-    /// The donors of other shaders, if only these are tried.
-    donors: Option<&'a Donors>,
-    judge: Judge<'a>,
-    deadline: Instant,
+    /// The budget of the whole search, to which confirmations are charged.
+    budget: Budget,
     found: Vec<Found>,
     /// The rank up to which the best repair has been found, if there is one.
     best: f64,
+    /// The number of attempts to confirm a repair with the current probes, and of all.
     attempts: usize,
-    /// The number of confirmations.
     confirmations: usize,
-    /// The budget of the whole search.
-    budget: f64,
-    /// The work of confirmations, and the work after which no more alternatives are confirmed.
-    confirmation_work: f64,
-    confirmation_budget: f64,
     /// The suspects of the last probes; `None` if the shader could not be evaluated at any.
     suspects: Option<Vec<Suspect>>,
     is_cut: bool,
@@ -177,74 +150,73 @@ struct Found {
 
 impl Search<'_> {
     /// Searches for edits after which the probes are right: single ones, donors, then pairs.
-    fn run(&mut self, probes: &Probes, budget: f64) {
+    fn run(&mut self, probes: &Probes, share: f64) {
+        let (shader, budget) = (self.shader, self.budget.share(share));
         // The check has rendered the shader, so its loops end.
-        let Some(mut tested) =
-            ShaderUnderTest::new(self.case, self.shader, probes, UNLIMITED, budget, self.deadline)
-        else {
+        let frame = self.confirmer.case.frame;
+        let Some(mut whole) = Evaluation::new(frame, shader, probes, UNLIMITED, budget) else {
             return;
         };
-        if self.donors.is_some() {
-            self.suspects = Some(tested.suspects(&[]));
-            return self.donors(&mut tested, budget);
+        if self.options.donors.is_some() {
+            self.suspects = Some(whole.suspects(&[]));
+            return self.donors(&mut whole, 1.0);
         }
-        let partial = self.explore(&mut tested, None, SINGLES_SHARE * budget);
-        self.suspects = Some(tested.suspects(&partial));
+        let partial = self.explore(&mut whole, None, SINGLES_SHARE);
+        self.suspects = Some(whole.suspects(&partial));
         if self.found.iter().all(|found| found.rank > MAX_NATURAL_RANK) {
-            self.donors(&mut tested, DONORS_SHARE * budget);
+            self.donors(&mut whole, DONORS_SHARE);
         }
         if self.found.is_empty() && !probes.are_means() {
-            self.pairs(&tested, probes, partial, budget - tested.work);
+            self.pairs(whole, probes, partial);
         }
     }
 
     /// Tries all edits of a shader, in addition to a first edit that it has already, and confirms those that
     /// pass. Returns those that make progress only.
-    fn explore(&mut self, tested: &mut ShaderUnderTest, first: Option<&First>, budget: f64) -> Vec<Trial> {
-        let (sites, statements) = tested.in_order();
-        let all = candidates(tested.shader, &self.constants, &sites, &statements);
-        self.try_in_order(tested, all, first, budget)
+    fn explore(&mut self, evaluation: &mut Evaluation, first: Option<&Fix>, share: f64) -> Vec<TriedEdit> {
+        let [sites, statements] = evaluation.in_order();
+        let all = candidates(evaluation.shader, &self.constants, &sites, &statements);
+        self.try_in_order(evaluation, all, first, share)
     }
 
     /// Tries expressions of other shaders, or of the scene's, in the most suspicious places.
-    fn donors(&mut self, tested: &mut ShaderUnderTest, budget: f64) {
-        let sites = tested.suspicious_sites(MAX_DONOR_SITES);
-        let donors = self.donors.map_or(&self.constants.donors, |donors| &donors.0);
-        let all = donor_candidates(tested.shader, &self.constants, donors, &sites);
-        self.try_in_order(tested, all, None, budget);
+    fn donors(&mut self, evaluation: &mut Evaluation, share: f64) {
+        let sites = evaluation.suspicious_sites(MAX_DONOR_SITES);
+        let donors = self
+            .options
+            .donors
+            .map_or(&self.constants.donors, |Donors(donors)| donors);
+        let all = donor_candidates(evaluation.shader, &self.constants, donors, &sites);
+        self.try_in_order(evaluation, all, None, share);
     }
 
+    /// Tries candidates until a share of the budget is spent.
     fn try_in_order(
         &mut self,
-        tested: &mut ShaderUnderTest,
+        evaluation: &mut Evaluation,
         candidates: Vec<Candidate>,
-        first: Option<&First>,
-        budget: f64,
-    ) -> Vec<Trial> {
-        let mut all: Vec<(f64, Candidate)> = candidates
+        first: Option<&Fix>,
+        share: f64,
+    ) -> Vec<TriedEdit> {
+        let ranked = candidates
             .into_iter()
-            .map(|candidate| (tested.trial_rank(&candidate), candidate))
-            .collect();
+            .map(|candidate| (evaluation.search_rank(&candidate), candidate));
+        let mut all: Vec<(f64, Candidate)> = ranked.collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut partial = Vec::new();
-        for wave in all.chunks(tested.wave()) {
-            let is_spent = tested.is_spent(budget);
+        for batch in all.chunks(evaluation.batch()) {
+            let is_spent = evaluation.budget.is_spent(share);
             self.is_cut |= is_spent;
-            if is_spent
-                || tested.is_late()
-                || wave[0].0 > self.best + ALTERNATIVE_MARGIN
-                || self.is_complete()
-            {
+            let is_late = evaluation.budget.is_late();
+            if is_spent || is_late || batch[0].0 > self.best + ALTERNATIVE_MARGIN || self.is_complete() {
                 break;
             }
-            let (mut passing, progress): (Vec<Trial>, Vec<Trial>) = tested
-                .try_all(wave)
-                .into_iter()
-                .partition(|trial| trial.outcome.passes);
+            let tried = evaluation.try_all(batch).into_iter();
+            let (mut passing, progress): (Vec<_>, Vec<_>) = tried.partition(|edit| edit.outcome.passes);
             partial.extend(progress);
-            passing.sort_by(|a, b| tested.report_rank(a).total_cmp(&tested.report_rank(b)));
-            for trial in passing {
-                self.confirm(tested, &trial, first);
+            passing.sort_by(|a, b| evaluation.report_rank(a).total_cmp(&evaluation.report_rank(b)));
+            for edit in passing {
+                self.confirm(evaluation, &edit, first);
             }
         }
         partial
@@ -255,94 +227,105 @@ impl Search<'_> {
         self.found.len() >= MAX_CONFIRMED || self.attempts >= MAX_ATTEMPTS
     }
 
-    fn confirm(&mut self, tested: &mut ShaderUnderTest, trial: &Trial, first: Option<&First>) {
-        let candidate = &trial.candidate;
-        let statement = candidate.statement(tested.shader);
-        let rank = tested.report_rank(trial);
+    /// Confirms an edit, unless a better one of its statement is confirmed.
+    fn confirm(&mut self, evaluation: &mut Evaluation, edit: &TriedEdit, first: Option<&Fix>) -> Option<()> {
+        let (candidate, shader) = (&edit.candidate, evaluation.shader);
+        let statement = candidate.statement(shader);
+        let rank = evaluation.report_rank(edit);
         // Alternatives in the same statement would hide those elsewhere.
         let is_better =
             |found: &Found| found.statement == statement && found.repair.is_complete() && found.rank <= rank;
         if self.is_complete() || self.found.iter().any(is_better) {
-            return;
+            return None;
         }
-        let fix = candidate.fix(tested.shader);
+        let own = candidate.fix(shader)?;
         let fix = match first {
-            None => fix,
-            Some(first) => fix.and_then(|second| compose(&first.fix, &second)),
+            None => own,
+            Some(first) => compose(first, &own)?,
         };
-        let Some(fix) = fix else { return };
         // An image takes the work of as many probes; in double precision, in f32, and in a second frame.
-        let pixels = f64::from(self.case.frame.size[0]) * f64::from(self.case.frame.size[1]);
-        let work = CONFIRMATION_FACTOR * pixels * tested.probe_work;
-        self.confirmation_work += work;
-        if !self.found.is_empty() && self.confirmation_work > self.confirmation_budget {
-            return;
+        let [width, height] = self.confirmer.case.frame.size.map(f64::from);
+        let work = CONFIRMATION_FACTOR * width * height * evaluation.probe_work;
+        self.budget.charge(work);
+        if !self.found.is_empty() && self.budget.is_spent(CONFIRMATION_SHARE) {
+            return None;
         }
-        if self.confirmations >= SURE_ATTEMPTS && self.confirmation_work > self.budget {
+        if self.confirmations >= SURE_ATTEMPTS && self.budget.is_spent(1.0) {
             self.is_cut = true;
-            return;
+            return None;
         }
-        tested.work += work;
+        evaluation.budget.charge(work);
         self.attempts += 1;
         self.confirmations += 1;
-        let kinds: Vec<EditKind> = first
-            .map(|first| first.kind)
-            .into_iter()
-            .chain([candidate.kind(tested.shader)])
-            .collect();
-        if let Some(repair) = self.judge.confirm(fix, &kinds, tested.max_iterations) {
-            let margin = if repair.is_complete() {
-                0.0
-            } else {
-                COMPLETE_MARGIN
-            };
-            self.best = self.best.min(tested.trial_rank(candidate) + margin);
-            self.found.retain(|found| found.statement != statement);
-            self.found.push(Found {
-                repair,
-                rank,
-                statement,
-            });
-        }
+        let kind = candidate.kind(shader);
+        let mistake = first.map_or(kind, |_| EditKind::Two).mistake();
+        let (_, checked) = self.edited(&fix)?;
+        let confirmation = self.confirmer.edited(&checked, evaluation.max_iterations)?;
+        let repair = Repair {
+            fix,
+            mistake,
+            agreeing: confirmation.agreeing,
+            pixels: confirmation.pixels,
+            by_means: confirmation.by_means,
+            image: confirmation.image,
+        };
+        let margin = if repair.is_complete() {
+            0.0
+        } else {
+            COMPLETE_MARGIN
+        };
+        self.best = self.best.min(evaluation.search_rank(candidate) + margin);
+        self.found.retain(|found| found.statement != statement);
+        self.found.push(Found {
+            repair,
+            rank,
+            statement,
+        });
+        None
+    }
+
+    /// The shader after an edit, if it is valid.
+    fn edited(&self, fix: &Fix) -> Option<(String, glsl::Checked)> {
+        let text = apply(self.options.source, fix)?;
+        let options = glsl::Options {
+            lenient: self.options.lenient,
+            ..glsl::Options::default()
+        };
+        let checked = self.confirmer.checked(&text, options)?;
+        Some((text, checked))
     }
 
     /// Tries a second edit after each of the most promising first ones.
-    fn pairs(&mut self, whole: &ShaderUnderTest, probes: &Probes, partial: Vec<Trial>, mut budget: f64) {
-        let firsts = firsts(whole, partial);
-        let count = firsts.len();
-        for (at, first) in firsts.iter().enumerate() {
-            self.is_cut |= budget <= 0.0;
-            if budget <= 0.0 || whole.is_late() {
+    fn pairs(&mut self, whole: Evaluation, probes: &Probes, partial: Vec<TriedEdit>) {
+        let mut budget = whole.budget;
+        let first_edits = first_edits(&whole, partial);
+        let count = first_edits.len();
+        for (at, first) in first_edits.iter().enumerate() {
+            self.is_cut |= budget.is_spent(1.0);
+            if budget.is_spent(1.0) || budget.is_late() {
                 break;
             }
-            let Some((text, checked)) = self.judge.edited(&first.fix) else {
+            let Some((text, checked)) = self.edited(first) else {
                 continue;
             };
             let shader = Shader::new(&checked, &text);
-            let Some(mut tested) = ShaderUnderTest::new(
-                self.case,
-                &shader,
-                probes,
-                whole.max_iterations,
-                budget / (count - at) as f64,
-                self.deadline,
-            ) else {
+            let part = budget.part_of_rest(count - at);
+            let frame = self.confirmer.case.frame;
+            let Some(mut evaluation) = Evaluation::new(frame, &shader, probes, whole.max_iterations, part)
+            else {
                 continue;
             };
-            self.explore(&mut tested, Some(first), budget / (count - at) as f64);
-            budget -= tested.work;
+            self.explore(&mut evaluation, Some(first), 1.0);
+            budget.charge(evaluation.budget.spent());
             if !self.found.is_empty() {
                 break;
             }
         }
     }
 
-    /// The repairs that are reported, the most likely first. One that leaves pixels wrong is not an
-    /// alternative to one that leaves fewer.
+    /// The repairs that are reported, the most likely first.
     fn repairs(mut self) -> Vec<Repair> {
-        let left = |found: &Found| found.repair.pixels - found.repair.agreeing;
-        self.found
-            .sort_by(|a, b| left(a).cmp(&left(b)).then(a.rank.total_cmp(&b.rank)));
+        self.found.sort_by(Found::preference);
         self.found
             .into_iter()
             .take(MAX_REPAIRS)
@@ -351,49 +334,56 @@ impl Search<'_> {
     }
 }
 
-impl Repair {
-    /// Whether no pixel is wrong any more.
-    fn is_complete(&self) -> bool {
-        self.agreeing == self.pixels
+impl Found {
+    /// One that leaves pixels wrong is not an alternative to one that leaves fewer; of equals, the smaller edit comes
+    /// first.
+    fn preference(&self, other: &Self) -> Ordering {
+        let left = |found: &Self| found.repair.pixels - found.repair.agreeing;
+        left(self)
+            .cmp(&left(other))
+            .then(self.rank.total_cmp(&other.rank))
     }
 }
 
-/// The first of two edits.
-struct First {
-    fix: Fix,
-    kind: EditKind,
+impl Repair {
+    /// Whether no pixel is wrong any more.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.agreeing == self.pixels
+    }
+
+    /// Whether it corrects one mistake.
+    pub(crate) fn is_single(&self) -> bool {
+        self.mistake.id != EditKind::Two.mistake().id
+    }
 }
 
 /// The edits that repair most of the wrong pixels, or remove most of the difference, without breaking others.
-fn firsts(tested: &ShaderUnderTest, mut partial: Vec<Trial>) -> Vec<First> {
-    let progress = |trial: &Trial| {
-        let outcome = &trial.outcome;
+fn first_edits(evaluation: &Evaluation, mut partial: Vec<TriedEdit>) -> Vec<Fix> {
+    let progress = |TriedEdit { outcome, .. }: &TriedEdit| {
         let pixels = outcome.repaired as f64 - 2.0 * outcome.broken as f64;
         pixels / outcome.evaluated.max(1) as f64 + 0.5 * (1.0 - outcome.remaining).clamp(0.0, 1.0)
     };
+    let rank = |edit: &TriedEdit| evaluation.search_rank(&edit.candidate);
     partial.sort_by(|a, b| {
-        let rank = |trial: &Trial| tested.trial_rank(&trial.candidate);
         progress(b)
             .total_cmp(&progress(a))
             .then(rank(a).total_cmp(&rank(b)))
     });
+    let shader = evaluation.shader;
     let mut statements: Vec<usize> = Vec::new();
-    let mut firsts = Vec::new();
-    for trial in partial {
-        let statement = trial.candidate.statement(tested.shader);
+    let mut first_edits = Vec::new();
+    for TriedEdit { candidate, .. } in partial {
+        let statement = candidate.statement(shader);
         let known = statements.iter().filter(|&&known| known == statement).count();
-        if firsts.len() == MAX_FIRSTS {
+        if first_edits.len() == MAX_FIRST_EDITS {
             break;
         }
-        if known < MAX_FIRSTS_OF_STATEMENT
-            && let Some(fix) = trial.candidate.fix(tested.shader)
+        if known < MAX_FIRST_EDITS_OF_STATEMENT
+            && let Some(fix) = candidate.fix(shader)
         {
             statements.push(statement);
-            firsts.push(First {
-                fix,
-                kind: trial.candidate.kind(tested.shader),
-            });
+            first_edits.push(fix);
         }
     }
-    firsts
+    first_edits
 }

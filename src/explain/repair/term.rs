@@ -7,8 +7,7 @@ use toyproof_glsl::tree::{
     Tree, Type, UnaryOp, Value, VariableId,
 };
 
-/// The fitted numbers of an edit; most edits have at most one.
-pub(super) type Numbers = [f64; 3];
+use crate::engine::Numbers;
 
 /// An expression with its type.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,16 +29,93 @@ pub(super) enum TermKind {
     /// A place for a value, in a donor only.
     Hole(usize),
     Variable(VariableId),
-    Unary(UnaryOp, Box<Term>),
-    Binary(BinaryOp, Box<Term>, Box<Term>),
-    Conditional(Box<[Term; 3]>),
-    Assign(Option<BinaryOp>, Box<Term>, Box<Term>),
-    BuiltIn(BuiltIn, Vec<Term>),
-    Call(FunctionId, Vec<Term>),
-    Construct(Constructor, Vec<Term>),
-    Swizzle(Box<Term>, Swizzle),
-    Member(Box<Term>, usize),
-    Index(Box<Term>, Box<Term>),
+    /// An operation on terms.
+    Apply(Op, Vec<Term>),
+}
+
+/// An operation of the language, apart from its operands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Op {
+    Unary(UnaryOp),
+    Binary(BinaryOp),
+    Conditional,
+    Assign(Option<BinaryOp>),
+    BuiltIn(BuiltIn),
+    Call(FunctionId),
+    Construct(Constructor),
+    Swizzle(Swizzle),
+    Member(usize),
+    Index,
+}
+
+impl Op {
+    /// The operation that an expression is, and its operands; `None` for names, literals and operations that no term
+    /// has.
+    pub(super) fn parts(kind: &ExprKind) -> Option<(Self, Vec<ExprId>)> {
+        Some(match kind {
+            &ExprKind::Unary { op, operand } => (Self::Unary(op), vec![operand]),
+            &ExprKind::Binary { op, left, right } => (Self::Binary(op), vec![left, right]),
+            &ExprKind::Conditional { condition, yes, no } => (Self::Conditional, vec![condition, yes, no]),
+            &ExprKind::Assign { op, target, value } => (Self::Assign(op), vec![target, value]),
+            ExprKind::BuiltIn { function, arguments } => (Self::BuiltIn(*function), arguments.clone()),
+            ExprKind::Call { function, arguments } => (Self::Call(*function), arguments.clone()),
+            ExprKind::Construct {
+                constructor,
+                arguments,
+            } => (Self::Construct(*constructor), arguments.clone()),
+            &ExprKind::Swizzle { vector, components } => (Self::Swizzle(components), vec![vector]),
+            &ExprKind::Member { structure, member } => (Self::Member(member), vec![structure]),
+            &ExprKind::Index { base, index } => (Self::Index, vec![base, index]),
+            _ => return None,
+        })
+    }
+
+    /// The expression with these operands.
+    fn kind(self, operands: Vec<ExprId>) -> ExprKind {
+        let at = |index: usize| operands[index];
+        match self {
+            Self::Unary(op) => ExprKind::Unary { op, operand: at(0) },
+            Self::Binary(op) => ExprKind::Binary {
+                op,
+                left: at(0),
+                right: at(1),
+            },
+            Self::Conditional => ExprKind::Conditional {
+                condition: at(0),
+                yes: at(1),
+                no: at(2),
+            },
+            Self::Assign(op) => ExprKind::Assign {
+                op,
+                target: at(0),
+                value: at(1),
+            },
+            Self::BuiltIn(function) => ExprKind::BuiltIn {
+                function,
+                arguments: operands,
+            },
+            Self::Call(function) => ExprKind::Call {
+                function,
+                arguments: operands,
+            },
+            Self::Construct(constructor) => ExprKind::Construct {
+                constructor,
+                arguments: operands,
+            },
+            Self::Swizzle(components) => ExprKind::Swizzle {
+                vector: at(0),
+                components,
+            },
+            Self::Member(member) => ExprKind::Member {
+                structure: at(0),
+                member,
+            },
+            Self::Index => ExprKind::Index {
+                base: at(0),
+                index: at(1),
+            },
+        }
+    }
 }
 
 /// The precedence of operands that need no parentheses in any context, of prefix operators, and of `?:` and
@@ -52,6 +128,24 @@ const ASSIGNMENT: u8 = 0;
 impl Term {
     pub(super) fn new(kind: TermKind, ty: Type) -> Self {
         Self { kind, ty }
+    }
+
+    pub(super) fn apply(op: Op, operands: Vec<Self>, ty: Type) -> Self {
+        Self::new(TermKind::Apply(op, operands), ty)
+    }
+
+    pub(super) fn construct(constructor: Constructor, arguments: Vec<Self>, ty: Type) -> Self {
+        Self::apply(Op::Construct(constructor), arguments, ty)
+    }
+
+    pub(super) fn assign(op: Option<BinaryOp>, target: Self, value: Self) -> Self {
+        let ty = target.ty;
+        Self::apply(Op::Assign(op), vec![target, value], ty)
+    }
+
+    /// A member of a structure.
+    pub(super) fn member(structure: Self, at: usize, ty: Type) -> Self {
+        Self::apply(Op::Member(at), vec![structure], ty)
     }
 
     pub(super) fn keep(tree: &Tree, expr: ExprId) -> Self {
@@ -77,23 +171,20 @@ impl Term {
 
     pub(super) fn unary(op: UnaryOp, operand: Self) -> Self {
         let ty = operand.ty;
-        Self::new(TermKind::Unary(op, Box::new(operand)), ty)
+        Self::apply(Op::Unary(op), vec![operand], ty)
     }
 
     /// A binary operation; `None` if the types do not fit.
     pub(super) fn binary(op: BinaryOp, left: Self, right: Self) -> Option<Self> {
         let ty = binary_type(op, left.ty, right.ty)?;
-        Some(Self::new(
-            TermKind::Binary(op, Box::new(left), Box::new(right)),
-            ty,
-        ))
+        Some(Self::apply(Op::Binary(op), vec![left, right], ty))
     }
 
     /// A call of a built-in function; `None` if it does not accept the arguments.
     pub(super) fn call(function: BuiltIn, arguments: Vec<Self>) -> Option<Self> {
         let types: Vec<Type> = arguments.iter().map(|argument| argument.ty).collect();
         let ty = function.result(&types)?;
-        Some(Self::new(TermKind::BuiltIn(function, arguments), ty))
+        Some(Self::apply(Op::BuiltIn(function), arguments, ty))
     }
 
     /// The term with the fitted numbers as literals.
@@ -127,35 +218,21 @@ impl Term {
 
     fn each_mut(&mut self, visit: &mut dyn FnMut(&mut Self)) {
         visit(self);
-        match &mut self.kind {
-            TermKind::Unary(_, only) | TermKind::Swizzle(only, _) | TermKind::Member(only, _) => {
-                only.each_mut(visit);
+        if let TermKind::Apply(_, operands) = &mut self.kind {
+            for operand in operands {
+                operand.each_mut(visit);
             }
-            TermKind::Binary(_, one, other)
-            | TermKind::Assign(_, one, other)
-            | TermKind::Index(one, other) => {
-                one.each_mut(visit);
-                other.each_mut(visit);
-            }
-            TermKind::Conditional(parts) => {
-                for part in parts.iter_mut() {
-                    part.each_mut(visit);
-                }
-            }
-            TermKind::BuiltIn(_, arguments)
-            | TermKind::Call(_, arguments)
-            | TermKind::Construct(_, arguments) => {
-                for part in arguments {
-                    part.each_mut(visit);
-                }
-            }
-            _ => {}
         }
     }
 
     /// Calls `visit` with the term and all of its parts.
     pub(super) fn each(&self, visit: &mut dyn FnMut(&Self)) {
-        self.clone().each_mut(&mut |part| visit(part));
+        visit(self);
+        if let TermKind::Apply(_, operands) = &self.kind {
+            for operand in operands {
+                operand.each(visit);
+            }
+        }
     }
 
     // As nodes of the tree.
@@ -164,9 +241,6 @@ impl Term {
     /// can still be found; `fitted` are the parameters for the fitted numbers.
     pub(super) fn build(&self, tree: &mut Tree, moved: [ExprId; 2], fitted: &[VariableId]) -> ExprId {
         let at = tree[moved[1]].at;
-        let all = |tree: &mut Tree, terms: &[Self]| -> Vec<ExprId> {
-            terms.iter().map(|term| term.build(tree, moved, fitted)).collect()
-        };
         let kind = match &self.kind {
             TermKind::Keep(expr) => return if *expr == moved[0] { moved[1] } else { *expr },
             TermKind::Float(value) => literal(Value::Float(*value)),
@@ -175,48 +249,10 @@ impl Term {
             TermKind::Fitted(at) => ExprKind::Variable(fitted[usize::from(*at)]),
             TermKind::Variable(variable) => ExprKind::Variable(*variable),
             TermKind::Hole(_) => unreachable!("donors are filled"),
-            TermKind::Unary(op, operand) => ExprKind::Unary {
-                op: *op,
-                operand: operand.build(tree, moved, fitted),
-            },
-            TermKind::Binary(op, left, right) => ExprKind::Binary {
-                op: *op,
-                left: left.build(tree, moved, fitted),
-                right: right.build(tree, moved, fitted),
-            },
-            TermKind::Conditional(parts) => {
-                let [condition, yes, no] = parts.each_ref().map(|part| part.build(tree, moved, fitted));
-                ExprKind::Conditional { condition, yes, no }
+            TermKind::Apply(op, operands) => {
+                let operands = operands.iter().map(|operand| operand.build(tree, moved, fitted));
+                op.kind(operands.collect())
             }
-            TermKind::Assign(op, target, value) => ExprKind::Assign {
-                op: *op,
-                target: target.build(tree, moved, fitted),
-                value: value.build(tree, moved, fitted),
-            },
-            TermKind::BuiltIn(function, arguments) => ExprKind::BuiltIn {
-                function: *function,
-                arguments: all(tree, arguments),
-            },
-            TermKind::Call(function, arguments) => ExprKind::Call {
-                function: *function,
-                arguments: all(tree, arguments),
-            },
-            TermKind::Construct(constructor, arguments) => ExprKind::Construct {
-                constructor: *constructor,
-                arguments: all(tree, arguments),
-            },
-            TermKind::Swizzle(vector, components) => ExprKind::Swizzle {
-                vector: vector.build(tree, moved, fitted),
-                components: *components,
-            },
-            TermKind::Member(structure, member) => ExprKind::Member {
-                structure: structure.build(tree, moved, fitted),
-                member: *member,
-            },
-            TermKind::Index(base, index) => ExprKind::Index {
-                base: base.build(tree, moved, fitted),
-                index: index.build(tree, moved, fitted),
-            },
         };
         push(tree, kind, self.ty, at)
     }
@@ -234,10 +270,6 @@ impl Term {
     }
 
     fn unparenthesized(&self, tree: &Tree, source: &str) -> (String, u8) {
-        let list = |terms: &[Self]| {
-            let texts: Vec<String> = terms.iter().map(|term| term.text(tree, source, 1)).collect();
-            texts.join(", ")
-        };
         match &self.kind {
             TermKind::Keep(expr) => {
                 let text = slice(source, tree[*expr].at.span).to_owned();
@@ -249,57 +281,51 @@ impl Term {
             TermKind::Bool(value) => (value.to_string(), PRIMARY),
             TermKind::Fitted(_) | TermKind::Hole(_) => ("?".to_owned(), PRIMARY),
             TermKind::Variable(variable) => (tree[*variable].name.clone(), PRIMARY),
-            TermKind::Unary(op, operand) => {
-                // `--x` would be a decrement.
-                let operand = operand.text(tree, source, PREFIX + 1);
-                (format!("{}{operand}", op.symbol()), PREFIX)
-            }
-            TermKind::Binary(op, left, right) => {
-                let own = op.precedence();
-                let left = left.text(tree, source, own);
-                let right = right.text(tree, source, own + 1);
-                (format!("{left} {} {right}", op.symbol()), own)
-            }
-            TermKind::Conditional(parts) => {
-                let [condition, yes, no] = parts.each_ref().map(|part| part.text(tree, source, 1));
-                (format!("{condition} ? {yes} : {no}"), CONDITIONAL)
-            }
-            TermKind::Assign(op, target, value) => {
-                let target = target.text(tree, source, PRIMARY);
-                let op = op.map_or("", BinaryOp::symbol);
-                let value = value.text(tree, source, CONDITIONAL);
-                (format!("{target} {op}= {value}"), ASSIGNMENT)
-            }
-            TermKind::BuiltIn(function, arguments) => {
-                (format!("{}({})", function.name(), list(arguments)), PRIMARY)
-            }
-            TermKind::Call(function, arguments) => {
-                (format!("{}({})", tree[*function].name, list(arguments)), PRIMARY)
-            }
-            TermKind::Construct(_, arguments) => (
-                format!("{}({})", tree.type_name(self.ty), list(arguments)),
-                PRIMARY,
-            ),
-            TermKind::Swizzle(vector, components) => {
-                let vector = vector.text(tree, source, PRIMARY);
-                (format!("{vector}.{}", components.name()), PRIMARY)
-            }
-            TermKind::Member(structure, member) => {
-                let name = match structure.ty {
-                    Type::Struct(id) => tree[id].members[*member].name.clone(),
-                    _ => String::new(),
+            TermKind::Apply(op, operands) => {
+                let operand = |at: usize, context: u8| operands[at].text(tree, source, context);
+                let call = |name: &str| {
+                    let arguments: Vec<String> = (0..operands.len()).map(|at| operand(at, 1)).collect();
+                    format!("{name}({})", arguments.join(", "))
                 };
-                (
-                    format!("{}.{name}", structure.text(tree, source, PRIMARY)),
-                    PRIMARY,
-                )
-            }
-            TermKind::Index(base, index) => {
-                let base = base.text(tree, source, PRIMARY);
-                (
-                    format!("{base}[{}]", index.text(tree, source, CONDITIONAL)),
-                    PRIMARY,
-                )
+                match op {
+                    // `--x` would be a decrement.
+                    Op::Unary(op) => (format!("{}{}", op.symbol(), operand(0, PREFIX + 1)), PREFIX),
+                    Op::Binary(op) => {
+                        let own = op.precedence();
+                        (
+                            format!("{} {} {}", operand(0, own), op.symbol(), operand(1, own + 1)),
+                            own,
+                        )
+                    }
+                    Op::Conditional => {
+                        let [condition, yes, no] = [0, 1, 2].map(|at| operand(at, 1));
+                        (format!("{condition} ? {yes} : {no}"), CONDITIONAL)
+                    }
+                    Op::Assign(op) => {
+                        let (target, value) = (operand(0, PRIMARY), operand(1, CONDITIONAL));
+                        (
+                            format!("{target} {}= {value}", op.map_or("", BinaryOp::symbol)),
+                            ASSIGNMENT,
+                        )
+                    }
+                    Op::BuiltIn(function) => (call(function.name()), PRIMARY),
+                    Op::Call(function) => (call(&tree[*function].name), PRIMARY),
+                    Op::Construct(_) => (call(&tree.type_name(self.ty)), PRIMARY),
+                    Op::Swizzle(components) => {
+                        (format!("{}.{}", operand(0, PRIMARY), components.name()), PRIMARY)
+                    }
+                    Op::Member(member) => {
+                        let name = match operands[0].ty {
+                            Type::Struct(id) => tree[id].members[*member].name.as_str(),
+                            _ => "",
+                        };
+                        (format!("{}.{name}", operand(0, PRIMARY)), PRIMARY)
+                    }
+                    Op::Index => (
+                        format!("{}[{}]", operand(0, PRIMARY), operand(1, CONDITIONAL)),
+                        PRIMARY,
+                    ),
+                }
             }
         }
     }

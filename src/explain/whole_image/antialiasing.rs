@@ -11,7 +11,7 @@ use toyproof_verify::Expected;
 use toyproof_verify::compare::PixelStatus;
 
 use super::Alternative;
-use super::wrong_shader::WrongShader;
+use super::submission::Submission;
 use crate::known::KnownMistake;
 
 /// The usual numbers of samples along each axis.
@@ -62,26 +62,26 @@ const MAX_UNEXPLAINED: f64 = 0.4;
 const MIN_INTERMEDIATE: f64 = 0.3;
 
 /// Finds the samples of each pixel that explain the image.
-pub(super) fn find(wrong: &WrongShader) -> Option<Alternative> {
+pub(super) fn find(submission: &Submission) -> Option<Alternative> {
     // The random numbers of a reference move within pixels themselves.
-    if wrong.expected.is_stochastic() {
+    if submission.expected().is_stochastic() {
         return None;
     }
-    let rows = Rows::differing(wrong);
+    let rows = Rows::differing(submission);
     let probes = rows.thinned();
     // The first evaluation also shows whether the reference has a color everywhere.
-    within(wrong, &probes).filter(Statistics::is_within)?;
+    within(submission, &probes).filter(Statistics::is_within)?;
     let grids = SIDES
         .into_iter()
         .flat_map(|side| STARTS.map(|start| (side, start)));
     let exact = grids.into_iter().find_map(|(side, start)| {
         let offsets = grid(side, start);
-        let is_likely = agreeing(wrong, &probes, &offsets)? >= MIN_PROBES;
+        let is_likely = agreeing(submission, &probes, &offsets)? >= MIN_PROBES;
         is_likely
-            .then(|| confirmed_grid(wrong, &rows, &offsets, side))
+            .then(|| confirmed_grid(submission, &rows, &offsets, side))
             .flatten()
     });
-    exact.or_else(|| confirmed_average(wrong, &rows))
+    exact.or_else(|| confirmed_average(submission, &rows))
 }
 
 /// Some pixels, by rows.
@@ -89,9 +89,9 @@ struct Rows(Vec<(u32, Vec<u32>)>);
 
 impl Rows {
     /// The pixels in which the shader differs.
-    fn differing(wrong: &WrongShader) -> Self {
-        let width = wrong.frame().size[0] as usize;
-        let rows = wrong.statuses.chunks(width).zip(0..).map(|(statuses, y)| {
+    fn differing(submission: &Submission) -> Self {
+        let width = submission.frame().size[0] as usize;
+        let rows = submission.statuses().chunks(width).zip(0..).map(|(statuses, y)| {
             let columns = statuses.iter().zip(0..);
             let differing = columns.filter(|(status, _)| {
                 matches!(
@@ -149,7 +149,7 @@ fn mean(samples: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|i| samples.iter().map(|sample| sample[i]).sum::<f64>() / samples.len() as f64)
 }
 
-impl WrongShader<'_> {
+impl Submission<'_> {
     fn color(&self, x: u32, y: u32) -> [f64; 3] {
         let [r, g, b, _] = self.actual.get(x, y);
         [r, g, b].map(|part| f64::from(part).clamp(0.0, 1.0))
@@ -157,9 +157,9 @@ impl WrongShader<'_> {
 }
 
 /// Whether a pixel is the mean of its samples.
-fn is_mean(wrong: &WrongShader, [x, y]: [u32; 2], samples: &[[f64; 3]]) -> bool {
-    let (own, mean) = (wrong.color(x, y), mean(samples));
-    (0..3).all(|i| (own[i] - mean[i]).abs() <= wrong.tolerance())
+fn is_mean(submission: &Submission, [x, y]: [u32; 2], samples: &[[f64; 3]]) -> bool {
+    let (own, mean) = (submission.color(x, y), mean(samples));
+    (0..3).all(|i| (own[i] - mean[i]).abs() <= submission.tolerance())
 }
 
 fn pixels(rows: &Rows) -> impl Iterator<Item = [u32; 2]> + '_ {
@@ -169,49 +169,51 @@ fn pixels(rows: &Rows) -> impl Iterator<Item = [u32; 2]> + '_ {
 }
 
 /// The share of some pixels that are the means of their samples.
-fn agreeing(wrong: &WrongShader, rows: &Rows, offsets: &[f64]) -> Option<f64> {
-    let samples = samples(wrong.expected, rows, offsets)?;
+fn agreeing(submission: &Submission, rows: &Rows, offsets: &[f64]) -> Option<f64> {
+    let samples = samples(submission.expected(), rows, offsets)?;
     let agreeing = pixels(rows)
         .zip(&samples)
-        .filter(|&(pixel, samples)| is_mean(wrong, pixel, samples));
+        .filter(|&(pixel, samples)| is_mean(submission, pixel, samples));
     Some(agreeing.count() as f64 / rows.count().max(1) as f64)
 }
 
 /// Confirms a grid in all pixels that differ.
-fn confirmed_grid(wrong: &WrongShader, rows: &Rows, offsets: &[f64], side: u32) -> Option<Alternative> {
+fn confirmed_grid(submission: &Submission, rows: &Rows, offsets: &[f64], side: u32) -> Option<Alternative> {
     if rows.count() * offsets.len() * offsets.len() > MAX_SAMPLES {
         return None;
     }
-    let samples = samples(wrong.expected, rows, offsets)?;
+    let samples = samples(submission.expected(), rows, offsets)?;
     let agreeing = pixels(rows)
         .zip(&samples)
-        .filter(|&(pixel, samples)| is_mean(wrong, pixel, samples));
-    compared(wrong, agreeing.map(|(pixel, _)| pixel), || {
+        .filter(|&(pixel, samples)| is_mean(submission, pixel, samples));
+    predicted(submission, agreeing.map(|(pixel, _)| pixel), || {
         format!("each pixel is the mean of {side}×{side} samples; the reference has one, at its center")
     })
 }
 
 /// Confirms that all pixels that differ are means of colors within them.
-fn confirmed_average(wrong: &WrongShader, rows: &Rows) -> Option<Alternative> {
-    let statistics = within(wrong, rows).filter(Statistics::is_average)?;
-    compared(wrong, statistics.within.into_iter(), || ANY_SAMPLES.to_owned())
+fn confirmed_average(submission: &Submission, rows: &Rows) -> Option<Alternative> {
+    let statistics = within(submission, rows).filter(Statistics::is_average)?;
+    predicted(submission, statistics.within.into_iter(), || {
+        ANY_SAMPLES.to_owned()
+    })
 }
 
 const ANY_SAMPLES: &str = "each pixel is the mean of several samples; the reference has one, at its center";
 
-fn compared(
-    wrong: &WrongShader,
+fn predicted(
+    submission: &Submission,
     agreeing: impl Iterator<Item = [u32; 2]>,
     text: impl FnOnce() -> String,
 ) -> Option<Alternative> {
-    let width = wrong.frame().size[0];
-    let statuses = wrong.statuses.iter();
+    let width = submission.frame().size[0];
+    let statuses = submission.statuses().iter();
     let mut agrees: Vec<bool> = statuses.map(|&status| status == PixelStatus::Agrees).collect();
     for [x, y] in agreeing {
         agrees[(y * width + x) as usize] = true;
     }
-    wrong.compared(
-        &wrong.reference,
+    submission.predicted(
+        &submission.reference,
         |at| agrees[at],
         || KnownMistake::new(Difference::Antialiasing.id(), text()),
     )
@@ -279,17 +281,17 @@ impl Statistics {
 }
 
 /// Compares pixels with the colors within them; `None` if there are too many, or the reference has none.
-fn within(wrong: &WrongShader, rows: &Rows) -> Option<Statistics> {
+fn within(submission: &Submission, rows: &Rows) -> Option<Statistics> {
     let offsets: Vec<f64> = (0..WITHIN)
         .map(|at| f64::from(at) / f64::from(WITHIN - 1) - 0.5)
         .collect();
     if rows.count() * offsets.len() * offsets.len() > MAX_SAMPLES {
         return None;
     }
-    let samples = samples(wrong.expected, rows, &offsets)?;
+    let samples = samples(submission.expected(), rows, &offsets)?;
     let mut statistics = Statistics::default();
     for ([x, y], samples) in pixels(rows).zip(&samples) {
-        statistics.add([x, y], wrong.color(x, y), samples, wrong.tolerance());
+        statistics.add([x, y], submission.color(x, y), samples, submission.tolerance());
     }
     Some(statistics)
 }

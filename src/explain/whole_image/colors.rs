@@ -8,7 +8,7 @@ use toyproof_verify::compare::{EXACT_TOLERANCE, Pixel, PixelStatus, TOLERANCE};
 
 use super::Alternative;
 use super::curve::{Curve, Isotonic, usual};
-use super::wrong_shader::WrongShader;
+use super::submission::Submission;
 use crate::known::KnownMistake;
 
 /// The orders of red, green and blue, other than their own.
@@ -27,18 +27,18 @@ const ORDERS: [([usize; 3], &str); 5] = [
 ];
 
 /// Finds the order of the color channels that explains the image.
-pub(super) fn swapped_channels(wrong: &WrongShader) -> Option<Alternative> {
-    let tolerance = wrong.tolerance();
+pub(super) fn swapped_channels(submission: &Submission) -> Option<Alternative> {
+    let tolerance = submission.tolerance();
     ORDERS.iter().find_map(|&(order, text)| {
-        let pixels = wrong.reference.pixels().iter();
+        let pixels = submission.reference.pixels().iter();
         let swapped = pixels.map(|pixel| {
             let [r, g, b] = order.map(|channel| pixel[channel]);
             [r, g, b, pixel[3]]
         });
-        let [width, height] = wrong.reference.size();
+        let [width, height] = submission.reference.size();
         let swapped = Image::new(width, height, swapped.collect());
-        let agrees = |at| Pixel::at(at, &swapped, &wrong.actual).difference() <= tolerance;
-        wrong.compared(&swapped, agrees, || {
+        let agrees = |at| Pixel::at(at, &swapped, &submission.actual).difference() <= tolerance;
+        submission.predicted(&swapped, agrees, || {
             KnownMistake::new(Difference::SwappedChannels.id(), text)
         })
     })
@@ -81,22 +81,23 @@ const MAX_OUTLIERS: f64 = 0.02;
 const MIN_BEYOND_TOLERANCE: f64 = 0.2;
 
 /// Finds the color curve that explains the image: one function of all components of all pixels.
-pub(super) fn curve(wrong: &WrongShader) -> Option<Alternative> {
-    let pixels = 0..wrong.statuses.len();
-    let is_beyond =
-        |&at: &usize| Pixel::at(at, &wrong.reference, &wrong.actual).difference() > wrong.tolerance();
+pub(super) fn curve(submission: &Submission) -> Option<Alternative> {
+    let pixels = 0..submission.statuses().len();
+    let is_beyond = |&at: &usize| {
+        Pixel::at(at, &submission.reference, &submission.actual).difference() > submission.tolerance()
+    };
     let beyond = pixels.filter(is_beyond).count();
-    if (beyond as f64) < MIN_BEYOND_TOLERANCE * wrong.algorithm.differing as f64 {
+    if (beyond as f64) < MIN_BEYOND_TOLERANCE * submission.confirmer.before.summary.differing as f64 {
         return None;
     }
-    let samples = samples(wrong);
+    let samples = samples(submission);
     let all = usual();
-    let mut usual = all.iter().filter(|curve| explains(curve, &samples, wrong));
+    let mut usual = all.iter().filter(|curve| explains(curve, &samples, submission));
     usual
         .find_map(|curve| {
-            let distance = wrong.expected.tolerance();
-            compared(
-                wrong,
+            let distance = submission.expected().tolerance();
+            predicted(
+                submission,
                 |expected| curve.of(expected),
                 |expected, actual| {
                     let [low, high] = curve.range(expected, distance);
@@ -105,16 +106,16 @@ pub(super) fn curve(wrong: &WrongShader) -> Option<Alternative> {
                 || format!("{THIS_CURVE}{}", curve.name),
             )
         })
-        .or_else(|| fitted(wrong, samples))
+        .or_else(|| fitted(submission, samples))
 }
 
 const THIS_CURVE: &str = "the colors differ only by a color curve: ";
 
-fn samples(wrong: &WrongShader) -> Vec<Sample> {
-    let pixels = wrong.statuses.iter().enumerate();
+fn samples(submission: &Submission) -> Vec<Sample> {
+    let pixels = submission.statuses().iter().enumerate();
     let defined = pixels.filter(|&(_, &status)| status != PixelStatus::Undefined);
     let samples = defined.flat_map(|(at, _)| {
-        let pixel = Pixel::at(at, &wrong.reference, &wrong.actual);
+        let pixel = Pixel::at(at, &submission.reference, &submission.actual);
         let largest = pixel.expected.iter().fold(0.0, |most: f32, &part| most.max(part));
         let ratios = pixel.expected.map(|part| (16.0 * part / largest) as u8);
         (0..3).map(move |channel| Sample {
@@ -129,8 +130,8 @@ fn samples(wrong: &WrongShader) -> Vec<Sample> {
 }
 
 /// Whether a usual curve explains enough of the levels, of a part of the samples.
-fn explains(curve: &Curve, samples: &[Sample], wrong: &WrongShader) -> bool {
-    let distance = wrong.expected.tolerance();
+fn explains(curve: &Curve, samples: &[Sample], submission: &Submission) -> bool {
+    let distance = submission.expected().tolerance();
     let step = samples.len().div_ceil(4096).max(1) | 1;
     let (mut off, mut count) = (0, 0);
     for sample in samples.iter().step_by(step) {
@@ -163,7 +164,7 @@ fn level(component: f64) -> u64 {
 }
 
 /// Fits a curve, if one function explains several hues or channels.
-fn fitted(wrong: &WrongShader, mut samples: Vec<Sample>) -> Option<Alternative> {
+fn fitted(submission: &Submission, mut samples: Vec<Sample>) -> Option<Alternative> {
     let step = samples.len().div_ceil(MAX_FITTED).max(1) | 1;
     samples = samples.into_iter().step_by(step).collect();
     samples.sort_by(|a, b| {
@@ -171,7 +172,7 @@ fn fitted(wrong: &WrongShader, mut samples: Vec<Sample>) -> Option<Alternative> 
             .total_cmp(&b.expected)
             .then(a.actual.total_cmp(&b.actual))
     });
-    let tolerance = wrong.tolerance() + 2.0 * (wrong.expected.tolerance() - EXACT_TOLERANCE);
+    let tolerance = submission.tolerance() + 2.0 * (submission.expected().tolerance() - EXACT_TOLERANCE);
     let points = |samples: &[Sample]| -> Vec<[f64; 2]> {
         samples
             .iter()
@@ -193,8 +194,8 @@ fn fitted(wrong: &WrongShader, mut samples: Vec<Sample>) -> Option<Alternative> 
         return None;
     }
     let fit = Isotonic::fit(&points(&on));
-    compared(
-        wrong,
+    predicted(
+        submission,
         |expected| fit.at(expected),
         |expected, actual| is_on(&fit, expected, actual),
         || description(&on, &fit),
@@ -239,20 +240,20 @@ fn description(samples: &[Sample], fit: &Isotonic) -> String {
 }
 
 /// Compares the whole image with the expected one after a curve.
-fn compared(
-    wrong: &WrongShader,
+fn predicted(
+    submission: &Submission,
     curve: impl Fn(f64) -> f64,
     is_on: impl Fn(f64, f64) -> bool,
     text: impl FnOnce() -> String,
 ) -> Option<Alternative> {
-    let [width, height] = wrong.reference.size();
-    let pixels = wrong.reference.pixels().iter().map(|&[r, g, b, a]| {
+    let [width, height] = submission.reference.size();
+    let pixels = submission.reference.pixels().iter().map(|&[r, g, b, a]| {
         let [r, g, b] = [r, g, b].map(|part| curve(f64::from(part)) as f32);
         [r, g, b, a]
     });
     let curved = Image::new(width, height, pixels.collect());
     let agrees = |at| {
-        let pixel = Pixel::at(at, &wrong.reference, &wrong.actual);
+        let pixel = Pixel::at(at, &submission.reference, &submission.actual);
         (0..3).all(|i| {
             is_on(
                 f64::from(pixel.expected[i]),
@@ -260,7 +261,7 @@ fn compared(
             )
         })
     };
-    wrong.compared(&curved, agrees, || {
+    submission.predicted(&curved, agrees, || {
         KnownMistake::new(Difference::ColorCurve.id(), text())
     })
 }

@@ -8,29 +8,31 @@ use toyproof_image::{FRAME_RATE, Frame};
 use toyproof_verify::Difference;
 
 use super::Alternative;
-use super::view::View;
-use super::wrong_shader::{PROBES, WrongShader};
+use super::submission::{PROBES, Submission, View};
 use crate::known::KnownMistake;
 
-/// Finds the position of the mouse with which the image is right: the center, an edge or a corner.
-pub(super) fn mouse(wrong: &WrongShader) -> Option<Alternative> {
-    if !wrong.case.checked.reads(Input::Mouse) {
-        return None;
+/// Other positions of the mouse: the center, the edges and the corners.
+pub(super) fn mouse(submission: &Submission) -> Vec<(View, KnownMistake)> {
+    if !submission.confirmer.case.checked.reads(Input::Mouse) {
+        return Vec::new();
     }
-    let frame = wrong.frame();
+    let frame = submission.frame();
     let [width, height] = frame.size.map(|side| side as f32);
     let shares = [0.5, 0.0, 1.0];
     let positions = shares
         .iter()
         .flat_map(|&y| shares.map(|x| [x * width, y * height]));
     let others = positions.filter(|&[x, y]| [x, y] != frame.mouse[..2]);
-    others.into_iter().find_map(|[x, y]| {
-        let view = View::with_inputs(Frame {
+    let view = |[x, y]: [f32; 2]| {
+        let frame = Frame {
             mouse: [x, y, x, y],
             ..frame.clone()
-        });
-        wrong.explained_by(&view, || moved_mouse([x, y], frame.mouse))
-    })
+        };
+        View::with_inputs(frame)
+    };
+    others
+        .map(|at| (view(at), moved_mouse(at, frame.mouse)))
+        .collect()
 }
 
 fn moved_mouse([x, y]: [f32; 2], [own_x, own_y, ..]: [f32; 4]) -> KnownMistake {
@@ -44,18 +46,9 @@ fn moved_mouse([x, y]: [f32; 2], [own_x, own_y, ..]: [f32; 4]) -> KnownMistake {
     KnownMistake::new(Difference::Mouse.id(), text)
 }
 
-/// Finds the time or the number of the frame with which the image is right.
-pub(super) fn time(wrong: &WrongShader) -> Option<Alternative> {
-    let (frame, checked) = (wrong.frame(), wrong.case.checked);
-    let with = |input: Input, other: Frame, text: &'static str| {
-        let differs = other != *frame && checked.reads(input);
-        differs
-            .then(|| {
-                let mistake = || KnownMistake::new(Difference::Time.id(), text);
-                wrong.explained_by(&View::with_inputs(other), mistake)
-            })
-            .flatten()
-    };
+/// Other times and numbers of the frame, as far as the shader reads them.
+pub(super) fn time(submission: &Submission) -> Vec<(View, KnownMistake)> {
+    let (frame, checked) = (submission.frame(), submission.confirmer.case.checked);
     let numbered = |number: f32| Frame {
         frame: number.round() as i32,
         ..frame.clone()
@@ -66,16 +59,31 @@ pub(super) fn time(wrong: &WrongShader) -> Option<Alternative> {
     };
     let mut date = frame.date;
     date[3] = frame.time;
-    let dated = Frame {
-        date,
-        ..frame.clone()
-    };
     let number = frame.frame as f32;
-    with(Input::Frame, numbered(frame.time * FRAME_RATE), FRAME_AT_60)
-        .or_else(|| with(Input::Frame, numbered(frame.time), FRAME_AS_SECONDS))
-        .or_else(|| with(Input::Time, timed(number), SECONDS_AS_FRAME))
-        .or_else(|| with(Input::Time, timed(number / FRAME_RATE), TIME_AT_60))
-        .or_else(|| with(Input::Date, dated, DATE))
+    let all = [
+        (Input::Frame, numbered(frame.time * FRAME_RATE), FRAME_AT_60),
+        (Input::Frame, numbered(frame.time), FRAME_AS_SECONDS),
+        (Input::Time, timed(number), SECONDS_AS_FRAME),
+        (Input::Time, timed(number / FRAME_RATE), TIME_AT_60),
+        (
+            Input::Date,
+            Frame {
+                date,
+                ..frame.clone()
+            },
+            DATE,
+        ),
+    ];
+    let all = all
+        .into_iter()
+        .filter(|(input, other, _)| other != frame && checked.reads(*input));
+    all.map(|(_, other, text)| {
+        (
+            View::with_inputs(other),
+            KnownMistake::new(Difference::Time.id(), text),
+        )
+    })
+    .collect()
 }
 
 const FRAME_AT_60: &str = "the time is computed from `iFrame`: the image is right only where 60 frames are shown per second; use `iTime`";
@@ -106,8 +114,8 @@ const OTHER_SIDES: [f64; 2] = [0.8, 1.25];
 
 /// Finds the resolution with which the image is right, among the numbers of the shader. With another width or
 /// another height it must be wrong: otherwise the image only shows too little of a mistake.
-pub(super) fn fixed_resolution(wrong: &WrongShader) -> Option<Alternative> {
-    let frame = wrong.frame();
+pub(super) fn fixed_resolution(submission: &Submission) -> Option<Alternative> {
+    let frame = submission.frame();
     let in_size = |size: [u32; 2]| Frame {
         size,
         ..frame.clone()
@@ -115,9 +123,9 @@ pub(super) fn fixed_resolution(wrong: &WrongShader) -> Option<Alternative> {
     let is_right = |size: [u32; 2]| {
         let other = in_size(size);
         let places = Places::spread(size, PROBES);
-        let expected = wrong.expected.colors_in(&other, &places)?;
-        let actual = View::with_inputs(other).image(wrong, &places)?;
-        Some(wrong.agree(&expected, &actual))
+        let expected = submission.expected().colors_in(&other, &places)?;
+        let actual = View::with_inputs(other).image(submission, &places)?;
+        Some(submission.agree(&places, &expected, &actual))
     };
     let is_wrong_nearby = |[width, height]: [u32; 2]| {
         let mut factors = OTHER_SIDES.into_iter();
@@ -127,19 +135,19 @@ pub(super) fn fixed_resolution(wrong: &WrongShader) -> Option<Alternative> {
             others.into_iter().all(|other| is_right(other) == Some(false))
         })
     };
-    let candidates = resolutions(wrong.case.checked, frame.size);
+    let candidates = resolutions(submission.confirmer.case.checked, frame.size);
     candidates.into_iter().find_map(|(size, at, text)| {
         if is_right(size) != Some(true) || !is_wrong_nearby(size) {
             return None;
         }
         let other = in_size(size);
-        let expected = wrong.expected.in_frame(&other)?;
-        wrong.confirmed(&View::with_inputs(other.clone()), &expected, &other, || {
-            KnownMistake {
-                at: Some(at),
-                ..KnownMistake::new(Difference::FixedResolution.id(), fixed(&text))
-            }
-        })
+        let expected = submission.expected().in_frame(&other)?;
+        let mistake = KnownMistake::new(Difference::FixedResolution.id(), fixed(&text));
+        let mistake = KnownMistake {
+            at: Some(at),
+            ..mistake
+        };
+        submission.confirmed(&View::with_inputs(other.clone()), (&expected, &other), mistake)
     })
 }
 

@@ -1,17 +1,16 @@
 //! Finds how a whole wrong image differs from the expected one: a shader that solves its task may be
 //! antialiased, mirrored or corrected for gamma, or read another input than the requested one.
 //!
-//! A hypothesis is tried at a few pixels and then confirmed: under it, the whole image must be correct by the
-//! same rules as any other. Most hypotheses evaluate the shader differently (a `View`: at other positions, or
-//! with other inputs), so that they apply to every kind of reference.
+//! Under a hypothesis, the whole image must be correct by the same rules as any other. Most evaluate the shader
+//! differently (a `View`: at other positions, or with other inputs), so that they apply to every kind of reference.
 
 mod antialiasing;
 mod colors;
 mod curve;
 mod inputs;
 mod scenes;
+mod submission;
 mod view;
-mod wrong_shader;
 
 use std::sync::LazyLock;
 
@@ -20,7 +19,7 @@ use toyproof_verify::Difference;
 use toyproof_verify::compare::CheckSummary;
 
 pub(crate) use self::scenes::DOCUMENTED as SCENES;
-pub(crate) use self::wrong_shader::WrongShader;
+pub(crate) use self::submission::Submission;
 use crate::known::KnownMistake;
 use crate::known::documented::{Documented, documented};
 
@@ -71,48 +70,51 @@ pub(crate) struct Alternative {
 }
 
 /// Returns the difference other than a color curve that explains a wrong image; `None` if no single one does.
-pub(crate) fn find(wrong: &WrongShader, alternatives: &Alternatives) -> Option<Alternative> {
+pub(crate) fn find(submission: &Submission, alternatives: &Alternatives) -> Option<Alternative> {
     if let Some(scenes) = alternatives.scenes
-        && let Some(found) = scenes::find(wrong, scenes)
+        && let Some(found) = scenes::find(submission, scenes)
     {
         return Some(found);
     }
     let mut all = Difference::ALL.into_iter();
     all.find_map(|difference| match difference {
         Difference::ColorCurve => None,
-        difference => of_kind(wrong, difference),
+        difference => of_kind(submission, difference),
     })
 }
 
 /// Returns the color curve that explains a wrong image.
-pub(crate) fn find_curve(wrong: &WrongShader, _: &Alternatives) -> Option<Alternative> {
-    of_kind(wrong, Difference::ColorCurve)
+pub(crate) fn find_curve(submission: &Submission, _: &Alternatives) -> Option<Alternative> {
+    of_kind(submission, Difference::ColorCurve)
 }
 
 /// Returns the first of the permitted differences that explains a wrong image.
 pub(crate) fn find_permitted(
-    wrong: &WrongShader,
+    submission: &Submission,
     permitted: &[Difference],
 ) -> Option<(Difference, Alternative)> {
     let mut all = Difference::ALL.into_iter();
     all.find_map(|difference| {
         let is_permitted = permitted.contains(&difference);
-        Some((difference, is_permitted.then(|| of_kind(wrong, difference))??))
+        Some((
+            difference,
+            is_permitted.then(|| of_kind(submission, difference))??,
+        ))
     })
 }
 
-fn of_kind(wrong: &WrongShader, difference: Difference) -> Option<Alternative> {
+fn of_kind(submission: &Submission, difference: Difference) -> Option<Alternative> {
     match difference {
         Difference::MirroredX | Difference::MirroredY | Difference::Rotated => {
-            view::symmetries(wrong, difference)
+            submission.explained_by(view::symmetries(submission, difference))
         }
-        Difference::SwappedChannels => colors::swapped_channels(wrong),
-        Difference::Mouse => inputs::mouse(wrong),
-        Difference::Time => inputs::time(wrong),
-        Difference::FixedResolution => inputs::fixed_resolution(wrong),
-        Difference::Framing => view::framing(wrong),
-        Difference::Antialiasing => antialiasing::find(wrong),
-        Difference::ColorCurve => colors::curve(wrong),
+        Difference::Mouse => submission.explained_by(inputs::mouse(submission)),
+        Difference::Time => submission.explained_by(inputs::time(submission)),
+        Difference::SwappedChannels => colors::swapped_channels(submission),
+        Difference::FixedResolution => inputs::fixed_resolution(submission),
+        Difference::Framing => view::framing(submission),
+        Difference::Antialiasing => antialiasing::find(submission),
+        Difference::ColorCurve => colors::curve(submission),
     }
 }
 

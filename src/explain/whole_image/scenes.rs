@@ -3,8 +3,7 @@
 use toyproof_image::{Frame, Image};
 use toyproof_verify::Expected;
 
-use super::view::View;
-use super::wrong_shader::WrongShader;
+use super::submission::{Submission, View};
 use super::{Alternative, OtherScenes};
 use crate::known::KnownMistake;
 use crate::known::documented::{Documented, documented};
@@ -18,39 +17,33 @@ pub(crate) const DOCUMENTED: &[Documented] = documented! {
 };
 
 /// Finds the scene that a shader renders instead of its own.
-pub(super) fn find(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {
-    default_shader(wrong).or_else(|| other_scene(wrong, scenes))
+pub(super) fn find(submission: &Submission, scenes: &OtherScenes) -> Option<Alternative> {
+    default_shader(submission).or_else(|| other_scene(submission, scenes))
 }
 
 const OTHER_SCENE: &str = "wrong-scene";
 const DEFAULT_SHADER: &str = "default-shader";
 
 /// Compares the image with those of other scenes, first at a few pixels.
-fn other_scene(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative> {
-    let frame = wrong.frame();
+fn other_scene(submission: &Submission, scenes: &OtherScenes) -> Option<Alternative> {
+    let frame = submission.frame();
     let same = View::with_inputs(frame.clone());
-    let actual = same.image(wrong, &wrong.probes)?;
+    let actual = same.image(submission, &submission.probes)?;
     scenes.iter().find_map(|(name, scene)| {
-        if wrong
-            .expected
+        if submission
+            .expected()
             .scene()
             .is_some_and(|own| own.objects == scene.objects && own.lights == scene.lights)
         {
             return None;
         }
         let expected = Expected::of_scene(scene.clone(), frame);
-        let probed = expected.colors_in(frame, &wrong.probes)?;
-        let agrees = wrong.agree(&probed, &actual);
-        agrees
-            .then(|| {
-                wrong.confirmed(&same, &expected, frame, || {
-                    KnownMistake::new(
-                        OTHER_SCENE,
-                        format!("the image agrees with another scene, {name}"),
-                    )
-                })
-            })
-            .flatten()
+        let probed = expected.colors_in(frame, &submission.probes)?;
+        if !submission.agree(&submission.probes, &probed, &actual) {
+            return None;
+        }
+        let text = format!("the image agrees with another scene, {name}");
+        submission.confirmed(&same, (&expected, frame), KnownMistake::new(OTHER_SCENE, text))
     })
 }
 
@@ -58,30 +51,32 @@ fn other_scene(wrong: &WrongShader, scenes: &OtherScenes) -> Option<Alternative>
 const LATER: f32 = 1.7;
 
 /// Recognizes the shader that ShaderToy's editor starts with, in two frames.
-fn default_shader(wrong: &WrongShader) -> Option<Alternative> {
-    let frame = wrong.frame();
+fn default_shader(submission: &Submission) -> Option<Alternative> {
+    let frame = submission.frame();
     let later = Frame {
         time: frame.time + LATER,
         ..frame.clone()
     };
     let is_default = [frame, &later].into_iter().all(|frame| {
-        let image = View::with_inputs(frame.clone()).image(wrong, &wrong.probes);
-        image.is_some_and(|image| wrong.agree(&default_image(wrong, frame.time), &image))
+        let image = View::with_inputs(frame.clone()).image(submission, &submission.probes);
+        image.is_some_and(|image| {
+            submission.agree(&submission.probes, &default_image(submission, frame.time), &image)
+        })
     });
     is_default.then(|| Alternative {
         mistake: KnownMistake::new(DEFAULT_SHADER, DEFAULT_SHADER_TEXT),
-        algorithm: wrong.algorithm.clone(),
+        algorithm: submission.confirmer.before.summary.clone(),
     })
 }
 
 const DEFAULT_SHADER_TEXT: &str = "this is the shader that ShaderToy's editor starts with";
 
 /// The colors of the default shader at the probes: `0.5 + 0.5 * cos(iTime + uv.xyx + vec3(0, 2, 4))`.
-fn default_image(wrong: &WrongShader, time: f32) -> Image {
-    let [width, height] = wrong.size();
-    let [columns, rows] = wrong.probes.size();
-    let pixels = wrong.probes.rows.iter().flat_map(|&y| {
-        wrong.probes.columns.iter().map(move |&x| {
+fn default_image(submission: &Submission, time: f32) -> Image {
+    let [width, height] = submission.size();
+    let [columns, rows] = submission.probes.size();
+    let pixels = submission.probes.rows.iter().flat_map(|&y| {
+        submission.probes.columns.iter().map(move |&x| {
             let uv = [x / width, y / height, x / width];
             let [r, g, b] = [0, 1, 2].map(|i| {
                 let angle = f64::from(time) + uv[i] + 2.0 * i as f64;

@@ -1,134 +1,37 @@
 //! Shaders evaluated at other positions: mirrored, rotated, and with other screen coordinates.
 
 use toyproof_eval::Places;
-use toyproof_image::{Frame, Image};
+use toyproof_image::Image;
 use toyproof_verify::Difference;
 
 use super::Alternative;
-use super::wrong_shader::{WrongShader, pixels_of};
+use super::submission::{Axis, Submission, View, pixels_of};
 use crate::known::KnownMistake;
-
-/// How a shader is evaluated: for each pixel of the expected image, at another position or with other inputs.
-pub(super) struct View {
-    frame: Frame,
-    /// From a pixel's coordinates to those at which the shader is evaluated.
-    axes: [Axis; 2],
-    /// Whether x is computed from the pixel's y, and y from its x.
-    is_transposed: bool,
-}
-
-/// A coordinate: p → `scale · p + offset`, in pixels.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Axis {
-    scale: f64,
-    offset: f64,
-}
-
-impl Axis {
-    const SAME: Self = Self {
-        scale: 1.0,
-        offset: 0.0,
-    };
-
-    /// Reversed on an axis of that length.
-    fn reversed(length: f64) -> Self {
-        Self {
-            scale: -1.0,
-            offset: length,
-        }
-    }
-
-    /// Scales about `from`, which is moved to `to`.
-    fn scaled(scale: f64, from: f64, to: f64) -> Self {
-        Self {
-            scale,
-            offset: to - scale * from,
-        }
-    }
-
-    fn of(self, coordinates: &[f64]) -> Vec<f64> {
-        coordinates
-            .iter()
-            .map(|at| self.scale * at + self.offset)
-            .collect()
-    }
-}
-
-impl View {
-    /// Other inputs at the same positions.
-    pub(super) fn with_inputs(frame: Frame) -> Self {
-        Self {
-            frame,
-            axes: [Axis::SAME; 2],
-            is_transposed: false,
-        }
-    }
-
-    fn moved(frame: &Frame, axes: [Axis; 2], is_transposed: bool) -> Self {
-        Self {
-            frame: frame.clone(),
-            axes,
-            is_transposed,
-        }
-    }
-
-    /// The image of the pixels of a shader at these places; `None` if one runs too many loop iterations.
-    pub(super) fn image(&self, shader: &WrongShader, places: &Places) -> Option<Image> {
-        let [x, y] = self.axes;
-        if !self.is_transposed {
-            let places = Places {
-                columns: x.of(&places.columns),
-                rows: y.of(&places.rows),
-            };
-            return shader.evaluate(&self.frame, &places);
-        }
-        let exchanged = Places {
-            columns: x.of(&places.rows),
-            rows: y.of(&places.columns),
-        };
-        let image = shader.evaluate(&self.frame, &exchanged)?;
-        let [width, height] = places.size();
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let pixels = pixels.map(|(x, y)| image.get(y, x)).collect();
-        Some(Image::new(width, height, pixels))
-    }
-}
 
 // Symmetries.
 
-/// Finds a symmetry of a rectangle that explains the image. Rotations by 90° either keep shapes or stretch
-/// the image to the frame.
-pub(super) fn symmetries(wrong: &WrongShader, difference: Difference) -> Option<Alternative> {
-    let [width, height] = wrong.size();
-    let frame = wrong.frame();
-    let reversed = [Axis::reversed(width), Axis::reversed(height)];
-    let explained = |view: View, text: &'static str| {
-        wrong.explained_by(&view, || KnownMistake::new(difference.id(), text))
-    };
+/// The symmetries of a rectangle, of one kind. Rotations by 90° either keep shapes or stretch the image to the
+/// frame.
+pub(super) fn symmetries(submission: &Submission, difference: Difference) -> Vec<(View, KnownMistake)> {
+    let [width, height] = submission.size();
+    let frame = submission.frame();
+    let reversed = [width, height].map(|length| Axis::scaled(-1.0, 0.0, length));
+    let named = |view, text: &'static str| (view, KnownMistake::new(difference.id(), text));
     match difference {
-        Difference::MirroredX => {
-            let axes = [reversed[0], Axis::SAME];
-            explained(View::moved(frame, axes, false), MIRRORED_X)
-        }
-        Difference::MirroredY => {
-            let axes = [Axis::SAME, reversed[1]];
-            explained(View::moved(frame, axes, false), MIRRORED_Y)
-        }
+        Difference::MirroredX => vec![named(View::moved(frame, [reversed[0], Axis::SAME]), MIRRORED_X)],
+        Difference::MirroredY => vec![named(View::moved(frame, [Axis::SAME, reversed[1]]), MIRRORED_Y)],
         _ => {
-            let half_turn = explained(View::moved(frame, reversed, false), HALF_TURN);
-            half_turn.or_else(|| {
-                TRANSPOSITIONS.iter().find_map(|&(signs, text)| {
-                    // Shapes are kept where both axes have one scale, and distorted where the image is
-                    // stretched.
-                    [[1.0, 1.0], [width / height, height / width]]
-                        .into_iter()
-                        .find_map(|scales| {
-                            let x = Axis::scaled(signs[0] * scales[0], 0.5 * height, 0.5 * width);
-                            let y = Axis::scaled(signs[1] * scales[1], 0.5 * width, 0.5 * height);
-                            explained(View::moved(frame, [x, y], true), text)
-                        })
+            let transpositions = TRANSPOSITIONS.iter().flat_map(|&(signs, text)| {
+                // Shapes are kept where both axes have one scale, and distorted where the image is stretched.
+                [[1.0, 1.0], [width / height, height / width]].map(|scales| {
+                    let x = Axis::scaled(signs[0] * scales[0], 0.5 * height, 0.5 * width);
+                    let y = Axis::scaled(signs[1] * scales[1], 0.5 * width, 0.5 * height);
+                    named(View::moved(frame, [x, y]).transposed(), text)
                 })
-            })
+            });
+            std::iter::once(named(View::moved(frame, reversed), HALF_TURN))
+                .chain(transpositions)
+                .collect()
         }
     }
 }
@@ -228,8 +131,8 @@ impl Convention {
 
 /// Finds the conventions for x and y under which the image is right. All pairs of them are tried in one
 /// evaluation: the columns are those of all conventions for x, the rows those of all for y.
-pub(super) fn framing(wrong: &WrongShader) -> Option<Alternative> {
-    let (frame, [width, height]) = (wrong.frame(), wrong.size());
+pub(super) fn framing(submission: &Submission) -> Option<Alternative> {
+    let (frame, [width, height]) = (submission.frame(), submission.size());
     let aspect = width / height;
     let mut conventions = vec![Convention::SAME];
     conventions.extend(Convention::all());
@@ -238,21 +141,21 @@ pub(super) fn framing(wrong: &WrongShader) -> Option<Alternative> {
         let axes = conventions
             .iter()
             .map(|convention| convention.axis(length, aspect));
-        axes.flat_map(|axis| axis.of(coordinates)).collect()
+        axes.flat_map(|axis| axis.along(coordinates)).collect()
     };
     let all = Places {
         columns: along(&probes.columns, width),
         rows: along(&probes.rows, height),
     };
-    let image = wrong.evaluate(frame, &all)?;
-    let expected = pixels_of(&wrong.reference, &probes);
+    let image = submission.evaluate(frame, &all)?;
+    let expected = pixels_of(&submission.reference, &probes);
     let [columns, rows] = probes.size();
-    let differing = |x: usize, y: usize| {
+    let agrees = |x: usize, y: usize| {
         let pixels = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
         let pixels =
             pixels.map(|[column, row]| image.get(x as u32 * columns + column, y as u32 * rows + row));
         let part = Image::new(columns, rows, pixels.collect());
-        wrong.agree(&expected, &part)
+        submission.agree(&probes, &expected, &part)
     };
     // Of several, the first has one convention for both axes, or the reference's own for one.
     let count = conventions.len();
@@ -260,13 +163,12 @@ pub(super) fn framing(wrong: &WrongShader) -> Option<Alternative> {
     let pairs = pairs.chain((1..count).flat_map(|one| [[one, 0], [0, one]]));
     let others = (1..count).flat_map(|x| (1..count).map(move |y| [x, y]));
     let pairs = pairs.chain(others.filter(|[x, y]| x != y));
-    let matching = pairs.filter(|&[x, y]| differing(x, y)).take(MAX_CONFIRMED);
+    let matching = pairs.filter(|&[x, y]| agrees(x, y)).take(MAX_CONFIRMED);
     matching.into_iter().find_map(|pair| {
         let [x, y] = pair.map(|at| conventions[at]);
-        let view = View::moved(frame, [x.axis(width, aspect), y.axis(height, aspect)], false);
-        wrong.confirmed(&view, wrong.expected, frame, || {
-            KnownMistake::new(Difference::Framing.id(), description(x, y))
-        })
+        let view = View::moved(frame, [x.axis(width, aspect), y.axis(height, aspect)]);
+        let mistake = KnownMistake::new(Difference::Framing.id(), description(x, y));
+        submission.confirmed(&view, (submission.expected(), frame), mistake)
     })
 }
 

@@ -1,6 +1,6 @@
 //! Changes of the camera, of the film, and of the figures on the screen.
 
-use toyproof_scene::Projection;
+use toyproof_scene::{Projection, Scene};
 
 use super::{Changes, ordinal};
 use crate::known::documented::{Documented, documented};
@@ -47,84 +47,62 @@ pub(super) const DOCUMENTED: &[Documented] = documented! {
 const MAX_SEGMENTS: u32 = 12;
 
 pub(super) fn camera(changes: &mut Changes) {
+    let projected = |projection| move |scene: &mut Scene| scene.camera.projection = projection;
     match changes.scene.camera.projection {
         Projection::Pinhole { screen_distance } => {
             changes.add(
                 "parallel-rays",
-                "camera rays are parallel; the scene has a pinhole camera",
-                |scene| scene.camera.projection = Projection::Parallel { width: 2.0 },
+                &[],
+                projected(Projection::Parallel { width: 2.0 }),
             );
+            let screen_distance = 2.0 * screen_distance;
             changes.add(
                 "field-of-view-too-narrow",
-                "the field of view is too narrow: the screen distance is twice the scene's",
-                |scene| {
-                    scene.camera.projection = Projection::Pinhole {
-                        screen_distance: 2.0 * screen_distance,
-                    };
-                },
+                &[],
+                projected(Projection::Pinhole { screen_distance }),
             );
         }
         Projection::Parallel { width } => {
             for screen_distance in [2.0, 1.0] {
                 changes.add(
                     "perspective-rays",
-                    "camera rays start at one point; the scene has a parallel projection",
-                    |scene| scene.camera.projection = Projection::Pinhole { screen_distance },
+                    &[],
+                    projected(Projection::Pinhole { screen_distance }),
                 );
             }
-            let description =
-                "the parallel projection is twice as wide as the scene's: its width is not halved";
-            changes.add("projection-width-not-halved", description, |scene| {
-                scene.camera.projection = Projection::Parallel { width: 2.0 * width };
-            });
-            let description =
-                "the parallel projection is half as wide as the scene's: its width is halved twice";
-            changes.add("projection-width-halved-twice", description, |scene| {
-                scene.camera.projection = Projection::Parallel { width: 0.5 * width };
-            });
+            let wide = |factor| {
+                projected(Projection::Parallel {
+                    width: factor * width,
+                })
+            };
+            changes.add("projection-width-not-halved", &[], wide(2.0));
+            changes.add("projection-width-halved-twice", &[], wide(0.5));
         }
     }
     if changes.scene.camera.eye != [0.0; 3] {
-        changes.add(
-            "camera-at-origin",
-            "the camera is at the origin instead of the scene's `eye`",
-            |scene| scene.camera.eye = [0.0; 3],
-        );
+        changes.add("camera-at-origin", &[], |scene| scene.camera.eye = [0.0; 3]);
     }
-    changes.add(
-        "look-at-ignored",
-        "the camera looks along −z instead of toward the scene's `look_at`",
-        |scene| scene.camera.look_at = None,
-    );
-    changes.add("roll-ignored", "the camera's roll is ignored", |scene| {
-        scene.camera.roll = 0.0;
-    });
+    changes.add("look-at-ignored", &[], |scene| scene.camera.look_at = None);
+    changes.add("roll-ignored", &[], |scene| scene.camera.roll = 0.0);
 }
 
 pub(super) fn film(changes: &mut Changes) {
     let film = changes.scene.film;
     let depth = film.max_depth;
     if depth > 1 {
-        changes.add(
-            "one-bounce-fewer",
-            "paths end one bounce before the scene's maximum depth",
-            |scene| scene.film.max_depth -= 1,
-        );
+        changes.add("one-bounce-fewer", &[], |scene| scene.film.max_depth -= 1);
     }
-    changes.add(
-        "one-bounce-more",
-        "paths continue one bounce beyond the scene's maximum depth",
-        |scene| scene.film.max_depth += 1,
-    );
+    changes.add("one-bounce-more", &[], |scene| scene.film.max_depth += 1);
     for segments in (1..depth.min(MAX_SEGMENTS + 1)).rev() {
-        let description = format!("the maximum depth is {segments}; the scene has {depth}");
-        changes.add("max-depth-too-small", description, |scene| {
-            scene.film.max_depth = segments;
+        let parts = [segments, depth].map(|depth| depth.to_string());
+        changes.add("max-depth-too-small", &parts, |scene| {
+            scene.film.max_depth = segments
         });
     }
     if film.samples > 1 {
-        let description = format!("one sample per pixel is taken; the scene has {}", film.samples);
-        changes.add("one-sample", description, |scene| scene.film.samples = 1);
+        changes.add("one-sample", &[film.samples.to_string()], |scene| {
+            scene.film.samples = 1
+        });
     }
 }
 
@@ -132,25 +110,12 @@ pub(super) fn figures(changes: &mut Changes) {
     let count = changes.scene.figures.len();
     for low in 0..count {
         for high in low + 1..count {
-            let description = format!(
-                "the {} figure covers the {} one; the scene has the opposite order",
-                ordinal(low),
-                ordinal(high)
-            );
-            changes.add("figures-order", description, |scene| {
-                scene.figures.swap(low, high);
-            });
+            let parts = [low, high].map(ordinal);
+            changes.add("figures-order", &parts, |scene| scene.figures.swap(low, high));
         }
-        let description = format!("the {} figure is missing", ordinal(low));
-        changes.add("figure-missing", description, |scene| {
+        changes.add("figure-missing", &[ordinal(low)], |scene| {
             scene.figures.remove(low);
         });
     }
-    changes.add(
-        "figures-order-reversed",
-        "the order of all figures is reversed",
-        |scene| {
-            scene.figures.reverse();
-        },
-    );
+    changes.add("figures-order-reversed", &[], |scene| scene.figures.reverse());
 }

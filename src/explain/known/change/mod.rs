@@ -63,19 +63,26 @@ impl<'a> Changes<'a> {
         }
     }
 
-    /// Adds the scene after `edit`, if that changes anything.
-    fn add(
-        &mut self,
-        id: &'static str,
-        description: impl Into<Cow<'static, str>>,
-        edit: impl FnOnce(&mut Scene),
-    ) {
+    /// Adds the scene after `edit`, if that changes anything. The description is the documented one, with these
+    /// texts in place of its ellipses.
+    fn add(&mut self, id: &'static str, parts: &[String], edit: impl FnOnce(&mut Scene)) {
+        self.add_mistake(described(id, parts), edit);
+    }
+
+    /// Adds a mistake of the catalogue that a change of the scene causes, with a description of its own.
+    fn add_as(&mut self, id: &'static str, description: String, edit: impl FnOnce(&mut Scene)) {
         self.add_mistake(KnownMistake::new(id, description), edit);
     }
 
     /// Adds the scene after `edit`, with a symptom of many mistakes.
-    fn add_symptom(&mut self, id: &'static str, description: &'static str, edit: impl FnOnce(&mut Scene)) {
-        self.add_mistake(KnownMistake::symptom(id, description), edit);
+    fn add_symptom(&mut self, id: &'static str, edit: impl FnOnce(&mut Scene)) {
+        self.add_mistake(
+            KnownMistake {
+                is_symptom: true,
+                ..described(id, &[])
+            },
+            edit,
+        );
     }
 
     fn add_mistake(&mut self, mistake: KnownMistake, edit: impl FnOnce(&mut Scene)) {
@@ -92,13 +99,19 @@ impl<'a> Changes<'a> {
     }
 
     /// Adds the scene at another time.
-    fn add_at_time(&mut self, id: &'static str, description: &'static str, frame_time: FrameTime) {
+    fn add_at_time(&mut self, id: &'static str, frame_time: FrameTime) {
         self.all.push(Change {
-            mistake: KnownMistake::new(id, description),
+            mistake: described(id, &[]),
             scene: self.scene.clone(),
             frame_time,
         });
     }
+}
+
+/// A documented mistake, with texts in place of its ellipses.
+fn described(id: &'static str, parts: &[String]) -> KnownMistake {
+    let form = documented().find(|documented| documented.id == id);
+    KnownMistake::new(id, form.map_or_else(Cow::default, |form| form.description(parts)))
 }
 
 /// Formats a point.

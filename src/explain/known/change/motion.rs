@@ -49,80 +49,49 @@ pub(super) fn motions(changes: &mut Changes) {
     }
     let frame_time = changes.frame_time;
     let frame = |frame| FrameTime { frame, ..frame_time };
-    changes.add_at_time(
-        "next-frame",
-        "the next frame is shown",
-        frame(frame_time.frame + 1),
-    );
-    changes.add_at_time(
-        "previous-frame",
-        "the previous frame is shown",
-        frame(frame_time.frame - 1),
-    );
-    changes.add_at_time(
-        "nothing-moves",
-        "nothing moves: the image is that of time 0",
-        FrameTime::default(),
-    );
+    changes.add_at_time("next-frame", frame(frame_time.frame + 1));
+    changes.add_at_time("previous-frame", frame(frame_time.frame - 1));
+    changes.add_at_time("nothing-moves", FrameTime::default());
     let motions = changes.scene.motions.len();
     for index in 0..motions {
-        let which = format!("the {} motion", ordinal(index));
+        let which = ordinal(index);
         let period = changes.scene.motions[index].period;
-        let mut add = |id, description: String, edit: &dyn Fn(&mut Motion)| {
-            changes.add(id, description, |scene| edit(&mut scene.motions[index]));
+        let mut add = |id, others: &[&str], edit: &dyn Fn(&mut Motion)| {
+            let others = others.iter().map(|&other| other.to_owned());
+            let parts: Vec<String> = [which.clone()].into_iter().chain(others).collect();
+            changes.add(id, &parts, |scene| edit(&mut scene.motions[index]));
         };
-        add(
-            "enclosing-motion-missing",
-            format!("{which} does not follow its enclosing motion"),
-            &|motion| motion.within = None,
-        );
+        add("enclosing-motion-missing", &[], &|motion| motion.within = None);
         for (axis, name) in [
             ([0.0, 1.0, 0.0], "y"),
             ([1.0, 0.0, 0.0], "x"),
             ([0.0, 0.0, 1.0], "z"),
         ] {
-            let description = format!("the axis of {which} is {name}; the scene has another axis");
-            add("wrong-axis", description, &|motion| motion.axis = axis);
+            add("wrong-axis", &[name], &|motion| motion.axis = axis);
         }
-        let [actual, expected] = match period {
-            Period::Frames(_) => ["seconds", "frames"],
-            Period::Seconds(_) => ["frames", "seconds"],
+        let (units, swapped) = match period {
+            Period::Frames(frames) => (["seconds", "frames"], Period::Seconds(frames)),
+            Period::Seconds(seconds) => (["frames", "seconds"], Period::Frames(seconds)),
         };
-        add(
-            "frames-seconds-swapped",
-            format!("the period of {which} is counted in {actual} instead of {expected}"),
-            &|motion| {
-                motion.period = match motion.period {
-                    Period::Frames(frames) => Period::Seconds(frames),
-                    Period::Seconds(seconds) => Period::Frames(seconds),
-                };
-            },
-        );
+        add("frames-seconds-swapped", &units, &|motion| {
+            motion.period = swapped
+        });
         for (factor, how) in [(0.5, "twice"), (2.0, "half")] {
-            let description = format!("{which} is {how} as fast as the scene's");
-            add("wrong-period", description, &|motion| {
-                motion.period = scaled(motion.period, factor);
+            add("wrong-period", &[how], &|motion| {
+                motion.period = scaled(motion.period, factor)
             });
         }
-        let description = format!("{which} has the opposite direction");
-        add("rotation-reversed", description, &|motion| {
-            motion.period = scaled(motion.period, -1.0);
+        let reversed = format!("the {which} motion has the opposite direction");
+        changes.add_as("rotation-reversed", reversed, |scene| {
+            scene.motions[index].period = scaled(period, -1.0);
         });
-        let description = format!("{which} is about the world's origin instead of its pivot");
-        add("rotation-about-origin", description, &|motion| {
-            motion.pivot = [0.0; 3];
+        let moved = format!("the {which} motion is about the world's origin instead of its pivot");
+        changes.add_as("rotation-about-origin", moved, |scene| {
+            scene.motions[index].pivot = [0.0; 3]
         });
-        let description =
-            format!("{which} is missing: it is not applied, or its angle is computed with integer division");
-        changes.add("motion-missing", description, |scene| stop(scene, index));
+        changes.add("motion-missing", &[which], |scene| stop(scene, index));
         for other in index + 1..motions {
-            let description = format!(
-                "the {} and the {} motion are missing: they are not applied, or their angles are computed with \
-                 integer division",
-                ordinal(index),
-                ordinal(other)
-            );
-            changes.add("motions-missing", description, |scene| {
+            changes.add("motions-missing", &[index, other].map(ordinal), |scene| {
                 stop(scene, index);
                 stop(scene, other);
             });
@@ -176,55 +145,43 @@ pub(super) fn hierarchy(changes: &mut Changes) {
     let Some(nodes) = nodes(&changes.scene.objects) else {
         return;
     };
-    let mut add =
-        |id, description: &'static str, edit: &dyn Fn(&mut Scene)| changes.add(id, description, edit);
-    add(
+    let rebuilt = |rule: fn(f64, f64) -> (f64, f64)| {
+        let nodes = &nodes;
+        move |scene: &mut Scene| rebuild(scene, nodes, rule)
+    };
+    changes.add(
         "child-radius-of-parent",
-        "child spheres are as large as their parents",
-        &|scene| rebuild(scene, &nodes, |parent, _| (parent, parent + parent)),
+        &[],
+        rebuilt(|parent, _| (parent, parent + parent)),
     );
-    add(
+    changes.add(
         "child-distance-too-small",
-        "the centers of child spheres lie on the surface of their parents: the child's radius is not added",
-        &|scene| rebuild(scene, &nodes, |parent, own| (own, parent)),
+        &[],
+        rebuilt(|parent, own| (own, parent)),
     );
-    add(
-        "child-colors-not-mixed",
-        "the color of child spheres is not averaged with that of their parents",
-        &|scene| {
-            for (object, node) in scene.objects.iter_mut().zip(&nodes) {
-                if let Some(parent) = node.parent {
-                    object.material.color = (2.0 * node.color - nodes[parent].color).to_array();
-                }
+    changes.add("child-colors-not-mixed", &[], |scene| {
+        for (object, node) in scene.objects.iter_mut().zip(&nodes) {
+            if let Some(parent) = node.parent {
+                object.material.color = (2.0 * node.color - nodes[parent].color).to_array();
             }
-        },
-    );
+        }
+    });
     let deepest = nodes.iter().map(|node| node.level).max().unwrap_or(0);
-    add(
-        "smallest-missing",
-        "the smallest spheres are missing or coincide with larger ones",
-        &|scene| keep(scene, &nodes, |node| node.level < deepest),
-    );
+    changes.add("smallest-missing", &[], |scene| {
+        keep(scene, &nodes, |node| node.level < deepest)
+    });
     let points_back = |node: &Node| {
         node.parent
             .is_some_and(|parent| (node.center - nodes[parent].center).min_element() < -1e-9)
     };
-    add(
-        "one-side-only",
-        "child spheres lie on only one side of each axis",
-        &|scene| {
-            keep(scene, &nodes, |node| !points_back(node));
-        },
-    );
+    changes.add("one-side-only", &[], |scene| {
+        keep(scene, &nodes, |node| !points_back(node))
+    });
     let most = nodes.iter().map(|node| node.number + 1).max().unwrap_or(0);
-    for level in 1..=deepest {
-        for number in 0..most {
-            let description =
-                "one of the child spheres is missing at each parent: a loop bound is off by one";
-            add("child-missing", description, &|scene| {
-                keep(scene, &nodes, |node| node.level != level || node.number != number);
-            });
-        }
+    for (level, number) in (1..=deepest).flat_map(|level| (0..most).map(move |number| (level, number))) {
+        changes.add("child-missing", &[], |scene| {
+            keep(scene, &nodes, |node| node.level != level || node.number != number);
+        });
     }
 }
 

@@ -1,6 +1,6 @@
 //! Changes of the surfaces, their materials, and the lights.
 
-use toyproof_scene::{Fresnel, Model, Pattern, PatternKind, Scene, Shape, Space};
+use toyproof_scene::{Fresnel, Light, Model, Pattern, PatternKind, Scene, Shape, Space};
 
 use super::{Changes, place};
 use crate::known::documented::{Documented, documented};
@@ -61,37 +61,34 @@ pub(super) const DOCUMENTED: &[Documented] = documented! {
 const MAX_MISSING: usize = 64;
 
 pub(super) fn no_objects(changes: &mut Changes) {
-    changes.add_symptom(
-        "background-only",
-        "only the background is visible: rays hit nothing",
-        |scene| scene.retain_objects(|_| false),
-    );
+    changes.add_symptom("background-only", |scene| scene.retain_objects(|_| false));
 }
 
 pub(super) fn objects(changes: &mut Changes) {
     let objects = &changes.scene.objects;
-    let missing: Vec<_> = objects.iter().map(|object| describe(&object.shape)).collect();
-    if missing.len() <= MAX_MISSING && missing.len() > 1 {
-        for (index, what) in missing.iter().enumerate() {
-            let description = format!("{what} is missing");
-            changes.add("object-missing", description, |scene| {
-                scene.retain_objects(|at| at != index);
+    let shapes: Vec<Shape> = objects.iter().map(|object| object.shape.clone()).collect();
+    if (2..=MAX_MISSING).contains(&shapes.len()) {
+        for (index, shape) in shapes.iter().enumerate() {
+            let (kind, center) = match shape {
+                Shape::Sphere { center, .. } => ("sphere", *center),
+                Shape::Quadric(quadric) => ("quadric", quadric.origin),
+                Shape::Box(cuboid) => ("box", cuboid.center),
+                Shape::Plane { point, .. } => {
+                    let description = format!("the plane through {} is missing", place(*point));
+                    changes.add_as("object-missing", description, |scene| {
+                        scene.retain_objects(|at| at != index);
+                    });
+                    continue;
+                }
+            };
+            let parts = [kind.to_owned(), place(center)];
+            changes.add("object-missing", &parts, |scene| {
+                scene.retain_objects(|at| at != index)
             });
         }
     }
-    for (factor, id, description) in [
-        (
-            2.0,
-            "diameter-as-radius",
-            "all spheres are twice as large as the scene's: their diameter is used as the radius",
-        ),
-        (
-            0.5,
-            "radius-halved",
-            "all spheres are half as large as the scene's",
-        ),
-    ] {
-        changes.add(id, description, |scene| {
+    for (factor, id) in [(2.0, "diameter-as-radius"), (0.5, "radius-halved")] {
+        changes.add(id, &[], |scene| {
             for object in &mut scene.objects {
                 if let Shape::Sphere { radius, .. } = &mut object.shape {
                     *radius *= factor;
@@ -103,32 +100,23 @@ pub(super) fn objects(changes: &mut Changes) {
 }
 
 fn materials(changes: &mut Changes) {
-    changes.add(
-        "schlick-instead-of-fresnel",
-        "Schlick's approximation is used; the scene has the Fresnel equations",
-        |scene| {
-            each_fresnel(scene, Fresnel::Schlick);
-        },
-    );
-    changes.add(
-        "fresnel-instead-of-schlick",
-        "the Fresnel equations are used; the scene has Schlick's approximation",
-        |scene| {
-            each_fresnel(scene, Fresnel::Exact);
-        },
-    );
-    changes.add("glass-as-mirror", "glass is rendered as a mirror", |scene| {
+    changes.add("schlick-instead-of-fresnel", &[], |scene| {
+        each_fresnel(scene, Fresnel::Schlick)
+    });
+    changes.add("fresnel-instead-of-schlick", &[], |scene| {
+        each_fresnel(scene, Fresnel::Exact)
+    });
+    let is_glass = |model: &Model| matches!(model, Model::Glass { .. });
+    changes.add("glass-as-mirror", &[], |scene| {
         for object in &mut scene.objects {
-            if matches!(object.material.model, Model::Glass { .. }) {
+            if is_glass(&object.material.model) {
                 object.material.model = Model::Mirror;
             }
         }
     });
-    let is_glass = |model: &Model| matches!(model, Model::Glass { .. });
-    let glass = changes.scene.objects.iter().map(|object| object.material.model);
-    let glass = glass.into_iter().find(is_glass);
-    if let Some(glass) = glass {
-        changes.add("mirror-as-glass", "mirrors are rendered as glass", |scene| {
+    let mut models = changes.scene.objects.iter().map(|object| object.material.model);
+    if let Some(glass) = models.find(is_glass) {
+        changes.add("mirror-as-glass", &[], |scene| {
             for object in &mut scene.objects {
                 if object.material.model == Model::Mirror && object.shape.is_closed() {
                     object.material.model = glass;
@@ -136,29 +124,19 @@ fn materials(changes: &mut Changes) {
             }
         });
     }
-    changes.add(
-        "checker-missing",
-        "checkered surfaces have only one color",
-        |scene| retain_patterns(scene, |pattern| pattern.kind != PatternKind::Checker),
-    );
-    changes.add(
-        "stripes-missing",
-        "striped surfaces have only one color",
-        |scene| {
-            retain_patterns(scene, |pattern| pattern.kind == PatternKind::Checker);
-        },
-    );
-    changes.add(
-        "pattern-in-world-space",
-        "patterns are in the coordinates of the scene instead of those of the surface",
-        |scene| {
-            for object in &mut scene.objects {
-                if let Some(pattern) = &mut object.material.pattern {
-                    pattern.space = Space::World;
-                }
+    changes.add("checker-missing", &[], |scene| {
+        retain_patterns(scene, |pattern| pattern.kind != PatternKind::Checker);
+    });
+    changes.add("stripes-missing", &[], |scene| {
+        retain_patterns(scene, |pattern| pattern.kind == PatternKind::Checker);
+    });
+    changes.add("pattern-in-world-space", &[], |scene| {
+        for object in &mut scene.objects {
+            if let Some(pattern) = &mut object.material.pattern {
+                pattern.space = Space::World;
             }
-        },
-    );
+        }
+    });
 }
 
 fn retain_patterns(scene: &mut Scene, keep: fn(&Pattern) -> bool) {
@@ -169,17 +147,13 @@ fn retain_patterns(scene: &mut Scene, keep: fn(&Pattern) -> bool) {
 
 /// Boxes without their rotation.
 pub(super) fn boxes(changes: &mut Changes) {
-    changes.add(
-        "box-rotation-ignored",
-        "the rotation of boxes is ignored",
-        |scene| {
-            for object in &mut scene.objects {
-                if let Shape::Box(cuboid) = &mut object.shape {
-                    cuboid.axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-                }
+    changes.add("box-rotation-ignored", &[], |scene| {
+        for object in &mut scene.objects {
+            if let Shape::Box(cuboid) = &mut object.shape {
+                cuboid.axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
             }
-        },
-    );
+        }
+    });
 }
 
 fn each_fresnel(scene: &mut Scene, which: Fresnel) {
@@ -190,69 +164,45 @@ fn each_fresnel(scene: &mut Scene, which: Fresnel) {
     }
 }
 
-/// Describes a surface.
-fn describe(shape: &Shape) -> String {
-    match shape {
-        Shape::Sphere { center, .. } => format!("the sphere at {}", place(*center)),
-        Shape::Plane { point, .. } => format!("the plane through {}", place(*point)),
-        Shape::Quadric(quadric) => format!("the quadric at {}", place(quadric.origin)),
-        Shape::Box(cuboid) => format!("the box at {}", place(cuboid.center)),
-    }
-}
-
 pub(super) fn no_lights(changes: &mut Changes) {
-    changes.add_symptom(
-        "ambient-only",
-        "only ambient light is visible: no light reaches a surface",
-        |scene| scene.lights.clear(),
-    );
+    changes.add_symptom("ambient-only", |scene| scene.lights.clear());
 }
 
 pub(super) fn lights(changes: &mut Changes) {
     let lights = changes.scene.lights.clone();
     for (index, light) in lights.iter().enumerate() {
-        let position = place(light.position);
-        let which = format!("the light at {position}");
+        let position = [place(light.position)];
         if lights.len() > 1 {
-            let description = format!("{which} is missing");
-            changes.add("light-missing", description, |scene| {
+            changes.add("light-missing", &position, |scene| {
                 scene.lights.remove(index);
             });
-            let description = format!("{which} is used in place of every light");
-            changes.add("one-light-for-all", description, |scene| {
-                for light in &mut scene.lights {
-                    *light = lights[index];
-                }
+            changes.add("one-light-for-all", &position, |scene| {
+                scene.lights.fill(lights[index])
             });
         }
-        let description = match lights.len() {
-            1 => "shadows are missing".to_owned(),
-            _ => format!("{which} casts no shadows"),
-        };
-        changes.add("light-without-shadow", description, |scene| {
-            scene.lights[index].shadow = false;
-        });
-        let description = format!("{which} casts shadows; in the scene it casts none");
-        changes.add("extra-shadow", description, |scene| {
-            scene.lights[index].shadow = true;
+        let without_shadow = |scene: &mut Scene| scene.lights[index].shadow = false;
+        match lights.len() {
+            1 => changes.add_as(
+                "light-without-shadow",
+                "shadows are missing".to_owned(),
+                without_shadow,
+            ),
+            _ => changes.add("light-without-shadow", &position, without_shadow),
+        }
+        changes.add("extra-shadow", &position, |scene| {
+            scene.lights[index].shadow = true
         });
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            let description = format!("the {name} of the light's position {position} has the wrong sign");
-            changes.add("light-sign", description, |scene| {
-                let along = &mut scene.lights[index].position[axis];
-                *along = -*along;
+            let parts = [name.to_owned(), place(light.position)];
+            changes.add("light-sign", &parts, |scene| {
+                scene.lights[index].position[axis] *= -1.0
             });
         }
-        changes.add("light-not-moving", format!("{which} does not move"), |scene| {
-            scene.lights[index].motion = None;
-        });
-        let description = format!("the radius of {which} is twice the scene's");
-        changes.add("light-too-large", description, |scene| {
-            scene.lights[index].radius *= 2.0;
-        });
-        let description = format!("the radius of {which} is half the scene's");
-        changes.add("light-too-small", description, |scene| {
-            scene.lights[index].radius *= 0.5;
-        });
+        let mut change = |id, edit: &dyn Fn(&mut Light)| {
+            changes.add(id, &position, |scene| edit(&mut scene.lights[index]));
+        };
+        change("light-not-moving", &|light| light.motion = None);
+        change("light-too-large", &|light| light.radius *= 2.0);
+        change("light-too-small", &|light| light.radius *= 0.5);
     }
 }

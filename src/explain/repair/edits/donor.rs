@@ -5,14 +5,15 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 
 use toyproof_glsl::tree::{
-    ExprId, ExprKind, FunctionId, Scalar, StatementKind, Tree, Type, VariableId, VariableKind,
+    ExprId, ExprKind, FunctionId, Scalar, StatementKind, Tree, Type, Value, VariableId, VariableKind,
 };
 
-use super::super::edit::{Candidate, Change, EditKind, Trials};
+use super::super::edit::{Candidate, Change, EditKind};
 use super::super::shader::Shader;
-use super::super::term::{Term, TermKind};
+use super::super::term::{Op, Term, TermKind};
 use super::Writer;
 use super::number::Constants;
+use crate::engine::tournament::Values;
 
 /// The sizes of donors in operations, names and numbers, and the largest number of different names.
 const MIN_SIZE: usize = 3;
@@ -111,14 +112,18 @@ fn donors_of(tree: &Tree) -> impl Iterator<Item = Donor> {
 /// The operations of a term, sorted.
 fn operations(term: &Term) -> Vec<String> {
     let mut all = Vec::new();
-    term.each(&mut |part| match &part.kind {
-        TermKind::Unary(op, _) => all.push(format!("{}_", op.symbol())),
-        TermKind::Binary(op, ..) => all.push(op.symbol().to_owned()),
-        TermKind::Conditional(_) => all.push("?".to_owned()),
-        TermKind::BuiltIn(function, _) => all.push(function.name().to_owned()),
-        TermKind::Construct(..) => all.push("new".to_owned()),
-        TermKind::Swizzle(_, components) => all.push(components.name()),
-        _ => {}
+    term.each(&mut |part| {
+        if let TermKind::Apply(op, _) = &part.kind {
+            all.extend(match op {
+                Op::Unary(op) => Some(format!("{}_", op.symbol())),
+                Op::Binary(op) => Some(op.symbol().to_owned()),
+                Op::Conditional => Some("?".to_owned()),
+                Op::BuiltIn(function) => Some(function.name().to_owned()),
+                Op::Construct(_) => Some("new".to_owned()),
+                Op::Swizzle(components) => Some(components.name()),
+                _ => None,
+            });
+        }
     });
     all.sort_unstable();
     all
@@ -160,51 +165,33 @@ impl Translation<'_> {
         }
         let tree = self.tree;
         let ty = tree[expr].ty;
-        let all = |own: &mut Self, arguments: &[ExprId]| -> Option<Vec<Term>> {
-            arguments
-                .iter()
-                .map(|&argument| own.term(argument, bound, depth))
-                .collect()
-        };
         let kind = match &tree[expr].kind {
             ExprKind::Literal(literal) => match literal.value {
-                toyproof_glsl::tree::Value::Float(value) => TermKind::Float(value),
-                toyproof_glsl::tree::Value::Int(value) => TermKind::Int(value),
-                toyproof_glsl::tree::Value::Bool(value) => TermKind::Bool(value),
-                toyproof_glsl::tree::Value::Uint(_) => return None,
+                Value::Float(value) => TermKind::Float(value),
+                Value::Int(value) => TermKind::Int(value),
+                Value::Bool(value) => TermKind::Bool(value),
+                Value::Uint(_) => return None,
             },
             ExprKind::Variable(variable) => return self.variable(*variable, bound, depth),
-            ExprKind::Member { .. } | ExprKind::Index { .. } => return self.hole(expr),
-            ExprKind::Unary { op, operand } => {
-                TermKind::Unary(*op, Box::new(self.term(*operand, bound, depth)?))
-            }
-            ExprKind::Binary { op, left, right } => {
-                let left = Box::new(self.term(*left, bound, depth)?);
-                TermKind::Binary(*op, left, Box::new(self.term(*right, bound, depth)?))
-            }
-            ExprKind::Conditional { condition, yes, no } => {
-                let parts = all(self, &[*condition, *yes, *no])?;
-                TermKind::Conditional(Box::new(parts.try_into().ok()?))
-            }
-            ExprKind::BuiltIn { function, arguments } => {
-                if function.is_texture() || function.out_parameter().is_some() {
-                    return None;
-                }
-                TermKind::BuiltIn(*function, all(self, arguments)?)
-            }
-            ExprKind::Construct {
-                constructor,
-                arguments,
-            } if matches!(ty, Type::Scalar(_) | Type::Vector(..)) => {
-                TermKind::Construct(*constructor, all(self, arguments)?)
-            }
-            ExprKind::Swizzle { vector, components } => {
-                TermKind::Swizzle(Box::new(self.term(*vector, bound, depth)?), *components)
-            }
             ExprKind::Call { function, arguments } => {
                 return self.inlined(*function, arguments, bound, depth);
             }
-            _ => return None,
+            kind => {
+                let (op, operands) = Op::parts(kind)?;
+                match op {
+                    Op::Member(_) | Op::Index => return self.hole(expr),
+                    Op::Assign(_) => return None,
+                    Op::BuiltIn(function) if function.is_texture() || function.out_parameter().is_some() => {
+                        return None;
+                    }
+                    Op::Construct(_) if !matches!(ty, Type::Scalar(_) | Type::Vector(..)) => return None,
+                    _ => {}
+                }
+                let operands = operands
+                    .into_iter()
+                    .map(|operand| self.term(operand, bound, depth));
+                TermKind::Apply(op, operands.collect::<Option<_>>()?)
+            }
         };
         Some(Term::new(kind, ty))
     }
@@ -334,7 +321,7 @@ pub(in crate::repair) fn candidates(
                         site,
                         term: donor.term.filled(fillings.get(at)?),
                     },
-                    trials: Trials::Once,
+                    values: Values::Fixed,
                     cost: cost + (at / NAMES_PER_COST) as u32,
                     kind: EditKind::Expression,
                 })

@@ -2,11 +2,13 @@
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
-use toyproof_glsl::tree::{BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Scalar, Type, UnaryOp};
+use toyproof_glsl::tree::{BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Scalar, Type, UnaryOp, walk};
 
-use super::super::edit::{EditKind, Trials};
+use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
-use super::{Writer, is_float, is_input, is_literal, is_name};
+use super::{At, Writer, is_float, is_input, is_literal, is_name};
+use crate::engine::fit::Fit;
+use crate::engine::tournament::Values;
 
 /// The costs: calls, signs, well-known numbers, values of the shader, products of vectors, conditions, and
 /// fitted numbers.
@@ -24,21 +26,32 @@ const USED: u32 = 2;
 /// The largest number of values that are combined in pairs.
 const MAX_PAIRED: usize = 7;
 
+/// The factors, terms and exponents that are tried.
+const FACTORS: [f64; 11] = [0.5, 2.0, PI, FRAC_1_PI, TAU, 0.25, 4.0, 1.0 / TAU, 3.0, 0.1, 10.0];
+const TERMS: [f64; 6] = [1.0, -1.0, 0.5, -0.5, 2.0, -2.0];
+const EXPONENTS: [f64; 7] = [2.0, 0.5, 1.0 / 2.2, 2.2, 5.0, 3.0, 4.0];
+
+/// Numbers that are tried at the cost of well-known ones.
+fn known(numbers: impl IntoIterator<Item = f64>, fit: Option<Fit>) -> Values {
+    Values::Tried {
+        values: numbers.into_iter().map(|number| (number, NUMBER)).collect(),
+        fit: fit.map(|fit| (FITTED, fit)),
+    }
+}
+
 impl Writer<'_> {
-    pub(super) fn insertion(&mut self, site: usize) {
-        let tree = self.tree;
-        let expr = self.shader.sites[site].exprs[0];
-        let ty = tree[expr].ty;
+    pub(super) fn insertion(&mut self, at: At) {
         // An edit of a literal is an edit of its number.
-        if is_literal(&tree[expr].kind) {
+        if is_literal(&self.tree[at.expr].kind) {
             return;
         }
-        match ty {
-            Type::Scalar(Scalar::Bool) => self.condition(site),
+        let own = self.keep(at.expr);
+        match at.ty {
+            Type::Scalar(Scalar::Bool) => self.condition(at),
             Type::Matrix { .. } => {
                 for function in [BuiltIn::Transpose, BuiltIn::Inverse] {
-                    let call = Term::call(function, vec![Term::keep(tree, expr)]);
-                    self.replace_any(site, EditKind::MissingCall, CALL, call);
+                    let call = Term::call(function, vec![own.clone()]);
+                    self.replace(at, EditKind::MissingCall, CALL, call);
                 }
             }
             Type::Scalar(Scalar::Int) => {
@@ -47,246 +60,197 @@ impl Writer<'_> {
                     (BinaryOp::Subtract, 1),
                     (BinaryOp::Multiply, 2),
                 ] {
-                    let term = Term::binary(op, Term::keep(tree, expr), Term::int(by));
-                    self.replace_any(site, EditKind::MissingTerm, NUMBER, term);
+                    let term = Term::binary(op, own.clone(), Term::int(by));
+                    self.replace(at, EditKind::MissingTerm, NUMBER, term);
                 }
-                for value in self.values(self.shader.sites[site].statement, Type::INT) {
-                    let term = Term::binary(BinaryOp::Add, Term::keep(tree, expr), value);
-                    self.replace_any(site, EditKind::MissingTerm, VALUE, term);
+                for value in self.values(at.statement, Type::INT) {
+                    let term = Term::binary(BinaryOp::Add, own.clone(), value);
+                    self.replace(at, EditKind::MissingTerm, VALUE, term);
                 }
             }
-            _ if is_float(ty) => {
-                self.calls(site, ty);
-                self.factors_and_terms(site);
+            ty if is_float(ty) => {
+                self.calls(at);
+                self.factors_and_terms(at);
             }
             _ => {}
         }
     }
 
-    fn calls(&mut self, site: usize, ty: Type) {
+    fn calls(&mut self, at: At) {
         use BuiltIn::{Abs, Clamp, Cos, Exp, Floor, Fract, Max, Min, Normalize, Pow, Radians, Sin, Sqrt};
-        let tree = self.tree;
-        let expr = self.shader.sites[site].exprs[0];
-        let own = || Term::keep(tree, expr);
+        let kind = &self.tree[at.expr].kind;
+        let own = self.keep(at.expr);
         // Where a value is computed, rather than where it is used.
-        let used = if is_name(&tree[expr].kind) { USED } else { 0 };
-        let negated = Term::unary(UnaryOp::Minus, own());
-        if !matches!(tree[expr].kind, ExprKind::Unary { .. }) {
-            self.replace(site, EditKind::Sign, SIGN + used, negated);
-        }
-        let float = Term::float;
-        let with_numbers = [
-            (Max, vec![float(0.0)]),
-            (Min, vec![float(1.0)]),
-            (Clamp, vec![float(0.0), float(1.0)]),
-        ];
-        for (function, numbers) in with_numbers {
-            let arguments = std::iter::once(own()).chain(numbers).collect();
-            self.replace_any(
-                site,
-                EditKind::MissingCall,
-                CALL + used,
-                Term::call(function, arguments),
+        let used = if is_name(kind) { USED } else { 0 };
+        if !matches!(kind, ExprKind::Unary { .. }) {
+            self.replace(
+                at,
+                EditKind::Sign,
+                SIGN + used,
+                Term::unary(UnaryOp::Minus, own.clone()),
             );
         }
-        let mut functions = vec![Abs, Sqrt, Floor, Fract];
-        match ty {
-            Type::Vector(..) => functions.insert(0, Normalize),
-            _ => functions.extend([Cos, Sin, Exp, Radians]),
-        }
-        for function in functions {
-            self.replace_any(
-                site,
-                EditKind::MissingCall,
-                CALL + used,
-                Term::call(function, vec![own()]),
-            );
+        let is_vector = matches!(at.ty, Type::Vector(..));
+        let functions: &[(BuiltIn, &[f64])] = if is_vector {
+            &[
+                (Normalize, &[]),
+                (Abs, &[]),
+                (Sqrt, &[]),
+                (Floor, &[]),
+                (Fract, &[]),
+            ]
+        } else {
+            &[
+                (Abs, &[]),
+                (Sqrt, &[]),
+                (Floor, &[]),
+                (Fract, &[]),
+                (Cos, &[]),
+                (Sin, &[]),
+                (Exp, &[]),
+                (Radians, &[]),
+            ]
+        };
+        let limits: &[(BuiltIn, &[f64])] = &[(Max, &[0.0]), (Min, &[1.0]), (Clamp, &[0.0, 1.0])];
+        for (function, numbers) in limits.iter().chain(functions) {
+            let numbers = numbers.iter().map(|&number| Term::float(number));
+            let call = Term::call(*function, [own.clone()].into_iter().chain(numbers).collect());
+            self.replace(at, EditKind::MissingCall, CALL + used, call);
         }
         // Gamma, and other powers.
-        let exponent = match ty {
-            Type::Vector(..) => Term::new(TermKind::Construct(Constructor::Splat, vec![Term::fitted()]), ty),
-            _ => Term::fitted(),
+        let exponent = match is_vector {
+            true => Term::construct(Constructor::Splat, vec![Term::fitted()], at.ty),
+            false => Term::fitted(),
         };
-        let mut values: Vec<(f64, u32)> = [2.0, 0.5, 1.0 / 2.2, 2.2, 5.0, 3.0, 4.0]
-            .map(|value| (value, NUMBER))
-            .into();
-        values.extend(
-            self.constants
-                .floats
-                .iter()
-                .filter(|value| **value > 1.0)
-                .map(|&value| (value, NUMBER)),
-        );
-        let trials = Trials::Values { values, fit: None };
-        if let Some(power) = Term::call(Pow, vec![own(), exponent]) {
-            self.replace_with(site, EditKind::MissingCall, NUMBER, power, trials);
-        }
+        let of_scene = self.constants.floats.iter().copied().filter(|&value| value > 1.0);
+        let values = known(EXPONENTS.into_iter().chain(of_scene), None);
+        let power = Term::call(Pow, vec![own, exponent]);
+        self.replace_with(at, EditKind::MissingCall, NUMBER, power, values);
     }
 
-    fn factors_and_terms(&mut self, site: usize) {
-        let tree = self.tree;
-        let shader = self.shader;
-        let expr = shader.sites[site].exprs[0];
-        let ty = tree[expr].ty;
-        let statement = shader.sites[site].statement;
-        let own = || Term::keep(tree, expr);
-        let user = |ops: &[BinaryOp]| {
-            let user = shader.sites[site].user;
-            user.is_some_and(
-                |user| matches!(tree[user].kind, ExprKind::Binary { op, .. } if ops.contains(&op)),
-            )
+    fn factors_and_terms(&mut self, at: At) {
+        use BinaryOp::{Add, Divide, Multiply, Subtract};
+        let (tree, shader) = (self.tree, self.shader);
+        let kind = &tree[at.expr].kind;
+        let own = || Term::keep(tree, at.expr);
+        let is_used_by = |ops: [BinaryOp; 2]| {
+            let is_one =
+                |user: ExprId| matches!(tree[user].kind, ExprKind::Binary { op, .. } if ops.contains(&op));
+            at.user.is_some_and(is_one)
         };
         // A factor of a factor is a factor of the whole product.
-        let in_product = user(&[BinaryOp::Multiply, BinaryOp::Divide]);
-        let in_sum = user(&[BinaryOp::Add, BinaryOp::Subtract]);
-        if matches!(tree[expr].kind, ExprKind::Construct { .. }) && in_product {
+        let (in_product, in_sum) = (is_used_by([Multiply, Divide]), is_used_by([Add, Subtract]));
+        if matches!(kind, ExprKind::Construct { .. }) && in_product {
             return;
         }
         if !in_product {
-            let mut values: Vec<(f64, u32)> =
-                [0.5, 2.0, PI, FRAC_1_PI, TAU, 0.25, 4.0, 1.0 / TAU, 3.0, 0.1, 10.0]
-                    .map(|value| (value, NUMBER))
-                    .into();
-            values.retain(|(value, _)| value.is_finite() && *value != 1.0);
-            let trials = Trials::Values {
-                values,
-                fit: Some((FITTED, 1.0)),
-            };
-            let product = Term::binary(BinaryOp::Multiply, own(), Term::fitted());
-            if let Some(product) = product {
-                self.replace_with(site, EditKind::MissingFactor, NUMBER, product, trials);
-            }
-            self.square_and_inverse(site, expr);
-        }
-        if !in_sum {
-            let mut values: Vec<(f64, u32)> = [1.0, -1.0, 0.5, -0.5, 2.0, -2.0]
-                .map(|value| (value, NUMBER))
-                .into();
-            values.retain(|(value, _)| *value != 0.0);
-            let trials = Trials::Values {
-                values,
-                fit: Some((FITTED, 0.0)),
-            };
-            if let Some(sum) = Term::binary(BinaryOp::Add, own(), Term::fitted()) {
-                self.replace_with(site, EditKind::MissingTerm, NUMBER, sum, trials);
-            }
-            let rest = Term::binary(BinaryOp::Subtract, Term::float(1.0), own());
-            self.replace_any(site, EditKind::MissingTerm, NUMBER, rest);
-        }
-        let mut values = self.values(statement, Type::FLOAT);
-        if ty != Type::FLOAT {
-            values.extend(self.values(statement, ty));
-        }
-        for value in values {
-            if value.text(tree, shader.source, 0) == shader.text(tree[expr].at.span) {
-                continue;
-            }
-            let ops: &[BinaryOp] = match (in_product, in_sum) {
-                (true, true) => &[],
-                (true, false) => &[BinaryOp::Add, BinaryOp::Subtract],
-                (false, true) => &[BinaryOp::Multiply, BinaryOp::Divide],
-                (false, false) => &[
-                    BinaryOp::Multiply,
-                    BinaryOp::Divide,
-                    BinaryOp::Add,
-                    BinaryOp::Subtract,
-                ],
-            };
-            for &op in ops {
-                let is_factor = matches!(op, BinaryOp::Multiply | BinaryOp::Divide);
-                let kind = if is_factor {
-                    EditKind::MissingFactor
-                } else {
-                    EditKind::MissingTerm
-                };
-                let input = if is_input(tree, &value) { USED } else { 0 };
-                self.replace_any(site, kind, VALUE + input, Term::binary(op, own(), value.clone()));
-                if is_factor && value.ty == Type::FLOAT {
-                    let square = Term::binary(BinaryOp::Multiply, value.clone(), value.clone());
-                    let term = square.and_then(|square| Term::binary(op, own(), square));
-                    self.replace_any(site, kind, VALUE + 1, term);
+            let product = Term::binary(Multiply, own(), Term::fitted());
+            let factors = known(FACTORS, Some(Fit::Number(1.0)));
+            self.replace_with(at, EditKind::MissingFactor, NUMBER, product, factors);
+            if !walk::has_side_effects(tree, at.expr) {
+                let inverse = Term::binary(Divide, Term::float(1.0), own());
+                for term in [Term::binary(Multiply, own(), own()), inverse] {
+                    self.replace(at, EditKind::MissingFactor, NUMBER, term);
                 }
             }
         }
+        if !in_sum {
+            let terms = known(TERMS, Some(Fit::Number(0.0)));
+            let sum = Term::binary(Add, own(), Term::fitted());
+            self.replace_with(at, EditKind::MissingTerm, NUMBER, sum, terms);
+            let rest = Term::binary(Subtract, Term::float(1.0), own());
+            self.replace(at, EditKind::MissingTerm, NUMBER, rest);
+        }
+        let mut values = self.values(at.statement, Type::FLOAT);
+        if at.ty != Type::FLOAT {
+            values.extend(self.values(at.statement, at.ty));
+        }
+        let text = shader.text(tree[at.expr].at.span);
+        for value in values
+            .into_iter()
+            .filter(|value| value.text(tree, shader.source, 0) != text)
+        {
+            let input = if is_input(tree, &value) { USED } else { 0 };
+            for op in [Multiply, Divide].into_iter().filter(|_| !in_product) {
+                let term = Term::binary(op, own(), value.clone());
+                self.replace(at, EditKind::MissingFactor, VALUE + input, term);
+                if value.ty == Type::FLOAT {
+                    let square = Term::binary(Multiply, value.clone(), value.clone());
+                    let term = square.and_then(|square| Term::binary(op, own(), square));
+                    self.replace(at, EditKind::MissingFactor, VALUE + 1, term);
+                }
+            }
+            for op in [Add, Subtract].into_iter().filter(|_| !in_sum) {
+                let term = Term::binary(op, own(), value.clone());
+                self.replace(at, EditKind::MissingTerm, VALUE + input, term);
+            }
+        }
         if !in_product {
-            self.products_of_vectors(site, statement);
+            self.products_of_vectors(at);
         }
-    }
-
-    fn square_and_inverse(&mut self, site: usize, expr: ExprId) {
-        let tree = self.tree;
-        let own = || Term::keep(tree, expr);
-        if toyproof_glsl::tree::walk::has_side_effects(tree, expr) {
-            return;
-        }
-        let square = Term::binary(BinaryOp::Multiply, own(), own());
-        self.replace_any(site, EditKind::MissingFactor, NUMBER, square);
-        let inverse = Term::binary(BinaryOp::Divide, Term::float(1.0), own());
-        self.replace_any(site, EditKind::MissingFactor, NUMBER, inverse);
     }
 
     /// Inserts a cosine, or the square of a distance.
-    fn products_of_vectors(&mut self, site: usize, statement: usize) {
-        let tree = self.tree;
-        let expr = self.shader.sites[site].exprs[0];
-        let mut vectors = self.values(statement, Type::Vector(Scalar::Float, 3));
+    fn products_of_vectors(&mut self, at: At) {
+        let mut vectors = self.values(at.statement, Type::Vector(Scalar::Float, 3));
         vectors.truncate(MAX_PAIRED);
-        let own = || Term::keep(tree, expr);
+        let own = self.keep(at.expr);
         let dot = |a: &Term, b: &Term| Term::call(BuiltIn::Dot, vec![a.clone(), b.clone()]);
-        for (at, first) in vectors.iter().enumerate() {
+        for (index, first) in vectors.iter().enumerate() {
             let square = dot(first, first);
-            let term = square.and_then(|square| Term::binary(BinaryOp::Divide, own(), square));
-            self.replace_any(site, EditKind::MissingFactor, COSINE, term);
-            for second in &vectors[at + 1..] {
-                let cosine = dot(first, second);
-                let clamped =
-                    cosine.and_then(|cosine| Term::call(BuiltIn::Max, vec![cosine, Term::float(0.0)]));
-                let term = clamped.and_then(|cosine| Term::binary(BinaryOp::Multiply, own(), cosine));
-                self.replace_any(site, EditKind::MissingFactor, COSINE, term);
+            let term = square.and_then(|square| Term::binary(BinaryOp::Divide, own.clone(), square));
+            self.replace(at, EditKind::MissingFactor, COSINE, term);
+            for second in &vectors[index + 1..] {
+                let clamped = |cosine| Term::call(BuiltIn::Max, vec![cosine, Term::float(0.0)]);
+                let cosine = dot(first, second).and_then(clamped);
+                let term = cosine.and_then(|cosine| Term::binary(BinaryOp::Multiply, own.clone(), cosine));
+                self.replace(at, EditKind::MissingFactor, COSINE, term);
             }
         }
     }
 
-    fn condition(&mut self, site: usize) {
+    fn condition(&mut self, at: At) {
         let tree = self.tree;
-        let expr = self.shader.sites[site].exprs[0];
-        let statement = self.shader.sites[site].statement;
-        let own = || Term::keep(tree, expr);
-        self.replace(site, EditKind::Condition, SIGN, Term::unary(UnaryOp::Not, own()));
+        let own = self.keep(at.expr);
+        self.replace(
+            at,
+            EditKind::Condition,
+            SIGN,
+            Term::unary(UnaryOp::Not, own.clone()),
+        );
         for value in [true, false] {
-            let constant = Term::new(TermKind::Bool(value), Type::BOOL);
-            self.replace(site, EditKind::Condition, CALL, constant);
+            self.replace(
+                at,
+                EditKind::Condition,
+                CALL,
+                Term::new(TermKind::Bool(value), Type::BOOL),
+            );
         }
-        let is_part = |user: ExprId| {
-            matches!(
-                tree[user].kind,
-                ExprKind::Binary {
-                    op: BinaryOp::And | BinaryOp::Or,
-                    ..
-                }
-            )
+        let is_part = |user: ExprId| match tree[user].kind {
+            ExprKind::Binary { op, .. } => matches!(op, BinaryOp::And | BinaryOp::Or),
+            _ => false,
         };
-        if self.shader.sites[site].user.is_some_and(is_part) {
+        if at.user.is_some_and(is_part) {
             return;
         }
-        let mut floats = self.values(statement, Type::FLOAT);
-        let mut others: Vec<(u32, Option<Term>)> = Vec::new();
-        for value in &floats {
-            let positive = Term::binary(BinaryOp::Greater, value.clone(), Term::float(0.0));
-            others.push((CONDITION, positive));
-        }
-        let bools = self.values(statement, Type::BOOL).into_iter();
+        let mut floats = self.values(at.statement, Type::FLOAT);
+        let positive = |value: &Term| Term::binary(BinaryOp::Greater, value.clone(), Term::float(0.0));
+        let mut others: Vec<(u32, Option<Term>)> =
+            floats.iter().map(|value| (CONDITION, positive(value))).collect();
+        let bools = self.values(at.statement, Type::BOOL).into_iter();
         others.extend(bools.map(|value| (CONDITION, Some(value))));
         floats.truncate(MAX_PAIRED);
         for first in &floats {
             for second in floats.iter().filter(|second| *second != first) {
-                let less = Term::binary(BinaryOp::Less, first.clone(), second.clone());
-                others.push((COSINE, less));
+                others.push((
+                    COSINE,
+                    Term::binary(BinaryOp::Less, first.clone(), second.clone()),
+                ));
             }
         }
         for (cost, other) in others {
-            let term = other.and_then(|other| Term::binary(BinaryOp::And, own(), other));
-            self.replace_any(site, EditKind::Condition, cost, term);
+            let term = other.and_then(|other| Term::binary(BinaryOp::And, own.clone(), other));
+            self.replace(at, EditKind::Condition, cost, term);
         }
     }
 }

@@ -10,13 +10,16 @@ mod statement;
 
 use std::collections::HashSet;
 
-use toyproof_glsl::tree::{ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, VariableId, VariableKind};
+use toyproof_glsl::tree::{
+    ExprId, ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, VariableId, VariableKind,
+};
 
 pub(super) use self::donor::{Donor, candidates as donor_candidates, donors};
 pub(super) use self::number::Constants;
-use super::edit::{Candidate, Change, EditKind, Trials};
-use super::shader::Shader;
-use super::term::{Term, TermKind};
+use super::edit::{Candidate, Change, EditKind};
+use super::shader::{Shader, Site};
+use super::term::{Op, Term, TermKind};
+use crate::engine::tournament::Values;
 
 /// The candidates for the sites and statements of a shader in that order, the most suspicious first.
 pub(super) fn candidates(
@@ -51,6 +54,17 @@ const MAX_VALUES: usize = 24;
 /// The number of variables that index an array.
 const MAX_INDICES: usize = 2;
 
+/// The place of an expression that is edited.
+#[derive(Debug, Clone, Copy)]
+struct At {
+    site: usize,
+    expr: ExprId,
+    ty: Type,
+    /// The expression that uses its value.
+    user: Option<ExprId>,
+    statement: usize,
+}
+
 /// Collects candidates.
 struct Writer<'a> {
     shader: &'a Shader<'a>,
@@ -78,39 +92,60 @@ impl<'a> Writer<'a> {
     }
 
     fn site(&mut self, site: usize) {
-        let shader = self.shader;
-        self.number(site);
-        if shader.sites[site].exprs.len() > 1 {
+        let Site {
+            exprs,
+            user,
+            statement,
+            ..
+        } = &self.shader.sites[site];
+        let (expr, user, statement) = (exprs[0], *user, *statement);
+        let at = At {
+            site,
+            expr,
+            ty: self.tree[expr].ty,
+            user,
+            statement,
+        };
+        self.number(at);
+        if exprs.len() > 1 {
             // The text of a macro's body: only its numbers change.
             return;
         }
-        if matches!(
-            self.tree[shader.sites[site].exprs[0]].kind,
-            ExprKind::Assign { .. }
-        ) {
-            self.assignment(site);
+        if let ExprKind::Assign { op, target, value } = self.tree[expr].kind {
+            self.assignment(at, op, target, value);
             return;
         }
-        self.expression(site);
-        self.name(site);
-        self.insertion(site);
+        self.expression(at);
+        self.name(at);
+        self.insertion(at);
     }
 
-    /// Adds the replacement of a site's expression.
-    fn replace(&mut self, site: usize, kind: EditKind, cost: u32, term: Term) {
-        self.replace_with(site, kind, cost, term, Trials::Once);
+    fn keep(&self, expr: ExprId) -> Term {
+        Term::keep(self.tree, expr)
     }
 
-    fn replace_with(&mut self, site: usize, kind: EditKind, cost: u32, term: Term, trials: Trials) {
-        let expr = self.shader.sites[site].exprs[0];
-        if term.ty == self.tree[expr].ty && term.kind != TermKind::Keep(expr) {
-            self.all.push(Candidate {
-                change: Change::Expression { site, term },
-                trials,
-                cost,
-                kind,
-            });
-        }
+    /// Adds the replacement of a site's expression, if there is one.
+    fn replace(&mut self, at: At, kind: EditKind, cost: u32, term: impl Into<Option<Term>>) {
+        self.replace_with(at, kind, cost, term, Values::Fixed);
+    }
+
+    fn replace_with(
+        &mut self,
+        at: At,
+        kind: EditKind,
+        cost: u32,
+        term: impl Into<Option<Term>>,
+        values: Values,
+    ) {
+        let term = term
+            .into()
+            .filter(|term| term.ty == at.ty && term.kind != TermKind::Keep(at.expr));
+        self.all.extend(term.map(|term| Candidate {
+            change: Change::Expression { site: at.site, term },
+            values,
+            cost,
+            kind,
+        }));
     }
 
     /// The values of a type that the variables in scope at a statement have.
@@ -161,8 +196,8 @@ impl<'a> Writer<'a> {
             .filter(|&&index| self.tree[index].kind == VariableKind::Local)
             .take(MAX_INDICES)
         {
-            let [base, index] = [array, index].map(|id| Box::new(Term::variable(self.tree, id)));
-            let element = Term::new(TermKind::Index(base, index), element);
+            let operands = [array, index].map(|id| Term::variable(self.tree, id));
+            let element = Term::apply(Op::Index, operands.into(), element);
             self.parts(&element, ty, values, 1);
         }
     }
@@ -173,11 +208,8 @@ impl<'a> Writer<'a> {
             VariableKind::Input(Input::Resolution) if ty == Type::FLOAT => {
                 let whole = Term::variable(self.tree, variable);
                 let components = [[0], [1]].iter().filter_map(|at| Swizzle::new(at));
-                values.extend(
-                    components.map(|components| {
-                        Term::new(TermKind::Swizzle(Box::new(whole.clone()), components), ty)
-                    }),
-                );
+                let component = |components| Term::apply(Op::Swizzle(components), vec![whole.clone()], ty);
+                values.extend(components.map(component));
             }
             VariableKind::Input(Input::Time) | VariableKind::Global | VariableKind::Const if own.ty == ty => {
                 values.push(Term::variable(self.tree, variable));
@@ -198,7 +230,7 @@ impl<'a> Writer<'a> {
             && depth > 0
         {
             for (at, Member { ty: own, .. }) in self.tree[id].members.iter().enumerate() {
-                let member = Term::new(TermKind::Member(Box::new(term.clone()), at), *own);
+                let member = Term::member(term.clone(), at, *own);
                 self.parts(&member, ty, values, depth - 1);
             }
         }
@@ -209,7 +241,7 @@ impl<'a> Writer<'a> {
 fn is_input(tree: &Tree, term: &Term) -> bool {
     match &term.kind {
         TermKind::Variable(variable) => tree[*variable].kind.is_input(),
-        TermKind::Swizzle(vector, _) => is_input(tree, vector),
+        TermKind::Apply(Op::Swizzle(_), operands) => is_input(tree, &operands[0]),
         _ => false,
     }
 }

@@ -8,12 +8,13 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_scene::{Scene, export};
 use toyproof_verify::Expected;
 
-use super::super::edit::{EditKind, Trials};
-use super::super::fit::rounded;
+use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
-use super::Writer;
 use super::donor::{Donor, donors};
 use super::plausibility::Shapes;
+use super::{At, Writer};
+use crate::engine::fit::{Fit, rounded};
+use crate::engine::tournament::Values;
 
 /// The costs: numbers of the scene that the shader lacks, those that it has, other numbers, vectors of the
 /// scene, numbers with another last digit, fitted numbers, and variables.
@@ -49,7 +50,7 @@ pub(in crate::repair) struct Constants {
 
 impl Constants {
     /// Collects the numbers of a reference; empty if it has no shader.
-    pub(in crate::repair) fn of(expected: &Expected) -> Self {
+    pub(in crate::repair) fn new(expected: &Expected) -> Self {
         match (expected.shader(), expected.scene()) {
             (Some(shader), _) => Self::in_tree(&shader.tree),
             (None, Some(scene)) => Self::in_scene(scene),
@@ -70,7 +71,7 @@ impl Constants {
 
     fn in_tree(tree: &Tree) -> Self {
         let mut constants = Self {
-            shapes: Shapes::of(tree),
+            shapes: Shapes::new(tree),
             donors: donors([tree]),
             hash: hash_numbers(tree),
             ..Self::default()
@@ -175,27 +176,28 @@ pub(super) fn number(tree: &Tree, expr: ExprId) -> Option<f64> {
 }
 
 impl Writer<'_> {
-    pub(super) fn number(&mut self, site: usize) {
-        let expr = self.shader.sites[site].exprs[0];
-        match &self.tree[expr].kind {
+    pub(super) fn number(&mut self, at: At) {
+        match &self.tree[at.expr].kind {
             ExprKind::Literal(literal) => match literal.value {
-                Value::Float(value) => self.float(site, value),
-                Value::Int(value) => self.integer(site, value),
+                Value::Float(value) => self.float(at, value),
+                Value::Int(value) => self.integer(at, value),
                 Value::Bool(value) => {
                     let other = Term::new(TermKind::Bool(!value), Type::BOOL);
-                    self.replace(site, EditKind::Condition, RELATED, other);
+                    self.replace(at, EditKind::Condition, RELATED, other);
                 }
                 Value::Uint(_) => {}
             },
             ExprKind::Construct {
                 constructor: Constructor::Vector | Constructor::Splat,
                 arguments,
-            } => self.vector(site, &arguments.clone()),
+            } => {
+                self.vector(at, arguments);
+            }
             _ => {}
         }
     }
 
-    fn float(&mut self, site: usize, old: f64) {
+    fn float(&mut self, at: At, old: f64) {
         let mut values: Vec<(f64, u32)> = Vec::new();
         let mut add = |value: f64, cost| {
             let is_new = values.iter().all(|(known, _)| known.to_bits() != value.to_bits());
@@ -208,41 +210,8 @@ impl Writer<'_> {
             add(value, if is_own { OWN } else { SCENE });
             add(-value, if is_own { OWN + 2 } else { RELATED });
         }
-        let related = [
-            -old,
-            old + 1.0,
-            old - 1.0,
-            2.0 * old,
-            old / 2.0,
-            10.0 * old,
-            old / 10.0,
-            100.0 * old,
-            old / 100.0,
-            1000.0 * old,
-            old / 1000.0,
-            PI * old,
-            old / PI,
-            TAU * old,
-            old / TAU,
-            4.0 * old,
-            old / 4.0,
-            1.0 / old,
-            old * old,
-            old.sqrt(),
-            1.0 - old,
-            0.0,
-            0.5,
-            1.0,
-            2.0,
-            3.0,
-            PI,
-            old * 255.0,
-            old / 255.0,
-            old.to_degrees(),
-            old.to_radians(),
-        ];
-        for value in related {
-            // As an author would write it: 0.1 rather than 0.1000…01.
+        // As an author would write it: 0.1 rather than 0.1000…01.
+        for value in related(old) {
             add(rounded(value, 12), RELATED);
         }
         // A wrong last digit. A number that moves edges cannot be fitted.
@@ -252,108 +221,145 @@ impl Writer<'_> {
                 add(rounded(value, 12), NEAR);
             }
         }
-        let trials = Trials::Values {
+        let values = Values::Tried {
             values,
-            fit: Some((FITTED, old)),
+            fit: Some((FITTED, Fit::Number(old))),
         };
-        self.replace_with(site, EditKind::Number, SCENE, Term::fitted(), trials);
-        self.variables(site, VARIABLE + 2);
+        self.replace_with(at, EditKind::Number, SCENE, Term::fitted(), values);
+        self.variables(at, VARIABLE + 2);
     }
 
     /// Replaces numbers by variables.
-    fn variables(&mut self, site: usize, cost: u32) {
-        let (statement, expr) = (
-            self.shader.sites[site].statement,
-            self.shader.sites[site].exprs[0],
-        );
-        if self.shader.sites[site].exprs.len() == 1 {
-            for value in self.values(statement, self.tree[expr].ty) {
-                self.replace(site, EditKind::Variable, cost, value);
+    fn variables(&mut self, at: At, cost: u32) {
+        if self.shader.sites[at.site].exprs.len() == 1 {
+            for value in self.values(at.statement, at.ty) {
+                self.replace(at, EditKind::Variable, cost, value);
             }
         }
     }
 
-    fn integer(&mut self, site: usize, old: i32) {
-        let related = [
+    fn integer(&mut self, at: At, old: i32) {
+        let near = [
             old.wrapping_add(1),
             old.wrapping_sub(1),
             old.wrapping_mul(2),
             old / 2,
             old.wrapping_neg(),
-            0,
-            1,
-            2,
         ];
-        let scene = self.constants.integers.iter().copied();
+        let related = near.into_iter().chain([0, 1, 2]).map(|value| (value, RELATED));
         let mut tried = vec![old];
-        let all: Vec<(i32, u32)> = scene
-            .map(|value| (value, SCENE))
-            .chain(related.map(|value| (value, RELATED)))
-            .collect();
-        for (value, cost) in all {
+        for (value, cost) in self
+            .constants
+            .integers
+            .iter()
+            .map(|&value| (value, SCENE))
+            .chain(related)
+        {
             if !tried.contains(&value) {
                 tried.push(value);
-                self.replace(site, EditKind::Number, cost, Term::int(value));
+                self.replace(at, EditKind::Number, cost, Term::int(value));
             }
         }
-        self.variables(site, VARIABLE);
+        self.variables(at, VARIABLE);
     }
 
     /// Replaces a vector of literals by those of the scene, and by one with exchanged components.
-    fn vector(&mut self, site: usize, arguments: &[ExprId]) {
-        let expr = self.shader.sites[site].exprs[0];
-        let ty = self.tree[expr].ty;
-        if ty.scalar() != Some(Scalar::Float) {
-            return;
-        }
-        let Some(old) = arguments
-            .iter()
-            .map(|&argument| number(self.tree, argument))
-            .collect::<Option<Vec<f64>>>()
-        else {
+    fn vector(&mut self, at: At, arguments: &[ExprId]) {
+        let numbers = arguments.iter().map(|&argument| number(self.tree, argument));
+        let Some(old) = numbers.collect::<Option<Vec<f64>>>() else {
             return;
         };
+        if at.ty.scalar() != Some(Scalar::Float) {
+            return;
+        }
         let is_splat = old.len() == 1;
-        let size = usize::from(ty.component_count().unwrap_or(1));
+        let size = usize::from(at.ty.component_count().unwrap_or(1));
         let old = if is_splat { vec![old[0]; size] } else { old };
-        self.variables(site, VARIABLE);
-        let construct = |vector: &[f64]| {
-            let arguments = vector.iter().map(|&value| Term::float(value)).collect();
-            Term::new(TermKind::Construct(Constructor::Vector, arguments), ty)
+        self.variables(at, VARIABLE);
+        let construct = |constructor, numbers: &[f64]| {
+            let arguments = numbers.iter().map(|&value| Term::float(value)).collect();
+            Term::construct(constructor, arguments, at.ty)
         };
         for vector in &self.constants.vectors {
             // Single numbers are separate edits.
             let changed = vector.iter().zip(&old).filter(|(new, old)| new != old).count();
             if vector.len() == old.len() && (changed > 1 || (is_splat && changed > 0)) {
-                self.replace(site, EditKind::Number, VECTOR, construct(vector));
+                self.replace(
+                    at,
+                    EditKind::Number,
+                    VECTOR,
+                    construct(Constructor::Vector, vector),
+                );
             }
         }
-        for first in 0..old.len() {
-            for second in first + 1..old.len() {
-                if old[first].to_bits() != old[second].to_bits() {
-                    let mut swapped = old.clone();
-                    swapped.swap(first, second);
-                    self.replace(site, EditKind::Arguments, RELATED, construct(&swapped));
-                }
+        for (first, second) in
+            (0..size).flat_map(|first| (first + 1..size).map(move |second| (first, second)))
+        {
+            if old.len() == size && old[first].to_bits() != old[second].to_bits() {
+                let mut swapped = old.clone();
+                swapped.swap(first, second);
+                self.replace(
+                    at,
+                    EditKind::Arguments,
+                    RELATED,
+                    construct(Constructor::Vector, &swapped),
+                );
             }
         }
         if let [red, green, blue] = old[..] {
             let components = (0..3)
                 .map(|at| Term::new(TermKind::Fitted(at), Type::FLOAT))
                 .collect();
-            let color = Term::new(TermKind::Construct(Constructor::Vector, components), ty);
-            let trials = Trials::Color([red, green, blue]);
-            self.replace_with(site, EditKind::Number, FITTED, color, trials);
+            let color = Term::construct(Constructor::Vector, components, at.ty);
+            let fit = Some((FITTED, Fit::Color([red, green, blue])));
+            let values = Values::Tried {
+                values: Vec::new(),
+                fit,
+            };
+            self.replace_with(at, EditKind::Number, FITTED, color, values);
         }
-        if let ([first, ..], false) = (&old[..], is_splat) {
-            let first = *first;
-            let splat = Term::new(
-                TermKind::Construct(Constructor::Splat, vec![Term::float(first)]),
-                ty,
-            );
-            self.replace(site, EditKind::Number, VECTOR + 4, splat);
+        if !is_splat {
+            let splat = construct(Constructor::Splat, &old[..1]);
+            self.replace(at, EditKind::Number, VECTOR + 4, splat);
         }
     }
+}
+
+/// The numbers that an author may have meant instead of another.
+fn related(old: f64) -> [f64; 31] {
+    [
+        -old,
+        old + 1.0,
+        old - 1.0,
+        2.0 * old,
+        old / 2.0,
+        10.0 * old,
+        old / 10.0,
+        100.0 * old,
+        old / 100.0,
+        1000.0 * old,
+        old / 1000.0,
+        PI * old,
+        old / PI,
+        TAU * old,
+        old / TAU,
+        4.0 * old,
+        old / 4.0,
+        1.0 / old,
+        old * old,
+        old.sqrt(),
+        1.0 - old,
+        0.0,
+        0.5,
+        1.0,
+        2.0,
+        3.0,
+        PI,
+        old * 255.0,
+        old / 255.0,
+        old.to_degrees(),
+        old.to_radians(),
+    ]
 }
 
 #[cfg(test)]

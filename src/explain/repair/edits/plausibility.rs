@@ -5,10 +5,11 @@ use std::collections::{HashMap, HashSet};
 
 use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Literal, Tree, UnaryOp, Value};
 
-use super::super::edit::{Candidate, Change, Trials};
+use super::super::edit::{Candidate, Change};
 use super::super::shader::Shader;
-use super::super::term::{Term, TermKind};
+use super::super::term::{Op, Term, TermKind};
 use super::number::{Constants, number};
+use crate::engine::tournament::Values;
 
 /// The gain of an edit that writes a vector or a number of the scene, and the loss of one that removes it.
 const VECTOR: i32 = 5;
@@ -28,7 +29,7 @@ pub(in crate::repair) struct Shapes(HashSet<String>);
 
 impl Shapes {
     /// The shapes of all operations of a tree, to every depth.
-    pub(in crate::repair) fn of(tree: &Tree) -> Self {
+    pub(in crate::repair) fn new(tree: &Tree) -> Self {
         let mut shapes = HashSet::new();
         for (id, expr) in tree.exprs.iter() {
             if is_operation(&expr.kind) {
@@ -56,7 +57,7 @@ pub(super) fn adjust(shader: &Shader, constants: &Constants, candidates: &mut [C
             .0
             .contains(&shape(shader.tree, expr, depth, None))
     };
-    let judge = Judge {
+    let rating = Rating {
         shader,
         constants,
         known: parts.filter(is_known).collect(),
@@ -66,27 +67,27 @@ pub(super) fn adjust(shader: &Shader, constants: &Constants, candidates: &mut [C
         let Change::Expression { site, term } = &candidate.change else {
             continue;
         };
-        let shape = judge.shape(*site, term);
+        let shape = rating.shape(*site, term);
         let adjusted = |cost: u32, gain: i32| u32::try_from(cost as i32 - gain).unwrap_or(0);
-        match &mut candidate.trials {
-            Trials::Values { values, fit } => {
+        match &mut candidate.values {
+            Values::Tried { values, fit } => {
                 let mut least = u32::MAX;
                 for (value, cost) in values.iter_mut() {
                     let numbers = [*value, 0.0, 0.0];
-                    *cost = adjusted(*cost, shape + judge.numbers(*site, &term.with_fitted(&numbers)));
+                    *cost = adjusted(*cost, shape + rating.numbers(*site, &term.with_fitted(&numbers)));
                     least = least.min(*cost);
                 }
                 if let Some((cost, _)) = fit {
-                    *cost = adjusted(*cost, shape + judge.numbers(*site, term));
+                    *cost = adjusted(*cost, shape + rating.numbers(*site, term));
                 }
                 candidate.cost = least.min(candidate.cost);
             }
-            _ => candidate.cost = adjusted(candidate.cost, shape + judge.numbers(*site, term)),
+            _ => candidate.cost = adjusted(candidate.cost, shape + rating.numbers(*site, term)),
         }
     }
 }
 
-struct Judge<'a> {
+struct Rating<'a> {
     shader: &'a Shader<'a>,
     constants: &'a Constants,
     /// The site of each expression.
@@ -95,7 +96,7 @@ struct Judge<'a> {
     known: HashSet<(ExprId, u32)>,
 }
 
-impl Judge<'_> {
+impl Rating<'_> {
     /// The gain of an edit for the numbers that it writes and removes.
     fn numbers(&self, site: usize, term: &Term) -> i32 {
         let tree = self.shader.tree;
@@ -113,38 +114,31 @@ impl Judge<'_> {
         {
             part = user;
         }
+        let is_vector = |&whole: &ExprId| {
+            matches!(
+                tree[whole].kind,
+                ExprKind::Construct {
+                    constructor: Constructor::Vector,
+                    ..
+                }
+            )
+        };
         let vector = [Some(part), self.user(part)]
             .into_iter()
             .flatten()
-            .find(|&whole| {
-                matches!(
-                    tree[whole].kind,
-                    ExprKind::Construct {
-                        constructor: Constructor::Vector,
-                        ..
-                    }
-                )
-            });
+            .find(is_vector);
         if let Some(vector) = vector
             && let Some(old) = components(tree, vector, None)
         {
             let new = components(tree, vector, Some((expr, term)));
             let is_scene = |vector: &Vec<f64>| self.constants.has_vector(vector);
-            return match (is_scene(&old), new.as_ref().is_some_and(is_scene)) {
-                (false, true) => VECTOR,
-                (true, false) => -VECTOR,
-                _ => 0,
-            };
+            return VECTOR * gained(is_scene(&old), new.as_ref().is_some_and(is_scene));
         }
         let (Some(old), new) = (number(tree, expr), value(term, tree)) else {
             return 0;
         };
         let is_scene = |number: f64| self.constants.has(number);
-        match (is_scene(old), new.is_some_and(is_scene)) {
-            (false, true) => NUMBER,
-            (true, false) => -NUMBER,
-            _ => 0,
-        }
+        NUMBER * gained(is_scene(old), new.is_some_and(is_scene))
     }
 
     /// The gain of an edit for the shapes of the operations that enclose it.
@@ -174,12 +168,17 @@ impl Judge<'_> {
     }
 }
 
+/// 1 if something is of the scene only after an edit, −1 if only before.
+fn gained(before: bool, after: bool) -> i32 {
+    i32::from(after) - i32::from(before)
+}
+
 /// The components of a vector of literals, perhaps after an edit.
 fn components(tree: &Tree, vector: ExprId, edit: Option<(ExprId, &Term)>) -> Option<Vec<f64>> {
     if let Some((expr, term)) = edit
         && expr == vector
     {
-        let TermKind::Construct(_, arguments) = &term.kind else {
+        let TermKind::Apply(Op::Construct(_), arguments) = &term.kind else {
             return None;
         };
         return arguments.iter().map(|argument| value(argument, tree)).collect();
@@ -196,12 +195,12 @@ fn edited_number(tree: &Tree, expr: ExprId, edit: Option<(ExprId, &Term)>) -> Op
     match (&tree[expr].kind, edit) {
         (_, Some((own, term))) if own == expr => value(term, tree),
         (
-            ExprKind::Unary {
+            &ExprKind::Unary {
                 op: UnaryOp::Minus,
                 operand,
             },
             _,
-        ) => edited_number(tree, *operand, edit).map(|number| -number),
+        ) => edited_number(tree, operand, edit).map(|number| -number),
         _ => number(tree, expr),
     }
 }
@@ -212,7 +211,7 @@ fn value(term: &Term, tree: &Tree) -> Option<f64> {
         TermKind::Float(value) => Some(*value),
         TermKind::Int(value) => Some(f64::from(*value)),
         TermKind::Keep(expr) => number(tree, *expr),
-        TermKind::Unary(UnaryOp::Minus, operand) => value(operand, tree).map(|value| -value),
+        TermKind::Apply(Op::Unary(UnaryOp::Minus), operands) => value(&operands[0], tree).map(|value| -value),
         _ => None,
     }
 }
@@ -235,49 +234,50 @@ fn shape(tree: &Tree, expr: ExprId, depth: u32, edit: Option<(ExprId, &Term)>) -
     if let Some((own, term)) = edit
         && own == expr
     {
-        // The expression that a term keeps is the shader's own.
         return term_shape(tree, term, depth);
     }
-    let part = |operand: ExprId| shape(tree, operand, depth - 1, edit);
-    let list = |arguments: &[ExprId]| {
-        arguments
-            .iter()
-            .map(|&operand| part(operand))
-            .collect::<Vec<_>>()
-            .join(",")
-    };
-    let leaf = || tree.type_name(tree[expr].ty);
+    let ty = || tree.type_name(tree[expr].ty);
     match &tree[expr].kind {
         ExprKind::Literal(Literal { value, .. }) => literal(*value),
-        _ if depth == 0 => leaf(),
-        ExprKind::Unary { op, operand } => format!("{}{}", op.symbol(), part(*operand)),
-        ExprKind::Binary { op, left, right } => format!("({}{}{})", part(*left), op.symbol(), part(*right)),
-        ExprKind::Conditional { condition, yes, no } => list(&[*condition, *yes, *no]),
-        ExprKind::BuiltIn { function, arguments } => format!("{}({})", function.name(), list(arguments)),
-        ExprKind::Construct { arguments, .. } => format!("{}({})", leaf(), list(arguments)),
-        ExprKind::Swizzle { vector, components } => format!("{}.{}", part(*vector), components.name()),
-        _ => leaf(),
+        _ if depth == 0 => ty(),
+        kind => Op::parts(kind).map_or_else(ty, |(op, operands)| {
+            let operands = operands
+                .iter()
+                .map(|&operand| shape(tree, operand, depth - 1, edit));
+            shape_of(op, operands.collect(), ty())
+        }),
     }
 }
 
 fn term_shape(tree: &Tree, term: &Term, depth: u32) -> String {
-    let part = |operand: &Term| term_shape(tree, operand, depth - 1);
-    let list = |arguments: &[Term]| arguments.iter().map(part).collect::<Vec<_>>().join(",");
-    let leaf = || tree.type_name(term.ty);
+    let ty = || tree.type_name(term.ty);
     match &term.kind {
+        // The expression that a term keeps is the shader's own.
         TermKind::Keep(expr) => shape(tree, *expr, depth, None),
         TermKind::Float(value) => literal(Value::Float(*value)),
         TermKind::Int(value) => literal(Value::Int(*value)),
         TermKind::Bool(value) => value.to_string(),
         TermKind::Fitted(_) => "?".to_owned(),
-        _ if depth == 0 => leaf(),
-        TermKind::Unary(op, operand) => format!("{}{}", op.symbol(), part(operand)),
-        TermKind::Binary(op, left, right) => format!("({}{}{})", part(left), op.symbol(), part(right)),
-        TermKind::Conditional(parts) => list(parts.as_slice()),
-        TermKind::BuiltIn(function, arguments) => format!("{}({})", function.name(), list(arguments)),
-        TermKind::Construct(_, arguments) => format!("{}({})", leaf(), list(arguments)),
-        TermKind::Swizzle(vector, components) => format!("{}.{}", part(vector), components.name()),
-        _ => leaf(),
+        TermKind::Apply(op, operands) if depth > 0 => {
+            let operands = operands
+                .iter()
+                .map(|operand| term_shape(tree, operand, depth - 1));
+            shape_of(*op, operands.collect(), ty())
+        }
+        _ => ty(),
+    }
+}
+
+/// The shape of an operation that has this type.
+fn shape_of(op: Op, operands: Vec<String>, ty: String) -> String {
+    match op {
+        Op::Unary(op) => format!("{}{}", op.symbol(), operands[0]),
+        Op::Binary(op) => format!("({})", operands.join(op.symbol())),
+        Op::Conditional => operands.join(","),
+        Op::BuiltIn(function) => format!("{}({})", function.name(), operands.join(",")),
+        Op::Construct(_) => format!("{ty}({})", operands.join(",")),
+        Op::Swizzle(components) => format!("{}.{}", operands[0], components.name()),
+        _ => ty,
     }
 }
 

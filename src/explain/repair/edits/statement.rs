@@ -2,13 +2,14 @@
 //! assignments.
 
 use toyproof_glsl::tree::{
-    BinaryOp, Direction, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind, walk,
+    BinaryOp, Direction, ExprId, ExprKind, Scalar, Type, UnaryOp, VariableId, VariableKind, walk,
 };
 
-use super::super::edit::{Action, Candidate, Change, EditKind, Trials};
+use super::super::edit::{Action, Candidate, Change, EditKind};
 use super::super::shader::Shape;
-use super::super::term::{Term, TermKind, binary_type};
-use super::Writer;
+use super::super::term::{Op, Term, TermKind, binary_type};
+use super::{At, Writer};
+use crate::engine::tournament::Values;
 
 /// The costs: another operator of an assignment, another target, another value, deletions, moves,
 /// repetitions, copies to another place, and insertions of assignments of values, and of others.
@@ -98,7 +99,7 @@ impl Writer<'_> {
     fn change(&mut self, kind: EditKind, cost: u32, actions: Vec<(usize, Action)>) {
         self.all.push(Candidate {
             change: Change::Statements(actions),
-            trials: Trials::Once,
+            values: Values::Fixed,
             cost,
             kind,
         });
@@ -143,7 +144,7 @@ impl Writer<'_> {
                 let negated = Term::unary(UnaryOp::Minus, target.clone());
                 self.insert(at, None, &target, negated, ASSIGNMENT);
             }
-            if ty == Type::FLOAT && matches!(target.kind, TermKind::Member(..)) {
+            if ty == Type::FLOAT && matches!(target.kind, TermKind::Apply(Op::Member(_), _)) {
                 for number in [0.0, 1.0] {
                     self.insert(at, None, &target, Term::float(number), COMPOUND);
                 }
@@ -170,8 +171,7 @@ impl Writer<'_> {
 
     /// Inserts an assignment behind a statement.
     fn insert(&mut self, at: usize, op: Option<BinaryOp>, target: &Term, value: Term, cost: u32) {
-        let kind = TermKind::Assign(op, Box::new(target.clone()), Box::new(value));
-        let assignment = Action::After(Term::new(kind, target.ty));
+        let assignment = Action::After(Term::assign(op, target.clone(), value));
         self.change(EditKind::MissingStatement, cost, vec![(at, assignment)]);
     }
 
@@ -181,61 +181,53 @@ impl Writer<'_> {
         let mut all = vec![whole.clone()];
         if let Type::Struct(id) = whole.ty {
             let members = self.tree[id].members.iter().enumerate();
-            all.extend(
-                members
-                    .map(|(at, member)| Term::new(TermKind::Member(Box::new(whole.clone()), at), member.ty)),
-            );
+            all.extend(members.map(|(at, member)| Term::member(whole.clone(), at, member.ty)));
         }
         all
     }
 
     /// Edits of an assignment itself.
-    pub(super) fn assignment(&mut self, site: usize) {
+    pub(super) fn assignment(&mut self, at: At, op: Option<BinaryOp>, target: ExprId, value: ExprId) {
         use BinaryOp::{Add, Divide, Multiply, Subtract};
-        let tree = self.tree;
-        let shader = self.shader;
-        let expr = shader.sites[site].exprs[0];
-        let ExprKind::Assign { op, target, value } = tree[expr].kind else {
-            return;
-        };
-        let ty = tree[expr].ty;
-        let assign = |op: Option<BinaryOp>, target: Term| {
-            let value = Box::new(Term::keep(tree, value));
-            Term::new(TermKind::Assign(op, Box::new(target), value), ty)
-        };
+        let (tree, source) = (self.tree, self.shader.source);
+        let [own_target, own_value] = [target, value].map(|expr| self.keep(expr));
         for other in [None, Some(Add), Some(Multiply), Some(Subtract), Some(Divide)] {
             let fits = match other {
-                None => tree[value].ty == ty,
-                Some(op) => binary_type(op, ty, tree[value].ty) == Some(ty),
+                None => own_value.ty == at.ty,
+                Some(op) => binary_type(op, at.ty, own_value.ty) == Some(at.ty),
             };
             if other != op && fits {
-                self.replace(
-                    site,
-                    EditKind::Operator,
-                    OPERATOR,
-                    assign(other, Term::keep(tree, target)),
-                );
+                let term = Term::assign(other, own_target.clone(), own_value.clone());
+                self.replace(at, EditKind::Operator, OPERATOR, term);
             }
         }
         // A value of another type, such as a color in place of a number.
-        if let Some(op) = op.filter(|_| tree[value].ty != ty) {
-            for other in self.values(shader.sites[site].statement, ty) {
-                let target = Box::new(Term::keep(tree, target));
-                let term = Term::new(TermKind::Assign(Some(op), target, Box::new(other)), ty);
-                self.replace(site, EditKind::Variable, VALUE, term);
+        if op.is_some() && own_value.ty != at.ty {
+            for other in self.values(at.statement, at.ty) {
+                self.replace(
+                    at,
+                    EditKind::Variable,
+                    VALUE,
+                    Term::assign(op, own_target.clone(), other),
+                );
             }
         }
-        let old = shader.text(tree[target].at.span);
-        for other in self.values(shader.sites[site].statement, tree[target].ty) {
-            let is_variable = |term: &Term| match &term.kind {
-                TermKind::Variable(id) => {
-                    matches!(tree[*id].kind, VariableKind::Local | VariableKind::Parameter(_))
-                }
-                TermKind::Member(structure, _) => matches!(structure.kind, TermKind::Variable(_)),
-                _ => false,
-            };
-            if is_variable(&other) && other.text(tree, shader.source, 0) != old {
-                self.replace(site, EditKind::Variable, TARGET, assign(op, other));
+        let old = self.shader.text(tree[target].at.span);
+        let is_variable = |term: &Term| match &term.kind {
+            TermKind::Variable(id) => {
+                matches!(tree[*id].kind, VariableKind::Local | VariableKind::Parameter(_))
+            }
+            TermKind::Apply(Op::Member(_), operands) => matches!(operands[0].kind, TermKind::Variable(_)),
+            _ => false,
+        };
+        for other in self.values(at.statement, own_target.ty) {
+            if is_variable(&other) && other.text(tree, source, 0) != old {
+                self.replace(
+                    at,
+                    EditKind::Variable,
+                    TARGET,
+                    Term::assign(op, other, own_value.clone()),
+                );
             }
         }
     }

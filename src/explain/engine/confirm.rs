@@ -1,21 +1,21 @@
-//! Confirms repairs: the edited text is checked as if its author had written it, in a second frame and in the
-//! first.
+//! Confirms hypotheses on whole images: the edited text is checked as if its author had written it, in the frame of
+//! the check and in a second one; and an image that a hypothesis predicts is compared by the rules of the algorithm
+//! check.
 
 use std::sync::OnceLock;
 use std::time::Instant;
 
 use toyproof_diagnostic::{Deadline, Edit, File, Files, Fix, Span};
-use toyproof_eval::Fault;
+use toyproof_eval::{Fault, Places};
 use toyproof_glsl::{self as glsl, Checked};
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Image, Rgb8Image};
 use toyproof_lint::Lints;
 use toyproof_verify::bounds::MIN_IMAGE_ITERATIONS;
-use toyproof_verify::{Case, CheckResults, Expected, Ruling, Verdict, verify_within};
-
-use super::edit::EditKind;
-use super::search::Before;
-use super::{Repair, SearchOptions};
-use crate::known::KnownMistake;
+use toyproof_verify::compare::{self, CheckSummary, Mixed, PixelStatus, Undefined};
+use toyproof_verify::{
+    BandReference, Case, CheckEvidence, CheckResult, CheckResults, Checks, Expected, NumberType, Ruling,
+    Subject, Verdict, verify_within,
+};
 
 /// The second frame: another size and shape of the image, and another time if the scene moves.
 const OTHER_SIZE: [u32; 2] = [132, 100];
@@ -24,61 +24,83 @@ const OTHER_TIME: f32 = 1.3;
 /// The largest number of samples of its image, all pixels together.
 const MAX_SAMPLES: u32 = 1 << 19;
 
-/// Confirms the repairs of one shader.
-pub(super) struct Judge<'a> {
-    case: &'a Case<'a>,
-    expected: &'a Expected,
-    options: SearchOptions<'a>,
-    before: Before<'a>,
-    deadline: Instant,
-    /// The second frame and its reference.
+/// The largest share of the wrong pixels that may differ under a hypothesis. An explanation that leaves more
+/// is an accident where few pixels are wrong at all.
+const MAX_UNEXPLAINED_SHARE: f64 = 0.05;
+
+/// Confirms what may explain the image of one shader.
+pub(crate) struct Confirmer<'a> {
+    pub(crate) case: &'a Case<'a>,
+    pub(crate) expected: &'a Expected,
+    /// The algorithm check of the shader itself.
+    pub(crate) before: &'a CheckResult,
+    /// The faults that were observed, each at one place.
+    faults: &'a [Fault],
+    checks: &'a Checks,
+    pub(crate) deadline: Instant,
+    /// The second frame and its reference; `None` if it cannot be rendered there.
     other: OnceLock<Option<(Frame, Expected)>>,
 }
 
-impl<'a> Judge<'a> {
-    pub(super) fn new(
-        case: &'a Case<'a>,
-        expected: &'a Expected,
-        options: SearchOptions<'a>,
-        before: Before<'a>,
-        deadline: Instant,
-    ) -> Self {
-        Self {
-            case,
-            expected,
-            options,
-            before,
+/// The image of an edited shader that is right.
+pub(crate) struct Confirmation {
+    /// The number of pixels that agree with the reference, and of those that were compared.
+    pub(crate) agreeing: u64,
+    pub(crate) pixels: u64,
+    /// Whether their means agree, because the shader has its own random numbers.
+    pub(crate) by_means: bool,
+    /// The image, as displayed.
+    pub(crate) image: Rgb8Image,
+}
+
+impl<'a> Confirmer<'a> {
+    /// `None` without a reference.
+    pub(crate) fn new(subject: Subject<'a>, checks: &'a Checks, deadline: Instant) -> Option<Self> {
+        Some(Self {
+            case: subject.case,
+            expected: subject.case.expected?,
+            before: subject.results.algorithm.as_ref()?,
+            faults: &subject.results.faults,
+            checks,
             deadline,
             other: OnceLock::new(),
-        }
+        })
     }
 
-    /// Returns the repair if the edited shader is right in both frames, and no pixel depends on undefined
-    /// behavior that did not before. `iterations` bounds the loop iterations of most of its pixels.
-    pub(super) fn confirm(&self, fix: Fix, kinds: &[EditKind], iterations: u32) -> Option<Repair> {
-        let (_, checked) = self.edited(&fix)?;
+    // Edited texts.
+
+    /// The shader with another text, if it is valid.
+    pub(crate) fn checked(&self, text: &str, options: glsl::Options) -> Option<Checked> {
+        let mut files = Files::default();
+        let file = files.add(File::new("<repair>", text));
+        let options = glsl::Options {
+            channels: self.case.checked.channels.map(Some),
+            deadline: Deadline::after(self.deadline.saturating_duration_since(Instant::now())),
+            ..options
+        };
+        glsl::check(&files, file, &options).ok()
+    }
+
+    /// Confirms an edited shader if it is right in both frames, and no pixel depends on undefined behavior that
+    /// did not before. `iterations` bounds the loop iterations of most of its pixels.
+    pub(crate) fn edited(&self, checked: &Checked, iterations: u32) -> Option<Confirmation> {
         let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
-        let (results, ruling) = self.verified(&checked, self.case.frame, self.expected, iterations)?;
+        let (results, ruling) = self.right(checked, self.case.frame, self.expected, iterations)?;
         let summary = &results.algorithm.as_ref()?.summary;
-        if self.adds_fault(
-            &results.faults,
-            summary.undefined > self.before.check.summary.undefined,
-        ) {
+        if self.adds_fault(&results.faults, summary.undefined > self.before.summary.undefined) {
             return None;
         }
         let by_means = ruling.reason.compares_means();
         // Means are compared over many sets of random numbers; a second frame would add little evidence.
         if !by_means {
             let (frame, expected) = self.other.get_or_init(|| self.other_frame()).as_ref()?;
-            let (results, _) = self.verified(&checked, frame, expected, iterations)?;
+            let (results, _) = self.right(checked, frame, expected, iterations)?;
             if self.adds_fault(&results.faults, false) {
                 return None;
             }
         }
         let differing = if by_means { 0 } else { summary.differing };
-        Some(Repair {
-            fix,
-            mistake: mistake(kinds),
+        Some(Confirmation {
             agreeing: summary.pixels - differing,
             pixels: summary.pixels,
             by_means,
@@ -86,41 +108,27 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// The shader with the edits, if it is valid.
-    pub(super) fn edited(&self, fix: &Fix) -> Option<(String, Checked)> {
-        let text = apply(self.options.source, fix)?;
-        let mut files = Files::default();
-        let file = files.add(File::new("<repair>", text.as_str()));
-        let options = glsl::Options {
-            lenient: self.options.lenient,
-            channels: self.case.checked.channels.map(Some),
-            deadline: Deadline::after(self.deadline.saturating_duration_since(Instant::now())),
-            ..glsl::Options::default()
-        };
-        let checked = glsl::check(&files, file, &options).ok()?;
-        Some((text, checked))
-    }
-
-    /// The results of the checks, if nothing speaks against the algorithm.
-    fn verified(
+    /// The results of the checks in a frame, if nothing speaks against the algorithm there.
+    fn right(
         &self,
         checked: &Checked,
         frame: &Frame,
         expected: &Expected,
         max_iterations: u32,
     ) -> Option<(CheckResults, Ruling)> {
+        let lints = &Lints::default();
         let case = Case {
             checked,
-            lints: &Lints::default(),
+            lints,
             expected: Some(expected),
             frame,
             ..*self.case
         };
         let verified = verify_within(&case, max_iterations, self.deadline).ok()?;
         let ruling = verified.ruling();
-        let is_right = matches!(ruling.verdict, Verdict::Correct | Verdict::Unstable);
         // There is no precision check where double precision could not be evaluated.
-        (is_right && verified.results.precision.is_some()).then_some((verified.results, ruling))
+        (is_right(ruling.verdict) && verified.results.precision.is_some())
+            .then_some((verified.results, ruling))
     }
 
     /// Whether the edited shader has more faults of a kind than the shader: reads of elements that do not
@@ -135,11 +143,10 @@ impl<'a> Judge<'a> {
                 Fault::LonelyDerivative => false,
                 _ => excludes_more && fault.is_undefined(),
             };
-            is_serious && count(faults, fault) > count(self.before.faults, fault)
+            is_serious && count(faults, fault) > count(self.faults, fault)
         })
     }
 
-    /// None if the reference cannot be rendered there.
     fn other_frame(&self) -> Option<(Frame, Expected)> {
         let mut frame = self.case.frame.clone();
         frame.size = OTHER_SIZE;
@@ -152,10 +159,98 @@ impl<'a> Judge<'a> {
         let expected = self.expected.in_frame(&frame)?;
         Some((frame, expected))
     }
+
+    // Predicted images.
+
+    /// Compares all pixels of an image, rendered at their places, with the expected image of a frame. Returns the
+    /// algorithm check, if the shader is right with it.
+    pub(crate) fn rendered(
+        &self,
+        expected: &Expected,
+        frame: &Frame,
+        render: impl Fn(&Places) -> Option<Image>,
+    ) -> Option<CheckSummary> {
+        let [width, height] = frame.size;
+        let mut mixed = Mixed::of(u64::from(width) * u64::from(height));
+        let mut check = CheckResult::default();
+        for rows in frame.bands() {
+            let band = expected.rows(&rows).ok()?;
+            let mut places = Places::spread(frame.size, frame.size);
+            places.rows = places.rows[rows.start as usize..rows.end as usize].to_vec();
+            let actual = render(&places)?;
+            let undefined = Undefined {
+                pixels: &vec![false; actual.pixels().len()],
+                substituted: Some(&[]),
+                in_reference: &band.undefined,
+            };
+            let derives = self.case.checked.takes_derivatives();
+            let reference = BandReference {
+                expected,
+                rows: &rows,
+                number_type: NumberType::Double,
+                derives,
+            };
+            let statuses = compare::algorithm(
+                &band.image,
+                &actual,
+                &undefined,
+                &reference,
+                &mut mixed,
+                |_, _| None,
+            );
+            check.extend(&band.image, &actual, &statuses, rows.start);
+        }
+        self.accepted(check.with_regions(width))
+    }
+
+    /// Compares the shader's image with another one, which a hypothesis expects; `agrees` decides for each pixel
+    /// that is defined. Returns the algorithm check, if the shader is right with it.
+    pub(crate) fn predicted(
+        &self,
+        other: &Image,
+        actual: &Image,
+        agrees: impl Fn(usize) -> bool,
+    ) -> Option<CheckSummary> {
+        let statuses = self
+            .before
+            .statuses
+            .iter()
+            .enumerate()
+            .map(|(at, &status)| match status {
+                PixelStatus::Undefined => PixelStatus::Undefined,
+                _ if agrees(at) => PixelStatus::Agrees,
+                PixelStatus::Agrees => PixelStatus::Differs,
+                status => status,
+            });
+        let statuses: Vec<_> = statuses.collect();
+        let mut check = CheckResult::default();
+        check.extend(other, actual, &statuses, 0);
+        self.accepted(check.with_regions(self.case.frame.size[0]))
+    }
+
+    /// Accepts a check with which the shader is not wrong, and almost no wrong pixel is left.
+    fn accepted(&self, check: CheckResult) -> Option<CheckSummary> {
+        let algorithm = check.summary;
+        let checks = Checks {
+            algorithm: Some(algorithm.clone()),
+            ..self.checks.clone()
+        };
+        let evidence = CheckEvidence {
+            checks,
+            ..CheckEvidence::default()
+        };
+        let most = MAX_UNEXPLAINED_SHARE * self.before.summary.differing as f64;
+        (is_right(Ruling::from(evidence).verdict) && algorithm.differing as f64 <= most).then_some(algorithm)
+    }
+}
+
+/// Whether nothing speaks against the algorithm.
+fn is_right(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Correct | Verdict::Unstable)
 }
 
 /// The text after all edits, which are sorted and do not overlap; `None` if they do.
-pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
+pub(crate) fn apply(source: &str, fix: &Fix) -> Option<String> {
     let mut text = String::with_capacity(source.len() + 64);
     let mut end = 0;
     for edit in &fix.edits {
@@ -169,7 +264,7 @@ pub(super) fn apply(source: &str, fix: &Fix) -> Option<String> {
 
 /// The edits of a text, and those of the text that they result in, as edits of the first; `None` if they
 /// overlap.
-pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
+pub(crate) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
     let mut edits = first.edits.clone();
     for edit in &second.edits {
         // How much longer the first edits in front of this one, and inside of it, make the text.
@@ -203,14 +298,6 @@ pub(super) fn compose(first: &Fix, second: &Fix) -> Option<Fix> {
         message: format!("{}, and {}", first.message, second.message),
         edits,
     })
-}
-
-/// The mistake that edits of these kinds repair.
-fn mistake(kinds: &[EditKind]) -> KnownMistake {
-    match kinds {
-        [only] => only.mistake(),
-        _ => EditKind::Two.mistake(),
-    }
 }
 
 #[cfg(test)]
@@ -254,28 +341,16 @@ mod tests {
             .with_timeout(timeout);
         let before = verify(None, &case).unwrap();
         assert_eq!(before.ruling().verdict, Verdict::Wrong);
-        let before = before.results;
-        let options = SearchOptions {
-            source: shader,
-            lenient: false,
-            budget: 1.0,
-            donors: None,
-        };
-        let before = Before {
-            check: before.algorithm.as_ref().unwrap(),
-            faults: &before.faults,
-            compares_means: false,
-        };
-        let judge = Judge::new(&case, &expected, options, before, Instant::now() + timeout);
+        let checks = before.results.checks();
+        let deadline = Instant::now() + timeout;
+        let confirmer = Confirmer::new(before.subject().unwrap(), &checks, deadline).unwrap();
         let start = shader.find(old).unwrap() as u32;
-        let span = Span::new(
-            checked.tree[checked.main_image].at.span.file,
-            start,
-            start + old.len() as u32,
-        );
-        judge
-            .confirm(Fix::new("edit", span, new), &[EditKind::Number], 0)
-            .is_some()
+        let file = checked.tree[checked.main_image].at.span.file;
+        let fix = Fix::new("edit", Span::new(file, start, start + old.len() as u32), new);
+        let edited = confirmer
+            .checked(&apply(shader, &fix).unwrap(), glsl::Options::default())
+            .unwrap();
+        confirmer.edited(&edited, 0).is_some()
     }
 
     #[test]

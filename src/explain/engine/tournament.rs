@@ -1,0 +1,207 @@
+//! The tournament of the hypotheses of a field: all of them are tried at the first probes side by side, and those
+//! that make progress there are tested at all probes. Numbers are given or fitted.
+
+use super::fit::{Fit, fitted, roundings};
+use super::probes::{Outcome, Probes};
+use super::{Colors, Field, Numbers, Run, one};
+
+/// The values that a hypothesis tries for its numbers, each with the cost that it then has.
+#[derive(Debug, Clone)]
+pub(crate) enum Values {
+    /// It has no number to be found.
+    Fixed,
+    /// Some numbers, and if it may be fitted, how.
+    Tried {
+        values: Vec<(f64, u32)>,
+        fit: Option<(u32, Fit)>,
+    },
+}
+
+/// A hypothesis of the field in the tournament.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Entrant<'a> {
+    pub(crate) values: &'a Values,
+    pub(crate) cost: u32,
+}
+
+/// A hypothesis that was tried, by its place in the field, with its numbers and their cost.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Finalist {
+    pub(crate) candidate: usize,
+    pub(crate) numbers: Numbers,
+    pub(crate) cost: u32,
+    pub(crate) outcome: Outcome,
+}
+
+/// A candidate of the field with numbers, and their cost.
+#[derive(Debug, Clone, Copy)]
+struct Attempt {
+    candidate: usize,
+    numbers: Numbers,
+    cost: u32,
+}
+
+/// Tries the hypotheses of a field, and returns those that pass or make progress.
+pub(crate) fn play(field: &mut dyn Field, entrants: &[Entrant], probes: &Probes) -> Vec<Finalist> {
+    let passes = vec![false; entrants.len()];
+    let mut tournament = Tournament {
+        field,
+        entrants,
+        probes,
+        found: Vec::new(),
+        passes,
+    };
+    tournament.given_numbers();
+    tournament.fitted_numbers();
+    tournament.found
+}
+
+/// Tries hypotheses without numbers, and returns those that pass, with their outcomes.
+pub(crate) fn passing(field: &mut dyn Field, count: usize, probes: &Probes) -> Vec<(usize, Outcome)> {
+    let entrants = vec![
+        Entrant {
+            values: &Values::Fixed,
+            cost: 0
+        };
+        count
+    ];
+    let finalists = play(field, &entrants, probes).into_iter();
+    let passing = finalists.filter(|finalist| finalist.outcome.passes);
+    passing
+        .map(|finalist| (finalist.candidate, finalist.outcome))
+        .collect()
+}
+
+struct Tournament<'a> {
+    field: &'a mut dyn Field,
+    entrants: &'a [Entrant<'a>],
+    probes: &'a Probes,
+    found: Vec<Finalist>,
+    /// Whether each candidate passes with some number.
+    passes: Vec<bool>,
+}
+
+impl Tournament<'_> {
+    /// Tries the hypotheses that have no number, or whose numbers are given.
+    fn given_numbers(&mut self) {
+        let mut attempts = Vec::new();
+        for (candidate, entrant) in self.entrants.iter().enumerate() {
+            let attempt = |numbers, cost| Attempt {
+                candidate,
+                numbers,
+                cost,
+            };
+            match entrant.values {
+                Values::Fixed => attempts.push(attempt(Numbers::default(), entrant.cost)),
+                Values::Tried { values, .. } => {
+                    attempts.extend(values.iter().map(|&(value, cost)| attempt(one(value), cost)));
+                }
+            }
+        }
+        for (attempt, colors) in self.screened(attempts) {
+            if let Some(outcome) = self.outcome(attempt, colors) {
+                self.record(attempt, outcome);
+            }
+        }
+    }
+
+    /// Fits the numbers of the hypotheses that allow it, and do not pass with a given one.
+    fn fitted_numbers(&mut self) {
+        let fits = self
+            .entrants
+            .iter()
+            .enumerate()
+            .filter(|&(at, _)| !self.passes[at]);
+        let fits = fits.filter_map(|(at, entrant)| match entrant.values {
+            Values::Tried {
+                fit: Some((cost, fit)),
+                ..
+            } => Some((*cost, (at, *fit))),
+            _ => None,
+        });
+        let (costs, fits): (Vec<u32>, Vec<(usize, Fit)>) = fits.unzip();
+        let found = fitted(self.probes, self.field, &fits);
+        let attempt = |(fit, numbers): (usize, Numbers)| Attempt {
+            candidate: fits[fit].0,
+            numbers,
+            cost: costs[fit],
+        };
+        for (attempt, colors) in self.screened(found.into_iter().map(attempt).collect()) {
+            if self.passes[attempt.candidate] {
+                continue;
+            }
+            let Some(exact) = self.outcome(attempt, colors) else {
+                continue;
+            };
+            // An author wrote the shortest number that passes.
+            let shorter = roundings(&attempt.numbers, self.probes.are_means()).into_iter();
+            let shorter = shorter.map(|numbers| Attempt { numbers, ..attempt });
+            let is_found = exact.passes
+                && shorter.into_iter().any(|shorter| {
+                    let outcome = self.outcome(shorter, Vec::new());
+                    outcome.is_some_and(|outcome| self.record(shorter, outcome))
+                });
+            if !is_found {
+                self.record(attempt, exact);
+            }
+        }
+    }
+
+    /// The attempts that make progress at the first probes, with their colors there.
+    fn screened(&mut self, attempts: Vec<Attempt>) -> Vec<(Attempt, Colors)> {
+        let probes = 0..self.probes.screening();
+        let runs: Vec<Run> = attempts
+            .iter()
+            .map(|attempt| attempt.run(probes.clone()))
+            .collect();
+        let colors = self.field.colors(self.probes, &runs);
+        let may_pass_at_once = self.probes.are_means() || self.probes.grid.is_some();
+        let is_promising = |colors: &Colors| {
+            let outcome = self.probes.outcome(colors);
+            outcome.is_some_and(|outcome| outcome.is_progress() || may_pass_at_once && outcome.passes)
+        };
+        let screened = attempts.into_iter().zip(colors);
+        screened
+            .filter_map(|(attempt, colors)| Some((attempt, colors.filter(&is_promising)?)))
+            .collect()
+    }
+
+    /// Tests an attempt at all probes, or the first if it fails there. Some of its colors are known.
+    fn outcome(&mut self, attempt: Attempt, known: Colors) -> Option<Outcome> {
+        self.probes.test(|probes| {
+            if probes.start == 0 && known.len() == probes.end {
+                return Some(known.clone());
+            }
+            self.field.run(self.probes, attempt.run(probes))
+        })
+    }
+
+    /// Keeps an attempt that passes or makes progress, and returns whether it passes.
+    fn record(&mut self, attempt: Attempt, outcome: Outcome) -> bool {
+        let Attempt {
+            candidate,
+            numbers,
+            cost,
+        } = attempt;
+        self.passes[candidate] |= outcome.passes;
+        if outcome.passes || outcome.is_progress() {
+            self.found.push(Finalist {
+                candidate,
+                numbers,
+                cost,
+                outcome,
+            });
+        }
+        outcome.passes
+    }
+}
+
+impl Attempt {
+    fn run(&self, probes: std::ops::Range<usize>) -> Run {
+        Run {
+            candidate: Some(self.candidate),
+            numbers: self.numbers,
+            probes,
+        }
+    }
+}
