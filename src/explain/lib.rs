@@ -3,9 +3,9 @@
 //!
 //! A wrong image is compared with those of classic mistakes ([`known`]) and with the expected image as a
 //! whole ([`whole_image`]); edits of the shader's text are tried until its image is the expected one
-//! ([`repair`]). All three are hypotheses of one search engine (`engine`): its probes, its tournament, its fit of
-//! numbers, its confirmation on whole images and its budget of work. An imprecise image is traced to the operation
-//! that loses the digits.
+//! ([`repair`]). All three are hypotheses of one search engine (`engine`): its probes, its tournament, its
+//! fit of numbers, its confirmation on whole images and its budget of work. An imprecise image is traced to
+//! the operation that loses the digits.
 //!
 //! # Example
 //!

@@ -342,8 +342,9 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether known mistakes are reported beside the repairs that were found. An edit after which whole images are right
-/// in all frames beats two mistakes that explain most pixels of one; a single mistake names what the edit corrects.
+/// Whether known mistakes are reported beside the repairs that were found. An edit after which whole images
+/// are right in all frames beats two mistakes that explain most pixels of one; a single mistake names what
+/// the edit corrects.
 fn is_preferred(mistake: &Diagnosis, search: Option<&SearchResult>) -> bool {
     let first = search.and_then(|search| search.repairs.first());
     let is_repaired = first.is_some_and(|repair| repair.is_complete() && repair.is_single());

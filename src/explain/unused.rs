@@ -21,7 +21,7 @@ impl Unused {
     /// Compares all passes of a shader with those of its reference, as far as they are executed.
     #[must_use]
     pub fn new(shader: &[&Checked], reference: &[&Checked]) -> Self {
-        let (own, expected) = (Uses::of(shader), Uses::of(reference));
+        let (own, expected) = (Uses::new(shader), Uses::new(reference));
         let mut inputs = expected.inputs;
         inputs.retain(|name| !own.inputs.contains(name));
         let is_uncalled = |name: &str| own.defined.contains(name) && !own.calls.contains_key(name);
@@ -46,7 +46,7 @@ struct Uses {
 }
 
 impl Uses {
-    fn of(passes: &[&Checked]) -> Self {
+    fn new(passes: &[&Checked]) -> Self {
         let mut uses = Self::default();
         for checked in passes {
             let tree = &checked.tree;

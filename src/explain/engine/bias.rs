@@ -116,8 +116,8 @@ const MAX_REMAINING_BIAS: f64 = 0.25;
 /// The lower bound of a pixel's standard deviation in weights, for the noise of the mutant's own image.
 const MIN_STANDARD_DEVIATION: f64 = 0.01;
 
-/// Returns the share of the squared bias that remains after a mistake's change is subtracted, which changes each
-/// pixel by this; `None` if it is not that mistake.
+/// Returns the share of the squared bias that remains after a mistake's change is subtracted, which changes
+/// each pixel by this; `None` if it is not that mistake.
 pub(crate) fn remaining_bias(pixels: &[NoisyPixel], changes: impl Iterator<Item = [f64; 3]>) -> Option<f64> {
     let [mut product, mut square, mut variance, mut bias, mut remaining] = [0.0; 5];
     for (pixel, changes) in pixels.iter().zip(changes) {

@@ -1,5 +1,5 @@
-//! Budgets of work: instructions executed times chunks of pixels, and a price for compiling. Work is counted, not
-//! timed, so that a result depends neither on the machine nor on its load.
+//! Budgets of work: instructions executed times chunks of pixels, and a price for compiling. Work is counted,
+//! not timed, so that a result depends neither on the machine nor on its load.
 
 use std::time::{Duration, Instant};
 

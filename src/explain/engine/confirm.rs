@@ -1,6 +1,6 @@
-//! Confirms hypotheses on whole images: the edited text is checked as if its author had written it, in the frame of
-//! the check and in a second one; and an image that a hypothesis predicts is compared by the rules of the algorithm
-//! check.
+//! Confirms hypotheses on whole images: the edited text is checked as if its author had written it, in the
+//! frame of the check and in a second one; and an image that a hypothesis predicts is compared by the rules
+//! of the algorithm check.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -81,8 +81,8 @@ impl<'a> Confirmer<'a> {
         glsl::check(&files, file, &options).ok()
     }
 
-    /// Confirms an edited shader if it is right in both frames, and no pixel depends on undefined behavior that
-    /// did not before. `iterations` bounds the loop iterations of most of its pixels.
+    /// Confirms an edited shader if it is right in both frames, and no pixel depends on undefined behavior
+    /// that did not before. `iterations` bounds the loop iterations of most of its pixels.
     pub(crate) fn edited(&self, checked: &Checked, iterations: u32) -> Option<Confirmation> {
         let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
         let (results, ruling) = self.right(checked, self.case.frame, self.expected, iterations)?;
@@ -162,8 +162,8 @@ impl<'a> Confirmer<'a> {
 
     // Predicted images.
 
-    /// Compares all pixels of an image, rendered at their places, with the expected image of a frame. Returns the
-    /// algorithm check, if the shader is right with it.
+    /// Compares all pixels of an image, rendered at their places, with the expected image of a frame. Returns
+    /// the algorithm check, if the shader is right with it.
     pub(crate) fn rendered(
         &self,
         expected: &Expected,
@@ -203,8 +203,8 @@ impl<'a> Confirmer<'a> {
         self.accepted(check.with_regions(width))
     }
 
-    /// Compares the shader's image with another one, which a hypothesis expects; `agrees` decides for each pixel
-    /// that is defined. Returns the algorithm check, if the shader is right with it.
+    /// Compares the shader's image with another one, which a hypothesis expects; `agrees` decides for each
+    /// pixel that is defined. Returns the algorithm check, if the shader is right with it.
     pub(crate) fn predicted(
         &self,
         other: &Image,

@@ -1,5 +1,5 @@
-//! Fits numbers of hypotheses to the wrong pixels by the secant method (Press et al., Numerical Recipes, §9.2), for
-//! hypotheses side by side.
+//! Fits numbers of hypotheses to the wrong pixels by the secant method (Press et al., Numerical Recipes,
+//! §9.2), for hypotheses side by side.
 
 use std::ops::Range;
 
@@ -16,9 +16,49 @@ const CONVERGED: f64 = 1e-10;
 /// The largest number of pixels from which a fit is started.
 const MAX_STARTS: usize = 2;
 
-/// The number of decimal digits of a fitted number, and of one that is fitted to means.
-const DIGITS: usize = 8;
-const DIGITS_OF_MEANS: usize = 3;
+/// How exactly fitted numbers are known.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Precision {
+    /// The number of decimal digits.
+    digits: usize,
+    /// The largest relative difference of a shorter number that an author may have written.
+    tolerance: f64,
+}
+
+impl Precision {
+    pub(crate) const EXACT: Self = Self {
+        digits: 8,
+        tolerance: 2e-3,
+    };
+    pub(crate) const OF_MEANS: Self = Self {
+        digits: 3,
+        tolerance: 0.5,
+    };
+
+    /// The precision of numbers that are fitted to these probes.
+    pub(crate) fn at(probes: &Probes) -> Self {
+        if probes.are_means() {
+            Self::OF_MEANS
+        } else {
+            Self::EXACT
+        }
+    }
+
+    /// The short decimals next to fitted numbers, the shortest first.
+    pub(crate) fn shorter(self, numbers: &Numbers) -> Vec<Numbers> {
+        let mut all: Vec<Numbers> = Vec::new();
+        for digits in 1..self.digits {
+            let rounded = numbers.map(|number| rounded(number, digits));
+            let is_near =
+                |(rounded, number): (&f64, &f64)| (rounded - number).abs() <= self.tolerance * number.abs();
+            let is_same = |last: &Numbers| last.map(f64::to_bits) == rounded.map(f64::to_bits);
+            if rounded.iter().zip(numbers).all(is_near) && !all.last().is_some_and(is_same) {
+                all.push(rounded);
+            }
+        }
+        all
+    }
+}
 
 /// The multiples of a number of the scene among which the search for its value starts.
 const MULTIPLES: [f64; 11] = [0.0, 0.1, 0.25, 0.5, 0.75, 1.0, 1.35, 2.0, 4.0, 16.0, 64.0];
@@ -120,8 +160,8 @@ impl Search {
     }
 }
 
-/// Returns numbers that make some wrong pixel right, each with the index of its fit. The fits are given with their
-/// candidates.
+/// Returns numbers that make some wrong pixel right, each with the index of its fit. The fits are given with
+/// their candidates.
 pub(crate) fn fitted(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]) -> Vec<(usize, Numbers)> {
     let mut searches = if probes.are_means() {
         starts_of_means(probes, field, fits)
@@ -146,11 +186,7 @@ pub(crate) fn fitted(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit
             search.step(numbers, values);
         }
     }
-    let digits = if probes.are_means() {
-        DIGITS_OF_MEANS
-    } else {
-        DIGITS
-    };
+    let Precision { digits, .. } = Precision::at(probes);
     let zeros = searches
         .iter()
         .filter_map(|search| Some((search.fit, search.zero()?.map(|number| rounded(number, digits)))));
@@ -294,26 +330,6 @@ fn starts_of_means(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]
     searches
 }
 
-/// The short decimals next to fitted numbers, the shortest first. A number that was fitted to means is known
-/// less exactly.
-pub(crate) fn roundings(numbers: &Numbers, are_of_means: bool) -> Vec<Numbers> {
-    let (digits, tolerance) = if are_of_means {
-        (DIGITS_OF_MEANS, 0.5)
-    } else {
-        (DIGITS, 2e-3)
-    };
-    let mut all: Vec<Numbers> = Vec::new();
-    for digits in 1..digits {
-        let rounded = numbers.map(|number| rounded(number, digits));
-        let is_near = |(rounded, number): (&f64, &f64)| (rounded - number).abs() <= tolerance * number.abs();
-        let is_same = |last: &Numbers| last.map(f64::to_bits) == rounded.map(f64::to_bits);
-        if rounded.iter().zip(numbers).all(is_near) && !all.last().is_some_and(is_same) {
-            all.push(rounded);
-        }
-    }
-    all
-}
-
 /// Rounds a number to some decimal digits.
 pub(crate) fn rounded(number: f64, digits: usize) -> f64 {
     format!("{number:.*e}", digits.saturating_sub(1))
@@ -344,9 +360,12 @@ mod tests {
     fn a_zero_is_found_and_rounded_as_an_author_would_write_it() {
         let zero = zero(|x| x * x - 0.49, [1.0, 1.001]).unwrap();
         assert!((zero - 0.7).abs() < 1e-9);
-        assert_eq!(roundings(&one(zero), false), [one(0.7)]);
-        assert_eq!(roundings(&one(1.0 / 3.0), false).last(), Some(&one(0.333_333_3)));
-        assert_eq!(roundings(&one(0.47), true), [one(0.5), one(0.47)]);
+        assert_eq!(Precision::EXACT.shorter(&one(zero)), [one(0.7)]);
+        assert_eq!(
+            Precision::EXACT.shorter(&one(1.0 / 3.0)).last(),
+            Some(&one(0.333_333_3))
+        );
+        assert_eq!(Precision::OF_MEANS.shorter(&one(0.47)), [one(0.5), one(0.47)]);
         assert_eq!(rounded(0.1 + 0.2, 12), 0.3);
     }
 

@@ -1,8 +1,8 @@
-//! The search engine: one way to find what explains a wrong image, whether it is a known mistake, a difference of
-//! the whole image, or an edit of the text.
+//! The search engine: one way to find what explains a wrong image, whether it is a known mistake, a
+//! difference of the whole image, or an edit of the text.
 //!
-//! Hypotheses are rendered at a few [`probes`], whose colors they must have; a [`tournament`] rejects most of them
-//! at the first probes, and a [`fit`] finds their numbers. What is left is confirmed on whole images
+//! Hypotheses are rendered at a few [`probes`], whose colors they must have; a [`tournament`] rejects most of
+//! them at the first probes, and a [`fit`] finds their numbers. What is left is confirmed on whole images
 //! ([`confirm`]). Work is counted, see [`budget`], so that results do not depend on the machine.
 
 pub(crate) mod bias;

@@ -1,9 +1,10 @@
-//! Probes: the pixels at which hypotheses are tried, each with the colors that are expected there. Either a grid of
-//! pixels that is the same for all images of a frame, so that what is rendered at it can be kept; or a few pixels
-//! that represent the whole image, wrong ones of every kind and right ones, the most significant first.
+//! Probes: the pixels at which hypotheses are tried, each with the colors that are expected there. Either a
+//! grid of pixels that is the same for all images of a frame, so that what is rendered at it can be kept; or
+//! a few pixels that represent the whole image, wrong ones of every kind and right ones, the most significant
+//! first.
 //!
-//! If a shader has its own random numbers, no pixel has an exact color. Then the difference of a candidate from the
-//! expected means is projected onto the shader's own bias, see [`bias`](super::bias).
+//! If a shader has its own random numbers, no pixel has an exact color. Then the difference of a candidate
+//! from the expected means is projected onto the shader's own bias, see [`bias`](super::bias).
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ use toyproof_verify::random::NoisyPixel;
 use toyproof_verify::{CheckResult, Expected};
 
 use super::bias::{Bias, Projection, project};
-use super::{Colors, differ};
+use super::{Colors, colors_of, differ};
 
 /// The number of wrong pixels at which all candidates are evaluated, and of a stochastic shader's, whose bias
 /// is the most significant. Most candidates change nothing there.
@@ -78,8 +79,8 @@ pub(crate) struct Limits {
     pub(crate) of_wrong: f64,
     /// A number of probes in addition.
     pub(crate) extra: usize,
-    /// The largest estimated shares of the image's pixels, and of the wrong pixels, with which more probes may be
-    /// left wrong: rare kinds have more probes than pixels.
+    /// The largest estimated shares of the image's pixels, and of the wrong pixels, with which more probes
+    /// may be left wrong: rare kinds have more probes than pixels.
     pub(crate) of_image: Option<[f64; 2]>,
 }
 
@@ -133,29 +134,17 @@ impl Probes {
     /// All pixels of a grid, with the colors that a hypothesis must have there and those without one.
     pub(crate) fn on_grid(grid: &Places, expected: &Image, before: &Image, limits: Limits) -> Self {
         let columns = grid.columns.len();
-        let color = |image: &Image, at: usize| {
-            let [r, g, b, _] = image.pixels()[at];
-            [r, g, b].map(f64::from)
-        };
-        let probe = |at: usize| {
-            let color = color(expected, at);
-            Probe {
-                point: [grid.columns[at % columns], grid.rows[at / columns]],
-                range: ColorRange {
-                    low: color,
-                    high: color,
-                },
-                expects_nan: color.iter().any(|part| part.is_nan()),
-                ..Probe::new([0.0; 2])
-            }
+        let probe = |(at, color): (usize, [f64; 3])| Probe {
+            range: exactly(color),
+            expects_nan: color.iter().any(|part| part.is_nan()),
+            ..Probe::new([grid.columns[at % columns], grid.rows[at / columns]])
         };
         let probes = Self {
-            all: (0..expected.pixels().len()).map(probe).collect(),
+            all: colors_of(expected).into_iter().enumerate().map(probe).collect(),
             grid: Some(grid.clone()),
             limits,
         };
-        let before: Colors = (0..before.pixels().len()).map(|at| color(before, at)).collect();
-        probes.with_before(&before)
+        probes.with_before(&colors_of(before))
     }
 
     /// Selects probes from the pixels of the algorithm check of an image `width` pixels wide. Pixels that are
@@ -219,10 +208,7 @@ impl Probes {
         let probe = |(at, pixel): (usize, &NoisyPixel)| {
             let bias = Bias::new(pixel);
             Probe {
-                range: ColorRange {
-                    low: pixel.reference,
-                    high: pixel.reference,
-                },
+                range: exactly(pixel.reference),
                 is_wrong: bias.is_significant(pixel),
                 bias: Some(bias),
                 ..Probe::new([columns[at % columns.len()], places.rows[at / columns.len()]])
@@ -336,8 +322,8 @@ impl Probes {
         }
     }
 
-    /// Tests a candidate. `colors` returns its colors at some of the probes; if it returns `None`, so does this
-    /// function.
+    /// Tests a candidate. `colors` returns its colors at some of the probes; if it returns `None`, so does
+    /// this function.
     pub(crate) fn test(&self, mut colors: impl FnMut(Range<usize>) -> Option<Colors>) -> Option<Outcome> {
         let are_means = self.are_means();
         let first = match &self.grid {
@@ -449,6 +435,14 @@ impl Probe {
     }
 }
 
+/// The range of one color.
+fn exactly(color: [f64; 3]) -> ColorRange {
+    ColorRange {
+        low: color,
+        high: color,
+    }
+}
+
 /// The largest number of pixels that are classified.
 const MAX_CLASSIFIED: usize = 4096;
 
@@ -518,10 +512,7 @@ impl Probe {
     /// A probe whose only accepted color is this.
     pub(crate) fn exact(color: [f64; 3], is_wrong: bool) -> Self {
         Self {
-            range: ColorRange {
-                low: color,
-                high: color,
-            },
+            range: exactly(color),
             before: color,
             is_wrong,
             ..Self::new([0.5; 2])

@@ -1,7 +1,7 @@
-//! The tournament of the hypotheses of a field: all of them are tried at the first probes side by side, and those
-//! that make progress there are tested at all probes. Numbers are given or fitted.
+//! The tournament of the hypotheses of a field: all of them are tried at the first probes side by side, and
+//! those that make progress there are tested at all probes. Numbers are given or fitted.
 
-use super::fit::{Fit, fitted, roundings};
+use super::fit::{Fit, Precision, fitted};
 use super::probes::{Outcome, Probes};
 use super::{Colors, Field, Numbers, Run, one};
 
@@ -15,6 +15,16 @@ pub(crate) enum Values {
         values: Vec<(f64, u32)>,
         fit: Option<(u32, Fit)>,
     },
+}
+
+impl Values {
+    /// Only fitted numbers, at no cost.
+    pub(crate) fn fitted(fit: Fit) -> Self {
+        Self::Tried {
+            values: Vec::new(),
+            fit: Some((0, fit)),
+        }
+    }
 }
 
 /// A hypothesis of the field in the tournament.
@@ -134,7 +144,7 @@ impl Tournament<'_> {
                 continue;
             };
             // An author wrote the shortest number that passes.
-            let shorter = roundings(&attempt.numbers, self.probes.are_means()).into_iter();
+            let shorter = Precision::at(self.probes).shorter(&attempt.numbers).into_iter();
             let shorter = shorter.map(|numbers| Attempt { numbers, ..attempt });
             let is_found = exact.passes
                 && shorter.into_iter().any(|shorter| {

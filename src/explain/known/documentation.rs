@@ -30,11 +30,14 @@ fn by_definition() -> impl Iterator<Item = Documented> {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
+    use std::sync::Arc;
 
+    use toyproof_image::Frame;
     use toyproof_scene::FrameTime;
 
     use super::*;
     use crate::known::exercises::scenes;
+    use crate::known::view::View;
     use crate::known::{KnownMistake, mutant};
 
     /// For each id the form of the description and the fix.
@@ -58,7 +61,17 @@ mod tests {
             let changes = general.into_iter().chain(change::all(&scene, frame_time));
             all.extend(changes.map(|change| change.mistake));
             let shader = mutant::variants(&scene).into_iter().next();
-            all.extend(numbers::examples(&scene, frame_time, shader.as_ref()));
+            let view = Arc::new(View::new(&Frame::default(), 1, 1));
+            let (scene, shader, view) = (&scene, shader.as_ref(), &view);
+            all.extend(
+                numbers::Parameters {
+                    scene,
+                    frame_time,
+                    shader,
+                    view,
+                }
+                .examples(),
+            );
         }
         all
     }

@@ -1,6 +1,7 @@
 //! Finds the mistake that explains a wrong image: the image is compared with those of mutants, tracers with
 //! one classic mistake, and with two at once where no single one explains it. A mistake replaces parts of the
-//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number (`numbers`).
+//! shader that renders the scene (`catalogue`), changes the scene (`change`), or is one wrong number
+//! (`numbers`).
 
 mod catalogue;
 mod change;
@@ -160,13 +161,13 @@ const MAX_COMPARED_PIXELS: usize = 40;
 const NEAR_MISS_FACTOR: usize = 6;
 const MAX_NEAR_MISSES: usize = 8;
 
-/// The number of pairs of mistakes that are rendered before they are compared, and the largest width and height of
-/// the image by which most pairs are ruled out.
+/// The number of pairs of mistakes that are rendered before they are compared, and the largest width and
+/// height of the image by which most pairs are ruled out.
 const PAIR_BATCH: usize = 32;
 const PAIR_SIDE: u32 = 24;
 
-/// The largest difference of the remaining bias from the least one, of mistakes that explain a stochastic shader as
-/// well.
+/// The largest difference of the remaining bias from the least one, of mistakes that explain a stochastic
+/// shader as well.
 const MAX_REMAINING_DIFFERENCE: f64 = 0.05;
 
 /// The mutants of a scene. Their images are rendered once, on first use.
@@ -299,14 +300,21 @@ impl Hypotheses {
         match stage {
             Stage::Pair(most) => self.pairs(student, &observed, most, &explaining),
             _ => {
-                let shader = self.shaders.first();
-                let fitted = numbers::fitted_mutants(
-                    &self.scene,
-                    self.frame_time,
+                let Self {
+                    scene,
+                    frame_time,
+                    shaders,
+                    small: view,
+                    ..
+                } = self;
+                let (frame_time, shader) = (*frame_time, shaders.first());
+                let fitted = numbers::Parameters {
+                    scene,
+                    frame_time,
                     shader,
-                    &observed.probes,
-                    &self.small,
-                );
+                    view,
+                }
+                .fitted(&observed.probes);
                 if !matching(&observed, &fitted).is_empty() {
                     return explaining(&fitted);
                 }
@@ -409,8 +417,8 @@ impl Hypotheses {
         &self.small.places
     }
 
-    /// Returns the mistake of a stochastic shader, from its pixels at [`Self::places`]: the mean difference of such
-    /// a shader is projected onto the change of each mistake, which is the most powerful test for it.
+    /// Returns the mistake of a stochastic shader, from its pixels at [`Self::places`]: the mean difference
+    /// of such a shader is projected onto the change of each mistake, which is the most powerful test for it.
     #[must_use]
     pub fn recognize_noisy(&self, pixels: &[NoisyPixel]) -> Option<Diagnosis> {
         let correct = self.correct.first()?.image()?;

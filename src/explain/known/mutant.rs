@@ -130,8 +130,8 @@ impl Mutant {
         self.mistakes.iter().map(|mistake| mistake.id)
     }
 
-    /// The image of the view. It does not wait for another thread's: a thread of rayon's that waits while it renders
-    /// for another task might wait for itself.
+    /// The image of the view. It does not wait for another thread's: a thread of rayon's that waits while it
+    /// renders for another task might wait for itself.
     pub(super) fn image(&self) -> Option<&Image> {
         if self.image.get().is_none() {
             // Another thread may have been faster, with the same image.

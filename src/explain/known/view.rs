@@ -101,8 +101,8 @@ pub(super) struct Observation {
 }
 
 impl Observation {
-    /// Renders the submission. Its wrong pixels are those in which it differs from the most similar of the correct
-    /// images. `None` if it cannot be rendered.
+    /// Renders the submission. Its wrong pixels are those in which it differs from the most similar of the
+    /// correct images. `None` if it cannot be rendered.
     pub(super) fn new<'a>(
         submission: &Program,
         view: &View,

@@ -335,8 +335,8 @@ impl Search<'_> {
 }
 
 impl Found {
-    /// One that leaves pixels wrong is not an alternative to one that leaves fewer; of equals, the smaller edit comes
-    /// first.
+    /// One that leaves pixels wrong is not an alternative to one that leaves fewer; of equals, the smaller
+    /// edit comes first.
     fn preference(&self, other: &Self) -> Ordering {
         let left = |found: &Self| found.repair.pixels - found.repair.agreeing;
         left(self)

@@ -49,8 +49,8 @@ pub(super) enum Op {
 }
 
 impl Op {
-    /// The operation that an expression is, and its operands; `None` for names, literals and operations that no term
-    /// has.
+    /// The operation that an expression is, and its operands; `None` for names, literals and operations that
+    /// no term has.
     pub(super) fn parts(kind: &ExprKind) -> Option<(Self, Vec<ExprId>)> {
         Some(match kind {
             &ExprKind::Unary { op, operand } => (Self::Unary(op), vec![operand]),

@@ -76,12 +76,18 @@ pub(super) fn find(submission: &Submission) -> Option<Alternative> {
         .flat_map(|side| STARTS.map(|start| (side, start)));
     let exact = grids.into_iter().find_map(|(side, start)| {
         let offsets = grid(side, start);
-        let is_likely = agreeing(submission, &probes, &offsets)? >= MIN_PROBES;
-        is_likely
-            .then(|| confirmed_grid(submission, &rows, &offsets, side))
-            .flatten()
+        let agreeing = means(submission, &probes, &offsets)?.len();
+        if (agreeing as f64) < MIN_PROBES * probes.count() as f64 {
+            return None;
+        }
+        predicted(submission, means(submission, &rows, &offsets)?, || {
+            format!("each pixel is the mean of {side}×{side} samples; the reference has one, at its center")
+        })
     });
-    exact.or_else(|| confirmed_average(submission, &rows))
+    exact.or_else(|| {
+        let statistics = within(submission, &rows).filter(Statistics::is_average)?;
+        predicted(submission, statistics.within, || ANY_SAMPLES.to_owned())
+    })
 }
 
 /// Some pixels, by rows.
@@ -123,10 +129,13 @@ impl Rows {
     }
 }
 
-/// The colors of the samples of each pixel, in the order of the pixels; `None` if the reference has no color
-/// within pixels.
+/// The colors of the samples of each pixel, in the order of the pixels; `None` if there are too many, or the
+/// reference has no color within pixels.
 fn samples(expected: &Expected, rows: &Rows, offsets: &[f64]) -> Option<Vec<Vec<[f64; 3]>>> {
     let side = offsets.len();
+    if rows.count() * side * side > MAX_SAMPLES {
+        return None;
+    }
     let rows = rows.0.par_iter().map(|(y, columns)| {
         let moved = |at: u32| offsets.iter().map(move |offset| f64::from(at) + 0.5 + offset);
         let positions = Places {
@@ -156,54 +165,34 @@ impl Submission<'_> {
     }
 }
 
-/// Whether a pixel is the mean of its samples.
-fn is_mean(submission: &Submission, [x, y]: [u32; 2], samples: &[[f64; 3]]) -> bool {
-    let (own, mean) = (submission.color(x, y), mean(samples));
-    (0..3).all(|i| (own[i] - mean[i]).abs() <= submission.tolerance())
-}
-
 fn pixels(rows: &Rows) -> impl Iterator<Item = [u32; 2]> + '_ {
-    rows.0
-        .iter()
-        .flat_map(|(y, columns)| columns.iter().map(move |&x| [x, *y]))
+    let rows = rows.0.iter();
+    rows.flat_map(|(y, columns)| columns.iter().map(move |&x| [x, *y]))
 }
 
-/// The share of some pixels that are the means of their samples.
-fn agreeing(submission: &Submission, rows: &Rows, offsets: &[f64]) -> Option<f64> {
+/// Those of some pixels that are the means of their samples; `None` if there are too many, or the reference has no
+/// color within pixels.
+fn means(submission: &Submission, rows: &Rows, offsets: &[f64]) -> Option<Vec<[u32; 2]>> {
     let samples = samples(submission.expected(), rows, offsets)?;
-    let agreeing = pixels(rows)
-        .zip(&samples)
-        .filter(|&(pixel, samples)| is_mean(submission, pixel, samples));
-    Some(agreeing.count() as f64 / rows.count().max(1) as f64)
-}
-
-/// Confirms a grid in all pixels that differ.
-fn confirmed_grid(submission: &Submission, rows: &Rows, offsets: &[f64], side: u32) -> Option<Alternative> {
-    if rows.count() * offsets.len() * offsets.len() > MAX_SAMPLES {
-        return None;
-    }
-    let samples = samples(submission.expected(), rows, offsets)?;
-    let agreeing = pixels(rows)
-        .zip(&samples)
-        .filter(|&(pixel, samples)| is_mean(submission, pixel, samples));
-    predicted(submission, agreeing.map(|(pixel, _)| pixel), || {
-        format!("each pixel is the mean of {side}×{side} samples; the reference has one, at its center")
-    })
-}
-
-/// Confirms that all pixels that differ are means of colors within them.
-fn confirmed_average(submission: &Submission, rows: &Rows) -> Option<Alternative> {
-    let statistics = within(submission, rows).filter(Statistics::is_average)?;
-    predicted(submission, statistics.within.into_iter(), || {
-        ANY_SAMPLES.to_owned()
-    })
+    let is_mean = |&([x, y], samples): &([u32; 2], &Vec<[f64; 3]>)| {
+        let (own, mean) = (submission.color(x, y), mean(samples));
+        (0..3).all(|i| (own[i] - mean[i]).abs() <= submission.tolerance())
+    };
+    Some(
+        pixels(rows)
+            .zip(&samples)
+            .filter(is_mean)
+            .map(|(pixel, _)| pixel)
+            .collect(),
+    )
 }
 
 const ANY_SAMPLES: &str = "each pixel is the mean of several samples; the reference has one, at its center";
 
+/// Confirms that some of the differing pixels agree.
 fn predicted(
     submission: &Submission,
-    agreeing: impl Iterator<Item = [u32; 2]>,
+    agreeing: Vec<[u32; 2]>,
     text: impl FnOnce() -> String,
 ) -> Option<Alternative> {
     let width = submission.frame().size[0];
@@ -212,11 +201,8 @@ fn predicted(
     for [x, y] in agreeing {
         agrees[(y * width + x) as usize] = true;
     }
-    submission.predicted(
-        &submission.reference,
-        |at| agrees[at],
-        || KnownMistake::new(Difference::Antialiasing.id(), text()),
-    )
+    let mistake = || KnownMistake::new(Difference::Antialiasing.id(), text());
+    submission.predicted(&submission.reference, |at| agrees[at], mistake)
 }
 
 /// Where each pixel's color lies in the range of its sub-pixel colors; the middle sample is the center.
@@ -285,9 +271,6 @@ fn within(submission: &Submission, rows: &Rows) -> Option<Statistics> {
     let offsets: Vec<f64> = (0..WITHIN)
         .map(|at| f64::from(at) / f64::from(WITHIN - 1) - 0.5)
         .collect();
-    if rows.count() * offsets.len() * offsets.len() > MAX_SAMPLES {
-        return None;
-    }
     let samples = samples(submission.expected(), rows, &offsets)?;
     let mut statistics = Statistics::default();
     for ([x, y], samples) in pixels(rows).zip(&samples) {

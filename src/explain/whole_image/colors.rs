@@ -98,7 +98,7 @@ pub(super) fn curve(submission: &Submission) -> Option<Alternative> {
             let distance = submission.expected().tolerance();
             predicted(
                 submission,
-                |expected| curve.of(expected),
+                |expected| curve.value(expected),
                 |expected, actual| {
                     let [low, high] = curve.range(expected, distance);
                     (low..=high).contains(&actual)
@@ -143,7 +143,7 @@ fn explains(curve: &Curve, samples: &[Sample], submission: &Submission) -> bool 
         return false;
     }
     let changed = samples.iter().filter(|sample| {
-        let is_changed = (curve.of(sample.expected) - sample.expected.clamp(0.0, 1.0)).abs() > MIN_CHANGE;
+        let is_changed = (curve.value(sample.expected) - sample.expected.clamp(0.0, 1.0)).abs() > MIN_CHANGE;
         is_changed && sample.expected > MIN_CHANGE
     });
     let levels: BTreeSet<u64> = changed.map(|sample| level(sample.expected)).collect();

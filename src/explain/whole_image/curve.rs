@@ -10,13 +10,13 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    pub(super) fn of(&self, component: f64) -> f64 {
+    pub(super) fn value(&self, component: f64) -> f64 {
         (self.of)(component.max(0.0)).clamp(0.0, 1.0)
     }
 
     /// The values for all components within a distance of this one, widened by the tolerance.
     pub(super) fn range(&self, component: f64, distance: f64) -> [f64; 2] {
-        let [low, high] = [component - distance, component + distance].map(|component| self.of(component));
+        let [low, high] = [component - distance, component + distance].map(|component| self.value(component));
         [low.min(high) - TOLERANCE, low.max(high) + TOLERANCE]
     }
 }
@@ -190,10 +190,10 @@ mod tests {
     fn the_usual_curves_are_monotone_and_differ() {
         let all = usual();
         for (at, curve) in all.iter().enumerate() {
-            let values: Vec<f64> = (0..=200).map(|c| curve.of(0.01 * f64::from(c))).collect();
+            let values: Vec<f64> = (0..=200).map(|c| curve.value(0.01 * f64::from(c))).collect();
             assert!(values.is_sorted(), "{}", curve.name);
             for other in &all[..at] {
-                let difference = |c| (curve.of(0.01 * f64::from(c)) - other.of(0.01 * f64::from(c))).abs();
+                let difference = |c| (curve.value(0.01 * f64::from(c)) - other.of(0.01 * f64::from(c))).abs();
                 let most = (0..=100).map(difference).fold(0.0, f64::max);
                 assert!(most > 4.0 * TOLERANCE, "{} {}", curve.name, other.name);
             }

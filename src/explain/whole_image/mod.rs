@@ -1,8 +1,9 @@
 //! Finds how a whole wrong image differs from the expected one: a shader that solves its task may be
 //! antialiased, mirrored or corrected for gamma, or read another input than the requested one.
 //!
-//! Under a hypothesis, the whole image must be correct by the same rules as any other. Most evaluate the shader
-//! differently (a `View`: at other positions, or with other inputs), so that they apply to every kind of reference.
+//! Under a hypothesis, the whole image must be correct by the same rules as any other. Most evaluate the
+//! shader differently (a `View`: at other positions, or with other inputs), so that they apply to every kind
+//! of reference.
 
 mod antialiasing;
 mod colors;

@@ -1,5 +1,5 @@
-//! A submission whose image is compared as a whole: evaluated at other positions or with other inputs, or with
-//! another expected image.
+//! A submission whose image is compared as a whole: evaluated at other positions or with other inputs, or
+//! with another expected image.
 
 use toyproof_eval::{Places, Settings, UndefinedPolicy};
 use toyproof_eval_native::Program;
@@ -108,7 +108,8 @@ impl<'a> Submission<'a> {
         probes.wrong() <= self.limits().most(probes.all.len(), 0)
     }
 
-    /// Returns the first of some views in which the shader is correct, with the expected image of its own frame.
+    /// Returns the first of some views in which the shader is correct, with the expected image of its own
+    /// frame.
     pub(super) fn explained_by(&self, views: Vec<(View, KnownMistake)>) -> Option<Alternative> {
         let of_view = |(view, mistake)| Viewed {
             submission: self,

@@ -10,8 +10,8 @@ use crate::known::KnownMistake;
 
 // Symmetries.
 
-/// The symmetries of a rectangle, of one kind. Rotations by 90° either keep shapes or stretch the image to the
-/// frame.
+/// The symmetries of a rectangle, of one kind. Rotations by 90° either keep shapes or stretch the image to
+/// the frame.
 pub(super) fn symmetries(submission: &Submission, difference: Difference) -> Vec<(View, KnownMistake)> {
     let [width, height] = submission.size();
     let frame = submission.frame();

@@ -63,8 +63,8 @@ impl<'a> Changes<'a> {
         }
     }
 
-    /// Adds the scene after `edit`, if that changes anything. The description is the documented one, with these
-    /// texts in place of its ellipses.
+    /// Adds the scene after `edit`, if that changes anything. The description is the documented one, with
+    /// these texts in place of its ellipses.
     fn add(&mut self, id: &'static str, parts: &[String], edit: impl FnOnce(&mut Scene)) {
         self.add_mistake(described(id, parts), edit);
     }
