@@ -310,7 +310,7 @@ fn statement_edits(shader: &Shader, actions: &[(usize, Action)]) -> Option<Fix> 
 /// The largest number of characters of a statement in a message.
 const MAX_SHOWN: usize = 60;
 
-fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     let text = one_line(text);
     match text.char_indices().nth(MAX_SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),

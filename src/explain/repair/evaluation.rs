@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use toyproof_eval::{ParametricProgram, Refusal, Settings};
+use toyproof_glsl::Checked;
 use toyproof_image::Frame;
 use toyproof_verify::bounds::iterations_of_edited;
 
@@ -51,6 +52,9 @@ const MAX_GROUP_VALUES: usize = 400_000;
 /// The work of a group that is too large.
 const REFUSED_WORK: f64 = 3e8;
 
+/// The work of parsing a byte of an edited text.
+const PARSE_FACTOR: f64 = 100.0;
+
 /// The work of compiling an instruction, in terms of instructions that are executed for one chunk of pixels.
 const COMPILE_FACTOR: f64 = 200.0;
 
@@ -76,6 +80,18 @@ pub(super) struct Evaluation<'a> {
     statements: Vec<Suspicion>,
     /// The work of one probe.
     pub(super) probe_work: f64,
+}
+
+impl Suspicion {
+    /// The rank of an edit of this cost in the order in which edits are tried.
+    pub(super) fn search_rank(self, cost: u32) -> f64 {
+        f64::from(cost) + PLACE_WEIGHT * (1.0 - self.ochiai) + COVERAGE_WEIGHT * (1.0 - self.coverage)
+    }
+
+    /// Its rank among the repairs, if it leaves this share of the difference.
+    pub(super) fn report_rank(self, cost: u32, remaining: f64) -> f64 {
+        f64::from(cost) + REPAIR_PLACE_WEIGHT * (1.0 - self.ochiai) + REMAINING_WEIGHT * remaining
+    }
 }
 
 /// A candidate that passes or makes progress, with its numbers.
@@ -171,6 +187,63 @@ impl<'a> Evaluation<'a> {
         })
     }
 
+    /// Tries edited texts, each compiled on its own, and returns the outcomes of those that pass, with their
+    /// indices. `checked` parses a text.
+    pub(super) fn try_texts<E: Sync>(
+        &mut self,
+        edits: &[E],
+        checked: impl Fn(&E) -> Option<(String, Checked)> + Sync,
+    ) -> Vec<(usize, Outcome)> {
+        let of_edit = |edit: &E| -> (Option<Outcome>, f64) {
+            let parsing = PARSE_FACTOR * self.shader.source.len() as f64;
+            let Some((text, checked)) = checked(edit) else {
+                return (None, parsing);
+            };
+            let shader = Shader::new(&checked, &text);
+            let limit = self.budget.time_left();
+            let Ok(program) = compile(&shader, &[], self.frame, MAX_GROUP_VALUES, limit) else {
+                return (None, REFUSED_WORK);
+            };
+            self.evaluate(&program, 0, |field| {
+                let mut colors = |probes| {
+                    let (candidate, numbers) = (None, Numbers::default());
+                    field.run(
+                        &self.probes,
+                        Run {
+                            candidate,
+                            numbers,
+                            probes,
+                        },
+                    )
+                };
+                let first = colors(0..self.probes.screening());
+                let first = first.and_then(|colors| self.probes.outcome(&colors));
+                let is_promising = first.is_some_and(|outcome| outcome.passes || outcome.is_progress());
+                let outcome = if is_promising {
+                    self.probes.test(colors)
+                } else {
+                    None
+                };
+                let compiling = COMPILE_FACTOR * program.instructions() as f64;
+                (outcome, field.work() + compiling + parsing)
+            })
+        };
+        let outcomes: Vec<(Option<Outcome>, f64)> = edits.par_iter().map(of_edit).collect();
+        self.budget.charge(outcomes.iter().map(|(_, work)| work).sum());
+        let passing = outcomes
+            .into_iter()
+            .map(|(outcome, _)| outcome.filter(|outcome| outcome.passes));
+        let passing = passing
+            .enumerate()
+            .filter_map(|(at, outcome)| Some((at, outcome?)));
+        passing.collect()
+    }
+
+    /// How suspicious a statement is.
+    pub(super) fn statement(&self, statement: usize) -> Suspicion {
+        self.statements[statement]
+    }
+
     /// Compiles groups of candidates, runs `work` with each, and collects the results in their order.
     fn in_groups<C: Sync, T: Send>(
         &mut self,
@@ -254,15 +327,14 @@ impl<'a> Evaluation<'a> {
 
     /// The place of a candidate in the order in which they are tried: the smaller, the earlier.
     pub(super) fn search_rank(&self, candidate: &Candidate) -> f64 {
-        let Suspicion { ochiai, coverage } = self.suspicion(candidate);
-        f64::from(candidate.cost) + PLACE_WEIGHT * (1.0 - ochiai) + COVERAGE_WEIGHT * (1.0 - coverage)
+        self.suspicion(candidate).search_rank(candidate.cost)
     }
 
     /// The rank of a passing candidate among the repairs: if the fit is not exact, its place counts less and
     /// the quality of the fit more.
     pub(super) fn report_rank(&self, edit: &TriedEdit) -> f64 {
-        let place = REPAIR_PLACE_WEIGHT * (1.0 - self.suspicion(&edit.candidate).ochiai);
-        f64::from(edit.candidate.cost) + place + REMAINING_WEIGHT * edit.outcome.remaining
+        let suspicion = self.suspicion(&edit.candidate);
+        suspicion.report_rank(edit.candidate.cost, edit.outcome.remaining)
     }
 
     /// The suspicion of the code that a candidate changes.

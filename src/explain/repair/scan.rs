@@ -18,6 +18,17 @@ pub(super) fn statement_end(source: &str, start: usize) -> Option<usize> {
     Some(scanner.at)
 }
 
+/// The start of the body of the `if` or loop at a byte.
+pub(super) fn body(source: &str, start: usize) -> Option<usize> {
+    let mut scanner = Scanner {
+        bytes: source.as_bytes(),
+        at: start + source[start..].find('(')?,
+    };
+    scanner.bracket(b'(', b')')?;
+    scanner.skip_blank();
+    Some(scanner.at)
+}
+
 /// Whether the statement at a byte follows another one or a `{`, rather than being the body of an `if`, an
 /// `else` or a loop without braces.
 pub(super) fn follows_statement(source: &str, start: usize) -> bool {
@@ -147,6 +158,13 @@ mod tests {
         let follows = |text: &str| follows_statement(text, text.len());
         assert!(follows("{ a; ") && follows("{ // if (x)\n") && follows("} /* ) */ "));
         assert!(!follows("if (x) ") && !follows("else\n    ") && !follows("if (x) // a;\n"));
+    }
+
+    #[test]
+    fn a_body_follows_the_condition() {
+        let text = "if (f(x) > (1)) // why\n  y = 2;";
+        assert_eq!(body(text, 0), text.find('y'));
+        assert_eq!(body("if (x", 0), None);
     }
 
     #[test]

@@ -9,7 +9,9 @@ use toyproof_glsl as glsl;
 use toyproof_verify::random::NoisyPixel;
 
 use super::edit::{Candidate, EditKind};
-use super::edits::{Constants, candidates, donor_candidates};
+use super::edits::{
+    Constants, TextEdit, assignment_candidates, candidates, donor_candidates, structural_edits,
+};
 use super::evaluation::{Evaluation, TriedEdit, UNLIMITED};
 use super::shader::Shader;
 use super::{Donors, Repair, SearchOptions, SearchResult, Suspect};
@@ -45,12 +47,17 @@ const EXACT_SHARE: f64 = 0.6;
 /// The rank of a repair above which an expression of the scene's shader may be more likely: fitted numbers.
 const MAX_NATURAL_RANK: f64 = 28.0;
 
-/// The shares of the budget after which single edits, and donors, are no longer tried.
+/// The shares of the budget after which single edits, edits of the structure, and donors are no longer tried.
 const SINGLES_SHARE: f64 = 0.6;
-const DONORS_SHARE: f64 = 0.8;
+const STRUCTURE_SHARE: f64 = 0.75;
+const DONORS_SHARE: f64 = 0.9;
 
-/// The largest number of places in which donors are tried.
+/// The number of texts that are tried between two decisions on how to continue.
+const TEXTS: usize = 32;
+
+/// The largest numbers of places in which donors are tried, and of statements after which assignments are.
 const MAX_DONOR_SITES: usize = 120;
+const MAX_DONOR_STATEMENTS: usize = 60;
 
 /// The largest number of edits that are tried as the first of two, and of those in one statement.
 const MAX_FIRST_EDITS: usize = 8;
@@ -139,6 +146,17 @@ struct Search<'a> {
     is_cut: bool,
 }
 
+/// An edit that passes at all probes.
+struct Tested {
+    fix: Fix,
+    kind: EditKind,
+    /// The statement that it changes.
+    statement: usize,
+    search_rank: f64,
+    /// Its place among the repairs.
+    rank: f64,
+}
+
 /// A confirmed repair.
 struct Found {
     repair: Repair,
@@ -149,7 +167,7 @@ struct Found {
 }
 
 impl Search<'_> {
-    /// Searches for edits after which the probes are right: single ones, donors, then pairs.
+    /// Searches for edits after which the probes are right: single ones, the structure, donors, then pairs.
     fn run(&mut self, probes: &Probes, share: f64) {
         let (shader, budget) = (self.shader, self.budget.share(share));
         // The check has rendered the shader, so its loops end.
@@ -163,7 +181,11 @@ impl Search<'_> {
         }
         let partial = self.explore(&mut whole, None, SINGLES_SHARE);
         self.suspects = Some(whole.suspects(&partial));
-        if self.found.iter().all(|found| found.rank > MAX_NATURAL_RANK) {
+        let is_natural = |found: &Found| found.rank <= MAX_NATURAL_RANK;
+        if !self.found.iter().any(is_natural) && !probes.are_means() {
+            self.structure(&mut whole, STRUCTURE_SHARE);
+        }
+        if !self.found.iter().any(is_natural) {
             self.donors(&mut whole, DONORS_SHARE);
         }
         if self.found.is_empty() && !probes.are_means() {
@@ -186,7 +208,16 @@ impl Search<'_> {
             .options
             .donors
             .map_or(&self.constants.donors, |Donors(donors)| donors);
-        let all = donor_candidates(evaluation.shader, &self.constants, donors, &sites);
+        let mut all = donor_candidates(evaluation.shader, &self.constants, donors, &sites);
+        if self.options.donors.is_none() {
+            let [_, statements] = evaluation.in_order();
+            let statements = &statements[..statements.len().min(MAX_DONOR_STATEMENTS)];
+            all.extend(assignment_candidates(
+                evaluation.shader,
+                &self.constants,
+                statements,
+            ));
+        }
         self.try_in_order(evaluation, all, None, share);
     }
 
@@ -216,7 +247,7 @@ impl Search<'_> {
             partial.extend(progress);
             passing.sort_by(|a, b| evaluation.report_rank(a).total_cmp(&evaluation.report_rank(b)));
             for edit in passing {
-                self.confirm(evaluation, &edit, first);
+                self.confirm_candidate(evaluation, &edit, first);
             }
         }
         partial
@@ -227,22 +258,75 @@ impl Search<'_> {
         self.found.len() >= MAX_CONFIRMED || self.attempts >= MAX_ATTEMPTS
     }
 
-    /// Confirms an edit, unless a better one of its statement is confirmed.
-    fn confirm(&mut self, evaluation: &mut Evaluation, edit: &TriedEdit, first: Option<&Fix>) -> Option<()> {
+    /// Tries edits of the structure, each as a text, and confirms those that pass.
+    fn structure(&mut self, evaluation: &mut Evaluation, share: f64) {
+        let ranked = structural_edits(evaluation.shader).into_iter().map(|edit| {
+            let suspicion = evaluation.statement(edit.statement);
+            (suspicion.search_rank(edit.cost), edit)
+        });
+        let mut all: Vec<(f64, TextEdit)> = ranked.collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for batch in all.chunks(TEXTS) {
+            let is_spent = evaluation.budget.is_spent(share);
+            self.is_cut |= is_spent;
+            let is_late = evaluation.budget.is_late();
+            if is_spent || is_late || batch[0].0 > self.best + ALTERNATIVE_MARGIN || self.is_complete() {
+                break;
+            }
+            let passing = evaluation.try_texts(batch, |(_, edit)| self.edited(&edit.fix));
+            for (at, outcome) in passing {
+                let (search_rank, edit) = &batch[at];
+                let suspicion = evaluation.statement(edit.statement);
+                let tested = Tested {
+                    fix: edit.fix.clone(),
+                    kind: edit.kind,
+                    statement: edit.statement,
+                    search_rank: *search_rank,
+                    rank: suspicion.report_rank(edit.cost, outcome.remaining),
+                };
+                self.confirm(evaluation, tested);
+            }
+        }
+    }
+
+    /// Confirms a candidate that passes, in addition to a first edit.
+    fn confirm_candidate(
+        &mut self,
+        evaluation: &mut Evaluation,
+        edit: &TriedEdit,
+        first: Option<&Fix>,
+    ) -> Option<()> {
         let (candidate, shader) = (&edit.candidate, evaluation.shader);
-        let statement = candidate.statement(shader);
-        let rank = evaluation.report_rank(edit);
+        let own = candidate.fix(shader)?;
+        let (fix, kind) = match first {
+            None => (own, candidate.kind(shader)),
+            Some(first) => (compose(first, &own)?, EditKind::Two),
+        };
+        let tested = Tested {
+            fix,
+            kind,
+            statement: candidate.statement(shader),
+            search_rank: evaluation.search_rank(candidate),
+            rank: evaluation.report_rank(edit),
+        };
+        self.confirm(evaluation, tested)
+    }
+
+    /// Confirms an edit, unless a better one of its statement is confirmed.
+    fn confirm(&mut self, evaluation: &mut Evaluation, edit: Tested) -> Option<()> {
+        let Tested {
+            fix,
+            kind,
+            statement,
+            search_rank,
+            rank,
+        } = edit;
         // Alternatives in the same statement would hide those elsewhere.
         let is_better =
             |found: &Found| found.statement == statement && found.repair.is_complete() && found.rank <= rank;
         if self.is_complete() || self.found.iter().any(is_better) {
             return None;
         }
-        let own = candidate.fix(shader)?;
-        let fix = match first {
-            None => own,
-            Some(first) => compose(first, &own)?,
-        };
         // An image takes the work of as many probes; in double precision, in f32, and in a second frame.
         let [width, height] = self.confirmer.case.frame.size.map(f64::from);
         let work = CONFIRMATION_FACTOR * width * height * evaluation.probe_work;
@@ -257,8 +341,7 @@ impl Search<'_> {
         evaluation.budget.charge(work);
         self.attempts += 1;
         self.confirmations += 1;
-        let kind = candidate.kind(shader);
-        let mistake = first.map_or(kind, |_| EditKind::Two).mistake();
+        let mistake = kind.mistake();
         let (_, checked) = self.edited(&fix)?;
         let confirmation = self.confirmer.edited(&checked, evaluation.max_iterations)?;
         let repair = Repair {
@@ -274,7 +357,7 @@ impl Search<'_> {
         } else {
             COMPLETE_MARGIN
         };
-        self.best = self.best.min(evaluation.search_rank(candidate) + margin);
+        self.best = self.best.min(search_rank + margin);
         self.found.retain(|found| found.statement != statement);
         self.found.push(Found {
             repair,

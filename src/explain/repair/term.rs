@@ -4,7 +4,7 @@
 use toyproof_diagnostic::Span;
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, Swizzle,
-    Tree, Type, UnaryOp, Value, VariableId,
+    Tree, Type, UnaryOp, Value, VariableId, VariableKind,
 };
 
 use crate::engine::Numbers;
@@ -141,6 +141,16 @@ impl Term {
     pub(super) fn assign(op: Option<BinaryOp>, target: Self, value: Self) -> Self {
         let ty = target.ty;
         Self::apply(Op::Assign(op), vec![target, value], ty)
+    }
+
+    /// Whether it is a local variable or a parameter.
+    pub(super) fn is_local(&self, tree: &Tree) -> bool {
+        match self.kind {
+            TermKind::Variable(id) => {
+                matches!(tree[id].kind, VariableKind::Local | VariableKind::Parameter(_))
+            }
+            _ => false,
+        }
     }
 
     /// A member of a structure.

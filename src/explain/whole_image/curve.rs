@@ -193,7 +193,8 @@ mod tests {
             let values: Vec<f64> = (0..=200).map(|c| curve.value(0.01 * f64::from(c))).collect();
             assert!(values.is_sorted(), "{}", curve.name);
             for other in &all[..at] {
-                let difference = |c| (curve.value(0.01 * f64::from(c)) - other.of(0.01 * f64::from(c))).abs();
+                let difference =
+                    |c| (curve.value(0.01 * f64::from(c)) - other.value(0.01 * f64::from(c))).abs();
                 let most = (0..=100).map(difference).fold(0.0, f64::max);
                 assert!(most > 4.0 * TOLERANCE, "{} {}", curve.name, other.name);
             }

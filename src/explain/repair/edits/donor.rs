@@ -8,8 +8,8 @@ use toyproof_glsl::tree::{
     ExprId, ExprKind, FunctionId, Scalar, StatementKind, Tree, Type, Value, VariableId, VariableKind,
 };
 
-use super::super::edit::{Candidate, Change, EditKind};
-use super::super::shader::Shader;
+use super::super::edit::{Action, Candidate, Change, EditKind};
+use super::super::shader::{Shader, Shape};
 use super::super::term::{Op, Term, TermKind};
 use super::Writer;
 use super::number::Constants;
@@ -34,6 +34,9 @@ const DONOR: u32 = 26;
 const PARTS_PER_COST: usize = 4;
 const NAMES_PER_COST: usize = 6;
 const SIMILARITY: f64 = 8.0;
+
+/// The cost of an assignment of the reference.
+const ASSIGNMENT: u32 = 23;
 
 /// The largest depth of inlined calls.
 const MAX_INLINED: u32 = 3;
@@ -106,6 +109,46 @@ fn donors_of(tree: &Tree) -> impl Iterator<Item = Donor> {
             holes,
             size: translation.size,
         })
+    })
+}
+
+/// Collects the assignments of a shader as donors, whose first hole is the target: those that it has, and
+/// those of an expression of a variable to that variable.
+pub(super) fn assignments(tree: &Tree) -> Vec<Donor> {
+    let own = tree.exprs.iter().filter_map(|(id, _)| assignment(tree, id));
+    let of_itself = donors_of(tree).filter(|donor| donor.holes[..] == [donor.term.ty]);
+    let of_itself = of_itself.map(|donor| Donor {
+        term: Term::assign(None, Term::new(TermKind::Hole(0), donor.term.ty), donor.term),
+        ..donor
+    });
+    let all = own
+        .chain(of_itself)
+        .map(|donor| (format!("{:?}", donor.term), donor));
+    let all: BTreeMap<String, Donor> = all.collect();
+    let mut all: Vec<Donor> = all.into_values().collect();
+    all.sort_by_key(|donor| donor.size);
+    all
+}
+
+/// An assignment to a variable as a donor.
+fn assignment(tree: &Tree, expr: ExprId) -> Option<Donor> {
+    let ExprKind::Assign { op, target, value } = tree[expr].kind else {
+        return None;
+    };
+    let mut translation = Translation {
+        tree,
+        holes: Vec::new(),
+        size: 0,
+    };
+    let target = translation.term(target, &HashMap::new(), 0)?;
+    let value = translation.term(value, &HashMap::new(), 0)?;
+    let holes: Vec<Type> = translation.holes.iter().map(|&(_, ty)| ty).collect();
+    let fits = matches!(target.kind, TermKind::Hole(0)) && holes.len() <= MAX_HOLES;
+    fits.then(|| Donor {
+        operations: operations(&value),
+        term: Term::assign(op, target, value),
+        holes,
+        size: translation.size,
     })
 }
 
@@ -332,17 +375,65 @@ pub(in crate::repair) fn candidates(
     all
 }
 
+/// Assignments of the reference after some statements, to variables that these use.
+pub(in crate::repair) fn assignment_candidates(
+    shader: &Shader,
+    constants: &Constants,
+    statements: &[usize],
+) -> Vec<Candidate> {
+    let writer = Writer::new(shader, constants);
+    let mut all = Vec::new();
+    for &at in statements {
+        let statement = &shader.statements[at];
+        let is_simple = matches!(statement.kind, Shape::Declaration(_) | Shape::Expression(_));
+        if !is_simple || statement.at.is_none() || statement.is_expanded {
+            continue;
+        }
+        let text = shader.text(statement.span);
+        let declared = match statement.kind {
+            Shape::Declaration(variable) => Some(Term::variable(shader.tree, variable)),
+            _ => None,
+        };
+        for donor in &constants.assignments {
+            let fillings = writer.fillings_in(at, text, declared.as_ref(), &donor.holes);
+            let filled = fillings.iter().enumerate().filter(|(_, terms)| {
+                let target = &terms[0];
+                target.is_local(shader.tree) && text.contains(&target.text(shader.tree, shader.source, 0))
+            });
+            all.extend(filled.map(|(rank, terms)| Candidate {
+                change: Change::Statements(vec![(at, Action::After(donor.term.filled(terms)))]),
+                values: Values::Fixed,
+                cost: ASSIGNMENT + (donor.size / PARTS_PER_COST + rank / NAMES_PER_COST) as u32,
+                kind: EditKind::MissingStatement,
+            }));
+        }
+        if all.len() > MAX_CANDIDATES {
+            break;
+        }
+    }
+    all
+}
+
 impl Writer<'_> {
     /// The ways to fill holes with values in scope, those that the site uses already first.
     fn fillings(&self, site: usize, holes: &[Type]) -> Vec<Vec<Term>> {
+        let own = &self.shader.sites[site];
+        let whole = Term::keep(self.tree, own.exprs[0]);
+        self.fillings_in(own.statement, self.shader.text(own.span), Some(&whole), holes)
+    }
+
+    /// The ways to fill holes with a value and those in scope at a statement, those in a text first.
+    fn fillings_in(
+        &self,
+        statement: usize,
+        text: &str,
+        first: Option<&Term>,
+        holes: &[Type],
+    ) -> Vec<Vec<Term>> {
         let shader = self.shader;
-        let own = &shader.sites[site];
-        let text = shader.text(own.span);
         let of_type = |&ty: &Type| {
-            let mut values = self.values(own.statement, ty);
-            if self.tree[own.exprs[0]].ty == ty {
-                values.insert(0, Term::keep(self.tree, own.exprs[0]));
-            }
+            let mut values = self.values(statement, ty);
+            values.splice(0..0, first.filter(|first| first.ty == ty).cloned());
             let is_used = |value: &Term| text.contains(&value.text(self.tree, shader.source, 0));
             values.sort_by_key(|value| !is_used(value));
             values.truncate(MAX_VALUES);

@@ -7,6 +7,7 @@ mod name;
 mod number;
 mod plausibility;
 mod statement;
+mod structure;
 
 use std::collections::HashSet;
 
@@ -14,8 +15,9 @@ use toyproof_glsl::tree::{
     ExprId, ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, VariableId, VariableKind,
 };
 
-pub(super) use self::donor::{Donor, candidates as donor_candidates, donors};
+pub(super) use self::donor::{Donor, assignment_candidates, candidates as donor_candidates, donors};
 pub(super) use self::number::Constants;
+pub(super) use self::structure::{TextEdit, edits as structural_edits};
 use super::edit::{Candidate, Change, EditKind};
 use super::shader::{Shader, Site};
 use super::term::{Op, Term, TermKind};

@@ -10,7 +10,7 @@ use toyproof_verify::Expected;
 
 use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
-use super::donor::{Donor, donors};
+use super::donor::{Donor, assignments, donors};
 use super::plausibility::Shapes;
 use super::{At, Writer};
 use crate::engine::fit::{Fit, rounded};
@@ -44,6 +44,8 @@ pub(in crate::repair) struct Constants {
     vectors: Vec<Vec<f64>>,
     pub(super) shapes: Shapes,
     pub(in crate::repair) donors: Vec<Donor>,
+    /// Its assignments, as donors.
+    pub(super) assignments: Vec<Donor>,
     /// The numbers of hashes.
     hash: Vec<u64>,
 }
@@ -73,6 +75,7 @@ impl Constants {
         let mut constants = Self {
             shapes: Shapes::new(tree),
             donors: donors([tree]),
+            assignments: assignments(tree),
             hash: hash_numbers(tree),
             ..Self::default()
         };
