@@ -106,12 +106,14 @@ impl Repair {
     fn new(repair: &repair::Repair, files: &Files) -> Option<Self> {
         let mut edits: Vec<&Edit> = repair.fix.edits.iter().collect();
         edits.sort_by_key(|edit| (edit.span.start, edit.span.end));
-        let first = *edits.first()?;
+        // Of a statement that moves, the place where it is.
+        let main = edits.iter().find(|edit| edit.span.start < edit.span.end);
+        let main = *main.or(edits.first())?;
         Some(Self {
             id: repair.mistake.id.to_owned(),
-            file: files.name(first.span).to_owned(),
-            range: SourceRange::of(first.span, files),
-            replacement: Some(first.replacement.clone()),
+            file: files.name(main.span).to_owned(),
+            range: SourceRange::of(main.span, files),
+            replacement: Some(main.replacement.clone()),
             text: Some(repair.fix.message.clone()),
             agreeing: repair.agreeing,
             pixels: repair.pixels,
