@@ -20,7 +20,6 @@ pub struct Date {
 
 impl Date {
     /// Returns the number of days from 1970-01-01; negative before it.
-    #[must_use]
     pub fn days_since_1970(self) -> i64 {
         // Years that start in March, so that a leap day is the last day.
         let year = self.year - i64::from(self.month <= 2);
@@ -32,7 +31,6 @@ impl Date {
     }
 
     /// Inverts [`Date::days_since_1970`].
-    #[must_use]
     pub fn from_days_since_1970(days: i64) -> Self {
         let days = days + DAYS_TO_1970;
         let (era, day_of_era) = (days.div_euclid(DAYS_OF_ERA), days.rem_euclid(DAYS_OF_ERA));

@@ -29,7 +29,6 @@ pub struct Overdue {
 
 impl Deadline {
     /// The deadline that is `limit` from now.
-    #[must_use]
     pub fn after(limit: Duration) -> Self {
         Self {
             end: Instant::now().checked_add(limit),
@@ -77,13 +76,11 @@ impl Deadline {
     }
 
     /// The remaining time; `None` without a deadline.
-    #[must_use]
     pub fn left(&self) -> Option<Duration> {
         self.end.map(|end| end.saturating_duration_since(Instant::now()))
     }
 
     /// The total time limit.
-    #[must_use]
     pub fn limit(&self) -> Duration {
         self.limit
     }

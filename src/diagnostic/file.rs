@@ -34,7 +34,6 @@ pub struct Position {
 impl File {
     /// Makes a file. `name` is used in messages (a path as the user typed it, or `<stdin>`); its control
     /// characters are escaped.
-    #[must_use]
     pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
         let text = text.into();
         // Lines end in LF, CR LF, or CR alone (GLSL ES 3.00.6 §3.1).
@@ -57,19 +56,16 @@ impl File {
     }
 
     /// The name shown in messages.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// The whole text.
-    #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
     /// The line and column of a byte; bytes past the end count as the end.
-    #[must_use]
     pub fn position(&self, byte: usize) -> Position {
         let mut byte = byte.min(self.text.len());
         while !self.text.is_char_boundary(byte) {
@@ -84,7 +80,6 @@ impl File {
     }
 
     /// The length in bytes of the longest line that overlaps bytes `start..end`.
-    #[must_use]
     pub fn longest_line(&self, start: u32, end: u32) -> usize {
         let line = |byte: u32| self.position(byte as usize).line - 1;
         (line(start)..=line(end))
@@ -123,7 +118,6 @@ impl Files {
     }
 
     /// Whether there is more than one file.
-    #[must_use]
     pub fn is_several(&self) -> bool {
         self.files.len() > 1
     }
@@ -147,7 +141,6 @@ impl Files {
 
     /// The span in the file of the user: for a span in a joined file, the one in the part where it starts, up
     /// to the end of that part.
-    #[must_use]
     pub fn origin(&self, span: Span) -> Span {
         let parts = &self.get(span.file).parts;
         let after = parts.partition_point(|&(_, start)| start <= span.start);
@@ -160,33 +153,28 @@ impl Files {
     }
 
     /// The name of the file that a span is in.
-    #[must_use]
     pub fn name(&self, span: Span) -> &str {
         self.get(self.origin(span).file).name()
     }
 
     /// The file with that id.
-    #[must_use]
     pub fn get(&self, id: FileId) -> &File {
         &self.files[usize::from(id.0)]
     }
 
     /// The position at which a span begins.
-    #[must_use]
     pub fn position(&self, span: Span) -> Position {
         let span = self.origin(span);
         self.get(span.file).position(span.start as usize)
     }
 
     /// The position after the last character of a span.
-    #[must_use]
     pub fn end_position(&self, span: Span) -> Position {
         let span = self.origin(span);
         self.get(span.file).position(span.end as usize)
     }
 
     /// The text that a span covers.
-    #[must_use]
     pub fn text(&self, span: Span) -> &str {
         &self.get(span.file).text()[span.start as usize..span.end as usize]
     }
@@ -240,14 +228,12 @@ pub struct Span {
 
 impl Span {
     /// Bytes `start..end` of `file`.
-    #[must_use]
     pub fn new(file: FileId, start: u32, end: u32) -> Self {
         debug_assert!(start <= end);
         Self { file, start, end }
     }
 
     /// Whether the spans overlap or adjoin.
-    #[must_use]
     pub fn touches(self, other: Self) -> bool {
         self.file == other.file && self.start <= other.end && other.start <= self.end
     }
@@ -281,7 +267,6 @@ pub struct Place {
 
 impl Place {
     /// Makes a place of text outside of any macro.
-    #[must_use]
     pub fn plain(span: Span) -> Self {
         Self { span, spelling: span }
     }
@@ -300,7 +285,6 @@ impl Place {
     }
 
     /// Whether the characters are in the body of a macro.
-    #[must_use]
     pub fn is_expanded(self) -> bool {
         self.span != self.spelling
     }

@@ -3,7 +3,6 @@
 use textwrap::{Options, WordSeparator, WordSplitter, core};
 
 /// The number of terminal columns of a text of one line; ANSI sequences have no width.
-#[must_use]
 pub fn display_width(text: &str) -> usize {
     core::display_width(text)
 }
@@ -13,7 +12,6 @@ const MIN_WRAPPED: usize = 20;
 
 /// Writes a text after a prefix, and wraps it at `width` columns, if any; further lines are indented by
 /// `indent` columns.
-#[must_use]
 pub fn wrap(prefix: &str, indent: usize, text: &str, width: Option<usize>) -> String {
     let Some(width) = width else {
         return format!("{prefix}{text}").trim_end().to_owned();
@@ -30,7 +28,6 @@ pub fn wrap(prefix: &str, indent: usize, text: &str, width: Option<usize>) -> St
 
 /// Aligns the cells of a table; the columns of the indices `right` are aligned to the right. Each line starts
 /// with `indent` and does not end with spaces.
-#[must_use]
 pub fn columns(indent: &str, rows: &[Vec<String>], right: &[usize]) -> Vec<String> {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {

@@ -253,7 +253,6 @@ pub struct Diagnostics {
 
 impl Diagnostics {
     /// Diagnostics about these files.
-    #[must_use]
     pub fn new(diagnostics: Vec<Diagnostic>, files: &Files) -> Self {
         let lines: Vec<_> = diagnostics.iter().map(|one| short(one, files)).collect();
         Self {

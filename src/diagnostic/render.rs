@@ -15,7 +15,6 @@ const MAX_SHOWN_LINE_BYTES: usize = 400;
 
 /// Renders the message with its source lines, carets, notes and help, which are wrapped at `width` columns,
 /// if any; with ANSI colors if `color`.
-#[must_use]
 pub fn human(diagnostic: &Diagnostic, files: &Files, width: Option<usize>, color: bool) -> String {
     let diagnostic = &diagnostic.in_origin(files);
     let level = match diagnostic.severity {
@@ -88,7 +87,6 @@ fn footer(diagnostic: &Diagnostic, width: Option<usize>) -> impl Iterator<Item =
 }
 
 /// Formats `file:line:column: error[E0001]: message`, which editors parse.
-#[must_use]
 pub fn short(diagnostic: &Diagnostic, files: &Files) -> String {
     json(diagnostic, files).to_string()
 }
@@ -151,7 +149,6 @@ impl fmt::Display for Json {
 }
 
 /// Converts a diagnostic to its JSON form, with all spans resolved.
-#[must_use]
 pub fn json(diagnostic: &Diagnostic, files: &Files) -> Json {
     let diagnostic = &diagnostic.in_origin(files);
     let name = |span: Span| files.get(span.file).name().to_owned();

@@ -15,13 +15,11 @@ fn is_layout_control(character: char) -> bool {
 }
 
 /// Escapes every control character (including line feeds) as in Rust: `\n`, `\u{202e}`.
-#[must_use]
 pub fn printable(text: &str) -> Cow<'_, str> {
     escape(text, is_layout_control)
 }
 
 /// Like [`printable`] for a text of several lines: line feeds remain.
-#[must_use]
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escape(text, |character| {
         is_layout_control(character) && character != '\n'
@@ -45,7 +43,6 @@ fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
 
 /// A text for a cell of a spreadsheet: without control characters, as from [`printable`], and with an
 /// apostrophe before text that a spreadsheet reads as a formula.
-#[must_use]
 pub fn spreadsheet_text(text: &str) -> String {
     let text = printable(text);
     let start = text.trim_start_matches(is_invisible);
@@ -78,7 +75,6 @@ fn is_formula_start(character: char) -> bool {
 }
 
 /// Formats a path for messages and reports.
-#[must_use]
 #[expect(
     clippy::disallowed_methods,
     reason = "the one place that formats paths for people"
@@ -152,13 +148,11 @@ pub fn similar<'c>(
 }
 
 /// Returns the form of a word for a count.
-#[must_use]
 pub fn plural<'a>(count: u64, one: &'a str, many: &'a str) -> &'a str {
     if count == 1 { one } else { many }
 }
 
 /// Formats a count with separated thousands: 230,400.
-#[must_use]
 pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
@@ -172,7 +166,6 @@ pub fn grouped(count: u64) -> String {
 }
 
 /// Formats an error in two digits: 1.2e-7, or 0.
-#[must_use]
 pub fn magnitude(error: f64) -> String {
     if error == 0.0 {
         "0".to_owned()
@@ -182,7 +175,6 @@ pub fn magnitude(error: f64) -> String {
 }
 
 /// Formats a difference of color components from 0 to 1: 0.580, 1.2e-7, or 0.
-#[must_use]
 pub fn color_difference(difference: f64) -> String {
     if difference >= 0.001 {
         format!("{difference:.3}")
@@ -192,7 +184,6 @@ pub fn color_difference(difference: f64) -> String {
 }
 
 /// A message without the numbers that the system gives its errors: "File exists (os error 17)".
-#[must_use]
 pub fn without_error_numbers(text: &str) -> String {
     let mut parts = text.split(" (os error ");
     let mut short = parts.next().unwrap_or_default().to_owned();

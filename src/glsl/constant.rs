@@ -13,7 +13,6 @@ const MAX_SCALARS: usize = 1 << 18;
 impl Tree {
     /// The value of a constant expression; `None` if it is not constant or has no known value. Takes constant
     /// time for expressions cached by [`Self::cache_value`].
-    #[must_use]
     pub fn value(&self, root: ExprId) -> Option<Constant> {
         if !self[root].constant {
             return None;
@@ -82,7 +81,6 @@ impl Tree {
 
     /// Computes the value of a constant expression from those of its operands, in the order in which
     /// [`ExprKind::for_each_operand`] visits them.
-    #[must_use]
     pub fn value_of(&self, expr: ExprId, operands: Vec<Option<Constant>>) -> Option<Constant> {
         let ty = self[expr].ty;
         if let ExprKind::Length { array } = self[expr].kind {

@@ -102,19 +102,16 @@ impl Interner {
     }
 
     /// The symbol of a text that is already interned.
-    #[must_use]
     pub(crate) fn find(&self, text: &str) -> Option<Symbol> {
         self.symbols.get(text).copied()
     }
 
     /// The text of a symbol.
-    #[must_use]
     pub(crate) fn text(&self, symbol: Symbol) -> &str {
         &self.texts[symbol.0 as usize].0
     }
 
     /// The lexical class of a symbol's text.
-    #[must_use]
     pub(crate) fn word(&self, symbol: Symbol) -> Word {
         self.texts[symbol.0 as usize].1
     }

@@ -142,14 +142,12 @@ pub struct Checked {
 
 impl Checked {
     /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
-    #[must_use]
     pub fn takes_derivatives(&self) -> bool {
         let is_derivative = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_derivative());
         self.tree.exprs.iter().any(|(_, expr)| is_derivative(&expr.kind))
     }
 
     /// Whether the shader reads an input.
-    #[must_use]
     pub fn reads(&self, input: tree::Input) -> bool {
         let is_input =
             |variable: tree::VariableId| self.tree[variable].kind == tree::VariableKind::Input(input);
@@ -159,7 +157,6 @@ impl Checked {
     }
 
     /// Whether the shader reads a texture.
-    #[must_use]
     pub fn reads_textures(&self) -> bool {
         let looks_up = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_texture());
         self.tree.exprs.iter().any(|(_, expr)| looks_up(&expr.kind))

@@ -3,7 +3,6 @@
 use toyproof_diagnostic::{Code, Diagnostic, Overdue, plural};
 
 /// The error about a shader that takes too long to compile, in any stage.
-#[must_use]
 pub fn overdue(overdue: Overdue) -> Diagnostic {
     Diagnostic::new(Code::TooSlow, overdue.to_string())
         .help("shorten the longest expressions, arrays and functions, or raise `--timeout` (for `trade`, `--budget`)")

@@ -50,7 +50,6 @@ macro_rules! named {
             pub(crate) const ALL: &[Self] = &[$(Self::$variant),*];
 
             /// Its text.
-            #[must_use]
             pub(crate) fn text(self) -> &'static str {
                 match self {
                     $(Self::$variant => $text,)*
@@ -117,7 +116,6 @@ named! {
 
 impl Punctuator {
     /// The binary operator that it denotes between two operands.
-    #[must_use]
     pub(crate) fn binary_operator(self) -> Option<BinaryOp> {
         Some(match self {
             Self::Star => BinaryOp::Multiply,
@@ -144,7 +142,6 @@ impl Punctuator {
     }
 
     /// The operator of a compound assignment such as `+=`.
-    #[must_use]
     pub(crate) fn assignment_operator(self) -> Option<BinaryOp> {
         Some(match self {
             Self::MultiplyAssign => BinaryOp::Multiply,

@@ -55,7 +55,6 @@ const START_TIMEOUT: Duration = Duration::from_secs(60);
 const PAGE_HTML: &str = include_str!("browser.html");
 
 /// Finds an installed browser.
-#[must_use]
 pub fn find() -> Option<PathBuf> {
     ["chromium", "chromium-browser", "google-chrome"]
         .iter()
@@ -66,7 +65,6 @@ pub fn find() -> Option<PathBuf> {
 }
 
 /// Wraps a shader in `ShaderToy`'s prologue and epilogue.
-#[must_use]
 pub fn as_shadertoy(shader: &str) -> String {
     let inputs = Input::ALL.map(|input| {
         let length = input.length().map(|length| format!("[{length}]"));
@@ -96,7 +94,6 @@ void main() {{
 
 impl Chromium {
     /// Creates a browser with a time limit per shader.
-    #[must_use]
     pub fn new(program: PathBuf, timeout: Duration) -> Self {
         Self {
             program,
@@ -148,7 +145,6 @@ impl Chromium {
     }
 
     /// Returns the browser's name and version after it has rendered.
-    #[must_use]
     pub fn name(&self) -> Option<&str> {
         self.live.as_ref().map(BrowserConnection::product)
     }

@@ -30,7 +30,6 @@ pub struct Driver {
 
 impl Driver {
     /// Returns whether it is Mesa's software driver.
-    #[must_use]
     pub fn is_lavapipe(&self) -> bool {
         DriverKind::Lavapipe.matches(&self.name)
     }
@@ -229,20 +228,17 @@ pub const INSTALL_HINT: &str = "install Mesa's lavapipe: apt-get install mesa-vu
 pub(super) const PIN_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
 
 /// Returns whether the user pins drivers by the loader's environment variables, which then take precedence.
-#[must_use]
 pub fn is_pinned_by_user() -> bool {
     PIN_VARIABLES.iter().any(|name| env::var_os(name).is_some())
 }
 
 /// Returns the manifests that these variables list, or `None` if they are not set.
-#[must_use]
 pub fn pinned() -> Option<Vec<PathBuf>> {
     let list = PIN_VARIABLES.iter().find_map(env::var_os)?;
     Some(env::split_paths(&list).collect())
 }
 
 /// Returns the manifests of all installed drivers, in the loader's search order.
-#[must_use]
 pub fn manifests() -> Vec<PathBuf> {
     let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
     let list = |name: &str, default: &str| -> Vec<PathBuf> {
@@ -271,14 +267,12 @@ pub fn manifests() -> Vec<PathBuf> {
 }
 
 /// Returns lavapipe's manifest, preferring this machine's architecture.
-#[must_use]
 pub fn lavapipe_manifest() -> Option<PathBuf> {
     choose_lavapipe(manifests())
 }
 
 /// Returns whether [`AdapterSelector::Auto`] selects a driver that runs on the CPU, by the names of the
 /// manifests, without loading a driver.
-#[must_use]
 pub fn is_automatic_driver_software() -> bool {
     is_software_selected(&pinned().unwrap_or_else(manifests))
 }

@@ -79,7 +79,6 @@ fn detach(command: &mut Command) {
 impl Worker {
     /// Creates a worker that runs `program` with `arguments`, which must call [`super::serve`] on its
     /// standard streams.
-    #[must_use]
     pub fn new(
         program: PathBuf,
         arguments: Vec<String>,

@@ -84,7 +84,6 @@ impl Frame {
     }
 
     /// All rows of the frame.
-    #[must_use]
     pub fn rows(&self) -> Range<u32> {
         0..self.size[1]
     }
@@ -99,7 +98,6 @@ impl Frame {
     }
 
     /// One component of an input as a float, in the order of its elements; 0 for `iFrame`, an integer.
-    #[must_use]
     pub fn component(&self, input: Input, at: usize) -> f32 {
         self.component_with(&self.channel_sizes(), input, at)
     }
@@ -125,13 +123,11 @@ impl Frame {
     }
 
     /// The bytes of the uniform block, in the layout of [`Input::offset`].
-    #[must_use]
     pub fn block(&self) -> [u8; BLOCK_BYTES] {
         self.block_with(self.channel_sizes())
     }
 
     /// The uniform block with channels of these sizes instead of the frame's own.
-    #[must_use]
     pub fn block_with(&self, channels: [Option<[u32; 2]>; 4]) -> [u8; BLOCK_BYTES] {
         let mut bytes = [0; BLOCK_BYTES];
         for input in Input::ALL {

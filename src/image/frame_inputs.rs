@@ -52,7 +52,6 @@ impl Channel {
     pub const NOISE: &str = "noise";
 
     /// The channel that a user names: `noise`, or a file.
-    #[must_use]
     pub fn named(name: &Path) -> Self {
         if name.as_os_str() == Self::NOISE {
             Self::Noise
@@ -62,7 +61,6 @@ impl Channel {
     }
 
     /// The path of the file; `None` for noise.
-    #[must_use]
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Noise => None,

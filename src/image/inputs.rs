@@ -15,7 +15,6 @@ pub enum InputType {
 
 impl InputType {
     /// The name in GLSL.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Float => "float",
@@ -26,7 +25,6 @@ impl InputType {
     }
 
     /// The number of components, each of 4 bytes.
-    #[must_use]
     pub const fn components(self) -> usize {
         match self {
             Self::Float | Self::Int => 1,
@@ -49,19 +47,16 @@ macro_rules! inputs {
             pub const ALL: [Self; [$(Self::$variant),*].len()] = [$(Self::$variant),*];
 
             /// The name in a shader.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)* }
             }
 
             /// The type, for an array that of its elements.
-            #[must_use]
             pub const fn ty(self) -> InputType {
                 match self { $(Self::$variant => InputType::$ty,)* }
             }
 
             /// The number of elements of an array; `None` for other types.
-            #[must_use]
             pub const fn length(self) -> Option<usize> {
                 match self { $(Self::$variant => inputs!(@length $($length)?),)* }
             }
@@ -99,7 +94,6 @@ pub(crate) const VECTOR_BYTES: usize = 16;
 
 impl Input {
     /// The size in the uniform block, in bytes.
-    #[must_use]
     pub const fn size(self) -> usize {
         match self.length() {
             Some(length) => VECTOR_BYTES * length,
@@ -108,7 +102,6 @@ impl Input {
     }
 
     /// The alignment in the uniform block by the rules of std140 (OpenGL 4.6 §7.6.2.2), in bytes.
-    #[must_use]
     pub const fn align(self) -> usize {
         if self.length().is_some() || self.ty().components() > 1 {
             VECTOR_BYTES
@@ -118,7 +111,6 @@ impl Input {
     }
 
     /// The first byte in the uniform block. Hosts rely on it.
-    #[must_use]
     pub const fn offset(self) -> usize {
         let mut end: usize = 0;
         let mut at = 0;

@@ -10,7 +10,6 @@ pub struct KeySet([u64; 4]);
 
 impl KeySet {
     /// Whether a key is in the set.
-    #[must_use]
     pub fn contains(self, code: u8) -> bool {
         self.0[usize::from(code) / 64] >> (code % 64) & 1 == 1
     }
@@ -37,7 +36,6 @@ pub struct Keys {
 impl Keys {
     /// The texture of 256×3 texels: a column for each key, and the rows held, pressed and toggled, from the
     /// bottom up. Red is 1 or 0.
-    #[must_use]
     pub fn texture(&self) -> Texture {
         let rows = [self.held, self.pressed, self.toggled];
         let texels = rows.into_iter().flat_map(|row| {

@@ -68,7 +68,6 @@ impl<T: Copy> Image<T> {
     ///
     /// # Panics
     /// If the number of pixels is not `width · height`.
-    #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<[T; 4]>) -> Self {
         assert_eq!(pixels.len(), width as usize * height as usize);
         Self {
@@ -79,25 +78,21 @@ impl<T: Copy> Image<T> {
     }
 
     /// Whether the number of pixels agrees with the size, which may be false after reading from a file.
-    #[must_use]
     pub fn is_whole(&self) -> bool {
         self.pixels.len() as u64 == u64::from(self.width) * u64::from(self.height)
     }
 
     /// Width and height in pixels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
     /// All pixels, bottom row first.
-    #[must_use]
     pub fn pixels(&self) -> &[[T; 4]] {
         &self.pixels
     }
 
     /// The pixel at (x, y), y upwards from the bottom.
-    #[must_use]
     pub fn get(&self, x: u32, y: u32) -> [T; 4] {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
@@ -109,7 +104,6 @@ impl Image {
     ///
     /// # Panics
     /// If there is no band, or the widths differ.
-    #[must_use]
     pub fn of_bands(bands: Vec<Self>) -> Self {
         let height: u32 = bands.iter().map(|band| band.height).sum();
         let mut bands = bands.into_iter();
@@ -132,14 +126,12 @@ impl Image {
     }
 
     /// The rows, from the bottom up.
-    #[must_use]
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[f32; 4]]> + Clone {
         self.pixels.chunks(self.width as usize)
     }
 }
 
 /// The 8-bit value of a color component: `round_ties_even(255 · clamp(c, 0, 1))`; NaN becomes 0.
-#[must_use]
 #[inline]
 pub fn quantize(component: f32) -> u8 {
     let clamped = if component > 0.0 { component.min(1.0) } else { 0.0 };
@@ -180,7 +172,6 @@ pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], SizeError> {
 
 /// The PCG hash of Jarzynski and Olano, “Hash Functions for GPU Rendering”, JCGT 9(3), 2020.
 #[inline]
-#[must_use]
 pub fn pcg(input: u32) -> u32 {
     let state = input.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);

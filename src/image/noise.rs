@@ -26,7 +26,6 @@ const SHIFT: [u32; 2] = [37, 17];
 
 impl Noise {
     /// The image: 8-bit values as floats. A texture of one component is red; its alpha is 1.
-    #[must_use]
     pub fn image(self) -> Image {
         let side = match self {
             Self::RgbaMedium | Self::GrayMedium => 256,
@@ -59,7 +58,6 @@ impl Noise {
 }
 
 /// The texture that `noise` names on the command line: [`Noise::RgbaMedium`].
-#[must_use]
 pub fn noise() -> Image {
     Noise::RgbaMedium.image()
 }

@@ -140,7 +140,6 @@ impl<'a> FromIterator<&'a Path> for Originals {
 
 impl Originals {
     /// Whether writing to `path` would replace one of them.
-    #[must_use]
     pub fn would_lose(&self, path: &Path) -> bool {
         path.canonicalize()
             .is_ok_and(|place| place.is_file() && self.0.contains(&place))

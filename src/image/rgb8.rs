@@ -16,7 +16,6 @@ impl Rgb8Image {
     ///
     /// # Panics
     /// If the number of pixels is not `width · height`.
-    #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<[u8; 3]>) -> Self {
         assert_eq!(pixels.len(), width as usize * height as usize);
         Self {
@@ -27,7 +26,6 @@ impl Rgb8Image {
     }
 
     /// Makes an image without rows, with capacity for `height` rows.
-    #[must_use]
     pub fn empty(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -49,32 +47,27 @@ impl Rgb8Image {
     }
 
     /// The common color of all pixels; `None` if they differ.
-    #[must_use]
     pub fn only_color(&self) -> Option<[u8; 3]> {
         let &first = self.pixels.first()?;
         self.pixels.iter().all(|&pixel| pixel == first).then_some(first)
     }
 
     /// Width and height in pixels.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
     /// All pixels, bottom row first.
-    #[must_use]
     pub fn pixels(&self) -> &[[u8; 3]] {
         &self.pixels
     }
 
     /// The pixel at (x, y), y upwards from the bottom.
-    #[must_use]
     pub fn get(&self, x: u32, y: u32) -> [u8; 3] {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
     /// The rows, from the bottom up.
-    #[must_use]
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[[u8; 3]]> + Clone {
         self.pixels.chunks(self.width as usize)
     }

@@ -26,7 +26,6 @@ pub enum InputEvent {
 impl Script {
     /// The script of these events, each before the frame with the given number is rendered. Events of one
     /// frame keep their order.
-    #[must_use]
     pub fn new(mut events: Vec<(i32, InputEvent)>) -> Self {
         events.sort_by_key(|&(frame, _)| frame);
         Self { events }
@@ -47,7 +46,6 @@ impl Script {
     /// `iMouse` in a frame; `None` before the first click. As on `ShaderToy`, xy follows the mouse while the
     /// button is down, and zw is where it was pressed: z is positive while it is down, and w in the frame of
     /// the click. Positions are rounded down to whole pixels.
-    #[must_use]
     pub fn mouse(&self, frame: i32) -> Option<[f32; 4]> {
         let mut mouse = None;
         for (is_now, event) in self.until(frame) {
@@ -85,7 +83,6 @@ impl Script {
     }
 
     /// The keyboard in a frame. A key that is pressed while it is held does nothing.
-    #[must_use]
     pub fn keys(&self, frame: i32) -> Keys {
         let mut keys = Keys::default();
         for (is_now, event) in self.until(frame) {

@@ -17,7 +17,6 @@ pub enum Texture {
 
 impl Texture {
     /// The number of levels, at least 1.
-    #[must_use]
     pub fn levels(&self) -> u32 {
         match self {
             Self::Single(levels) => levels.len() as u32,
@@ -29,7 +28,6 @@ impl Texture {
     ///
     /// # Panics
     /// If there is no level.
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         match self {
             Self::Single(levels) => levels[0].size(),
@@ -38,7 +36,6 @@ impl Texture {
     }
 
     /// Whether it has this size, one level, and all its texels, which may be false after reading from a file.
-    #[must_use]
     pub fn is_whole(&self, size: [u32; 2]) -> bool {
         match self {
             Self::Single(levels) => {
@@ -51,7 +48,6 @@ impl Texture {
     }
 
     /// Each level in f32.
-    #[must_use]
     pub fn to_single(&self) -> Vec<Arc<Image>> {
         match self {
             Self::Single(levels) => levels.clone(),
@@ -111,7 +107,6 @@ fn mipmaps<T: Copy>(mut levels: Vec<Arc<Image<T>>>, mix: impl Fn(T, T, f64) -> T
 
 impl Image<f64> {
     /// The image rounded to f32.
-    #[must_use]
     pub fn to_single(&self) -> Image {
         let [width, height] = self.size();
         let pixels = self.pixels().iter();

@@ -63,7 +63,6 @@ pub struct Lints {
 
 impl Lints {
     /// Whether the author allows this run-time finding. A finding without a position is covered by any scope.
-    #[must_use]
     pub fn allows(&self, finding: &Diagnostic) -> bool {
         let holds = |scope: &Span| {
             finding
@@ -77,7 +76,6 @@ impl Lints {
 
 /// Searches a shader for suspicious code until the deadline. Also removes front-end warnings that the author
 /// allows.
-#[must_use]
 pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let tree = &checked.tree;
     let program = Program::new(tree, checked.main_image, deadline);

@@ -6,28 +6,24 @@ use super::float::Number;
 
 /// `x·π/180`
 #[inline]
-#[must_use]
 pub fn radians<N: Number>(x: N) -> N {
     x * x.literal(PI / 180.0)
 }
 
 /// `x·180/π`
 #[inline]
-#[must_use]
 pub fn degrees<N: Number>(x: N) -> N {
     x * x.literal(180.0 / PI)
 }
 
 /// `1 / √x`
 #[inline]
-#[must_use]
 pub fn inverse_sqrt<N: Number>(x: N) -> N {
     x.literal(1.0) / x.sqrt()
 }
 
 /// −1, 0 or 1; 0 for NaN.
 #[inline]
-#[must_use]
 pub fn sign<N: Number>(x: N) -> N {
     let zero = x.literal(0.0);
     let positive = N::select(zero.less(x), x.literal(1.0), zero);
@@ -36,42 +32,36 @@ pub fn sign<N: Number>(x: N) -> N {
 
 /// `x − floor(x)`; rounds to 1 just below zero.
 #[inline]
-#[must_use]
 pub fn fract<N: Number>(x: N) -> N {
     x - x.floor()
 }
 
 /// `mod(x, y)`: `x − y·floor(x / y)`
 #[inline]
-#[must_use]
 pub fn modulo<N: Number>(x: N, y: N) -> N {
     x - y * (x / y).floor()
 }
 
 /// `min(max(x, low), high)`
 #[inline]
-#[must_use]
 pub fn clamp<N: Number>(x: N, low: N, high: N) -> N {
     x.max(low).min(high)
 }
 
 /// `a·(1 − t) + b·t`
 #[inline]
-#[must_use]
 pub fn mix<N: Number>(a: N, b: N, t: N) -> N {
     a * (t.literal(1.0) - t) + b * t
 }
 
 /// 0 if `x < edge`, otherwise 1.
 #[inline]
-#[must_use]
 pub fn step<N: Number>(edge: N, x: N) -> N {
     N::select(x.less(edge), x.literal(0.0), x.literal(1.0))
 }
 
 /// `t²·(3 − 2t)` with t = `clamp((x − low) / (high − low), 0, 1)`; 0 where t is NaN, as in browsers.
 #[inline]
-#[must_use]
 pub fn smoothstep<N: Number>(low: N, high: N, x: N) -> N {
     let t = (x - low) / (high - low);
     let (zero, one) = (x.literal(0.0), x.literal(1.0));
@@ -86,7 +76,6 @@ pub fn smoothstep<N: Number>(low: N, high: N, x: N) -> N {
 ///
 /// # Panics
 /// If there are no components.
-#[must_use]
 pub fn dot<N: Number>(a: &[N], b: &[N]) -> N {
     let products = a.iter().zip(b).map(|(&a, &b)| a * b);
     products
@@ -95,7 +84,6 @@ pub fn dot<N: Number>(a: &[N], b: &[N]) -> N {
 }
 
 /// `√dot(v, v)`; for one component, its absolute value.
-#[must_use]
 pub fn length<N: Number>(v: &[N]) -> N {
     match *v {
         [x] => x.abs(),
@@ -104,26 +92,22 @@ pub fn length<N: Number>(v: &[N]) -> N {
 }
 
 /// `length(a − b)`
-#[must_use]
 pub fn distance<N: Number>(a: &[N], b: &[N]) -> N {
     length(&each(a, b, |a, b| a - b))
 }
 
 /// `v / length(v)`
-#[must_use]
 pub fn normalize<N: Number>(v: &[N]) -> Vec<N> {
     let length = length(v);
     v.iter().map(|&x| x / length).collect()
 }
 
 /// `(a₁b₂ − b₁a₂, a₂b₀ − b₂a₀, a₀b₁ − b₀a₁)`
-#[must_use]
 pub fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - b[i] * a[j])
 }
 
 /// `n` if `dot(reference, i) < 0`, otherwise `−n`.
-#[must_use]
 pub fn faceforward<N: Number>(n: &[N], i: &[N], reference: &[N]) -> Vec<N> {
     let along = dot(reference, i);
     let towards = along.less(along.literal(0.0));
@@ -131,7 +115,6 @@ pub fn faceforward<N: Number>(n: &[N], i: &[N], reference: &[N]) -> Vec<N> {
 }
 
 /// `i − 2·dot(n, i)·n`
-#[must_use]
 pub fn reflect<N: Number>(i: &[N], n: &[N]) -> Vec<N> {
     let along = dot(n, i);
     let twice = along.literal(2.0) * along;
@@ -139,7 +122,6 @@ pub fn reflect<N: Number>(i: &[N], n: &[N]) -> Vec<N> {
 }
 
 /// `eta·i − (eta·c + √k)·n` with c = `dot(n, i)` and k = `1 − eta²·(1 − c²)`; 0 if k < 0.
-#[must_use]
 pub fn refract<N: Number>(i: &[N], n: &[N], eta: N) -> Vec<N> {
     let (zero, one) = (eta.literal(0.0), eta.literal(1.0));
     let cosine = dot(n, i);
@@ -165,20 +147,17 @@ impl<N: Number> Matrix<N> {
     ///
     /// # Panics
     /// If `rows` is 0.
-    #[must_use]
     pub fn new(components: &[N], rows: usize) -> Self {
         let columns = components.chunks(rows).map(<[N]>::to_vec).collect();
         Self { columns }
     }
 
     /// The components in column order.
-    #[must_use]
     pub fn components(&self) -> Vec<N> {
         self.columns.concat()
     }
 
     /// `m·v`: each component sums over the columns.
-    #[must_use]
     pub fn times_vector(&self, v: &[N]) -> Vec<N> {
         let rows = self.columns.first().map_or(0, Vec::len);
         (0..rows)
@@ -190,7 +169,6 @@ impl<N: Number> Matrix<N> {
     }
 
     /// `v·m`: each component is the dot product with a column.
-    #[must_use]
     pub fn vector_times(&self, v: &[N]) -> Vec<N> {
         self.columns.iter().map(|column| dot(v, column)).collect()
     }
@@ -206,7 +184,6 @@ impl<N: Number> Matrix<N> {
 }
 
 /// The matrix whose column j is `c·rⱼ`.
-#[must_use]
 pub fn outer_product<N: Number>(c: &[N], r: &[N]) -> Matrix<N> {
     let columns = r.iter().map(|&r| c.iter().map(|&c| c * r).collect());
     Matrix {
@@ -218,7 +195,6 @@ pub fn outer_product<N: Number>(c: &[N], r: &[N]) -> Matrix<N> {
 ///
 /// # Panics
 /// If the matrix is not square, or larger than 4×4.
-#[must_use]
 pub fn determinant<N: Number>(m: &Matrix<N>) -> N {
     adjugate(m).1
 }
@@ -227,7 +203,6 @@ pub fn determinant<N: Number>(m: &Matrix<N>) -> N {
 ///
 /// # Panics
 /// If the matrix is not square, or larger than 4×4.
-#[must_use]
 pub fn inverse<N: Number>(m: &Matrix<N>) -> Matrix<N> {
     let (adjugate, determinant) = adjugate(m);
     let over = |column: &Vec<N>| column.iter().map(|&x| x / determinant).collect();

@@ -17,7 +17,6 @@ const LN_2_SPLIT: [f32; 2] = [0.693_145_75, 1.428_606_8e-6];
 
 /// `eˣ`
 #[inline(always)]
-#[must_use]
 pub fn exp<F: Float>(x: F) -> F {
     let (value, n) = exp_parts(x);
     let value = scaled(value.value(), n);
@@ -28,7 +27,6 @@ pub fn exp<F: Float>(x: F) -> F {
 
 /// `2ˣ`
 #[inline(always)]
-#[must_use]
 pub fn exp2<F: Float>(x: F) -> F {
     let value = exp2_of(TwoFloat::of(x));
     F::select(is_nan(x), x, value)
@@ -103,7 +101,6 @@ fn power_of_two<F: Float>(n: F::Bits) -> F {
 
 /// `ln x`; −∞ for zero, NaN below.
 #[inline(always)]
-#[must_use]
 pub fn log<F: Float>(x: F) -> F {
     let value = ln_of(TwoFloat::of(x), x.literal(0.0));
     F::select(is_positive_normal(x), value, log_of_special(x))
@@ -111,7 +108,6 @@ pub fn log<F: Float>(x: F) -> F {
 
 /// The binary logarithm of x; −∞ for zero, NaN below.
 #[inline(always)]
-#[must_use]
 pub fn log2<F: Float>(x: F) -> F {
     let value = log2_of(x).value();
     F::select(is_positive_normal(x), value, log_of_special(x))
@@ -122,7 +118,6 @@ pub fn log2<F: Float>(x: F) -> F {
 ///
 /// # Panics
 /// If a vector has no components.
-#[must_use]
 pub fn level_of_detail<F: Float>(along_x: &[F], along_y: &[F]) -> F {
     let square = longer_square(along_x, along_y);
     log2(square) * square.literal(0.5)
@@ -132,14 +127,12 @@ pub fn level_of_detail<F: Float>(along_x: &[F], along_y: &[F]) -> F {
 ///
 /// # Panics
 /// If a vector has no components.
-#[must_use]
 pub fn longer_square<N: Number>(a: &[N], b: &[N]) -> N {
     dot(a, a).max(dot(b, b))
 }
 
 /// `x` to the power of `y`. NaN for x < 0; for zero and infinite x, and for y = 0, as in C.
 #[inline(always)]
-#[must_use]
 pub fn pow<F: Float>(x: F, y: F) -> F {
     let is_normal = is_positive_normal(x);
     let log = log2_of(x);
@@ -227,7 +220,6 @@ const SMALL_ARGUMENT: f32 = 1.0 / 4096.0;
 
 /// `(eˣ − e⁻ˣ)/2`
 #[inline(always)]
-#[must_use]
 pub fn sinh<F: Float>(x: F) -> F {
     /// (sinh(x) − x)/x³ as a polynomial of x², |x| ≤ 1, within 2⁻³¹ of sinh(x).
     const P: [f32; 4] = [0.166_666_67, 0.008_333_31, 0.000_198_428_91, 2.782_267e-6];
@@ -243,7 +235,6 @@ pub fn sinh<F: Float>(x: F) -> F {
 
 /// `(eˣ + e⁻ˣ)/2`
 #[inline(always)]
-#[must_use]
 pub fn cosh<F: Float>(x: F) -> F {
     let (up, down) = quarter_exponentials(x);
     let sum = TwoFloat::ordered_sum(up.hi, down).add_low(up.lo).value();
@@ -252,7 +243,6 @@ pub fn cosh<F: Float>(x: F) -> F {
 
 /// `sinh(x)/cosh(x)`
 #[inline(always)]
-#[must_use]
 pub fn tanh<F: Float>(x: F) -> F {
     /// (tanh(x) − x)/x³ as a polynomial of x², |x| ≤ 0.36, within 2⁻³⁰ of tanh(x).
     const P: [f32; 4] = [-0.333_333_2, 0.133_322_31, -0.053_701_587, 0.019_314_993];
@@ -288,7 +278,6 @@ fn quarter_exponentials<F: Float>(x: F) -> (TwoFloat<F>, F) {
 
 /// `ln(x + √(x² + 1))`
 #[inline(always)]
-#[must_use]
 pub fn asinh<F: Float>(x: F) -> F {
     let a = x.abs();
     let one = a.literal(1.0);
@@ -300,7 +289,6 @@ pub fn asinh<F: Float>(x: F) -> F {
 
 /// `ln(x + √(x² − 1))`; NaN for x < 1.
 #[inline(always)]
-#[must_use]
 pub fn acosh<F: Float>(x: F) -> F {
     let one = x.literal(1.0);
     let t = x - one;
@@ -316,7 +304,6 @@ pub fn acosh<F: Float>(x: F) -> F {
 
 /// `ln((1 + x)/(1 − x))/2`; NaN for |x| > 1.
 #[inline(always)]
-#[must_use]
 pub fn atanh<F: Float>(x: F) -> F {
     let a = x.abs();
     let one = a.literal(1.0);

@@ -96,13 +96,11 @@ struct Steps {
 
 impl ExprGraph {
     /// The term for an argument.
-    #[must_use]
     pub fn argument(&self, index: usize) -> FloatTerm<'_> {
         Term::new(self, Step::Argument(index), Kind::Float).into()
     }
 
     /// A step and the type of its result.
-    #[must_use]
     pub fn step(&self, id: StepId) -> (Step, Kind) {
         self.steps.borrow().all[id]
     }
@@ -111,7 +109,6 @@ impl ExprGraph {
     ///
     /// # Panics
     /// If the graph names more arguments than there are.
-    #[must_use]
     pub fn evaluate(&self, results: &[StepId], arguments: &[f32]) -> Vec<f32> {
         let steps = self.steps.borrow();
         // The encodings of the results of all steps: operands precede their users.
@@ -234,7 +231,6 @@ macro_rules! terms {
 
         impl $name<'_> {
             /// The step that computes it.
-            #[must_use]
             pub fn id(self) -> StepId {
                 self.0.id
             }

@@ -32,7 +32,6 @@ pub trait Number:
     fn less(self, other: Self) -> Self::Bool;
 
     /// `yes` if `condition` holds, otherwise `no`. Both have been computed.
-    #[must_use]
     fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
 
     /// GLSL's `min`: `other` if it is less.
@@ -109,11 +108,9 @@ pub trait Float:
     fn to_bits(self) -> Self::Bits;
 
     /// The float with that encoding.
-    #[must_use]
     fn from_bits(bits: Self::Bits) -> Self;
 
     /// The nearest float to an integer in two's complement.
-    #[must_use]
     fn from_signed(bits: Self::Bits) -> Self;
 }
 
@@ -149,7 +146,6 @@ pub trait Bits:
     fn less(self, other: Self) -> Self::Bool;
 
     /// `yes` if `condition` holds, otherwise `no`.
-    #[must_use]
     fn select(condition: Self::Bool, yes: Self, no: Self) -> Self;
 }
 

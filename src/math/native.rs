@@ -5,7 +5,6 @@
 
 /// Replaces a denormal by zero with the same sign.
 #[inline(always)]
-#[must_use]
 pub fn flush(x: f32) -> f32 {
     let bits = x.to_bits();
     let kept = if bits & 0x7F80_0000 == 0 {
@@ -18,7 +17,6 @@ pub fn flush(x: f32) -> f32 {
 
 /// `sin` and `cos`
 #[inline(always)]
-#[must_use]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     let (sine, cosine) = crate::trigonometric::sin_cos(flush(x));
     (flush(sine), flush(cosine))
@@ -28,7 +26,6 @@ macro_rules! flushing {
     ($module:ident: $($name:ident($($argument:ident),*);)*) => {$(
         #[doc = concat!("`", stringify!($name), "`")]
         #[inline(always)]
-        #[must_use]
         pub fn $name($($argument: f32),*) -> f32 {
             flush(crate::$module::$name($(flush($argument)),*))
         }

@@ -15,7 +15,6 @@ use super::two_float::TwoFloat;
 
 /// `sin(x)`, x in radians; NaN for infinities.
 #[inline(always)]
-#[must_use]
 pub fn sin<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
     let value = TwoFloat::select(is_odd::<F>(quadrant), cosine(r), sine(r));
@@ -24,7 +23,6 @@ pub fn sin<F: Float>(x: F) -> F {
 
 /// `cos(x)`, x in radians; NaN for infinities.
 #[inline(always)]
-#[must_use]
 pub fn cos<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
     let value = TwoFloat::select(is_odd::<F>(quadrant), sine(r), cosine(r));
@@ -33,7 +31,6 @@ pub fn cos<F: Float>(x: F) -> F {
 
 /// `sin(x)` and `cos(x)`, with the bits that they have alone.
 #[inline(always)]
-#[must_use]
 pub fn sin_cos<F: Float>(x: F) -> (F, F) {
     let (r, quadrant) = reduce(x);
     let (odd, sine, cosine) = (is_odd::<F>(quadrant), sine(r), cosine(r));
@@ -59,7 +56,6 @@ fn signed_cosine<F: Float>(x: F, quadrant: F::Bits, value: TwoFloat<F>) -> F {
 
 /// `tan(x)`, x in radians; NaN for infinities.
 #[inline(always)]
-#[must_use]
 pub fn tan<F: Float>(x: F) -> F {
     let (r, quadrant) = reduce(x);
     let (sine, cosine) = (sine(r).normalized(), cosine(r).normalized());
@@ -190,7 +186,6 @@ fn cosine<F: Float>(r: TwoFloat<F>) -> TwoFloat<F> {
 
 /// `asin(x)`; NaN for |x| > 1.
 #[inline(always)]
-#[must_use]
 pub fn asin<F: Float>(x: F) -> F {
     let Arcsine { outer, root, series } = arcsine(x);
     let twice = root.hi + root.hi;
@@ -201,7 +196,6 @@ pub fn asin<F: Float>(x: F) -> F {
 
 /// `acos(x)`; NaN for |x| > 1.
 #[inline(always)]
-#[must_use]
 pub fn acos<F: Float>(x: F) -> F {
     let Arcsine { outer, root, series } = arcsine(x);
     let inner = angle_minus(FRAC_PI_2, x, negate_if(series, x.to_bits()));
@@ -213,7 +207,6 @@ pub fn acos<F: Float>(x: F) -> F {
 
 /// `atan(x)`
 #[inline(always)]
-#[must_use]
 pub fn atan<F: Float>(x: F) -> F {
     let a = x.abs();
     let one = a.literal(1.0);
@@ -226,7 +219,6 @@ pub fn atan<F: Float>(x: F) -> F {
 
 /// `atan(y, x)`: the angle of (x, y) in [−π, π]; for zeros and infinities as in C.
 #[inline(always)]
-#[must_use]
 pub fn atan2<F: Float>(y: F, x: F) -> F {
     let (ax, ay) = (x.abs(), y.abs());
     let steep = ax.less(ay);

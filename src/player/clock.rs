@@ -16,7 +16,6 @@ pub struct Clock {
 impl Clock {
     /// The inputs of a frame. Its time is computed, not summed up: a sum of 1/60 in f32 is wrong by seconds
     /// after an hour.
-    #[must_use]
     pub fn frame(&self, number: i32) -> Frame {
         let time = self.start + f64::from(number) / self.rate;
         Frame {

@@ -91,7 +91,6 @@ impl DrawOutput {
     ///
     /// # Panics
     /// If the bands were passed to a callback.
-    #[must_use]
     pub fn image(self) -> Image {
         Image::of_bands(self.bands)
     }

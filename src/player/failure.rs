@@ -95,13 +95,11 @@ pub enum DriverFailure {
 
 impl DriverFailure {
     /// Returns whether no driver is usable, whatever the shader. The evaluator may take its place.
-    #[must_use]
     pub fn is_without_driver(&self) -> bool {
         matches!(self, Self::NoDriver(_) | Self::NotStarted(_))
     }
 
     /// Returns the diagnostics on the shader.
-    #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         match self {
             Self::Invalid(diagnostics) | Self::Refused(diagnostics) => diagnostics,
@@ -110,13 +108,11 @@ impl DriverFailure {
     }
 
     /// Returns whether the deadline expired.
-    #[must_use]
     pub fn is_timeout(&self) -> bool {
         matches!(self, Self::Timeout { .. })
     }
 
     /// Returns whether the shader does not compile, as opposed to an error of the tools.
-    #[must_use]
     pub fn is_invalid(&self) -> bool {
         matches!(
             self,
@@ -129,7 +125,6 @@ impl DriverFailure {
 
     /// Returns whether the deadline expired while the driver compiled the shader, which does not imply that
     /// the shader runs long.
-    #[must_use]
     pub fn is_slow_compilation(&self) -> bool {
         matches!(
             self,

@@ -116,7 +116,6 @@ impl Graph {
     ///
     /// # Panics
     /// If a pass other than the last renders the image, the last does not, or a buffer has a number of 4 or more.
-    #[must_use]
     pub fn new(passes: Vec<Pass>, mipmaps: [bool; BUFFERS]) -> Self {
         let image = passes.iter().position(|pass| pass.target == Target::Image);
         assert_eq!(image, passes.len().checked_sub(1), "the image is rendered last");
@@ -134,7 +133,6 @@ impl Graph {
     }
 
     /// The passes in the order in which they are rendered.
-    #[must_use]
     pub fn passes(&self) -> &[Pass] {
         &self.passes
     }
@@ -147,13 +145,11 @@ impl Graph {
     }
 
     /// Whether mipmaps of a buffer are made.
-    #[must_use]
     pub fn has_mipmaps(&self, buffer: usize) -> bool {
         self.mipmaps[buffer]
     }
 
     /// Whether a buffer is rendered or read. One that is only read stays zero.
-    #[must_use]
     pub fn uses(&self, buffer: usize) -> bool {
         self.passes.iter().any(|pass| {
             pass.target == Target::Buffer(buffer) || pass.inputs.contains(&Some(Source::Buffer(buffer)))

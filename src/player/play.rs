@@ -70,7 +70,6 @@ struct Buffer<T> {
 
 impl<R: Renderer> Player<R> {
     /// A player before the first frame.
-    #[must_use]
     pub fn new(graph: Graph, renderer: R) -> Self {
         Self {
             graph,
@@ -82,13 +81,11 @@ impl<R: Renderer> Player<R> {
     }
 
     /// The graph.
-    #[must_use]
     pub fn graph(&self) -> &Graph {
         &self.graph
     }
 
     /// The renderer.
-    #[must_use]
     pub fn renderer(&self) -> &R {
         &self.renderer
     }
@@ -99,13 +96,11 @@ impl<R: Renderer> Player<R> {
     }
 
     /// The renderer; all textures are dropped.
-    #[must_use]
     pub fn into_renderer(self) -> R {
         self.renderer
     }
 
     /// The last image of a pass: `None` before the first frame, and for buffers that are not used.
-    #[must_use]
     pub fn texture(&self, target: Target) -> Option<&R::Texture> {
         match target {
             Target::Image => self.image.as_ref(),
@@ -118,7 +113,6 @@ impl<R: Renderer> Player<R> {
 
     /// The textures of a buffer, the one that was completed last first: all that the next frame depends on,
     /// together with the image.
-    #[must_use]
     pub fn buffer(&self, number: usize) -> Option<[&R::Texture; 2]> {
         let buffer = self.buffers[number].as_ref()?;
         let [first, second] = buffer.textures.each_ref().map(Option::as_ref);
@@ -134,7 +128,6 @@ impl<R: Renderer> Player<R> {
     ///
     /// # Panics
     /// If there is no such pass.
-    #[must_use]
     pub fn inputs(&self, pass: usize) -> [Channel<'_, R::Texture>; 4] {
         let from = &self.graph.passes()[pass..];
         channels(&self.graph, pass, |number| {

@@ -21,7 +21,6 @@ pub struct State {
 impl State {
     /// Whether a state that was read from a file is one of this graph: all its textures are there, in one
     /// size.
-    #[must_use]
     pub fn fits(&self, graph: &Graph) -> bool {
         let mut buffers = self.buffers.iter().enumerate();
         let has_buffers = buffers.all(|(number, textures)| match textures {

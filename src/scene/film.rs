@@ -44,13 +44,11 @@ pub enum Sampler {
 
 impl Sampler {
     /// Whether it provides random numbers for lights and surfaces.
-    #[must_use]
     pub fn is_stochastic(self) -> bool {
         !matches!(self, Self::Center | Self::SineHash)
     }
 
     /// Its name in scene files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Center => "center",
@@ -103,7 +101,6 @@ impl Camera {
     pub const UP: Point = [0.0, 1.0, 0.0];
 
     /// Returns the viewing direction, of length 1.
-    #[must_use]
     pub fn forward(&self) -> Point {
         let Some(look_at) = self.look_at else {
             return [0.0, 0.0, -1.0];
@@ -115,7 +112,6 @@ impl Camera {
 
     /// Returns the directions to the right, up and forward, orthonormal; `None` for those of a camera that is
     /// not turned: x, y and −z.
-    #[must_use]
     pub fn axes(&self) -> Option<[Point; 3]> {
         if self.look_at.is_none() && self.up == Self::UP && self.roll == 0.0 {
             return None;

@@ -94,7 +94,6 @@ impl Scene {
     }
 
     /// Returns the largest distance of a surface from the eye along a coordinate axis, in scene units.
-    #[must_use]
     pub fn size(&self) -> f64 {
         let eye = self.camera.eye;
         let places = self.objects.iter().map(|object| object.shape.origin());

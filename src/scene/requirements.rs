@@ -43,7 +43,6 @@ pub struct Requirements {
 
 impl Requirements {
     /// Determines the features that a scene uses.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let surface =
             |uses: fn(&Model) -> bool| scene.objects.iter().any(|object| uses(&object.material.model));

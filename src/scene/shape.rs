@@ -94,7 +94,6 @@ pub struct Equation {
 
 impl QuadricKind {
     /// Returns the largest radius.
-    #[must_use]
     pub fn size(&self) -> f64 {
         match *self {
             Self::Ellipsoid { radii } => radii.into_iter().fold(0.0, f64::max),
@@ -106,7 +105,6 @@ impl QuadricKind {
     }
 
     /// Returns the equation with lengths measured in `unit`, which is given in scene units.
-    #[must_use]
     pub fn equation(&self, unit: f64) -> Equation {
         let round = |z2: f64, g: f64, k: f64, ends: [f64; 2]| Equation {
             q: [1.0, 1.0, z2],
@@ -150,7 +148,6 @@ impl QuadricKind {
 
 impl Quadric {
     /// Returns a quadric around an axis of length 1.
-    #[must_use]
     pub fn around(axis: Point, origin: Point, kind: QuadricKind) -> Self {
         let z = DVec3::from_array(axis);
         let (x, y) = z.any_orthonormal_pair();
@@ -164,7 +161,6 @@ impl Quadric {
 
 impl Shape {
     /// Whether it encloses a volume.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         match self {
             Self::Sphere { .. } | Self::Box(_) => true,
@@ -175,7 +171,6 @@ impl Shape {
 
     /// Returns the origin of its own coordinates: the center of a sphere or a quadric, the end of a quadric
     /// that begins there, the point of a plane, and the corner of a box with the smallest coordinates.
-    #[must_use]
     pub fn origin(&self) -> Point {
         match *self {
             Self::Sphere { center, .. } => center,
@@ -194,7 +189,6 @@ impl Shape {
     /// Returns the directions of its own coordinates x, y and z, before any motion. The axis of a quadric and
     /// the normal of a plane are y; x and z result from the shortest rotation of the scene's y to that
     /// direction.
-    #[must_use]
     pub fn axes(&self) -> [Point; 3] {
         let upright = |y: Point| {
             let rotation = DQuat::from_rotation_arc(DVec3::Y, DVec3::from_array(y));
@@ -305,7 +299,6 @@ impl Scatter {
 }
 
 /// Converts the upper 24 bits of a hash to a number in [0, 1), which float32 represents exactly.
-#[must_use]
 #[inline]
 pub fn unit(hash: u32) -> f64 {
     f64::from(hash >> 8) / f64::from(1 << 24)

@@ -6,7 +6,6 @@
 /// let text = toyproof_scene::template("week 1");
 /// assert!(text.contains("title = \"week 1\""));
 /// ```
-#[must_use]
 pub fn template(title: &str) -> String {
     let mut escaped = String::with_capacity(title.len());
     for c in title.chars() {

@@ -194,13 +194,11 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// The place of the table: its header, or all of an inline table.
-    #[must_use]
     pub fn span(&self) -> Span {
         self.span
     }
 
     /// Whether there has been no error in this table, or since it was opened.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         self.reader.error_count.get() == self.errors_before
     }
@@ -223,19 +221,16 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// Returns the text of the file there.
-    #[must_use]
     pub fn excerpt(&self, span: Span) -> &str {
         self.reader.excerpt(span)
     }
 
     /// Whether there is such a key.
-    #[must_use]
     pub fn has(&self, key: &str) -> bool {
         self.value_span(key).is_some()
     }
 
     /// The place of the value of a key.
-    #[must_use]
     pub fn value_span(&self, key: &str) -> Option<Span> {
         self.entries.get(key).map(|value| self.reader.span(value.span()))
     }
@@ -393,7 +388,6 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// Whether the value of a key is a table.
-    #[must_use]
     pub fn has_table(&self, key: &str) -> bool {
         self.entries
             .get(key)
@@ -558,7 +552,6 @@ fn suggestion(name: &str, known: impl Iterator<Item = (&'static str, String)>) -
 }
 
 /// Joins alternatives: "a", "a or b", "a, b or c".
-#[must_use]
 pub fn list_of(names: &[&str]) -> String {
     match names {
         [] => String::new(),

@@ -5,7 +5,6 @@ use std::ops::Range;
 use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 
 /// Returns the diagnostic for an error of the TOML parser.
-#[must_use]
 pub fn diagnostic(code: Code, error: &toml::de::Error, text: &str, file: FileId) -> Diagnostic {
     let bytes = error.span().unwrap_or_default();
     let bytes = bytes.start.min(text.len())..bytes.end.min(text.len());

@@ -42,7 +42,6 @@ pub struct ColorRange {
 impl ColorRange {
     /// Returns the largest distance of a component of `color`, clamped to [0, 1], from the clamped range;
     /// infinite for NaN.
-    #[must_use]
     pub fn distance(&self, color: [f64; 3]) -> f64 {
         let outside = |i: usize| {
             let [low, high, value] = [self.low[i], self.high[i], color[i]].map(|v| v.clamp(0.0, 1.0));
@@ -75,7 +74,6 @@ impl Tracer<f64> {
     /// Computes the range of colors of the pixel at (x, y) over the representative policies. Each sample has
     /// its own range, and the range of the mean is the mean of those: a shader uses the same policy for all
     /// samples, but the policy affects each sample differently.
-    #[must_use]
     pub fn color_range(&self, x: u32, y: u32, epsilons: EpsilonSet) -> ColorRange {
         let legal = || representatives(self.max_offset);
         let mut sum = ColorRange {
@@ -135,7 +133,6 @@ pub type EpsilonFamily = Vec<RayEpsilon>;
 
 impl Tracer<f64> {
     /// Renders the pixel at (x, y) with the given epsilons. The components are tone-mapped but not clamped.
-    #[must_use]
     pub fn pixel_with_epsilons(&self, [x, y]: [u32; 2], epsilons: &RayEpsilons) -> [f64; 3] {
         let count = self.film.samples;
         let mut sum = glam::DVec3::ZERO;
@@ -154,7 +151,6 @@ impl Tracer<f64> {
 
     /// Returns the families of epsilons that a shader of the scene may use: offsets along the normal or along
     /// the ray, smallest t, or offset and smallest t together, each with all light policies.
-    #[must_use]
     pub fn epsilon_families(&self) -> Vec<EpsilonFamily> {
         let lengths = usual_lengths(self.max_offset);
         let constructors: [fn(f64) -> RayEpsilon; 4] = [
@@ -191,7 +187,6 @@ impl Tracer<f64> {
     }
 
     /// Returns all combinations of rays that hit their own surface and rays that do not.
-    #[must_use]
     pub fn acne(&self) -> Vec<RayEpsilons> {
         let [lights, bounces] = self.world.acne_dimensions();
         let (lights, bounces) = (lights.min(MAX_ACNE_LIGHTS), bounces.min(MAX_ACNE_BOUNCES));

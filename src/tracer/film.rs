@@ -14,19 +14,16 @@ pub const RESAMPLED_ROWS: u32 = TILE_SIDE;
 
 impl Tracer<f64> {
     /// Returns the sampler of the scene, or `None` if it takes the pixel centers.
-    #[must_use]
     pub fn sampler(&self) -> Option<Sampler> {
         Some(self.film.sampler).filter(|&sampler| sampler != Sampler::Center)
     }
 
     /// Returns the number of samples per pixel.
-    #[must_use]
     pub fn samples(&self) -> u32 {
         self.film.samples
     }
 
     /// Returns whether the scene is path-traced.
-    #[must_use]
     pub fn traces_paths(&self) -> bool {
         self.world.integrator() == Integrator::Path
     }
@@ -34,7 +31,6 @@ impl Tracer<f64> {
     /// Computes the mean of the samples of the pixel at (x, y), y up, with the scene's number of samples and
     /// the `independent` sampler. Each `set` has different random numbers; set 0 is the scene's own. The
     /// result is not tone-mapped; see [`tone_mapped`](Self::tone_mapped).
-    #[must_use]
     pub fn resampled_mean(&self, [x, y]: [u32; 2], set: u32) -> [f64; 3] {
         let count = self.film.samples;
         let mut sum = glam::DVec3::ZERO;
@@ -54,33 +50,28 @@ impl Tracer<f64> {
     }
 
     /// Like [`resampled_mean`](Self::resampled_mean), but tone-mapped.
-    #[must_use]
     pub fn resampled(&self, pixel: [u32; 2], set: u32) -> [f64; 3] {
         self.tone_mapped(self.resampled_mean(pixel, set))
     }
 
     /// Computes [`resampled_mean`](Self::resampled_mean) for all pixels of up to [`RESAMPLED_ROWS`] rows from
     /// `bottom` on, row by row. The results are not tone-mapped; see [`tone_mapped`](Self::tone_mapped).
-    #[must_use]
     pub fn resampled_rows(&self, bottom: u32, set: u32) -> Vec<[f64; 3]> {
         let means = self.means(bottom, Sampler::Independent, set);
         means.into_iter().map(Vector::to_array).collect()
     }
 
     /// Tone-maps the mean of a pixel's samples to a color in [0, 1].
-    #[must_use]
     pub fn tone_mapped(&self, mean: [f64; 3]) -> [f64; 3] {
         mean.map(|component| tone_map(&self.film, component).clamp(0.0, 1.0))
     }
 
     /// Inverts the tone mapping; infinite for colors that it cannot produce.
-    #[must_use]
     pub fn inverse_tone_mapped(&self, color: [f64; 3]) -> [f64; 3] {
         color.map(|component| inverse_tone_map(&self.film, component))
     }
 
     /// Computes the derivative of the tone-mapped color with respect to the mean.
-    #[must_use]
     pub fn slope(&self, mean: [f64; 3]) -> [f64; 3] {
         mean.map(|component| tone_map_slope(&self.film, component))
     }
@@ -88,7 +79,6 @@ impl Tracer<f64> {
     /// Computes the tone-mapped color of one sample at a position in pixels from the bottom left, y up. Only
     /// scenes without a [sampler](Self::sampler) have a color at each position; others use the same random
     /// numbers everywhere.
-    #[must_use]
     pub fn color_at(&self, position: [f64; 2]) -> [f64; 3] {
         let sample = Sample {
             pixel: [0; 2],

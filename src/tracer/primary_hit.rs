@@ -10,7 +10,6 @@ impl<T: Real> Tracer<T> {
     /// Returns whether the samples of the pixel's quad see different surfaces or figures. The quad is the
     /// block of 2×2 pixels within which GPUs compute derivatives; at the edge of the image it may extend
     /// beyond it.
-    #[must_use]
     pub fn is_quad_mixed(&self, x: u32, y: u32) -> bool {
         let quad = [x & !1, y & !1];
         let lanes = [[0, 0], [1, 0], [0, 1], [1, 1]];
@@ -36,7 +35,6 @@ impl<T: Real> Tracer<T> {
     }
 
     /// Returns the origin and the direction of the camera ray through the center of a pixel.
-    #[must_use]
     pub fn camera_ray(&self, x: u32, y: u32) -> [[T; 3]; 2] {
         let half = T::from_f64(0.5);
         let middle = [x, y].map(|along| T::from_f64(f64::from(along)) + half);
@@ -47,7 +45,6 @@ impl<T: Real> Tracer<T> {
     /// Finds the first hit of an arbitrary ray: the distance in units of the length of `direction`, and the
     /// index of the surface in the scene. `from` is the surface on which the ray starts, if any; its start is
     /// not a hit.
-    #[must_use]
     pub fn intersect(&self, origin: [T; 3], direction: [T; 3], from: Option<usize>) -> Option<(T, usize)> {
         let ray = Ray {
             origin: T::Vec3::from_array(origin),

@@ -123,7 +123,6 @@ pub struct RayEpsilons {
 
 impl RayEpsilons {
     /// Uses the same epsilons for both kinds of rays.
-    #[must_use]
     pub fn alike(epsilon: RayEpsilon) -> Self {
         Self {
             light: epsilon,

@@ -20,7 +20,6 @@ pub trait Real: Float + Vectorized + Debug + Send + Sync + 'static {
     fn to_f64(self) -> f64;
 
     /// Computes sin and cos by libm, whose bits are the same on every platform, unlike the system library's.
-    #[must_use]
     fn sine_and_cosine(self) -> (Self, Self);
 
     /// Computes pow by libm.
@@ -36,11 +35,9 @@ pub trait Real: Float + Vectorized + Debug + Send + Sync + 'static {
     fn power_of_two(self) -> Self;
 
     /// Encodes an integer in the bits of a float, which is not valid for arithmetic.
-    #[must_use]
     fn tag(number: u32) -> Self;
 
     /// Decodes the integer of [`Real::tag`].
-    #[must_use]
     fn untag(self) -> u32;
 }
 

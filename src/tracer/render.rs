@@ -68,13 +68,11 @@ backends!(f32, f64);
 
 impl<T: Backend> Tracer<T> {
     /// Creates a tracer for the first moment of `scene`. All numbers are rounded to `T` once, here.
-    #[must_use]
     pub fn new(scene: &Scene) -> Self {
         Self::at(scene, FrameTime::default())
     }
 
     /// Creates a tracer for the given moment of `scene`.
-    #[must_use]
     pub fn at(scene: &Scene, frame_time: FrameTime) -> Self {
         T::create(scene, frame_time, Level::best(), None)
     }
@@ -105,7 +103,6 @@ impl<T: Backend> Tracer<T> {
     }
 
     /// Renders the pixel at (x, y), where y points up: the tone-mapped mean of its samples.
-    #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [T; 3] {
         T::pixel(self, [x, y])
     }
@@ -154,7 +151,6 @@ impl<T: Backend> Tracer<T> {
 
 impl Tracer<f64> {
     /// Renders an image of the pixels in these columns and rows only.
-    #[must_use]
     pub fn sampled(&self, columns: &[u32], rows: &[u32]) -> Image {
         let width = columns.len();
         let pixels = (0..width * rows.len()).into_par_iter().map(|at| {

@@ -247,7 +247,6 @@ impl<T: Real> Tracer<T> {
 
     /// Returns the index of the surface behind the center of each pixel, bottom row first, or [`u32::MAX`]
     /// for the background.
-    #[must_use]
     pub fn surfaces(&self) -> Vec<u32> {
         let [width, height] = self.film.size;
         let mut surfaces = vec![NO_SURFACE; width as usize * height as usize];

@@ -105,7 +105,6 @@ pub enum FloatMode {
 
 impl FloatMode {
     /// Lowers a shader for naga; strict mode also expands every operation whose result depends on the driver.
-    #[must_use]
     pub fn lower(self, checked: &Checked) -> Lowered {
         match self {
             Self::Strict => lower_strict(checked),

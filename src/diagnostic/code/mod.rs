@@ -42,7 +42,6 @@ macro_rules! codes {
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
             /// `E` (errors) or `W` (warnings and notes) and four digits.
-            #[must_use]
             pub fn as_str(self) -> &'static str {
                 match self {
                     $(Self::$variant => $code,)*
@@ -50,7 +49,6 @@ macro_rules! codes {
             }
 
             /// A one-line description.
-            #[must_use]
             pub fn title(self) -> &'static str {
                 match self {
                     $(Self::$variant => $title,)*
@@ -59,7 +57,6 @@ macro_rules! codes {
 
             /// What it means and how to fix it, in Markdown. Examples are in fences, each after a line
             /// `Wrong:` or `Right:`.
-            #[must_use]
             pub fn explanation(self) -> String {
                 let text = match self {
                     $(Self::$variant => concat!($($line, "\n"),*),)*
@@ -75,14 +72,12 @@ codes! { [preprocessor grammar types rules files lints floats projects runs] }
 
 impl Code {
     /// Returns the code with this string form, in any case.
-    #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let mut codes = Self::ALL.iter().copied();
         codes.find(|code| code.as_str().eq_ignore_ascii_case(text))
     }
 
     /// The severity of its diagnostics, unless the user denies the warning.
-    #[must_use]
     pub fn severity(self) -> Severity {
         match self {
             Self::LintTimeout | Self::SlowCompilation => Severity::Note,
@@ -92,13 +87,11 @@ impl Code {
     }
 
     /// Whether `// toyproof: allow(…)` may suppress it.
-    #[must_use]
     pub fn can_be_allowed(self) -> bool {
         self.as_str().starts_with('W') && !matches!(self, Self::BadAllow | Self::UnusedAllow)
     }
 
     /// Whether it reports the execution of a shader rather than its text.
-    #[must_use]
     pub fn is_of_runs(self) -> bool {
         self.as_str().starts_with("W06") || self == Self::MaybeUnwritten
     }

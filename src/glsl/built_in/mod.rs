@@ -81,7 +81,6 @@ pub enum Definition {
 
 impl Definition {
     /// The number of arguments of a componentwise function; `None` for others.
-    #[must_use]
     pub fn argument_count(self) -> Option<usize> {
         match self {
             Self::Unary(_) => Some(1),
@@ -136,7 +135,6 @@ impl Row {
 
 impl BuiltIn {
     /// Its name in GLSL.
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name
     }
@@ -152,32 +150,27 @@ impl BuiltIn {
     }
 
     /// Its form in WGSL.
-    #[must_use]
     pub fn wgsl(self) -> Wgsl {
         self.row().wgsl
     }
 
     /// Its definitions by exact operations, if its last bits are implementation-defined: one for each number
     /// of arguments.
-    #[must_use]
     pub fn exact_definitions(self) -> &'static [ExactDefinition] {
         self.row().exact
     }
 
     /// The index of the parameter that is written, if any: `modf`'s second.
-    #[must_use]
     pub fn out_parameter(self) -> Option<usize> {
         (self == Self::Modf).then_some(1)
     }
 
     /// Whether it reads a texture; such calls are not constant expressions (§4.3.3).
-    #[must_use]
     pub fn is_texture(self) -> bool {
         self >= Self::TextureSize && self <= Self::TextureProjGradOffset
     }
 
     /// Whether it is a derivative, which uses the neighbors in the pixel's quad.
-    #[must_use]
     pub fn is_derivative(self) -> bool {
         matches!(self, Self::DFdx | Self::DFdy | Self::Fwidth)
     }

@@ -16,13 +16,11 @@ pub(super) struct Match {
 
 impl BuiltIn {
     /// The built-in function with that name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         NAMES.get(name).copied()
     }
 
     /// The type of its value for arguments of these types; `None` if no signature accepts exactly them.
-    #[must_use]
     pub fn result(self, arguments: &[Type]) -> Option<Type> {
         find(self, arguments, |given, wanted| given == wanted).map(|found| found.result)
     }

@@ -62,7 +62,6 @@ impl Expansions {
 
     /// The diagnostic with the name of the macro in whose expansion it is, and with the file and the line of
     /// its definition.
-    #[must_use]
     pub fn named(&self, mut diagnostic: Diagnostic, files: &Files) -> Diagnostic {
         let Some(definition) = self.definition(&diagnostic) else {
             return diagnostic;

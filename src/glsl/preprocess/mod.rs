@@ -67,7 +67,6 @@ const LOSES_NAMES: [Code; 5] = [
 ];
 
 /// Preprocesses one file to its end despite errors, or until the deadline.
-#[must_use]
 pub(crate) fn preprocess(files: &Files, file: FileId, stage: Stage, deadline: &Deadline) -> Preprocessed {
     let mut preprocessor = Preprocessor::new(files, file, stage);
     let mut tokens = Vec::new();

@@ -58,7 +58,6 @@ const MAX_DURATION: Duration = Duration::from_secs(2);
 /// let fix = single_edit(&files, file, &errors, &options).unwrap();
 /// assert_eq!(fix.message, "insert `;` after `dot(p, p)`");
 /// ```
-#[must_use]
 pub fn single_edit(files: &Files, file: FileId, errors: &Diagnostics, options: &Options) -> Option<Fix> {
     let text = files.get(file).text();
     let is_overdue = errors.iter().any(|error| error.code == Code::TooSlow);
@@ -102,7 +101,6 @@ pub fn single_edit(files: &Files, file: FileId, errors: &Diagnostics, options: &
 /// The errors of a check, with the [`single_edit`] after which the file compiles as the fix of the first
 /// error. It replaces the fixes of that error, which are not sufficient. Nothing changes if the errors carry
 /// that edit.
-#[must_use]
 pub fn with_single_edit(
     files: &Files,
     file: FileId,

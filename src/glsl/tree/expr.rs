@@ -168,7 +168,6 @@ pub struct Swizzle {
 
 impl Swizzle {
     /// Makes a swizzle of one to four components; `None` for other counts or components over 3.
-    #[must_use]
     pub fn new(components: &[u8]) -> Option<Self> {
         if components.is_empty() || components.len() > 4 || components.iter().any(|&c| c > 3) {
             return None;
@@ -182,19 +181,16 @@ impl Swizzle {
     }
 
     /// The components in order.
-    #[must_use]
     pub fn components(&self) -> &[u8] {
         &self.components[..usize::from(self.len)]
     }
 
     /// The number of components: the size of the value.
-    #[must_use]
     pub fn size(self) -> u8 {
         self.len
     }
 
     /// Whether a component occurs twice, as in `v.xx`: then it is not an lvalue (§5.5).
-    #[must_use]
     pub fn repeats(&self) -> bool {
         let mut seen = [false; 4];
         self.components()
@@ -203,7 +199,6 @@ impl Swizzle {
     }
 
     /// The swizzle in x, y, z, w.
-    #[must_use]
     pub fn name(&self) -> String {
         self.components()
             .iter()
@@ -345,7 +340,6 @@ impl BinaryOp {
 
 impl UnaryOp {
     /// The operator's symbol in GLSL.
-    #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Plus => "+",
@@ -358,7 +352,6 @@ impl UnaryOp {
 
 impl StepOp {
     /// The operator's symbol in GLSL.
-    #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Increment => "++",
@@ -369,7 +362,6 @@ impl StepOp {
 
 impl BinaryOp {
     /// The operator's symbol in GLSL.
-    #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Multiply => "*",
@@ -395,7 +387,6 @@ impl BinaryOp {
     }
 
     /// The precedence, from 1 (`||`) to 11 (`*`), as in the table of §5.1; all are left-associative.
-    #[must_use]
     pub fn precedence(self) -> u8 {
         match self {
             Self::Multiply | Self::Divide | Self::Remainder => 11,

@@ -84,7 +84,6 @@ pub enum VariableKind {
 
 impl VariableKind {
     /// Whether `ShaderToy` sets the variable.
-    #[must_use]
     pub fn is_input(self) -> bool {
         matches!(self, Self::Input(_) | Self::Channel(_))
     }
@@ -237,7 +236,6 @@ pub enum Label {
 
 impl StatementKind {
     /// Whether it contains other statements.
-    #[must_use]
     pub fn is_compound(&self) -> bool {
         matches!(
             self,

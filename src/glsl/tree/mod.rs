@@ -58,7 +58,6 @@ pub struct Tree {
 
 impl Tree {
     /// Whether the entry point reads the color before it writes it: its first parameter is `inout`.
-    #[must_use]
     pub fn adds_to_color(&self, entry: FunctionId) -> bool {
         let color = self[entry].parameters.first();
         color.is_some_and(|&color| self[color].kind == VariableKind::Parameter(Direction::InOut))
@@ -72,13 +71,11 @@ impl Tree {
     }
 
     /// The element type and size of an array type.
-    #[must_use]
     pub fn array(&self, id: ArrayId) -> ArrayType {
         self.arrays[id]
     }
 
     /// The type in GLSL syntax: `vec3`, `Ray`, `float[4]`; `float[2][3]` is two arrays of three.
-    #[must_use]
     pub fn type_name(&self, mut ty: Type) -> String {
         let mut dimensions = Vec::new();
         while let Type::Array(id) = ty {
@@ -101,7 +98,6 @@ impl Tree {
 
     /// The scalar type of each component of a value: columns, members and elements in order. Empty for `void`
     /// and samplers.
-    #[must_use]
     pub fn scalars(&self, ty: Type) -> Vec<Scalar> {
         match ty {
             Type::Array(id) => {
@@ -120,7 +116,6 @@ impl Tree {
     }
 
     /// The expressions at and below `root`, operands before their users, in the order of evaluation.
-    #[must_use]
     pub fn postorder(&self, root: ExprId) -> Vec<ExprId> {
         // Collects users before operands, last operand first; reversed, that is evaluation order.
         let mut order = Vec::new();
@@ -134,7 +129,6 @@ impl Tree {
     }
 
     /// The variable that an lvalue is or is a part of; `None` for other expressions.
-    #[must_use]
     pub fn root_variable(&self, mut lvalue: ExprId) -> Option<VariableId> {
         loop {
             lvalue = match self[lvalue].kind {
@@ -199,7 +193,6 @@ pub struct Id<T> {
 
 impl<T> Id<T> {
     /// The position in the arena, for side tables.
-    #[must_use]
     pub fn index(self) -> usize {
         self.index as usize
     }
@@ -266,13 +259,11 @@ impl<T> Arena<T> {
     }
 
     /// The number of nodes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// Whether the arena is empty.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

@@ -118,7 +118,6 @@ impl Type {
     pub const FLOAT: Self = Self::Scalar(Scalar::Float);
 
     /// The vector type with `size` components; the scalar itself for one.
-    #[must_use]
     pub fn vector(scalar: Scalar, size: u8) -> Self {
         match size {
             1 => Self::Scalar(scalar),
@@ -127,7 +126,6 @@ impl Type {
     }
 
     /// The component type of a scalar, vector or matrix.
-    #[must_use]
     pub fn scalar(self) -> Option<Scalar> {
         match self {
             Self::Scalar(scalar) | Self::Vector(scalar, _) => Some(scalar),
@@ -137,7 +135,6 @@ impl Type {
     }
 
     /// The number of components of a scalar, vector or matrix.
-    #[must_use]
     pub fn component_count(self) -> Option<u8> {
         match self {
             Self::Scalar(_) => Some(1),
@@ -149,7 +146,6 @@ impl Type {
 
     /// The type of the same shape with a different component type: `ivec3` for `vec3` and `int`. For scalars
     /// and vectors only.
-    #[must_use]
     pub fn with_scalar(self, scalar: Scalar) -> Option<Self> {
         match self {
             Self::Scalar(_) => Some(Self::Scalar(scalar)),
@@ -161,7 +157,6 @@ impl Type {
 
 impl Scalar {
     /// Its name in GLSL.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Bool => "bool",
@@ -172,7 +167,6 @@ impl Scalar {
     }
 
     /// The prefix of its vector types' names: `i` in `ivec3`.
-    #[must_use]
     pub fn vector_prefix(self) -> &'static str {
         match self {
             Self::Bool => "b",
@@ -188,7 +182,6 @@ impl Sampler {
     pub const D2: Self = Self::float(SamplerShape::D2);
 
     /// Its name in GLSL: `isampler2DArray`.
-    #[must_use]
     pub fn name(self) -> String {
         let shape = match self.shape {
             SamplerShape::D2 => "2D",
@@ -201,7 +194,6 @@ impl Sampler {
     }
 
     /// The float sampler of a shape.
-    #[must_use]
     pub const fn float(shape: SamplerShape) -> Self {
         Self {
             texel: Scalar::Float,
@@ -253,7 +245,6 @@ enum Content {
 
 impl Constant {
     /// Makes a scalar.
-    #[must_use]
     pub fn scalar(value: Value) -> Self {
         Self {
             ty: value.ty(),
@@ -262,7 +253,6 @@ impl Constant {
     }
 
     /// Makes a scalar, vector or matrix from its components, in column order.
-    #[must_use]
     pub fn of_components(ty: Type, components: Vec<Value>) -> Self {
         let content = match components[..] {
             [only] => Content::One(only),
@@ -272,7 +262,6 @@ impl Constant {
     }
 
     /// Makes a structure or array from its members or elements.
-    #[must_use]
     pub fn of_parts(ty: Type, parts: Vec<Self>) -> Self {
         let counts = parts.iter().map(Self::scalar_count);
         let count = counts.fold(0, usize::saturating_add);
@@ -281,7 +270,6 @@ impl Constant {
     }
 
     /// The components of a scalar, vector or matrix, in column order; empty for structures and arrays.
-    #[must_use]
     pub fn components(&self) -> &[Value] {
         match &self.content {
             Content::One(value) => std::slice::from_ref(value),
@@ -291,7 +279,6 @@ impl Constant {
     }
 
     /// The members of a structure or the elements of an array; empty for other values.
-    #[must_use]
     pub fn parts(&self) -> &[Self] {
         match &self.content {
             Content::Parts(parts, _) => parts,
@@ -300,7 +287,6 @@ impl Constant {
     }
 
     /// The total number of scalars at all depths.
-    #[must_use]
     pub fn scalar_count(&self) -> usize {
         match &self.content {
             Content::One(_) => 1,
@@ -310,7 +296,6 @@ impl Constant {
     }
 
     /// The value of an `int` or `uint`; `None` for other types.
-    #[must_use]
     pub fn integer(&self) -> Option<i64> {
         match self.content {
             Content::One(Value::Int(value)) => Some(i64::from(value)),
@@ -322,7 +307,6 @@ impl Constant {
 
 impl Value {
     /// The scalar type of the value.
-    #[must_use]
     pub fn ty(self) -> Type {
         match self {
             Self::Bool(_) => Type::BOOL,

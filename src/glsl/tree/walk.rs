@@ -8,7 +8,6 @@ use crate::tree::{
 };
 
 /// The blocks directly inside a statement, in order; the `init` of a `for` is one.
-#[must_use]
 pub fn child_blocks(statement: &Statement) -> Vec<&Block> {
     match &statement.kind {
         StatementKind::Block(body)
@@ -62,7 +61,6 @@ pub fn rebuild(block: Block, change: &mut dyn FnMut(Statement, &mut Block)) -> B
 }
 
 /// The expressions that a statement evaluates itself, in source order.
-#[must_use]
 pub fn own_expressions(tree: &Tree, statement: &Statement) -> Vec<ExprId> {
     let initializer = |variable: VariableId| tree[variable].initializer;
     let tested = |condition: &Condition| match *condition {
@@ -89,7 +87,6 @@ pub fn own_expressions(tree: &Tree, statement: &Statement) -> Vec<ExprId> {
 }
 
 /// The variable that a statement itself declares, if any.
-#[must_use]
 pub fn declared(statement: &Statement) -> Option<VariableId> {
     match statement.kind {
         StatementKind::Declare(variable)
@@ -106,7 +103,6 @@ pub fn declared(statement: &Statement) -> Option<VariableId> {
 }
 
 /// The roots of all expressions that a block evaluates.
-#[must_use]
 pub fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
     let mut roots = Vec::new();
     each(block, &mut |statement| {
@@ -117,7 +113,6 @@ pub fn roots(tree: &Tree, block: &Block) -> Vec<ExprId> {
 
 /// Whether evaluating an expression has side effects or may take long: it contains an assignment, a call of a
 /// user function, or a built-in function with an `out` parameter.
-#[must_use]
 pub fn has_side_effects(tree: &Tree, root: ExprId) -> bool {
     any(tree, root, |kind| match kind {
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
@@ -139,7 +134,6 @@ pub fn any(tree: &Tree, root: ExprId, mut is_one: impl FnMut(&ExprKind) -> bool)
 }
 
 /// Whether a loop's body contains a `continue` of that loop.
-#[must_use]
 pub fn continues(block: &Block) -> bool {
     block.iter().any(|statement| match &statement.kind {
         StatementKind::Continue => true,
@@ -149,7 +143,6 @@ pub fn continues(block: &Block) -> bool {
 }
 
 /// Whether the statement is a jump, after which nothing in its block runs.
-#[must_use]
 pub fn jumps(statement: &Statement) -> bool {
     matches!(
         statement.kind,
@@ -166,7 +159,6 @@ pub fn values(labels: &[Label]) -> impl Iterator<Item = ExprId> + '_ {
 }
 
 /// Whether an expression contains a variable.
-#[must_use]
 pub fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
     any(
         tree,
@@ -178,7 +170,6 @@ pub fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
 /// Whether evaluating `value` may change what the lvalue `path` reads (its variable or variables in its
 /// indices): `value` has side effects and contains such a variable, or calls a function that may access a
 /// global one.
-#[must_use]
 pub fn may_change(tree: &Tree, value: ExprId, path: ExprId) -> bool {
     if !has_side_effects(tree, value) {
         return false;
@@ -225,7 +216,6 @@ impl Tree {
 }
 
 /// The direction of a parameter.
-#[must_use]
 pub fn direction(tree: &Tree, parameter: VariableId) -> Direction {
     match tree[parameter].kind {
         VariableKind::Parameter(direction) => direction,

@@ -17,7 +17,6 @@ use super::opaque::{Opaque, push};
 ///
 /// A module without `gl_FragCoord` does not change; neither do loops whose first exit comes before
 /// assignments, as in most `for` loops.
-#[must_use]
 pub(crate) fn with_early_exits(words: &[u32]) -> Vec<u32> {
     let exits = late_exits(words);
     let Some(mut opaque) = Opaque::of(words).filter(|_| !exits.is_empty()) else {

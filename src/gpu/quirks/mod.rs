@@ -22,7 +22,6 @@ pub enum DriverKind {
 
 impl DriverKind {
     /// A substring of its adapters' names.
-    #[must_use]
     pub fn adapter_name(self) -> &'static str {
         match self {
             Self::Lavapipe => "llvmpipe",
@@ -31,7 +30,6 @@ impl DriverKind {
     }
 
     /// Whether an adapter belongs to this family.
-    #[must_use]
     pub fn matches(self, adapter: &str) -> bool {
         adapter.contains(self.adapter_name())
     }
@@ -69,7 +67,6 @@ pub struct Quirk {
 
 impl Quirk {
     /// Whether the workaround is applied on an adapter.
-    #[must_use]
     pub fn applies_to(&self, adapter: &str) -> bool {
         self.scope == Scope::Everywhere || self.driver.matches(adapter)
     }

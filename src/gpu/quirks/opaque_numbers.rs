@@ -25,7 +25,6 @@ use super::opaque::{Opaque, push};
 /// - Denormal constants, which Mesa and `SwiftShader` do not treat as zeros when they fold them.
 /// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs
 ///   through by its step, and −2³¹ / −1 terminates the process.
-#[must_use]
 pub(crate) fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
     let Some(mut rewriter) = Rewriter::of(words) else {
         return words.to_vec();

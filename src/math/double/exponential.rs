@@ -10,7 +10,6 @@ const LN_2: [f64; 2] = [f64::from_bits(0x3FE6_2E42_FEE0_0000), 1.908_214_929_270
 
 /// `eˣ`
 #[inline(always)]
-#[must_use]
 pub fn exp<const L: usize>(x: [f64; L]) -> [f64; L] {
     /// Below, the result and its scale are normal.
     const LIMIT: f64 = 708.0;
@@ -58,7 +57,6 @@ fn regular_exp(x: f64) -> f64 {
 
 /// The natural logarithm; NaN below zero.
 #[inline(always)]
-#[must_use]
 pub fn log<const L: usize>(x: [f64; L]) -> [f64; L] {
     each!(
         lane,

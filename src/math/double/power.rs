@@ -8,7 +8,6 @@ use super::encoding::{FRACTION, each, exponent, head, is_normal_positive, scaled
 
 /// `xʸ`; NaN for x < 0, as GLSL leaves it undefined.
 #[inline(always)]
-#[must_use]
 pub fn pow<const L: usize>(x: [f64; L], y: [f64; L]) -> [f64; L] {
     let mut products = [Sum::default(); L];
     let mut is_regular = [false; L];

@@ -10,21 +10,18 @@ use super::encoding::{FRACTION, INTEGER};
 
 /// `sin(x)`, x in radians; NaN for infinities.
 #[inline(always)]
-#[must_use]
 pub fn sin<const L: usize>(x: [f64; L]) -> [f64; L] {
     sines(reduce_all(x), 0)
 }
 
 /// `cos(x)`, x in radians; NaN for infinities.
 #[inline(always)]
-#[must_use]
 pub fn cos<const L: usize>(x: [f64; L]) -> [f64; L] {
     sines(reduce_all(x), 1)
 }
 
 /// `sin(x)` and `cos(x)`, with the bits that they have alone.
 #[inline(always)]
-#[must_use]
 pub fn sin_cos<const L: usize>(x: [f64; L]) -> ([f64; L], [f64; L]) {
     let reduced = reduce_all(x);
     let (mut sin, mut cos) = ([0.0; L], [0.0; L]);

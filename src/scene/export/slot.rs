@@ -113,7 +113,6 @@ impl MarkedShader {
     }
 
     /// Whether there is a part of that name.
-    #[must_use]
     pub fn has(&self, slot: Slot) -> bool {
         self.ranges(slot).next().is_some()
     }
@@ -123,7 +122,6 @@ impl MarkedShader {
     ///
     /// # Panics
     /// If a template is malformed.
-    #[must_use]
     pub fn replaced(&self, edits: &[(Slot, &str)]) -> Option<Self> {
         let edits = edits
             .iter()

@@ -35,7 +35,6 @@ impl Target {
     pub const ALL: [Self; 5] = [Self::Wgsl, Self::Spirv, Self::Msl, Self::Hlsl, Self::Glsl];
 
     /// The value of `--to`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Wgsl => "wgsl",
@@ -47,7 +46,6 @@ impl Target {
     }
 
     /// The extension of files in this language, without the dot.
-    #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
             Self::Glsl => "frag",
@@ -56,7 +54,6 @@ impl Target {
     }
 
     /// The target whose file extension `path` has.
-    #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {

@@ -15,7 +15,6 @@ use crate::naga_ir::ValidModule;
 /// GLSL ES 3.00 has neither descriptor sets nor textures apart from samplers, and 3.10 is the first version
 /// that compiles to SPIR-V. For HLSL, glslang packs blocks like D3D with one exception: D3D places a scalar
 /// in the last row of a preceding array, which naga pads for that.
-#[must_use]
 pub fn for_glslang(target: Target, text: &str) -> Option<String> {
     match target {
         Target::Glsl => {
@@ -54,7 +53,6 @@ pub fn for_glslang(target: Target, text: &str) -> Option<String> {
 /// `ShaderToy` declares the inputs, the output and the entry point itself, so the declarations that a WebGL 2
 /// host needs are replaced, line by line; everything else stays as written. A declaration that is not
 /// recognized stays too, and the front end rejects it: a mistake here cannot make a wrong file a proved one.
-#[must_use]
 pub fn as_shadertoy(text: &str) -> String {
     with_shadertoy_inputs(text, &Input::ALL.map(value).join(", "))
 }

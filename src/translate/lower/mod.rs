@@ -36,20 +36,17 @@ use self::context::LoweringContext;
 use crate::print::{Lowered, print};
 
 /// Lowers a shader and prints it as GLSL for naga.
-#[must_use]
 pub fn lower(checked: &Checked) -> Lowered {
     lower_with(checked, Passes::all())
 }
 
 /// Lowers a shader whose operations must have the same bits on every driver: operations that drivers compute
 /// differently are expanded into ones that they compute in the same way ([`toyproof_math`]).
-#[must_use]
 pub fn lower_strict(checked: &Checked) -> Lowered {
     lower_with(checked, Passes::strict())
 }
 
 /// Lowers a shader by a subset of the passes, to see how naga translates it without the others.
-#[must_use]
 pub fn lower_with(checked: &Checked, passes: Passes) -> Lowered {
     // This cannot fail without a deadline.
     lower_within(checked, passes, &Deadline::default()).unwrap_or_default()
@@ -167,7 +164,6 @@ pub struct Passes(u64);
 
 impl Passes {
     /// Every pass that naga and the drivers need.
-    #[must_use]
     pub fn all() -> Self {
         Self::strict()
             .without(Pass::Lookups)
@@ -176,7 +172,6 @@ impl Passes {
     }
 
     /// All passes, including those that make a shader's bits the same on every driver.
-    #[must_use]
     pub fn strict() -> Self {
         Self(u64::MAX)
     }
@@ -188,7 +183,6 @@ impl Passes {
     }
 
     /// Whether the set contains a pass.
-    #[must_use]
     pub fn contains(self, pass: Pass) -> bool {
         self.0 & (1 << pass as u32) != 0
     }

@@ -40,13 +40,11 @@ pub(crate) enum Fetches {
 
 impl ValidModule {
     /// naga's module.
-    #[must_use]
     pub fn module(&self) -> &Module {
         &self.module
     }
 
     /// The results of naga's validator.
-    #[must_use]
     pub fn info(&self) -> &ModuleInfo {
         &self.info
     }
@@ -132,7 +130,6 @@ impl ValidModule {
     }
 
     /// The texture shapes of channels 0 to 3; unused channels have any shape.
-    #[must_use]
     pub fn channels(&self) -> [Shape; 4] {
         let mut shapes = [Shape::D2; 4];
         for (_, global) in self.module.global_variables.iter() {

@@ -214,13 +214,11 @@ pub struct Lowered {
 
 impl Lowered {
     /// The text that naga parses.
-    #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
     /// The smallest source span that covers bytes of [`Self::text`]; `None` if they are all generated.
-    #[must_use]
     pub fn origin(&self, bytes: Range<usize>) -> Option<Span> {
         let first = self
             .runs
@@ -236,7 +234,6 @@ impl Lowered {
 
     /// Why no driver may run the shader: it nests deeper than drivers support, so that they would render a
     /// different image. It can still be translated.
-    #[must_use]
     pub fn too_deep(&self) -> Option<&Diagnostic> {
         self.too_deep.as_ref()
     }

@@ -53,7 +53,6 @@ impl Style {
     pub const ALL: [Self; 4] = [Self::Plain, Self::WgpuShadertoy, Self::ComputeToys, Self::Bevy];
 
     /// The value of `--style`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Plain => "plain",
@@ -411,13 +410,11 @@ fn frame() -> String {
 
 impl Style {
     /// Embeds an image printed in this style in a substitute for its host, which reads our uniform block.
-    #[must_use]
     pub fn hosted(self, text: &str) -> Hosted {
         self.hosted_in(text, Stage::Image)
     }
 
     /// Embeds a pass printed in this style in a substitute for its host.
-    #[must_use]
     pub fn hosted_in(self, text: &str, stage: Stage) -> Hosted {
         let Some(host) = self.host_template() else {
             return Hosted {

@@ -45,7 +45,6 @@ pub fn words(module: &ValidModule) -> Result<Vec<u32>, TranslateError> {
 }
 
 /// Encodes words as the little-endian bytes of a `.spv` file.
-#[must_use]
 pub fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
@@ -64,7 +63,6 @@ pub fn instructions(words: &[u32]) -> impl Iterator<Item = (usize, &[u32])> {
 }
 
 /// Adds an unreferenced `OpString` before all names.
-#[must_use]
 pub fn with_note(words: &[u32], note: &str) -> Vec<u32> {
     let Some((&bound, text)) = words.get(BOUND).zip(literal(note)) else {
         return words.to_vec();
@@ -104,7 +102,6 @@ fn literal(text: &str) -> Option<Vec<u32>> {
 }
 
 /// Decodes the words of a `.spv` file; `None` if the length is not a multiple of 4.
-#[must_use]
 pub fn of_bytes(bytes: &[u8]) -> Option<Vec<u32>> {
     let words = bytes.chunks_exact(4);
     let whole = words.remainder().is_empty();
@@ -116,13 +113,11 @@ pub fn of_bytes(bytes: &[u8]) -> Option<Vec<u32>> {
 }
 
 /// The opcode of an instruction, if known.
-#[must_use]
 pub fn opcode(instruction: &[u32]) -> Option<Op> {
     Op::from_u32(instruction[0] & 0xffff)
 }
 
 /// Whether the first two operands are the result's type and id, as in all instructions with a typed result.
-#[must_use]
 pub fn has_type(op: Op) -> bool {
     let names_and_decorations = matches!(
         op,
@@ -148,7 +143,6 @@ pub fn has_type(op: Op) -> bool {
 }
 
 /// Whether an instruction multiplies floats, possibly adding the products.
-#[must_use]
 pub fn is_product(op: Op) -> bool {
     matches!(
         op,
@@ -184,7 +178,6 @@ fn words_of(shader: &str) -> Vec<u32> {
 /// Decorates every float operation that a driver could fuse, rearrange or round differently with
 /// `NoContraction`, and makes derivatives fine where their precision is left to the driver: Mesa uses a
 /// pixel's own row or column, `SwiftShader` the quad's first. Nothing else changes.
-#[must_use]
 pub fn strict(words: &[u32]) -> Vec<u32> {
     let mut floats = HashSet::new();
     let mut decorations = Vec::new();
