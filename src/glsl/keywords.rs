@@ -106,7 +106,6 @@ impl Interner {
         self.symbols.get(text).copied()
     }
 
-    /// The text of a symbol.
     pub(crate) fn text(&self, symbol: Symbol) -> &str {
         &self.texts[symbol.0 as usize].0
     }

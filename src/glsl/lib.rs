@@ -143,8 +143,7 @@ pub struct Checked {
 impl Checked {
     /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
     pub fn takes_derivatives(&self) -> bool {
-        let is_derivative = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_derivative());
-        self.tree.exprs.iter().any(|(_, expr)| is_derivative(&expr.kind))
+        self.calls(tree::BuiltIn::is_derivative)
     }
 
     /// Whether the shader reads an input.
@@ -158,8 +157,14 @@ impl Checked {
 
     /// Whether the shader reads a texture.
     pub fn reads_textures(&self) -> bool {
-        let looks_up = |kind: &tree::ExprKind| matches!(kind, tree::ExprKind::BuiltIn { function, .. } if function.is_texture());
-        self.tree.exprs.iter().any(|(_, expr)| looks_up(&expr.kind))
+        self.calls(tree::BuiltIn::is_texture)
+    }
+
+    fn calls(&self, is_one: impl Fn(tree::BuiltIn) -> bool) -> bool {
+        let mut exprs = self.tree.exprs.iter();
+        exprs.any(
+            |(_, expr)| matches!(expr.kind, tree::ExprKind::BuiltIn { function, .. } if is_one(function)),
+        )
     }
 }
 

@@ -5,15 +5,12 @@ use super::tree::{BinaryOp, Place};
 /// A token, as the preprocessor passes it to the parser.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Token {
-    /// Its kind.
     pub(crate) kind: TokenKind,
-    /// Its place.
     pub(crate) at: Place,
     /// Whether an error about it has been reported: errors nearby may follow from that one.
     pub(crate) reported: bool,
 }
 
-/// The kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TokenKind {
     /// A keyword or name.
@@ -49,7 +46,6 @@ macro_rules! named {
             /// All items.
             pub(crate) const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// Its text.
             pub(crate) fn text(self) -> &'static str {
                 match self {
                     $(Self::$variant => $text,)*

@@ -107,7 +107,6 @@ const fn core(name: &'static str, definition: Definition) -> ExactDefinition {
     }
 }
 
-/// The name in a signature.
 const fn name_in(signature: &'static str) -> &'static str {
     let bytes = signature.as_bytes();
     let mut start = 0;

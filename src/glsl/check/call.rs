@@ -5,7 +5,7 @@ use toyproof_diagnostic::{Code, Diagnostic, Fix, plural};
 use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
 use super::signature::{self, Match};
-use super::{Checker, Specifier, is_desktop_conversion};
+use super::{Call, Checker, Specifier, is_desktop_conversion};
 use crate::reporting::given;
 use crate::token::Symbol;
 use crate::tree::{
@@ -58,7 +58,11 @@ impl Checker<'_> {
             return self.no_overload(overloads, &arguments, name_at, at);
         };
         if let Some(context) = &self.function {
-            self.calls.push((context.function, function, name_at));
+            self.calls.push(Call {
+                caller: context.function,
+                callee: function,
+                at: name_at,
+            });
         }
         let parameters = self.tree[function].parameters.clone();
         let mut passed = Vec::with_capacity(arguments.len());

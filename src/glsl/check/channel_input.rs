@@ -41,10 +41,7 @@ impl Checker<'_> {
                 let size = self.of_channel(Input::ChannelResolution, channel, at);
                 let [zero, one] = [0, 1].map(|value| self.int_literal(value, at));
                 let width = self.index(size, zero, at);
-                let nothing = Literal {
-                    text: "0.0".into(),
-                    value: Value::Float(0.0),
-                };
+                let nothing = Literal::new("0.0", Value::Float(0.0));
                 let nothing = self.literal(nothing, at);
                 let is_loaded = self.binary(BinaryOp::Greater, width, nothing);
                 self.conditional(is_loaded, one, zero)
@@ -75,10 +72,7 @@ impl Checker<'_> {
     }
 
     fn int_literal(&mut self, value: i32, at: Place) -> ExprId {
-        let literal = Literal {
-            text: value.to_string().into(),
-            value: Value::Int(value),
-        };
+        let literal = Literal::new(value.to_string(), Value::Int(value));
         self.literal(literal, at)
     }
 }

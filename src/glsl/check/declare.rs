@@ -68,14 +68,8 @@ impl Checker<'_> {
     /// Declares a name whose declaration could not be parsed, with the type `Error`.
     pub(crate) fn declare_unparsed(&mut self, name: Symbol, at: Place) {
         if self.scopes.find_here(name).is_none() {
-            let variable = self.tree.variables.push(Variable {
-                name: self.text(name).to_owned(),
-                ty: Type::Error,
-                kind: VariableKind::Local,
-                initializer: None,
-                value: None,
-                at: Some(at),
-            });
+            let variable = Variable::new(self.text(name), Type::Error, VariableKind::Local, Some(at));
+            let variable = self.tree.variables.push(variable);
             self.scopes.declare(name, Entity::Variable(variable));
         }
     }

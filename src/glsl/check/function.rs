@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use toyproof_diagnostic::Code;
 
 use super::scope::Entity;
-use super::{Checker, Specifier};
+use super::{Call, Checker, Specifier};
 use crate::Stage;
 use crate::stage::Entry;
 use crate::token::Symbol;
@@ -117,17 +117,11 @@ impl Checker<'_> {
     }
 
     fn parameter(&mut self, parameter: &Parameter) -> VariableId {
-        self.tree.variables.push(Variable {
-            name: parameter
-                .name
-                .map_or("", |name| self.interner.text(name))
-                .to_owned(),
-            ty: parameter.ty,
-            kind: VariableKind::Parameter(parameter.direction),
-            initializer: None,
-            value: None,
-            at: Some(parameter.at),
-        })
+        let name = parameter.name.map_or("", |name| self.interner.text(name));
+        let kind = VariableKind::Parameter(parameter.direction);
+        self.tree
+            .variables
+            .push(Variable::new(name, parameter.ty, kind, Some(parameter.at)))
     }
 
     fn takes_exactly(&self, function: FunctionId, parameters: &[Parameter]) -> bool {
@@ -243,7 +237,7 @@ impl Checker<'_> {
         let complete = self.errors.is_empty() && !self.lacks_names;
         let calls = std::mem::take(&mut self.calls);
         let mut reported = HashSet::new();
-        for &(_, callee, at) in &calls {
+        for &Call { callee, at, .. } in &calls {
             // Common is compiled alone, but not linked.
             let is_linked = self.stage != Stage::Common;
             if complete && is_linked && self.tree[callee].body.is_none() && reported.insert(callee) {
@@ -255,9 +249,9 @@ impl Checker<'_> {
                 );
             }
         }
-        if let Some((function, caller, at)) = self.find_recursion(&calls) {
-            let name = &self.tree[function].name;
-            let message = if caller == function {
+        if let Some(Call { caller, callee, at }) = self.find_recursion(&calls) {
+            let name = &self.tree[callee].name;
+            let message = if caller == callee {
                 format!("recursive call: `{name}` calls itself")
             } else {
                 format!(
@@ -286,15 +280,12 @@ impl Checker<'_> {
         None
     }
 
-    /// A recursive function, and the caller and the place of the last call of its cycle.
-    fn find_recursion(
-        &self,
-        calls: &[(FunctionId, FunctionId, Place)],
-    ) -> Option<(FunctionId, FunctionId, Place)> {
+    /// The last call of a recursive function's cycle.
+    fn find_recursion(&self, calls: &[Call]) -> Option<Call> {
         let functions = self.tree.functions.len();
         let mut callees = vec![Vec::new(); functions];
         let mut callers = vec![0_usize; functions];
-        for &(caller, callee, _) in calls {
+        for &Call { caller, callee, .. } in calls {
             callees[caller.index()].push(callee.index());
             callers[callee.index()] += 1;
         }
@@ -312,7 +303,7 @@ impl Checker<'_> {
         }
         // So following callers leads into a cycle: the first function visited twice is in it.
         let mut call_of = vec![None; functions];
-        for &(caller, callee, at) in calls {
+        for &Call { caller, callee, at } in calls {
             if callers[caller.index()] > 0 {
                 call_of[callee.index()] = Some((caller, at));
             }
@@ -322,7 +313,11 @@ impl Checker<'_> {
         loop {
             let (caller, at) = call_of[function.index()]?;
             if std::mem::replace(&mut visited[function.index()], true) {
-                return Some((function, caller, at));
+                return Some(Call {
+                    caller,
+                    callee: function,
+                    at,
+                });
             }
             function = caller;
         }

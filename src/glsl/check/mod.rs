@@ -32,7 +32,7 @@ pub(crate) use self::types::{Members, Size, Specifier};
 use crate::Options;
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
-use crate::preprocess::Preprocessed;
+use crate::preprocess::PreprocessorOutput;
 use crate::reporting::{MAX_REPORTED, push_limited};
 use crate::stage::Stage;
 use crate::token::Symbol;
@@ -50,8 +50,8 @@ pub(crate) struct Checker<'a> {
     struct_extents: Vec<Extent>,
     /// The function whose body is being parsed.
     function: Option<Context>,
-    /// Every call: caller, callee and place.
-    calls: Vec<(FunctionId, FunctionId, Place)>,
+    /// All calls.
+    calls: Vec<Call>,
     /// The names that were reported as undeclared.
     unknown: Vec<UnknownName>,
     /// Structures some of whose members could not be parsed.
@@ -67,8 +67,16 @@ pub(crate) struct Checker<'a> {
     pub(crate) deadline: Deadline,
 }
 
+/// A call of one of the author's functions.
+#[derive(Debug, Clone, Copy)]
+struct Call {
+    caller: FunctionId,
+    callee: FunctionId,
+    at: Place,
+}
+
 impl<'a> Checker<'a> {
-    pub(crate) fn new(text: &'a Preprocessed, options: &Options, channels: Channels) -> Self {
+    pub(crate) fn new(text: &'a PreprocessorOutput, options: &Options, channels: Channels) -> Self {
         let mut checker = Self {
             interner: &text.interner,
             unknown: Vec::new(),
@@ -149,10 +157,7 @@ impl<'a> Checker<'a> {
 
     /// The expression that replaces one whose error has been reported.
     pub(crate) fn error_expr(&mut self, at: Place) -> ExprId {
-        let nothing = Literal {
-            text: "".into(),
-            value: Value::Bool(false),
-        };
+        let nothing = Literal::new("", Value::Bool(false));
         self.push(ExprKind::Literal(nothing), Type::Error, true, at)
     }
 

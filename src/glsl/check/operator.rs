@@ -37,18 +37,25 @@ impl Checker<'_> {
         }
         let (left, right) = self.promote_operands(op, left, right);
         let Some(ty) = self.binary_type(op, self.ty(left), self.ty(right)) else {
-            let message = format!(
-                "invalid operands of `{}`: {} and {}",
-                op.symbol(),
-                self.quoted_type(a),
-                self.quoted_type(b)
-            );
-            let diagnostic = Code::BadOperands.at(at, message);
-            let diagnostic = self.with_operand_fixit(diagnostic, op, left, right);
-            return self.refuse_with(diagnostic, at);
+            return self.refuse_operands(op.symbol(), op, [left, right], [a, b]);
         };
         let constant = self.tree[left].constant && self.tree[right].constant;
         self.push(ExprKind::Binary { op, left, right }, ty, constant, at)
+    }
+
+    /// Reports operands whose types an operator does not take.
+    fn refuse_operands(
+        &mut self,
+        symbol: &str,
+        op: BinaryOp,
+        [left, right]: [ExprId; 2],
+        types: [Type; 2],
+    ) -> ExprId {
+        let at = self.tree[left].at.to(self.tree[right].at);
+        let [a, b] = types.map(|ty| self.quoted_type(ty));
+        let diagnostic = Code::BadOperands.at(at, format!("invalid operands of `{symbol}`: {a} and {b}"));
+        let diagnostic = self.with_operand_fixit(diagnostic, op, left, right);
+        self.refuse_with(diagnostic, at)
     }
 
     /// Under `lenient`, converts the operand whose scalar type has the lower rank.
@@ -199,16 +206,7 @@ impl Checker<'_> {
         if a == Type::Error || b == Type::Error || self.binary_type(op, a, b) == Some(a) {
             return value;
         }
-        let at = self.tree[target].at.to(self.tree[value].at);
-        let message = format!(
-            "invalid operands of `{}=`: {} and {}",
-            op.symbol(),
-            self.quoted_type(a),
-            self.quoted_type(b)
-        );
-        let diagnostic = Code::BadOperands.at(at, message);
-        let diagnostic = self.with_operand_fixit(diagnostic, op, target, value);
-        self.refuse_with(diagnostic, at)
+        self.refuse_operands(&format!("{}=", op.symbol()), op, [target, value], [a, b])
     }
 
     pub(crate) fn step(&mut self, op: StepOp, postfix: bool, target: ExprId, at: Place) -> ExprId {

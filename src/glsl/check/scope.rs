@@ -115,51 +115,29 @@ fn is_constant_name(name: &str) -> bool {
 pub(super) struct UnknownName {
     name: Symbol,
     at: Place,
-    /// Whether it is called.
     is_call: bool,
 }
 
 impl Checker<'_> {
     /// Reports an undeclared variable, once in each function.
     pub(super) fn undeclared(&mut self, name: Symbol, at: Place) -> ExprId {
-        let text = self.text(name);
-        let (variables, functions) = self.names_in_scope();
-        let near = nearest(text, variables)
-            .or_else(|| nearest(text, functions))
-            .map(str::to_owned);
-        self.report_undeclared(
-            name,
-            at,
-            None,
-            format!("`{text}` is not declared"),
-            near.as_deref(),
-        )
+        self.report_undeclared(name, at, None)
     }
 
     /// Reports an undeclared function, once in each function.
     pub(super) fn undeclared_function(&mut self, name: Symbol, at: Place, call: Place) -> ExprId {
-        let text = self.text(name);
-        let (variables, functions) = self.names_in_scope();
-        let near = nearest(text, functions)
-            .or_else(|| nearest(text, variables))
-            .map(str::to_owned);
-        self.report_undeclared(
-            name,
-            at,
-            Some(call),
-            format!("unknown function `{text}`"),
-            near.as_deref(),
-        )
+        self.report_undeclared(name, at, Some(call))
     }
 
-    fn report_undeclared(
-        &mut self,
-        name: Symbol,
-        at: Place,
-        call: Option<Place>,
-        message: String,
-        near: Option<&str>,
-    ) -> ExprId {
+    fn report_undeclared(&mut self, name: Symbol, at: Place, call: Option<Place>) -> ExprId {
+        let text = self.text(name);
+        let (variables, functions) = self.names_in_scope();
+        let (message, first, second) = match call {
+            Some(_) => (format!("unknown function `{text}`"), functions, variables),
+            None => (format!("`{text}` is not declared"), variables, functions),
+        };
+        let near = nearest(text, first).or_else(|| nearest(text, second));
+        let near = near.map(str::to_owned);
         let known = self
             .function
             .as_mut()
@@ -182,7 +160,7 @@ impl Checker<'_> {
                 });
                 foreign.advise(diagnostic, at, call_end).note(foreign.note())
             }
-            None => did_you_mean(Code::Undeclared, at, &message, near),
+            None => did_you_mean(Code::Undeclared, at, &message, near.as_deref()),
         };
         self.report(diagnostic);
         self.unknown.push(UnknownName {

@@ -43,7 +43,7 @@ pub(super) fn find(function: BuiltIn, types: &[Type], fit: impl Fn(Type, Type) -
             wanted.push(ty);
         }
         Some(Match {
-            result: signature.result.of(&bindings)?,
+            result: signature.result.resolve(&bindings)?,
             parameters: wanted,
             constant: signature.constant.filter(|&index| index < types.len()),
         })
@@ -123,10 +123,10 @@ impl Pattern {
             }
             _ => {}
         }
-        self.of(bindings)
+        self.resolve(bindings)
     }
 
-    fn of(self, bindings: &Bindings) -> Option<Type> {
+    fn resolve(self, bindings: &Bindings) -> Option<Type> {
         match self {
             Self::Exactly(ty) => Some(ty),
             Self::Gen(scalar) => Some(Type::vector(scalar, bindings.size?)),

@@ -5,14 +5,14 @@ use toyproof_diagnostic::{Code, Diagnostic, File, Fix, Span};
 use super::brace;
 use super::recover::Layout;
 use crate::keywords::{Interner, Keyword, Word};
-use crate::preprocess::Preprocessed;
+use crate::preprocess::PreprocessorOutput;
 use crate::reporting::push_limited;
 use crate::token::{Punctuator, Token, TokenKind};
 use crate::tree::Place;
 
 /// Balances the brackets of a text. An extra bracket becomes [`TokenKind::Stray`], a missing one is inserted;
 /// both are reported. Afterwards every bracket has a partner.
-pub(crate) fn balance(text: &mut Preprocessed, file: &File) {
+pub(crate) fn balance(text: &mut PreprocessorOutput, file: &File) {
     let (tokens, mut reported) = pair(&text.tokens, &text.interner);
     let tokens = brace::pair(tokens, &text.interner, Layout::new(file), &mut reported);
     if !reported.is_empty() {
@@ -50,7 +50,7 @@ pub(super) fn closing(open: Punctuator) -> Option<Punctuator> {
 }
 
 /// An open bracket.
-struct Open {
+struct OpenBracket {
     token: Token,
     bracket: Punctuator,
     /// The number of `;` it may still contain: two in the head of a `for`.
@@ -94,7 +94,7 @@ enum Opener {
 
 struct Pairing {
     done: Vec<Token>,
-    open: Vec<Open>,
+    open: Vec<OpenBracket>,
     reported: Vec<Diagnostic>,
 }
 
@@ -108,7 +108,7 @@ impl Pairing {
             return;
         };
         match punctuator {
-            Punctuator::LeftParen | Punctuator::LeftBracket => self.open.push(Open {
+            Punctuator::LeftParen | Punctuator::LeftBracket => self.open.push(OpenBracket {
                 token,
                 bracket: punctuator,
                 semicolons: if opener == Opener::For { 2 } else { 0 },
@@ -120,7 +120,7 @@ impl Pairing {
                 if opener != Opener::Struct {
                     self.close_up_to_brace(token);
                 }
-                self.open.push(Open {
+                self.open.push(OpenBracket {
                     token,
                     bracket: punctuator,
                     semicolons: usize::MAX,
@@ -151,7 +151,7 @@ impl Pairing {
 
     /// Consumes a `)` or `]`.
     fn close(&mut self, token: Token, punctuator: Punctuator, rest: &[Token]) {
-        let closes = |open: &Open| closing(open.bracket) == Some(punctuator);
+        let closes = |open: &OpenBracket| closing(open.bracket) == Some(punctuator);
         match &self.open[..] {
             [.., last] if closes(last) => {
                 self.open.pop();
@@ -184,7 +184,7 @@ impl Pairing {
 
     /// Reports a `(` closed by a `]`, or the reverse, and closes it.
     fn wrong_partner(&mut self, token: Token, punctuator: Punctuator) {
-        let Some(Open {
+        let Some(OpenBracket {
             token: open, bracket, ..
         }) = self.open.pop()
         else {
@@ -283,7 +283,7 @@ impl Pairing {
 
     /// Closes the innermost bracket before `next`.
     fn close_last(&mut self, next: Token) {
-        let Some(Open { token, bracket, .. }) = self.open.pop() else {
+        let Some(OpenBracket { token, bracket, .. }) = self.open.pop() else {
             return;
         };
         let Some(closing) = closing(bracket) else {

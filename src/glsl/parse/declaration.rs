@@ -2,7 +2,7 @@
 
 use toyproof_diagnostic::Code;
 
-use super::{Halt, Parsed, Parser};
+use super::{Halt, ParseResult, Parser};
 use crate::check::{Declarator, Members, Parameter, Qualifiers, Size, Specifier, Storage};
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Symbol, TokenKind};
@@ -10,7 +10,7 @@ use crate::tree::{Direction, Item, Place, Type, VariableId};
 
 impl Parser<'_> {
     /// Parses one declaration at global scope, or a function.
-    pub(super) fn external_declaration(&mut self) -> Parsed<()> {
+    pub(super) fn external_declaration(&mut self) -> ParseResult<()> {
         if self.check.takes_stray_semicolons() && self.eat(Punctuator::Semicolon) {
             return Ok(());
         }
@@ -63,7 +63,7 @@ impl Parser<'_> {
     }
 
     /// Parses a declaration inside a function, with its `;`.
-    pub(super) fn local_declaration(&mut self) -> Parsed<Vec<VariableId>> {
+    pub(super) fn local_declaration(&mut self) -> ParseResult<Vec<VariableId>> {
         if self.eat_keyword(Keyword::Precision) {
             self.precision_statement()?;
             return Ok(Vec::new());
@@ -93,7 +93,7 @@ impl Parser<'_> {
     }
 
     /// Parses `bool b = f()` as the condition of a loop.
-    pub(super) fn condition_declaration(&mut self) -> Parsed<VariableId> {
+    pub(super) fn condition_declaration(&mut self) -> ParseResult<VariableId> {
         let qualifiers = self.qualifiers()?;
         let specifier = self.named_type()?;
         self.check.check_precision_qualifier(&qualifiers, &specifier);
@@ -109,7 +109,7 @@ impl Parser<'_> {
     }
 
     /// Parses `precision highp float;`, which has no effect because everything is `highp`.
-    fn precision_statement(&mut self) -> Parsed<()> {
+    fn precision_statement(&mut self) -> ParseResult<()> {
         match self.keyword() {
             Some(Keyword::Highp | Keyword::Mediump | Keyword::Lowp) => self.next(),
             _ => return self.unexpected("`highp`, `mediump` or `lowp`"),
@@ -131,7 +131,7 @@ impl Parser<'_> {
     }
 
     /// Parses a type name or a structure, and the sizes that follow.
-    fn type_specifier(&mut self) -> Parsed<Specifier> {
+    fn type_specifier(&mut self) -> ParseResult<Specifier> {
         if self.keyword() != Some(Keyword::Struct) {
             return self.named_type();
         }
@@ -141,7 +141,7 @@ impl Parser<'_> {
         Ok(Specifier { base, sizes, at })
     }
 
-    pub(super) fn named_type(&mut self) -> Parsed<Specifier> {
+    pub(super) fn named_type(&mut self) -> ParseResult<Specifier> {
         let at = self.token().at;
         let base = match self.kind() {
             TokenKind::Word(symbol) => match self.interner.word(symbol) {
@@ -178,7 +178,7 @@ impl Parser<'_> {
     }
 
     /// Parses `[n][]…`.
-    pub(super) fn sizes(&mut self) -> Parsed<Vec<Size>> {
+    pub(super) fn sizes(&mut self) -> ParseResult<Vec<Size>> {
         let mut sizes = Vec::new();
         while self.is(Punctuator::LeftBracket) {
             let open = self.next().at;
@@ -195,7 +195,7 @@ impl Parser<'_> {
     }
 
     /// Parses `struct name { members }`, after the keyword `struct`.
-    fn structure(&mut self, at: Place) -> Parsed<Type> {
+    fn structure(&mut self, at: Place) -> ParseResult<Type> {
         let name = if self.is(Punctuator::LeftBrace) {
             None
         } else {
@@ -225,7 +225,7 @@ impl Parser<'_> {
     }
 
     /// Parses `vec3 a, b[2];`.
-    fn members(&mut self, members: &mut Members) -> Parsed<()> {
+    fn members(&mut self, members: &mut Members) -> ParseResult<()> {
         let qualifiers = self.qualifiers()?;
         if let Some(at) = qualifiers.other_than_precision() {
             self.check
@@ -272,7 +272,7 @@ impl Parser<'_> {
         specifier: &Specifier,
         name: Symbol,
         at: Place,
-    ) -> Parsed<Vec<VariableId>> {
+    ) -> ParseResult<Vec<VariableId>> {
         let mut variables = Vec::new();
         let (mut name, mut at) = (name, at);
         loop {
@@ -295,7 +295,7 @@ impl Parser<'_> {
     }
 
     /// Parses `[n] = value`, both optional.
-    fn declarator(&mut self, name: Symbol, at: Place) -> Parsed<Declarator> {
+    fn declarator(&mut self, name: Symbol, at: Place) -> ParseResult<Declarator> {
         let sizes = self.sizes()?;
         let initializer = if self.eat(Punctuator::Assign) {
             Some(self.assignment()?)
@@ -316,7 +316,7 @@ impl Parser<'_> {
 impl Parser<'_> {
     /// Parses the qualifiers before a type, in the order of §4.7: `invariant`, interpolation, layout,
     /// storage, precision.
-    pub(super) fn qualifiers(&mut self) -> Parsed<Qualifiers> {
+    pub(super) fn qualifiers(&mut self) -> ParseResult<Qualifiers> {
         let mut qualifiers = Qualifiers::default();
         let mut last = 0;
         loop {
@@ -355,7 +355,7 @@ impl Parser<'_> {
     }
 
     /// Parses `(location = 0, …)`, which is checked but not stored.
-    fn layout(&mut self) -> Parsed<()> {
+    fn layout(&mut self) -> ParseResult<()> {
         self.expect(Punctuator::LeftParen)?;
         loop {
             let (name, at) = self.name()?;
@@ -382,7 +382,7 @@ impl Parser<'_> {
         result: &Specifier,
         name: Symbol,
         at: Place,
-    ) -> Parsed<()> {
+    ) -> ParseResult<()> {
         if let Some(at) = qualifiers.other_than_precision() {
             self.check
                 .report(Code::BadQualifier.at(at, "a return type can only have a precision qualifier"));
@@ -403,7 +403,7 @@ impl Parser<'_> {
     }
 
     /// Parses `(in vec3 p, float t)`, `()` or `(void)`.
-    fn parameters(&mut self) -> Parsed<Vec<Parameter>> {
+    fn parameters(&mut self) -> ParseResult<Vec<Parameter>> {
         self.expect(Punctuator::LeftParen)?;
         let void = self.word() == Some(Word::Type(Type::Void));
         if void && self.peek(1).kind == TokenKind::Punctuator(Punctuator::RightParen) {
@@ -426,7 +426,7 @@ impl Parser<'_> {
         }
     }
 
-    fn parameter(&mut self) -> Parsed<Parameter> {
+    fn parameter(&mut self) -> ParseResult<Parameter> {
         let qualifiers = self.qualifiers()?;
         let direction = self.direction(&qualifiers);
         let mut specifier = self.named_type()?;

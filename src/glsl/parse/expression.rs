@@ -2,7 +2,7 @@
 
 use toyproof_diagnostic::Code;
 
-use super::{Parsed, Parser};
+use super::{ParseResult, Parser};
 use crate::check::Specifier;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, TokenKind};
@@ -10,7 +10,7 @@ use crate::tree::{ExprId, Literal, Place, StepOp, Type, UnaryOp, Value};
 
 impl Parser<'_> {
     /// Parses `a, b, c`.
-    pub(super) fn expression(&mut self) -> Parsed<ExprId> {
+    pub(super) fn expression(&mut self) -> ParseResult<ExprId> {
         let mut expr = self.assignment()?;
         while self.eat(Punctuator::Comma) {
             let second = self.assignment()?;
@@ -20,7 +20,7 @@ impl Parser<'_> {
     }
 
     /// Parses `a = b = c`, which is right-associative.
-    pub(super) fn assignment(&mut self) -> Parsed<ExprId> {
+    pub(super) fn assignment(&mut self) -> ParseResult<ExprId> {
         self.nested(|parser| {
             let target = parser.conditional()?;
             let TokenKind::Punctuator(punctuator) = parser.kind() else {
@@ -37,7 +37,7 @@ impl Parser<'_> {
     }
 
     /// Parses `a ? b : c`, which is right-associative. Constant expressions also have this form.
-    pub(super) fn conditional(&mut self) -> Parsed<ExprId> {
+    pub(super) fn conditional(&mut self) -> ParseResult<ExprId> {
         let condition = self.binary(1)?;
         if !self.eat(Punctuator::Question) {
             return Ok(condition);
@@ -50,7 +50,7 @@ impl Parser<'_> {
 
     /// Parses binary operators of at least `precedence`. A chain of one precedence is a loop; only operators
     /// of higher precedence recurse.
-    fn binary(&mut self, precedence: u8) -> Parsed<ExprId> {
+    fn binary(&mut self, precedence: u8) -> ParseResult<ExprId> {
         let mut left = self.unary()?;
         while let TokenKind::Punctuator(punctuator) = self.kind()
             && let Some(op) = punctuator.binary_operator()
@@ -63,7 +63,7 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    fn unary(&mut self) -> Parsed<ExprId> {
+    fn unary(&mut self) -> ParseResult<ExprId> {
         enum Prefix {
             Operator(UnaryOp),
             Step(StepOp),
@@ -86,7 +86,7 @@ impl Parser<'_> {
         })
     }
 
-    fn postfix(&mut self) -> Parsed<ExprId> {
+    fn postfix(&mut self) -> ParseResult<ExprId> {
         let mut expr = self.primary()?;
         loop {
             let at = self.token().at;
@@ -118,7 +118,7 @@ impl Parser<'_> {
     }
 
     /// Parses the text after a `.`: a member, a swizzle or `length()`.
-    fn selection(&mut self, base: ExprId) -> Parsed<ExprId> {
+    fn selection(&mut self, base: ExprId) -> ParseResult<ExprId> {
         let (name, at) = self.name()?;
         if self.is(Punctuator::LeftParen) {
             self.next();
@@ -129,7 +129,7 @@ impl Parser<'_> {
     }
 
     /// Parses `.size` after `iCh0`.
-    fn channel_member(&mut self, channel: u8, input: Place) -> Parsed<ExprId> {
+    fn channel_member(&mut self, channel: u8, input: Place) -> ParseResult<ExprId> {
         if !self.is(Punctuator::Dot) {
             return Ok(self.check.unselected_channel_input(channel, input));
         }
@@ -138,7 +138,7 @@ impl Parser<'_> {
         Ok(self.check.channel_member(channel, member, input.to(at)))
     }
 
-    fn primary(&mut self) -> Parsed<ExprId> {
+    fn primary(&mut self) -> ParseResult<ExprId> {
         let token = self.token();
         match token.kind {
             TokenKind::Number(text) => {
@@ -158,10 +158,7 @@ impl Parser<'_> {
             TokenKind::Word(symbol) => match self.interner.word(symbol) {
                 Word::Keyword(keyword @ (Keyword::True | Keyword::False)) => {
                     self.next();
-                    let literal = Literal {
-                        text: keyword.text().into(),
-                        value: Value::Bool(keyword == Keyword::True),
-                    };
+                    let literal = Literal::new(keyword.text(), Value::Bool(keyword == Keyword::True));
                     Ok(self.check.literal(literal, token.at))
                 }
                 Word::Type(_) => self.constructor(),
@@ -189,7 +186,7 @@ impl Parser<'_> {
     }
 
     /// Parses `type(…)` or `type[n](…)`.
-    fn constructor(&mut self) -> Parsed<ExprId> {
+    fn constructor(&mut self) -> ParseResult<ExprId> {
         let specifier: Specifier = self.named_type()?;
         if !self.is(Punctuator::LeftParen) {
             let name = self.check.tree.type_name(specifier.base);
@@ -209,7 +206,7 @@ impl Parser<'_> {
     }
 
     /// Parses `(a, b)`, `()` or `(void)`; also returns the place of the `)`.
-    fn arguments(&mut self) -> Parsed<(Vec<ExprId>, Place)> {
+    fn arguments(&mut self) -> ParseResult<(Vec<ExprId>, Place)> {
         self.expect(Punctuator::LeftParen)?;
         let mut arguments = Vec::new();
         let void = self.word() == Some(Word::Type(Type::Void));
@@ -255,10 +252,7 @@ pub(super) fn literal(text: &str) -> Result<Literal, LiteralError> {
     } else {
         integer(text)
     };
-    Ok(Literal {
-        text: text.into(),
-        value: value?,
-    })
+    Ok(Literal::new(text, value?))
 }
 
 fn is_float(text: &str) -> bool {

@@ -20,7 +20,7 @@ use crate::MAX_NESTING;
 use crate::check::Checker;
 use crate::foreign::Foreign;
 use crate::keywords::{Interner, Keyword, Word};
-use crate::preprocess::Preprocessed;
+use crate::preprocess::PreprocessorOutput;
 use crate::token::{Punctuator, Symbol, Token, TokenKind};
 use crate::tree::Place;
 
@@ -28,7 +28,7 @@ use crate::tree::Place;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Halt;
 
-type Parsed<T> = Result<T, Halt>;
+type ParseResult<T> = Result<T, Halt>;
 
 /// Parses tokens and calls the checker.
 pub(crate) struct Parser<'a> {
@@ -47,7 +47,7 @@ pub(crate) struct Parser<'a> {
 
 impl<'a> Parser<'a> {
     /// Makes a parser for a text whose brackets are [balanced](balance).
-    pub(crate) fn new(text: &'a Preprocessed, file: &'a File, check: Checker<'a>) -> Self {
+    pub(crate) fn new(text: &'a PreprocessorOutput, file: &'a File, check: Checker<'a>) -> Self {
         Self {
             tokens: &text.tokens,
             interner: &text.interner,
@@ -110,7 +110,7 @@ impl<'a> Parser<'a> {
         here
     }
 
-    fn expect(&mut self, punctuator: Punctuator) -> Parsed<Place> {
+    fn expect(&mut self, punctuator: Punctuator) -> ParseResult<Place> {
         if self.is(punctuator) {
             return Ok(self.next().at);
         }
@@ -119,7 +119,7 @@ impl<'a> Parser<'a> {
 
     /// Consumes the `;` that ends a statement or declaration. If it is missing and the next token begins a
     /// new construct, reports that and continues as if it were there.
-    fn semicolon(&mut self, wanted: &str) -> Parsed<()> {
+    fn semicolon(&mut self, wanted: &str) -> ParseResult<()> {
         if self.eat(Punctuator::Semicolon) {
             return Ok(());
         }
@@ -180,7 +180,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses an identifier.
-    fn name(&mut self) -> Parsed<(Symbol, Place)> {
+    fn name(&mut self) -> ParseResult<(Symbol, Place)> {
         match self.token() {
             Token {
                 kind: TokenKind::Word(symbol),
@@ -199,7 +199,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reports that the next token does not fit the grammar.
-    fn unexpected<T>(&mut self, wanted: &str) -> Parsed<T> {
+    fn unexpected<T>(&mut self, wanted: &str) -> ParseResult<T> {
         let Token { kind, at, .. } = self.token();
         let found = match kind {
             TokenKind::Word(symbol) if self.interner.word(symbol) == Word::Reserved => {
@@ -226,11 +226,11 @@ impl<'a> Parser<'a> {
 
     /// Reports an error and abandons the current recovery unit. Other errors of the unit may follow from this
     /// one and are dropped.
-    fn halt<T>(&mut self, code: Code, at: Place, message: impl Into<String>) -> Parsed<T> {
+    fn halt<T>(&mut self, code: Code, at: Place, message: impl Into<String>) -> ParseResult<T> {
         self.halt_with(code.at(at, message))
     }
 
-    fn halt_with<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
+    fn halt_with<T>(&mut self, diagnostic: Diagnostic) -> ParseResult<T> {
         if self.is_reported() {
             return self.halt_silently();
         }
@@ -240,13 +240,13 @@ impl<'a> Parser<'a> {
     }
 
     /// Gives up the current recovery unit, whose error has been reported.
-    fn halt_silently<T>(&mut self) -> Parsed<T> {
+    fn halt_silently<T>(&mut self) -> ParseResult<T> {
         self.check.errors.truncate(self.errors_before_unit);
         Err(Halt)
     }
 
     /// Parses a construct one nesting level deeper.
-    fn nested<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    fn nested<T>(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<T>) -> ParseResult<T> {
         if self.depth == MAX_NESTING {
             let at = self.token().at;
             return self.halt(

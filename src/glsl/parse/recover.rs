@@ -3,14 +3,14 @@
 use toyproof_diagnostic::{Code, Diagnostic, File, Fix, Span};
 
 use super::bracket::closing;
-use super::{Halt, Parsed, Parser};
+use super::{Halt, ParseResult, Parser};
 use crate::foreign::Foreign;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Token, TokenKind};
 
 impl Parser<'_> {
     /// Parses one of a list of statements or declarations; if it cannot be parsed, skips it.
-    pub(super) fn recovering<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Option<T> {
+    pub(super) fn recovering<T>(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<T>) -> Option<T> {
         let start = self.at;
         self.end_unit();
         let result = read(self);
@@ -111,8 +111,8 @@ impl Parser<'_> {
     /// the `)` and returns `None`.
     pub(super) fn parenthesized<T>(
         &mut self,
-        read: impl FnOnce(&mut Self) -> Parsed<T>,
-    ) -> Parsed<Option<T>> {
+        read: impl FnOnce(&mut Self) -> ParseResult<T>,
+    ) -> ParseResult<Option<T>> {
         let open = self.at;
         self.expect(Punctuator::LeftParen)?;
         let result = read(self).and_then(|value| {
@@ -145,7 +145,7 @@ impl Parser<'_> {
 
     /// Parses one item of a comma-separated list; if it cannot be parsed, skips to the comma or closing
     /// bracket.
-    pub(super) fn recovering_item<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Option<T> {
+    pub(super) fn recovering_item<T>(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<T>) -> Option<T> {
         let start = self.at;
         let result = read(self);
         if result.is_err() {

@@ -2,15 +2,15 @@
 
 use toyproof_diagnostic::Code;
 
-use super::{Parsed, Parser};
+use super::{ParseResult, Parser};
 use crate::check::Labels;
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Token, TokenKind};
-use crate::tree::{Arm, Block, Case, Condition, Label, Place, Statement, StatementKind};
+use crate::tree::{Arm, Block, Case, Condition, ExprId, Label, Place, Statement, StatementKind};
 
 impl Parser<'_> {
     /// Parses `{ … }` without opening a scope, which the caller has done.
-    pub(super) fn block(&mut self) -> Parsed<Block> {
+    pub(super) fn block(&mut self) -> ParseResult<Block> {
         self.expect(Punctuator::LeftBrace)?;
         let mut block = Block::new();
         while !self.eat(Punctuator::RightBrace) {
@@ -24,7 +24,7 @@ impl Parser<'_> {
     }
 
     /// Parses one statement and appends the zero, one or several statements that it is in the tree.
-    pub(super) fn statement(&mut self, block: &mut Block) -> Parsed<()> {
+    pub(super) fn statement(&mut self, block: &mut Block) -> ParseResult<()> {
         self.nested(|parser| {
             let at = parser.token().at;
             let kind = match parser.kind() {
@@ -54,7 +54,7 @@ impl Parser<'_> {
     }
 
     /// Parses a statement that begins with a keyword; returns `None` if the keyword begins a declaration.
-    fn keyword_statement(&mut self, keyword: Keyword, at: Place) -> Parsed<Option<StatementKind>> {
+    fn keyword_statement(&mut self, keyword: Keyword, at: Place) -> ParseResult<Option<StatementKind>> {
         Ok(Some(match keyword {
             Keyword::If => self.if_statement()?,
             Keyword::Switch => self.switch_statement()?,
@@ -106,13 +106,13 @@ impl Parser<'_> {
     }
 
     /// Consumes the `;` that ends a statement.
-    pub(super) fn end(&mut self, kind: StatementKind) -> Parsed<StatementKind> {
+    pub(super) fn end(&mut self, kind: StatementKind) -> ParseResult<StatementKind> {
         self.semicolon("`;` or an operator")?;
         Ok(kind)
     }
 
     /// Parses a declaration or an expression statement, which differ only after the name of a type.
-    fn simple_statement(&mut self, block: &mut Block) -> Parsed<()> {
+    fn simple_statement(&mut self, block: &mut Block) -> ParseResult<()> {
         if self.is_declaration() {
             return self.declaration_statement(block);
         }
@@ -169,7 +169,7 @@ impl Parser<'_> {
             )
     }
 
-    fn declaration_statement(&mut self, block: &mut Block) -> Parsed<()> {
+    fn declaration_statement(&mut self, block: &mut Block) -> ParseResult<()> {
         let at = self.token().at;
         let first = self.check.tree.structs.len();
         let variables = self.local_declaration()?;
@@ -187,7 +187,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+    fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<T>) -> ParseResult<T> {
         self.check.open_scope();
         let result = read(self);
         self.check.close_scope();
@@ -195,7 +195,7 @@ impl Parser<'_> {
     }
 
     /// Parses the body of an `if`, `else` or loop: a block, or one statement. The caller has opened a scope.
-    fn statement_body(&mut self) -> Parsed<Block> {
+    fn statement_body(&mut self) -> ParseResult<Block> {
         if self.is(Punctuator::LeftBrace) {
             return self.nested(Self::block);
         }
@@ -209,16 +209,11 @@ impl Parser<'_> {
 
 impl Parser<'_> {
     /// Parses `if … else if … else …`, the whole chain in one loop.
-    fn if_statement(&mut self) -> Parsed<StatementKind> {
+    fn if_statement(&mut self) -> ParseResult<StatementKind> {
         let mut arms = Vec::new();
         loop {
             self.next();
-            let at = self.token().at;
-            let condition = self.parenthesized(|parser| {
-                let condition = parser.expression()?;
-                Ok(parser.check.condition(condition))
-            })?;
-            let condition = condition.unwrap_or_else(|| self.check.error_expr(at));
+            let condition = self.parenthesized_condition()?;
             let body = self.scoped(Self::statement_body)?;
             arms.push(Arm { condition, body });
             if self.is_foreign_else_if() {
@@ -238,7 +233,7 @@ impl Parser<'_> {
         }
     }
 
-    fn switch_statement(&mut self) -> Parsed<StatementKind> {
+    fn switch_statement(&mut self) -> ParseResult<StatementKind> {
         self.next();
         let at = self.token().at;
         let selector = self.parenthesized(Self::expression)?;
@@ -255,7 +250,7 @@ impl Parser<'_> {
     }
 
     /// Parses the labels of a `switch`, the statements after them, and the `}`.
-    fn cases(&mut self, labels: &mut Labels) -> Parsed<Vec<Case>> {
+    fn cases(&mut self, labels: &mut Labels) -> ParseResult<Vec<Case>> {
         let mut cases: Vec<Case> = Vec::new();
         // Whether no statement followed the last label: the next label then joins it.
         let mut bare = false;
@@ -303,7 +298,7 @@ impl Parser<'_> {
     }
 
     /// Parses `case 1:` or `default:`.
-    fn label(&mut self, labels: &mut Labels) -> Parsed<Label> {
+    fn label(&mut self, labels: &mut Labels) -> ParseResult<Label> {
         let Token { at, .. } = self.token();
         let is_case = self.keyword() == Some(Keyword::Case);
         self.next();
@@ -317,7 +312,7 @@ impl Parser<'_> {
         Ok(label)
     }
 
-    fn for_statement(&mut self) -> Parsed<StatementKind> {
+    fn for_statement(&mut self) -> ParseResult<StatementKind> {
         self.next();
         let head = self.parenthesized(|parser| {
             let mut init = Block::new();
@@ -347,7 +342,7 @@ impl Parser<'_> {
         })
     }
 
-    fn while_statement(&mut self) -> Parsed<StatementKind> {
+    fn while_statement(&mut self) -> ParseResult<StatementKind> {
         self.next();
         let at = self.token().at;
         let condition = self.parenthesized(Self::loop_condition)?;
@@ -356,22 +351,26 @@ impl Parser<'_> {
         Ok(StatementKind::While { condition, body })
     }
 
-    fn do_statement(&mut self) -> Parsed<StatementKind> {
+    fn do_statement(&mut self) -> ParseResult<StatementKind> {
         self.next();
         let body = self.loop_body(|parser| parser.scoped(Self::statement_body))?;
         if !self.eat_keyword(Keyword::While) {
             return self.unexpected("`while`");
         }
+        let condition = self.parenthesized_condition()?;
+        self.end(StatementKind::DoWhile { body, condition })
+    }
+
+    fn parenthesized_condition(&mut self) -> ParseResult<ExprId> {
         let at = self.token().at;
         let condition = self.parenthesized(|parser| {
             let condition = parser.expression()?;
             Ok(parser.check.condition(condition))
         })?;
-        let condition = condition.unwrap_or_else(|| self.check.error_expr(at));
-        self.end(StatementKind::DoWhile { body, condition })
+        Ok(condition.unwrap_or_else(|| self.check.error_expr(at)))
     }
 
-    fn loop_body(&mut self, read: impl FnOnce(&mut Self) -> Parsed<Block>) -> Parsed<Block> {
+    fn loop_body(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<Block>) -> ParseResult<Block> {
         self.check.enter_loop();
         let body = read(self);
         self.check.leave_loop();
@@ -379,7 +378,7 @@ impl Parser<'_> {
     }
 
     /// An expression, or a declaration with initializer.
-    fn loop_condition(&mut self) -> Parsed<Condition> {
+    fn loop_condition(&mut self) -> ParseResult<Condition> {
         if self.is_declaration() {
             return Ok(Condition::Declare(self.condition_declaration()?));
         }

@@ -3,7 +3,7 @@
 use toyproof_diagnostic::{Code, Diagnostic, Fix, Span, nearest};
 
 use super::macros::expect_end_of_directive;
-use super::{PpToken, Preprocessor, Seen};
+use super::{PpToken, Prefix, Preprocessor};
 use crate::token::TokenKind;
 use crate::tree::Place;
 
@@ -128,7 +128,7 @@ impl Preprocessor<'_> {
 
     /// Checks `#version 300 es`, which must come first.
     fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
-        if self.seen > Seen::Nothing {
+        if self.seen > Prefix::Nothing {
             return Code::BadVersion.refuse(at, "`#version` must be the first line of code");
         }
         let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
@@ -153,7 +153,7 @@ impl Preprocessor<'_> {
             let help = "write `#extension NAME : BEHAVIOR`, where BEHAVIOR is `require`, `enable`, `warn` or `disable`";
             return Err(Box::new(diagnostic.help(help)));
         };
-        if self.seen == Seen::Text {
+        if self.seen == Prefix::Text {
             return Code::BadExtension.refuse(at, "`#extension` after the first declaration");
         }
         let fatal = behavior == "require" || (name == "all" && behavior == "enable");

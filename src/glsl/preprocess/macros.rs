@@ -12,7 +12,6 @@ use crate::keywords::Interner;
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
 
-/// A macro.
 #[derive(Debug, Clone)]
 pub(super) struct Macro {
     /// The parameters of a function-like macro; `None` for an object-like macro.

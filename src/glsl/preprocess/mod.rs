@@ -31,7 +31,7 @@ use crate::reporting::push_limited;
 const MAX_NAME_BYTES: usize = 1024;
 
 /// The result of preprocessing.
-pub(crate) struct Preprocessed {
+pub(crate) struct PreprocessorOutput {
     /// The tokens, ending in one [`TokenKind::End`].
     pub(crate) tokens: Vec<Token>,
     /// The texts of the tokens.
@@ -67,12 +67,17 @@ const LOSES_NAMES: [Code; 5] = [
 ];
 
 /// Preprocesses one file to its end despite errors, or until the deadline.
-pub(crate) fn preprocess(files: &Files, file: FileId, stage: Stage, deadline: &Deadline) -> Preprocessed {
+pub(crate) fn preprocess(
+    files: &Files,
+    file: FileId,
+    stage: Stage,
+    deadline: &Deadline,
+) -> PreprocessorOutput {
     let mut preprocessor = Preprocessor::new(files, file, stage);
     let mut tokens = Vec::new();
     loop {
         let mut token = preprocessor.next_expanded();
-        preprocessor.seen = Seen::Text;
+        preprocessor.seen = Prefix::Text;
         match token.kind {
             TokenKind::Newline => continue,
             TokenKind::Unknown(c) => {
@@ -126,7 +131,7 @@ pub(crate) fn preprocess(files: &Files, file: FileId, stage: Stage, deadline: &D
         let reported = |code: &Code| diagnostics.iter().any(|diagnostic| diagnostic.code == *code);
         codes.iter().any(reported)
     };
-    Preprocessed {
+    PreprocessorOutput {
         tokens,
         interner: preprocessor.interner,
         control_comments: preprocessor.lexer.control_comments,
@@ -160,7 +165,7 @@ pub(crate) fn source_tokens(files: &Files, file: FileId) -> (Vec<Token>, Interne
 
 /// The kinds of tokens seen so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Seen {
+enum Prefix {
     Nothing,
     /// A directive: `#version` may not follow.
     Directive,
@@ -199,7 +204,7 @@ struct Preprocessor<'a> {
     groups: Vec<Group>,
     /// Whether the next token begins a line.
     line_start: bool,
-    seen: Seen,
+    seen: Prefix,
     /// The offset that `#line` adds to line numbers, and the file number it sets: visible to `__LINE__` and
     /// `__FILE__` only.
     line_offset: i64,
@@ -231,7 +236,7 @@ impl<'a> Preprocessor<'a> {
             stream: Stream::Text(Vec::new()),
             groups: Vec::new(),
             line_start: true,
-            seen: Seen::Nothing,
+            seen: Prefix::Nothing,
             line_offset: 0,
             file_number: 0,
             counted: (0, 1),
@@ -271,7 +276,7 @@ impl<'a> Preprocessor<'a> {
                 TokenKind::Newline => self.line_start = true,
                 TokenKind::Punctuator(Punctuator::Hash) if self.line_start => {
                     self.directive(token.at);
-                    self.seen = self.seen.max(Seen::Directive);
+                    self.seen = self.seen.max(Prefix::Directive);
                 }
                 TokenKind::End => {
                     while let Some(group) = self.groups.pop() {

@@ -14,7 +14,7 @@ const COST_WITHOUT_EVIDENCE: usize = 10;
 const MAX_OF_A_KIND: usize = 40;
 
 /// An open block.
-struct Open {
+struct OpenBlock {
     /// The index of its `{`.
     index: usize,
     /// The indentation of the line of its `{`.
@@ -46,7 +46,7 @@ pub(super) fn collect(candidates: &mut Candidates) {
 /// Inserts `}` before lines that are indented no deeper than the line of an open `{`.
 fn missing_close(candidates: &mut Candidates) {
     let source = candidates.source;
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenBlock> = Vec::new();
     let mut count = 0;
     for index in 0..=source.len() {
         let is_else = source.keyword(index) == Some(Keyword::Else)
@@ -74,7 +74,7 @@ fn missing_close(candidates: &mut Candidates) {
             }
         }
         match source.punctuator(index) {
-            Some(Punctuator::LeftBrace) => open.push(Open {
+            Some(Punctuator::LeftBrace) => open.push(OpenBlock {
                 index,
                 indent: source.indent(index),
             }),
@@ -96,7 +96,7 @@ fn is_end_of_statement(candidates: &Candidates, index: usize) -> bool {
 
 /// Adds the insertion of the `}` of a block before a line: on a separate line, unless the block is on one
 /// line.
-fn insert_close(candidates: &mut Candidates, cost: usize, index: usize, block: &Open) {
+fn insert_close(candidates: &mut Candidates, cost: usize, index: usize, block: &OpenBlock) {
     let source = candidates.source;
     // Before the directives of the lines above.
     let is_code = |before: &usize| !source.is_in_directive(*before);
@@ -148,12 +148,12 @@ fn additional_open(candidates: &mut Candidates) {
 /// Inserts `{` after heads without one: first the last head with the indentation of an additional `}`.
 fn missing_open(candidates: &mut Candidates) {
     let source = candidates.source;
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenBlock> = Vec::new();
     let mut heads: Vec<usize> = Vec::new();
     let mut count = 0;
     for index in 0..source.len() {
         match source.punctuator(index) {
-            Some(Punctuator::LeftBrace) => open.push(Open {
+            Some(Punctuator::LeftBrace) => open.push(OpenBlock {
                 index,
                 indent: source.indent(index),
             }),
@@ -180,18 +180,18 @@ fn missing_open(candidates: &mut Candidates) {
 }
 
 /// Whether a `}` closes no block, or is indented deeper than the block that it closes.
-fn is_additional(source: &Source, block: Option<&Open>, index: usize) -> bool {
+fn is_additional(source: &Source, block: Option<&OpenBlock>, index: usize) -> bool {
     block.is_none_or(|block| source.begins_line(index) && source.indent(index) > block.indent)
 }
 
 /// Removes a `}` whose indentation differs from that of its block.
 fn additional_close(candidates: &mut Candidates) {
     let source = candidates.source;
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenBlock> = Vec::new();
     let mut count = 0;
     for index in 0..source.len() {
         match source.punctuator(index) {
-            Some(Punctuator::LeftBrace) => open.push(Open {
+            Some(Punctuator::LeftBrace) => open.push(OpenBlock {
                 index,
                 indent: source.indent(index),
             }),

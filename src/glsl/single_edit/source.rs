@@ -79,7 +79,6 @@ impl<'a> Source<'a> {
         self.tokens.get(index).map_or(end, |token| token.at.span)
     }
 
-    /// The text of a token.
     pub(super) fn token_text(&self, index: usize) -> &'a str {
         self.slice(self.span(index))
     }

@@ -45,7 +45,7 @@ const TYPES: [&str; 12] = [
 
 pub(super) fn collect(candidates: &mut Candidates, errors: &Diagnostics) {
     let declarations = declarations(candidates.source);
-    let mentioned = Mentioned::new(candidates.source, errors);
+    let mentioned = MentionedNames::new(candidates.source, errors);
     for (index, distance) in candidates.near() {
         let cost = distance + candidates.cost(COST_IN_SYNTAX, 0);
         literal(candidates, index, cost, distance);
@@ -83,14 +83,14 @@ pub(super) fn collect(candidates: &mut Candidates, errors: &Diagnostics) {
 }
 
 /// The names that the messages of the errors mention.
-struct Mentioned<'a> {
+struct MentionedNames<'a> {
     /// The names of types.
     types: Vec<&'a str>,
     /// The names of the text.
     names: Vec<Symbol>,
 }
 
-impl<'a> Mentioned<'a> {
+impl<'a> MentionedNames<'a> {
     fn new(source: &Source, errors: &'a Diagnostics) -> Self {
         let (mut types, mut names) = (Vec::new(), Vec::new());
         for error in errors.iter().take(MAX_MESSAGES) {
@@ -125,7 +125,7 @@ impl<'a> Mentioned<'a> {
     }
 }
 
-impl Mentioned<'_> {
+impl MentionedNames<'_> {
     /// Replaces the types in the header of a function whose `(` is at `open`.
     fn change_parameters(&self, candidates: &mut Candidates, open: usize, cost: usize) {
         if !candidates.source.is(open, Punctuator::LeftParen) {
@@ -310,7 +310,7 @@ fn missing_type(candidates: &mut Candidates, index: usize, distance: usize) {
 }
 
 /// Changes the types and directions in the header of `mainImage`.
-fn main_image(candidates: &mut Candidates, mentioned: &Mentioned) {
+fn main_image(candidates: &mut Candidates, mentioned: &MentionedNames) {
     let source = candidates.source;
     let Some(name) = (0..source.len()).find(|&index| source.token_text(index) == "mainImage") else {
         return;

@@ -136,6 +136,16 @@ pub struct Literal {
     pub value: Value,
 }
 
+impl Literal {
+    /// A literal as it is written, with its value.
+    pub fn new(text: impl Into<Box<str>>, value: Value) -> Self {
+        Self {
+            text: text.into(),
+            value,
+        }
+    }
+}
+
 /// The kind of a constructor (§5.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Constructor {

@@ -53,6 +53,20 @@ pub struct Variable {
     pub at: Option<Place>,
 }
 
+impl Variable {
+    /// A variable without an initial value.
+    pub fn new(name: impl Into<String>, ty: Type, kind: VariableKind, at: Option<Place>) -> Self {
+        Self {
+            name: name.into(),
+            ty,
+            kind,
+            initializer: None,
+            value: None,
+            at,
+        }
+    }
+}
+
 /// The kind of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum VariableKind {
@@ -128,6 +142,13 @@ pub struct Statement {
     pub kind: StatementKind,
     /// Its place, up to its `;`; for compound statements, their first keyword or `{`.
     pub at: Place,
+}
+
+impl Statement {
+    /// A statement of that kind.
+    pub fn new(kind: StatementKind, at: Place) -> Self {
+        Self { kind, at }
+    }
 }
 
 /// The kind of a statement.
@@ -235,6 +256,14 @@ pub enum Label {
 }
 
 impl StatementKind {
+    /// `if (condition) { body }`
+    pub fn when(condition: ExprId, body: Block) -> Self {
+        Self::If {
+            arms: vec![Arm { condition, body }],
+            otherwise: None,
+        }
+    }
+
     /// Whether it contains other statements.
     pub fn is_compound(&self) -> bool {
         matches!(

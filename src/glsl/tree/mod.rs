@@ -128,17 +128,30 @@ impl Tree {
         order
     }
 
+    /// An lvalue, and everything that it is a part of, from the inside out: `a[i].x`, `a[i]`, `a`.
+    pub fn path(&self, lvalue: ExprId) -> impl Iterator<Item = ExprId> {
+        std::iter::successors(Some(lvalue), |&node| match self[node].kind {
+            ExprKind::Swizzle { vector: base, .. }
+            | ExprKind::Member { structure: base, .. }
+            | ExprKind::Index { base, .. } => Some(base),
+            _ => None,
+        })
+    }
+
     /// The variable that an lvalue is or is a part of; `None` for other expressions.
-    pub fn root_variable(&self, mut lvalue: ExprId) -> Option<VariableId> {
-        loop {
-            lvalue = match self[lvalue].kind {
-                ExprKind::Variable(variable) => return Some(variable),
-                ExprKind::Swizzle { vector: base, .. }
-                | ExprKind::Member { structure: base, .. }
-                | ExprKind::Index { base, .. } => base,
-                _ => return None,
-            };
+    pub fn root_variable(&self, lvalue: ExprId) -> Option<VariableId> {
+        match self[self.path(lvalue).last()?].kind {
+            ExprKind::Variable(variable) => Some(variable),
+            _ => None,
         }
+    }
+
+    /// The variables at global scope, in source order.
+    pub fn global_variables(&self) -> impl Iterator<Item = VariableId> {
+        self.items.iter().filter_map(|item| match *item {
+            Item::Variable(variable) => Some(variable),
+            _ => None,
+        })
     }
 }
 
@@ -329,12 +342,7 @@ mod tests {
                 at: Place::plain(Span::new(file, 0, 0)),
             })
         };
-        let one = |value| {
-            ExprKind::Literal(Literal {
-                text: "1.".into(),
-                value: Value::Float(value),
-            })
-        };
+        let one = |value| ExprKind::Literal(Literal::new("1.", Value::Float(value)));
         let mut made = vec![push(one(0.0))];
         let mut chain = made[0];
         for value in 0..100_000 {
