@@ -35,7 +35,7 @@ impl Allows {
         if control_comments.is_empty() {
             return Self::default();
         }
-        let extents = StatementExtents::of(tree);
+        let extents = StatementExtents::new(tree);
         let mut all = Vec::new();
         for comment in control_comments {
             let scope = extents.scope_of(files, *comment);
@@ -138,7 +138,7 @@ fn code_spans(files: &Files, comment: ControlComment, diagnostics: &mut Vec<Diag
 struct StatementExtents(Vec<(u32, u32)>);
 
 impl StatementExtents {
-    fn of(tree: &Tree) -> Self {
+    fn new(tree: &Tree) -> Self {
         let mut all = Vec::new();
         for item in &tree.items {
             let (start, end) = match item {

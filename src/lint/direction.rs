@@ -87,7 +87,7 @@ fn direction_of(program: &Program, expr: ExprId) -> Option<ExprId> {
         } => Some((arguments[0], arguments[1])),
         _ => None,
     };
-    let equal = |a, b| Shape::of(tree, a).is_some_and(|shape| Some(shape) == Shape::of(tree, b));
+    let equal = |a, b| Shape::new(tree, a).is_some_and(|shape| Some(shape) == Shape::new(tree, b));
     let (k, (u, v)) = terms.iter().find_map(|(k, factors)| match factors[..] {
         [a, b] if *k > 0.0 && equal(a, b) => Some((k, dot(a)?)),
         _ => None,

@@ -182,7 +182,7 @@ impl Sum {
     }
 
     fn add_term(&mut self, program: &Program, expr: ExprId, factor: f64) -> Option<()> {
-        let shape = Shape::of(program.tree, expr)?;
+        let shape = Shape::new(program.tree, expr)?;
         match self.terms.iter_mut().find(|term| term.shape == shape) {
             Some(term) => term.factor += factor,
             None => self.terms.push(Term { expr, shape, factor }),

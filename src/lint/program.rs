@@ -6,7 +6,7 @@ use std::fmt::Write;
 use toyproof_diagnostic::Deadline;
 pub(super) use toyproof_glsl::tree::walk::direction;
 use toyproof_glsl::tree::{
-    Direction, ExprId, ExprKind, FunctionId, Item, StatementKind, Tree, Type, Value, VariableId, walk,
+    Direction, ExprId, ExprKind, FunctionId, StatementKind, Tree, Type, Value, VariableId, walk,
 };
 
 /// The part of a shader reachable from `mainImage`.
@@ -120,16 +120,12 @@ impl<'a> Program<'a> {
     fn find_functions(&mut self) {
         let tree = self.tree;
         let mut roots: Vec<FunctionId> = Vec::new();
-        for item in &tree.items {
-            if let Item::Variable(variable) = item
-                && let Some(initializer) = tree[*variable].initializer
-            {
-                roots.extend(
-                    tree.postorder(initializer)
-                        .into_iter()
-                        .filter_map(|expr| callee(tree, expr)),
-                );
-            }
+        for initializer in tree
+            .global_variables()
+            .filter_map(|variable| tree[variable].initializer)
+        {
+            let exprs = tree.postorder(initializer).into_iter();
+            roots.extend(exprs.filter_map(|expr| callee(tree, expr)));
         }
         roots.push(self.main);
         let mut seen = vec![false; tree.functions.len()];
@@ -170,10 +166,8 @@ impl<'a> Program<'a> {
 
     fn find_definitions(&mut self) {
         let tree = self.tree;
-        for item in &tree.items {
-            if let Item::Variable(variable) = item
-                && let Some(initializer) = tree[*variable].initializer
-            {
+        for variable in tree.global_variables() {
+            if let Some(initializer) = tree[variable].initializer {
                 self.definitions[variable.index()].push(Definition::Value(initializer));
             }
         }
@@ -257,7 +251,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub(super) fn of(tree: &Tree, root: ExprId) -> Option<Self> {
+    pub(super) fn new(tree: &Tree, root: ExprId) -> Option<Self> {
         let mut shape = Self {
             text: String::new(),
             variables: Vec::new(),

@@ -515,15 +515,11 @@ impl DivergenceAnalysis<'_> {
     }
 
     /// Whether pixels may write different elements.
-    fn has_divergent_index(&self, mut target: ExprId) -> bool {
-        loop {
-            target = match self.program.tree[target].kind {
-                ExprKind::Index { index, .. } if self.values[index.index()].differs => return true,
-                ExprKind::Index { base, .. }
-                | ExprKind::Swizzle { vector: base, .. }
-                | ExprKind::Member { structure: base, .. } => base,
-                _ => return false,
-            };
-        }
+    fn has_divergent_index(&self, target: ExprId) -> bool {
+        let tree = self.program.tree;
+        tree.path(target).any(|node| match tree[node].kind {
+            ExprKind::Index { index, .. } => self.values[index.index()].differs,
+            _ => false,
+        })
     }
 }

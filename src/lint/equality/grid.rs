@@ -9,6 +9,7 @@ use toyproof_glsl::tree::{
 
 use crate::program::{Definition, Program, is_float, newest};
 
+/// The maximum number of expressions examined for one, which keeps the time linear in the size of a shader.
 const MAX_EXPRS: usize = 500;
 
 /// The spacing of the grid: multiples of this are on it.

@@ -112,7 +112,7 @@ fn divisors(program: &Program, function: FunctionId) -> HashSet<Shape> {
         .exprs(function)
         .iter()
         .filter_map(by)
-        .filter_map(|expr| Shape::of(tree, expr))
+        .filter_map(|expr| Shape::new(tree, expr))
         .collect()
 }
 
@@ -129,15 +129,15 @@ fn depends_on_rounding(
         (Some(constant), None) => (right, constant),
         (None, Some(constant)) => (left, constant),
         (None, None) => {
-            let (a, b) = (origins.of(left), origins.of(right));
+            let (a, b) = (origins.origin(left), origins.origin(right));
             return a.is_rounded()
                 && b.is_rounded()
                 && !a.feeds(program, left, right)
                 && !b.feeds(program, right, left);
         }
     };
-    let guards_division = Shape::of(program.tree, computed).is_some_and(|shape| divisors.contains(&shape));
-    !guards_division && may_miss(&origins.of(computed), constant.components())
+    let guards_division = Shape::new(program.tree, computed).is_some_and(|shape| divisors.contains(&shape));
+    !guards_division && may_miss(&origins.origin(computed), constant.components())
 }
 
 /// Whether rounding alone may make a computed value differ from a constant.

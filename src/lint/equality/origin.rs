@@ -27,9 +27,9 @@ impl<'a> Origins<'a> {
         }
     }
 
-    pub(super) fn of(&mut self, expr: ExprId) -> Rc<Origin> {
+    pub(super) fn origin(&mut self, expr: ExprId) -> Rc<Origin> {
         let grid = &self.grid;
-        let find = || Rc::new(Origin::of(grid, expr));
+        let find = || Rc::new(Origin::find(grid, expr));
         match grid.program.tree[expr].kind {
             ExprKind::Variable(variable) => Rc::clone(self.of_variables.entry(variable).or_insert_with(find)),
             _ => find(),
@@ -51,7 +51,7 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    fn of(grid: &Grid, expr: ExprId) -> Self {
+    fn find(grid: &Grid, expr: ExprId) -> Self {
         let mut origin = Self::default();
         let mut pending = vec![(expr, 1.0)];
         for _ in 0..MAX_EXPRS {
@@ -82,7 +82,7 @@ impl Origin {
     /// two may then be equal by construction.
     pub(super) fn feeds(&self, program: &Program, own: ExprId, other: ExprId) -> bool {
         let tree = program.tree;
-        let own = Shape::of(tree, own);
+        let own = Shape::new(tree, own);
         let mut pending = vec![other];
         let mut seen = HashSet::new();
         for _ in 0..MAX_EXPRS {
@@ -99,16 +99,21 @@ impl Origin {
                         }
                     }
                 }
-                ExprKind::BuiltIn { .. } if own.is_some() && Shape::of(tree, expr) == own => return true,
+                ExprKind::BuiltIn { .. } if own.is_some() && Shape::new(tree, expr) == own => return true,
                 _ => tree[expr].kind.for_each_operand(|operand| pending.push(operand)),
             }
         }
         true
     }
 
-    fn mark_rounded(&mut self, cancels: bool) {
+    fn mark_rounded(&mut self) {
         self.rounded = true;
-        self.cancelled |= cancels;
+    }
+
+    /// Marks a sum or difference that rounds.
+    fn mark_cancelled(&mut self) {
+        self.mark_rounded();
+        self.cancelled = true;
     }
 
     fn follow(&mut self, grid: &Grid, expr: ExprId, sign: f64, pending: &mut Vec<(ExprId, f64)>) {
@@ -132,11 +137,12 @@ impl Origin {
                 op: UnaryOp::Plus,
                 operand,
             } => pending.push((*operand, sign)),
-            ExprKind::Binary { op, .. } => {
-                if !grid.contains(expr) {
-                    self.mark_rounded(matches!(op, BinaryOp::Add | BinaryOp::Subtract));
-                }
-            }
+            ExprKind::Binary { .. } if grid.contains(expr) => {}
+            ExprKind::Binary {
+                op: BinaryOp::Add | BinaryOp::Subtract,
+                ..
+            } => self.mark_cancelled(),
+            ExprKind::Binary { .. } => self.mark_rounded(),
             ExprKind::Conditional { yes, no, .. } => pending.extend([(*yes, sign), (*no, sign)]),
             ExprKind::Sequence { second: value, .. } | ExprKind::Assign { op: None, value, .. } => {
                 pending.push((*value, sign));
@@ -208,7 +214,7 @@ impl Origin {
                         op: Some(_), target, ..
                     } => {
                         if !grid.contains(target) {
-                            self.mark_rounded(true);
+                            self.mark_cancelled();
                         }
                     }
                     _ => self.unknown = true,
@@ -234,21 +240,21 @@ impl Origin {
             B::Mix => {
                 pending.extend(arguments[..2].iter().map(|&argument| (argument, sign)));
                 if !grid.contains(arguments[2]) {
-                    self.mark_rounded(true);
+                    self.mark_cancelled();
                 }
             }
             B::Smoothstep => {
                 self.exact_values.extend([0.0, sign]);
-                self.mark_rounded(false);
+                self.mark_rounded();
             }
             B::Floor | B::Ceil | B::Trunc | B::Round | B::RoundEven | B::Sign | B::Step => {}
             B::Mod | B::Fract => {
                 if !grid.contains(expr) {
-                    self.mark_rounded(true);
+                    self.mark_cancelled();
                 }
             }
-            B::Dot if is_square(grid.program.tree, arguments) => self.mark_rounded(false),
-            B::Sin | B::Cos | B::Tan | B::Dot | B::Cross | B::Reflect => self.mark_rounded(true),
+            B::Dot if is_square(grid.program.tree, arguments) => self.mark_rounded(),
+            B::Sin | B::Cos | B::Tan | B::Dot | B::Cross | B::Reflect => self.mark_cancelled(),
             B::Sqrt
             | B::InverseSqrt
             | B::Pow
@@ -261,7 +267,7 @@ impl Origin {
             | B::Normalize
             | B::Atan
             | B::Asin
-            | B::Acos => self.mark_rounded(false),
+            | B::Acos => self.mark_rounded(),
             _ => self.unknown = true,
         }
     }
@@ -269,5 +275,5 @@ impl Origin {
 
 /// Whether both arguments are the same vector.
 fn is_square(tree: &Tree, arguments: &[ExprId]) -> bool {
-    Shape::of(tree, arguments[0]) == Shape::of(tree, arguments[1])
+    Shape::new(tree, arguments[0]) == Shape::new(tree, arguments[1])
 }

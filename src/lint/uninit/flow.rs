@@ -382,8 +382,8 @@ impl Analysis<'_> {
                 Work::Evaluate(expr) if self.program.tree[expr].constant => {}
                 Work::Evaluate(expr) => self.steps(expr, &mut pending),
                 Work::Read(part, expr) => self.read(part, expr),
-                Work::Assign(part) => self.assign(&part, false),
-                Work::AssignMaybe(part) => self.assign(&part, true),
+                Work::Assign(part) => self.assign(&part, State::assign),
+                Work::AssignMaybe(part) => self.assign(&part, State::assign_maybe),
                 Work::Fork => self.saved.push(self.state.clone()),
                 Work::Switch => {
                     if let Some(other) = self.saved.last_mut() {
@@ -539,17 +539,12 @@ impl Analysis<'_> {
     }
 
     /// Evaluates the indices of an lvalue.
-    fn indices(&self, mut expr: ExprId, pending: &mut Vec<Work>) {
-        loop {
-            expr = match self.program.tree[expr].kind {
-                ExprKind::Index { base, index } => {
-                    pending.push(Work::Evaluate(index));
-                    base
-                }
-                ExprKind::Swizzle { vector: base, .. } | ExprKind::Member { structure: base, .. } => base,
-                _ => return,
-            };
-        }
+    fn indices(&self, expr: ExprId, pending: &mut Vec<Work>) {
+        let tree = self.program.tree;
+        pending.extend(tree.path(expr).filter_map(|node| match tree[node].kind {
+            ExprKind::Index { index, .. } => Some(Work::Evaluate(index)),
+            _ => None,
+        }));
     }
 
     fn read(&mut self, part: Part, expr: ExprId) {
@@ -587,16 +582,12 @@ impl Analysis<'_> {
         }
     }
 
-    fn assign(&mut self, part: &Part, on_some_paths: bool) {
+    fn assign(&mut self, part: &Part, assign: fn(&mut State, Slot, Parts)) {
         if part.parts == 0 {
             return;
         }
         if let Some(&slot) = self.slots.get(&part.variable) {
-            if on_some_paths {
-                self.state.assign_maybe(slot, part.parts);
-            } else {
-                self.state.assign(slot, part.parts);
-            }
+            assign(&mut self.state, slot, part.parts);
         }
         if let Some(&index) = self.parameters.get(&part.variable) {
             self.flow.parameters[index].assigned |= part.parts;

@@ -69,7 +69,7 @@ fn subjects(program: &Program, condition: ExprId) -> Vec<(Shape, Option<Shape>)>
                 right,
             } => pending.extend([left, right]),
             ExprKind::Binary { op, left, right } if op.mirrored() != op || op == BinaryOp::Equal => {
-                let Some(subject) = Shape::of(tree, left) else {
+                let Some(subject) = Shape::new(tree, left) else {
                     continue;
                 };
                 let is_case = match program.constant(right).as_ref().map(Constant::components) {
@@ -83,7 +83,7 @@ fn subjects(program: &Program, condition: ExprId) -> Vec<(Shape, Option<Shape>)>
                 if is_case {
                     found.push((subject.clone(), None));
                 }
-                found.extend(Shape::of(tree, right).map(|right| (subject, Some(right))));
+                found.extend(Shape::new(tree, right).map(|right| (subject, Some(right))));
             }
             _ => {}
         }

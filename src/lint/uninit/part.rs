@@ -53,7 +53,6 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// All parts of a type.
     pub(super) fn whole(&self, ty: Type) -> Parts {
         Parts::MAX >> (Parts::BITS - self.count(ty))
     }
@@ -61,19 +60,9 @@ impl<'a> Layout<'a> {
     /// The parts that an expression names, if it is a variable or part of one.
     pub(super) fn part(&self, expr: ExprId) -> Option<Part> {
         let tree = self.tree;
-        let mut chain = Vec::new();
-        let mut root = expr;
-        let variable = loop {
-            root = match tree[root].kind {
-                ExprKind::Variable(variable) => break variable,
-                ExprKind::Swizzle { vector: base, .. }
-                | ExprKind::Member { structure: base, .. }
-                | ExprKind::Index { base, .. } => {
-                    chain.push(root);
-                    base
-                }
-                _ => return None,
-            };
+        let mut chain: Vec<_> = tree.path(expr).collect();
+        let ExprKind::Variable(variable) = tree[chain.pop()?].kind else {
+            return None;
         };
         let mut ty = tree[variable].ty;
         let mut bits: Vec<u32> = (0..self.count(ty)).collect();
