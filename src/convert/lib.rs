@@ -255,8 +255,8 @@ impl Converter {
         let deadline = Deadline::after(self.timeout);
         let text = wgsl::wgsl(source.checked, source.files, self.style, &deadline);
         let text = text.map_err(|failure| match failure {
-            wgsl::Failure::Overdue(overdue) => ConvertError::Overdue(overdue),
-            wgsl::Failure::Unprintable(why) => ConvertError::Unwritable(WgslError::Unprintable {
+            wgsl::WgslFailure::Overdue(overdue) => ConvertError::Overdue(overdue),
+            wgsl::WgslFailure::Unprintable(why) => ConvertError::Unwritable(WgslError::Unprintable {
                 style: self.style,
                 why,
             }),

@@ -49,7 +49,7 @@ static INSTRUCTIONS: LazyLock<Instructions> = LazyLock::new(|| {
 
 impl InexactFunction {
     /// The function of that name with that number of arguments, if its last bits are implementation-defined.
-    pub(crate) fn of(built_in: BuiltIn, arguments: usize) -> Option<Self> {
+    pub(crate) fn from_built_in(built_in: BuiltIn, arguments: usize) -> Option<Self> {
         let mut definitions = built_in.exact_definitions().iter().map(|exact| exact.definition);
         let fits =
             |definition: &Definition| definition.argument_count().is_none_or(|count| count == arguments);
@@ -58,7 +58,7 @@ impl InexactFunction {
     }
 
     /// The function that an instruction of `GLSL.std.450` computes.
-    pub(crate) fn of_extended(instruction: Ext) -> Option<Self> {
+    pub(crate) fn from_extended(instruction: Ext) -> Option<Self> {
         let mut extended = INSTRUCTIONS.extended.iter();
         extended
             .find(|(known, _)| *known == instruction)
@@ -66,7 +66,7 @@ impl InexactFunction {
     }
 
     /// The function that a core instruction of SPIR-V computes.
-    pub(crate) fn of_core(instruction: Op) -> Option<Self> {
+    pub(crate) fn from_core(instruction: Op) -> Option<Self> {
         let mut core = INSTRUCTIONS.core.iter();
         core.find(|(known, _)| *known == instruction)
             .map(|(_, function)| *function)

@@ -177,7 +177,7 @@ impl To {
     }
 
     pub(super) fn of(path: &Path) -> Option<Self> {
-        let target = Target::of(path)?;
+        let target = Target::from_path(path)?;
         Self::value_variants()
             .iter()
             .copied()

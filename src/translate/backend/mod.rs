@@ -13,7 +13,7 @@ use naga::{Expression, SampleLevel, ShaderStage};
 use serde::{Deserialize, Serialize};
 
 use crate::TranslateError;
-use crate::naga_ir::{Fetches, ValidModule};
+use crate::naga_ir::{Fetches, ValidModule, functions};
 
 /// A language that a shader can be converted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ impl Target {
     }
 
     /// The target whose file extension `path` has.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         match extension.as_str() {
             "glsl" => Some(Self::Glsl),
@@ -149,10 +149,7 @@ fn write_wgsl(module: &ValidModule) -> Result<String, TranslateError> {
 }
 
 fn uses_derivatives(module: &ValidModule) -> bool {
-    let naga = module.module();
-    let functions = naga.functions.iter().map(|(_, function)| function);
-    functions
-        .chain(naga.entry_points.iter().map(|entry| &entry.function))
+    functions(module.module())
         .flat_map(|function| function.expressions.iter())
         .any(|(_, expression)| {
             matches!(

@@ -33,10 +33,7 @@ fn rewrite_switch(
         cx.moved.insert(variable);
         cx.tree[variable].initializer = Some(selector);
         selector = cx.build(at).variable(variable);
-        out.push(Statement {
-            kind: StatementKind::Declare(variable),
-            at,
-        });
+        out.push(Statement::new(StatementKind::Declare(variable), at));
     }
     let all: Vec<Label> = groups
         .iter()
@@ -63,15 +60,9 @@ fn rewrite_switch(
         .iter()
         .flat_map(|case| &case.body)
         .any(|statement| walk::declared(statement).is_some());
-    let switch = Statement {
-        kind: StatementKind::Switch { selector, cases },
-        at,
-    };
+    let switch = Statement::new(StatementKind::Switch { selector, cases }, at);
     out.push(if declares {
-        Statement {
-            kind: StatementKind::Block(vec![switch]),
-            at,
-        }
+        Statement::new(StatementKind::Block(vec![switch]), at)
     } else {
         switch
     });
@@ -124,10 +115,7 @@ fn guard_cases(
             .filter_map(|statement| hoist_declaration(cx, statement, out))
             .collect();
         if number == last {
-            body.push(Statement {
-                kind: StatementKind::Block(inner),
-                at,
-            });
+            body.push(Statement::new(StatementKind::Block(inner), at));
             break;
         }
         let here = selector_matches(cx, selector, &case.labels, all, at);
@@ -136,34 +124,18 @@ fn guard_cases(
             let before = build.variable(variable);
             let either = build.binary(BinaryOp::Or, before, here, Type::BOOL);
             let set = build.set(variable, either);
-            body.push(Statement {
-                kind: StatementKind::Expression(set),
-                at,
-            });
+            body.push(Statement::new(StatementKind::Expression(set), at));
             variable
         } else {
             let variable = cx.local("reached", Type::BOOL, at);
             cx.moved.insert(variable);
             cx.tree[variable].initializer = Some(here);
-            body.push(Statement {
-                kind: StatementKind::Declare(variable),
-                at,
-            });
+            body.push(Statement::new(StatementKind::Declare(variable), at));
             variable
         };
         reached = Some(variable);
         let condition = cx.build(at).variable(variable);
-        let arms = vec![Arm {
-            condition,
-            body: inner,
-        }];
-        body.push(Statement {
-            kind: StatementKind::If {
-                arms,
-                otherwise: None,
-            },
-            at,
-        });
+        body.push(Statement::new(StatementKind::when(condition, inner), at));
     }
     body
 }
@@ -176,17 +148,11 @@ fn hoist_declaration(cx: &mut LoweringContext, statement: Statement, out: &mut B
     };
     cx.moved.insert(variable);
     let at = statement.at;
-    out.push(Statement {
-        kind: StatementKind::Declare(variable),
-        at,
-    });
+    out.push(Statement::new(StatementKind::Declare(variable), at));
     let value = cx.tree[variable].initializer.take()?;
     cx.tree[variable].kind = VariableKind::Local;
     let set = cx.build(at).set(variable, value);
-    Some(Statement {
-        kind: StatementKind::Expression(set),
-        at,
-    })
+    Some(Statement::new(StatementKind::Expression(set), at))
 }
 
 /// Builds the condition that the selector matches one of the labels; `default` matches if no other label of
@@ -246,10 +212,7 @@ fn end_in_break(cx: &mut LoweringContext, body: &mut Block, at: Place) {
         } else if always_jumps(&inner) {
             rewrite_trailing_jump(cx, inner, at, body);
         } else {
-            body.push(Statement {
-                kind: StatementKind::Block(inner),
-                at,
-            });
+            body.push(Statement::new(StatementKind::Block(inner), at));
             break;
         }
     }
@@ -262,10 +225,7 @@ fn end_in_break(cx: &mut LoweringContext, body: &mut Block, at: Place) {
         }
         _ => {}
     }
-    body.push(Statement {
-        kind: StatementKind::Break,
-        at,
-    });
+    body.push(Statement::new(StatementKind::Break, at));
 }
 
 /// Rewrites a block that ends in a jump, which naga would treat as the end of the case.
@@ -278,10 +238,7 @@ fn rewrite_trailing_jump(cx: &mut LoweringContext, mut inner: Block, at: Place, 
         })
     ) {
         inner.pop();
-        body.push(Statement {
-            kind: StatementKind::Block(inner),
-            at,
-        });
+        body.push(Statement::new(StatementKind::Block(inner), at));
     } else {
         body.push(if_true(cx, inner, at));
     }
@@ -290,14 +247,7 @@ fn rewrite_trailing_jump(cx: &mut LoweringContext, mut inner: Block, at: Place, 
 /// `if (true) …`
 fn if_true(cx: &mut LoweringContext, body: Block, at: Place) -> Statement {
     let condition = cx.build(at).literal(Value::Bool(true));
-    let arms = vec![Arm { condition, body }];
-    Statement {
-        kind: StatementKind::If {
-            arms,
-            otherwise: None,
-        },
-        at,
-    }
+    Statement::new(StatementKind::when(condition, body), at)
 }
 
 /// Maximum number of conditions in one `else if` chain.
@@ -311,10 +261,7 @@ pub(super) fn split_else_if(cx: &mut LoweringContext) {
         StatementKind::If { arms, otherwise } if arms.len() > MAX_CHAIN_CONDITIONS => {
             split_chain(cx, arms, otherwise, statement.at, out);
         }
-        kind => out.push(Statement {
-            kind,
-            at: statement.at,
-        }),
+        kind => out.push(Statement::new(kind, statement.at)),
     });
 }
 
@@ -330,10 +277,7 @@ fn split_chain(
     cx.moved.insert(open);
     let begin = cx.build(at).literal(Value::Bool(true));
     cx.tree[open].initializer = Some(begin);
-    out.push(Statement {
-        kind: StatementKind::Declare(open),
-        at,
-    });
+    out.push(Statement::new(StatementKind::Declare(open), at));
     let mut arms = arms.into_iter().peekable();
     while arms.peek().is_some() {
         let arms_here: Vec<Arm> = arms.by_ref().take(MAX_CHAIN_CONDITIONS).collect();
@@ -346,16 +290,9 @@ fn split_chain(
             arms: arms_here,
             otherwise: last,
         };
-        let body = vec![set_open(cx, open, false, at), Statement { kind: chain, at }];
+        let body = vec![set_open(cx, open, false, at), Statement::new(chain, at)];
         let condition = cx.build(at).variable(open);
-        let arms = vec![Arm { condition, body }];
-        out.push(Statement {
-            kind: StatementKind::If {
-                arms,
-                otherwise: None,
-            },
-            at,
-        });
+        out.push(Statement::new(StatementKind::when(condition, body), at));
     }
 }
 
@@ -363,10 +300,7 @@ fn set_open(cx: &mut LoweringContext, open: VariableId, value: bool, at: Place) 
     let mut build = cx.build(at);
     let value = build.literal(Value::Bool(value));
     let set = build.set(open, value);
-    Statement {
-        kind: StatementKind::Expression(set),
-        at,
-    }
+    Statement::new(StatementKind::Expression(set), at)
 }
 
 /// Removes statements after a `return`, `break`, `continue` or `discard` in the same block.

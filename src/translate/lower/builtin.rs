@@ -1,6 +1,6 @@
 //! Built-in functions that naga lacks, and the helper functions that lowered text calls.
 
-use toyproof_glsl::tree::{BinaryOp, BuiltIn, Direction, ExprKind, FunctionId, Place, Scalar, Type};
+use toyproof_glsl::tree::{BinaryOp, BuiltIn, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, Type};
 
 use crate::lower::context::LoweringContext;
 use crate::lower::generated::Helper;
@@ -225,19 +225,29 @@ fn inverse(ty: Type) -> String {
     }
 }
 
+/// Calls `visit` with each call of a built-in function.
+fn each_built_in(
+    cx: &mut LoweringContext,
+    mut visit: impl FnMut(&mut LoweringContext, ExprId, BuiltIn, Vec<ExprId>),
+) {
+    cx.each_expression(|cx, id| {
+        if let ExprKind::BuiltIn {
+            function,
+            ref arguments,
+        } = cx.tree[id].kind
+        {
+            let arguments = arguments.clone();
+            visit(cx, id, function, arguments);
+        }
+    });
+}
+
 /// Replaces `modf`, `matrixCompMult`, `outerProduct` and `inverse` by helper functions.
 ///
 /// naga's GLSL front end does not know `modf` (gfx-rs/naga #2526) and `matrixCompMult`; naga cannot write
 /// `outerProduct` as WGSL, HLSL or Metal, nor `inverse` as HLSL or Metal.
 pub(super) fn lower_missing(cx: &mut LoweringContext) {
-    cx.each_expression(|cx, id| {
-        let ExprKind::BuiltIn {
-            function,
-            ref arguments,
-        } = cx.tree[id].kind
-        else {
-            return;
-        };
+    each_built_in(cx, |cx, id, function, arguments| {
         let helper = match function {
             BuiltIn::Modf => Helper::Modf,
             BuiltIn::MatrixCompMult => Helper::MatrixCompMult,
@@ -245,7 +255,6 @@ pub(super) fn lower_missing(cx: &mut LoweringContext) {
             BuiltIn::Inverse => Helper::Inverse,
             _ => return,
         };
-        let arguments = arguments.clone();
         let ty = |at: usize| {
             arguments
                 .get(at)
@@ -262,47 +271,30 @@ pub(super) fn lower_missing(cx: &mut LoweringContext) {
 ///
 /// naga declares them but cannot resolve their types. It accepts `length` and `distance`.
 pub(super) fn lower_geometric(cx: &mut LoweringContext) {
-    cx.each_expression(|cx, id| {
-        let ExprKind::BuiltIn {
-            function,
-            ref arguments,
-        } = cx.tree[id].kind
-        else {
-            return;
-        };
+    each_built_in(cx, |cx, id, function, arguments| {
         let (Some(&first), at) = (arguments.first(), cx.tree[id].at) else {
             return;
         };
         if cx.tree[first].ty != Type::FLOAT {
             return;
         }
-        let arguments = arguments.clone();
-        let float = (Type::FLOAT, Type::Void);
-        let second = arguments.get(1).copied().unwrap_or(first);
-        cx.tree[id].kind = match function {
-            BuiltIn::Dot => ExprKind::Binary {
-                op: BinaryOp::Multiply,
-                left: first,
-                right: second,
-            },
-            BuiltIn::Normalize => ExprKind::Call {
-                function: cx.helper(Helper::Normalize, float, at),
-                arguments,
-            },
-            BuiltIn::Faceforward => ExprKind::Call {
-                function: cx.helper(Helper::Faceforward, float, at),
-                arguments,
-            },
-            BuiltIn::Refract => ExprKind::Call {
-                function: cx.helper(Helper::Refract, float, at),
-                arguments,
-            },
-            BuiltIn::Reflect => ExprKind::Call {
-                function: cx.helper(Helper::Reflect, float, at),
-                arguments,
-            },
+        let helper = match function {
+            BuiltIn::Dot => {
+                cx.tree[id].kind = ExprKind::Binary {
+                    op: BinaryOp::Multiply,
+                    left: first,
+                    right: arguments.get(1).copied().unwrap_or(first),
+                };
+                return;
+            }
+            BuiltIn::Normalize => Helper::Normalize,
+            BuiltIn::Faceforward => Helper::Faceforward,
+            BuiltIn::Refract => Helper::Refract,
+            BuiltIn::Reflect => Helper::Reflect,
             _ => return,
         };
+        let function = cx.helper(helper, (Type::FLOAT, Type::Void), at);
+        cx.tree[id].kind = ExprKind::Call { function, arguments };
     });
 }
 
@@ -310,20 +302,12 @@ pub(super) fn lower_geometric(cx: &mut LoweringContext) {
 ///
 /// naga parses them but has no WGSL for them: WGSL lets compilers assume that neither value occurs.
 pub(super) fn lower_is_nan(cx: &mut LoweringContext) {
-    cx.each_expression(|cx, id| {
-        let ExprKind::BuiltIn {
-            function,
-            ref arguments,
-        } = cx.tree[id].kind
-        else {
-            return;
-        };
+    each_built_in(cx, |cx, id, function, arguments| {
         let helper = match function {
             BuiltIn::IsNan => Helper::IsNan,
             BuiltIn::IsInf => Helper::IsInf,
             _ => return,
         };
-        let arguments = arguments.clone();
         let ty = arguments
             .first()
             .map_or(Type::FLOAT, |&argument| cx.tree[argument].ty);

@@ -84,15 +84,8 @@ impl LoweringContext {
 
     /// Adds a generated local variable.
     pub(super) fn local(&mut self, name: &str, ty: Type, at: Place) -> VariableId {
-        let kind = VariableKind::Local;
-        self.tree.variables.push(Variable {
-            name: format!("toyproof_{name}"),
-            ty,
-            kind,
-            initializer: None,
-            value: None,
-            at: Some(at),
-        })
+        let variable = Variable::new(format!("toyproof_{name}"), ty, VariableKind::Local, Some(at));
+        self.tree.variables.push(variable)
     }
 
     /// Adds a generated function. Its arguments are read in place, like operands: `in` becomes `const in`.
@@ -109,15 +102,7 @@ impl LoweringContext {
                 Direction::In => Direction::ConstIn,
                 other => other,
             });
-            let name = name.to_owned();
-            variables.push(Variable {
-                name,
-                ty,
-                kind,
-                initializer: None,
-                value: None,
-                at: Some(at),
-            })
+            variables.push(Variable::new(name, ty, kind, Some(at)))
         });
         let parameters = parameters.collect();
         self.tree.functions.push(Function {
@@ -243,10 +228,7 @@ impl Builder<'_> {
             Value::Uint(value) => format!("{value}u"),
             Value::Float(value) => format!("{value:?}"),
         };
-        let literal = Literal {
-            text: text.into(),
-            value,
-        };
+        let literal = Literal::new(text, value);
         let ty = value.ty();
         let id = self.push(ExprKind::Literal(literal), ty);
         self.tree[id].constant = true;
@@ -255,10 +237,7 @@ impl Builder<'_> {
 
     /// A 32-bit float, in the fewest digits; a negative one is a negated literal.
     pub(super) fn float(&mut self, value: f32) -> ExprId {
-        let literal = Literal {
-            text: format!("{:?}", value.abs()).into(),
-            value: Value::Float(value.abs().into()),
-        };
+        let literal = Literal::new(format!("{:?}", value.abs()), Value::Float(value.abs().into()));
         let id = self.push(ExprKind::Literal(literal), Type::FLOAT);
         self.tree[id].constant = true;
         if value.is_sign_positive() {

@@ -20,7 +20,6 @@ enum Region {
     Function,
 }
 
-/// Flattens the body of a function.
 pub(super) fn flatten_function(cx: &mut LoweringContext, function: FunctionId, body: Block) -> Block {
     let at = cx.tree[function].at;
     let ty = cx.tree[function].return_type;
@@ -61,7 +60,7 @@ struct Flattener<'a> {
 
 impl Flattener<'_> {
     fn push(&mut self, kind: StatementKind, at: Place) {
-        self.out.push(Statement { kind, at });
+        self.out.push(Statement::new(kind, at));
     }
 
     /// `bool runs = value;`
@@ -88,7 +87,7 @@ impl Flattener<'_> {
 
     /// Queues a statement to be guarded by the innermost flag.
     fn queue(&mut self, kind: StatementKind, at: Place) {
-        self.queued.push(Statement { kind, at });
+        self.queued.push(Statement::new(kind, at));
     }
 
     fn set(&mut self, variable: VariableId, value: ExprId, at: Place) {
@@ -104,14 +103,7 @@ impl Flattener<'_> {
         };
         let at = first.at;
         let condition = self.read(flag, at);
-        let arms = vec![Arm { condition, body }];
-        self.push(
-            StatementKind::If {
-                arms,
-                otherwise: None,
-            },
-            at,
-        );
+        self.push(StatementKind::when(condition, body), at);
     }
 
     fn region(&mut self, region: Region, flag: VariableId, body: Block) {
@@ -182,28 +174,38 @@ impl Flattener<'_> {
 
     fn branches(&mut self, arms: Vec<Arm>, otherwise: Option<Block>, at: Place) {
         self.flush();
-        let Some(outer) = self.current() else {
+        let Some(open) = self.open_flag(at) else {
             return;
         };
-        let outer = self.read(outer, at);
-        let open = self.declare_initialized(Type::BOOL, outer, at);
         for Arm { condition, body } in arms {
             let here = self.flag(false, at);
             self.regions.push((Region::Branch, open));
             self.set(here, condition, at);
             self.flush();
             self.regions.pop();
-            let [here_read, open_read] = [here, open].map(|flag| self.read(flag, at));
-            let mut build = self.cx.build(at);
-            let not_here = build.unary(UnaryOp::Not, here_read);
-            let rest = build.binary(BinaryOp::And, open_read, not_here, Type::BOOL);
-            let set = build.set(open, rest);
-            self.push(StatementKind::Expression(set), at);
+            self.exclude(open, here, at);
             self.region(Region::Branch, here, body);
         }
         if let Some(body) = otherwise {
             self.region(Region::Branch, open, body);
         }
+    }
+
+    /// Declares the flag of the pixels that no branch has taken yet: all that run the statement.
+    fn open_flag(&mut self, at: Place) -> Option<VariableId> {
+        let outer = self.current()?;
+        let outer = self.read(outer, at);
+        Some(self.declare_initialized(Type::BOOL, outer, at))
+    }
+
+    /// Clears the flag `open` in the pixels that take the branch `here`.
+    fn exclude(&mut self, open: VariableId, here: VariableId, at: Place) {
+        let [here, rest] = [here, open].map(|flag| self.read(flag, at));
+        let mut build = self.cx.build(at);
+        let not_here = build.unary(UnaryOp::Not, here);
+        let rest = build.binary(BinaryOp::And, rest, not_here, Type::BOOL);
+        let set = build.set(open, rest);
+        self.push(StatementKind::Expression(set), at);
     }
 
     /// Flattens cases, each of which ends in a `break` already.
@@ -214,11 +216,9 @@ impl Flattener<'_> {
         self.push(StatementKind::Declare(chosen), at);
         self.set(chosen, selector, at);
         self.flush();
-        let Some(outer) = self.current() else {
+        let Some(open) = self.open_flag(at) else {
             return;
         };
-        let outer = self.read(outer, at);
-        let open = self.declare_initialized(Type::BOOL, outer, at);
         let (named, default): (Vec<Case>, Vec<Case>) = cases
             .into_iter()
             .partition(|case| !case.labels.contains(&Label::Default));
@@ -241,12 +241,7 @@ impl Flattener<'_> {
             };
             let here = build.binary(BinaryOp::And, open_read, any, Type::BOOL);
             let here = self.declare_initialized(Type::BOOL, here, at);
-            let [here_read, open_read] = [here, open].map(|flag| self.read(flag, at));
-            let mut build = self.cx.build(at);
-            let not_here = build.unary(UnaryOp::Not, here_read);
-            let rest = build.binary(BinaryOp::And, open_read, not_here, Type::BOOL);
-            let set = build.set(open, rest);
-            self.push(StatementKind::Expression(set), at);
+            self.exclude(open, here, at);
             self.region(Region::Case, here, body);
         }
         for case in default {

@@ -119,7 +119,7 @@ fn inexact_value(tree: &Tree, id: ExprId, operands: &[Option<Constant>]) -> Opti
 /// The components of a function whose last bits are implementation-defined, by the evaluator's definition;
 /// `None` for other functions.
 pub(crate) fn function_of_floats(function: BuiltIn, ty: Type, arguments: &[Vec<f32>]) -> Option<Vec<f32>> {
-    let definition = InexactFunction::of(function, arguments.len())?.definition;
+    let definition = InexactFunction::from_built_in(function, arguments.len())?.definition;
     if definition.argument_count().is_none() {
         let results = computed(arguments, |terms| of_terms(function, terms));
         return (!results.is_empty()).then_some(results);
@@ -138,11 +138,10 @@ pub(crate) fn function_of_floats(function: BuiltIn, ty: Type, arguments: &[Vec<f
 }
 
 fn of_terms<'a>(function: BuiltIn, arguments: &[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>> {
-    let inexact = InexactFunction::of(function, arguments.len());
+    let inexact = InexactFunction::from_built_in(function, arguments.len());
     inexact.map_or_else(Vec::new, |inexact| polyfill::apply(inexact.definition, arguments))
 }
 
-/// Computes a function of floats.
 fn computed(
     arguments: &[Vec<f32>],
     function: impl for<'a> Fn(&[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>>,

@@ -21,7 +21,7 @@ pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn) ->
         let ExprKind::BuiltIn { function, arguments } = &cx.tree[id].kind else {
             return;
         };
-        let is_exact = InexactFunction::of(*function, arguments.len()).is_none();
+        let is_exact = InexactFunction::from_built_in(*function, arguments.len()).is_none();
         if !cx.tree[id].constant || is_exact || is_kept(*function) {
             return;
         }

@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{
     Statement, StatementKind, Tree, Type, VariableId, VariableKind, walk,
 };
 
-use super::{lvalue, member};
+use super::member;
 use crate::lower::context::LoweringContext;
 use crate::lower::generated::Helper;
 
@@ -18,15 +18,7 @@ use crate::lower::generated::Helper;
 /// copies a constant array with a dynamic index to a local variable at each use, which makes lavapipe ten
 /// times slower.
 pub(super) fn lower_globals(cx: &mut LoweringContext) {
-    let variables: Vec<VariableId> = cx
-        .tree
-        .items
-        .iter()
-        .filter_map(|item| match *item {
-            Item::Variable(variable) => Some(variable),
-            _ => None,
-        })
-        .collect();
+    let variables: Vec<_> = cx.tree.global_variables().collect();
     let globals = variables.iter().copied().collect();
     for variable in variables {
         let Some(value) = cx.tree[variable].initializer else {
@@ -73,34 +65,11 @@ fn hoist_constant_arrays(cx: &mut LoweringContext, globals: &HashSet<VariableId>
 
 /// The variables that any expression writes, in whole or in part.
 fn written_variables(tree: &Tree) -> HashSet<VariableId> {
-    let mut targets = Vec::new();
-    for (_, expr) in tree.exprs.iter() {
-        match &expr.kind {
-            ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } => targets.push(*target),
-            ExprKind::Call { function, arguments } => {
-                let outs = arguments
-                    .iter()
-                    .zip(&tree[*function].parameters)
-                    .filter(|(_, parameter)| {
-                        matches!(
-                            tree[**parameter].kind,
-                            VariableKind::Parameter(Direction::Out | Direction::InOut)
-                        )
-                    });
-                targets.extend(outs.map(|(argument, _)| *argument));
-            }
-            _ => {}
-        }
+    let mut written = HashSet::new();
+    for id in tree.exprs.ids() {
+        tree.each_write(id, |target, _| written.extend(tree.root_variable(target)));
     }
-    let root = |target| lvalue::path_nodes(tree, target).last().copied();
-    targets
-        .into_iter()
-        .filter_map(root)
-        .filter_map(|root| match tree[root].kind {
-            ExprKind::Variable(variable) => Some(variable),
-            _ => None,
-        })
-        .collect()
+    written
 }
 
 /// Whether naga can evaluate an expression at global scope.
@@ -195,10 +164,9 @@ fn add_startup_function(cx: &mut LoweringContext) {
     };
     let at = cx.tree[first].at;
     let function = cx.function("toyproof_start".to_owned(), &[], Type::Void, at);
-    let body = assignments.into_iter().map(|set| Statement {
-        kind: StatementKind::Expression(set),
-        at: cx.tree[set].at,
-    });
+    let body = assignments
+        .into_iter()
+        .map(|set| Statement::new(StatementKind::Expression(set), cx.tree[set].at));
     let body = body.collect();
     cx.tree[function].body = Some(body);
     cx.startup_function = Some(function);
@@ -250,10 +218,7 @@ fn zero_out_parameters(cx: &mut LoweringContext, function: FunctionId, body: &Bl
         .map(|parameter| {
             let ty = cx.tree[parameter].ty;
             let zero = zero_value(cx, ty, at);
-            Statement {
-                kind: StatementKind::Expression(cx.build(at).set(parameter, zero)),
-                at,
-            }
+            Statement::new(StatementKind::Expression(cx.build(at).set(parameter, zero)), at)
         })
         .collect()
 }
@@ -295,10 +260,7 @@ pub(super) fn add_missing_returns(cx: &mut LoweringContext) {
         let (ty, at) = (cx.tree[function].return_type, cx.tree[function].at);
         if ty != Type::Void && !always_returns(&body) {
             let value = zero_value(cx, ty, at);
-            body.push(Statement {
-                kind: StatementKind::Return(Some(value)),
-                at,
-            });
+            body.push(Statement::new(StatementKind::Return(Some(value)), at));
         }
         body
     });
@@ -352,7 +314,6 @@ pub(super) fn zero_value(cx: &mut LoweringContext, ty: Type, at: Place) -> ExprI
     }
 }
 
-/// Calls a function that returns zero.
 fn call_zero_function(cx: &mut LoweringContext, ty: Type, at: Place) -> ExprId {
     let function = cx.helper(Helper::Zero, (ty, Type::Void), at);
     cx.build(at).call(function, Vec::new())
@@ -379,13 +340,7 @@ pub(super) fn zero_body(cx: &mut LoweringContext, ty: Type, at: Place) -> Vec<St
     let zero = cx.local("zero", ty, at);
     let value = cx.build(at).variable(zero);
     vec![
-        Statement {
-            kind: StatementKind::Declare(zero),
-            at,
-        },
-        Statement {
-            kind: StatementKind::Return(Some(value)),
-            at,
-        },
+        Statement::new(StatementKind::Declare(zero), at),
+        Statement::new(StatementKind::Return(Some(value)), at),
     ]
 }

@@ -14,7 +14,7 @@ use toyproof_glsl::{Filter, Sampling, Wrap};
 
 use crate::lower::context::LoweringContext;
 use crate::lower::generated::{Expansion, Level};
-use crate::lower::polyfill::function;
+use crate::lower::polyfill::{self, function};
 
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
@@ -28,7 +28,7 @@ pub(super) fn expand_lookups(cx: &mut LoweringContext) {
             return;
         };
         let (function, arguments) = (*function, arguments.clone());
-        if let Some(lookup) = Lookup::of(cx, function, &arguments) {
+        if let Some(lookup) = Lookup::from_call(cx, function, &arguments) {
             lookup.expand(cx, id, arguments[1..].to_vec());
         } else if matches!(function, BuiltIn::TexelFetch | BuiltIn::TexelFetchOffset)
             && is_channel(cx, arguments[0])
@@ -56,7 +56,7 @@ struct Lookup {
 }
 
 impl Lookup {
-    fn of(cx: &LoweringContext, function: BuiltIn, arguments: &[ExprId]) -> Option<Self> {
+    fn from_call(cx: &LoweringContext, function: BuiltIn, arguments: &[ExprId]) -> Option<Self> {
         use BuiltIn as B;
         use Level::{Biased, Fetched, Given, Gradient, Implicit, Size};
         let (level, is_projected, has_offset) = match function {
@@ -116,16 +116,12 @@ impl Lookup {
             build.construct(Constructor::Vector, zeros.to_vec(), IVEC2)
         };
         arguments.push(offset);
-        let types = arguments.iter().map(|&argument| cx.tree[argument].ty).collect();
-        let ty = if self.level == Level::Size { IVEC2 } else { VEC4 };
         let expansion = Expansion::Lookup {
             texture: self.texture,
             channel: self.channel,
             level: self.level,
         };
-        let function = function(cx, expansion, types, ty, at);
-        cx.tree[id].kind = ExprKind::Call { function, arguments };
-        cx.tree[id].constant = false;
+        polyfill::call(cx, id, expansion, arguments);
     }
 }
 
@@ -198,10 +194,7 @@ pub(super) fn lookup_function(
     let [p, offset] =
         [parameters[0], parameters[parameters.len() - 1]].map(|parameter| build.variable(parameter));
     let value = build.call(lookup, vec![p, detail, offset]);
-    cx.tree[id].body = Some(vec![Statement {
-        kind: StatementKind::Return(Some(value)),
-        at,
-    }]);
+    cx.tree[id].body = Some(vec![Statement::new(StatementKind::Return(Some(value)), at)]);
     id
 }
 

@@ -24,15 +24,9 @@ pub(super) fn move_steps(cx: &mut LoweringContext) {
             let at = cx.tree[last].at;
             if shadows_name(cx, body, last) {
                 let inner = std::mem::take(body);
-                body.push(Statement {
-                    kind: StatementKind::Block(inner),
-                    at,
-                });
+                body.push(Statement::new(StatementKind::Block(inner), at));
             }
-            body.push(Statement {
-                kind: StatementKind::Expression(last),
-                at,
-            });
+            body.push(Statement::new(StatementKind::Expression(last), at));
         }
         out.push(statement);
     });
@@ -78,10 +72,7 @@ pub(super) fn hoist_loop_heads(cx: &mut LoweringContext) {
             out.push(statement);
         } else {
             before.push(statement);
-            out.push(Statement {
-                kind: StatementKind::Block(before),
-                at,
-            });
+            out.push(Statement::new(StatementKind::Block(before), at));
         }
     });
 }
@@ -96,10 +87,7 @@ fn assign_condition(cx: &mut LoweringContext, condition: &mut Condition, before:
     };
     cx.moved.insert(variable);
     let at = cx.tree[value].at;
-    before.push(Statement {
-        kind: StatementKind::Declare(variable),
-        at,
-    });
+    before.push(Statement::new(StatementKind::Declare(variable), at));
     *condition = Condition::Expression(cx.build(at).set(variable, value));
 }
 
@@ -146,10 +134,7 @@ pub(super) fn lower_do_while(cx: &mut LoweringContext) {
                 let tested = build.variable(again);
                 let step = build.set(again, condition);
                 StatementKind::For {
-                    init: vec![Statement {
-                        kind: StatementKind::Declare(again),
-                        at,
-                    }],
+                    init: vec![Statement::new(StatementKind::Declare(again), at)],
                     condition: Some(Condition::Expression(tested)),
                     step: Some(step),
                     body,
@@ -157,7 +142,7 @@ pub(super) fn lower_do_while(cx: &mut LoweringContext) {
             }
             kind => kind,
         };
-        out.push(Statement { kind, at });
+        out.push(Statement::new(kind, at));
     });
 }
 
@@ -196,7 +181,7 @@ pub(super) fn lower_void_calls(cx: &mut LoweringContext) {
                 }
                 out.push(infinite_loop(init, head, body, at));
             }
-            kind => out.push(Statement { kind, at }),
+            kind => out.push(Statement::new(kind, at)),
         }
     });
 }
@@ -220,35 +205,23 @@ fn has_void_call(tree: &Tree, root: ExprId) -> bool {
 /// `for (init; ; ) { head body }`
 fn infinite_loop(init: Block, mut head: Block, body: Block, at: Place) -> Statement {
     // A block of its own keeps the body's declarations apart.
-    head.push(Statement {
-        kind: StatementKind::Block(body),
-        at,
-    });
-    Statement {
-        kind: StatementKind::For {
+    head.push(Statement::new(StatementKind::Block(body), at));
+    Statement::new(
+        StatementKind::For {
             init,
             condition: None,
             step: None,
             body: head,
         },
         at,
-    }
+    )
 }
 
 /// `if (!condition) break;`
 fn break_unless(cx: &mut LoweringContext, condition: ExprId, at: Place) -> Statement {
     let condition = cx.build(at).unary(UnaryOp::Not, condition);
-    let body = vec![Statement {
-        kind: StatementKind::Break,
-        at,
-    }];
-    Statement {
-        kind: StatementKind::If {
-            arms: vec![Arm { condition, body }],
-            otherwise: None,
-        },
-        at,
-    }
+    let body = vec![Statement::new(StatementKind::Break, at)];
+    Statement::new(StatementKind::when(condition, body), at)
 }
 
 /// `if (again) step; else again = true;`, with `bool again = false;` before the loop.
@@ -260,25 +233,17 @@ fn skip_first_iteration(cx: &mut LoweringContext, step: ExprId, at: Place, out: 
     build.tree[again].initializer = Some(no);
     let condition = build.variable(again);
     let set = build.set(again, yes);
-    out.push(Statement {
-        kind: StatementKind::Declare(again),
-        at,
-    });
-    let [step, set] = [step, set].map(|expr| {
-        vec![Statement {
-            kind: StatementKind::Expression(expr),
-            at,
-        }]
-    });
+    out.push(Statement::new(StatementKind::Declare(again), at));
+    let [step, set] = [step, set].map(|expr| vec![Statement::new(StatementKind::Expression(expr), at)]);
     let arms = vec![Arm {
         condition,
         body: step,
     }];
-    Statement {
-        kind: StatementKind::If {
+    Statement::new(
+        StatementKind::If {
             arms,
             otherwise: Some(set),
         },
         at,
-    }
+    )
 }

@@ -5,21 +5,13 @@
 
 use std::collections::HashSet;
 
-use toyproof_glsl::tree::{
-    Direction, ExprId, ExprKind, Swizzle, Tree, Type, Value, VariableId, VariableKind, walk,
-};
+use toyproof_glsl::tree::{Direction, ExprId, ExprKind, Swizzle, Tree, Type, Value, walk};
 
 use crate::lower::context::LoweringContext;
 
 /// The nodes of a path, from the part that it denotes down to the variable.
 pub(super) fn path_nodes(tree: &Tree, lvalue: ExprId) -> Vec<ExprId> {
-    std::iter::successors(Some(lvalue), |&node| match tree[node].kind {
-        ExprKind::Swizzle { vector: base, .. }
-        | ExprKind::Member { structure: base, .. }
-        | ExprKind::Index { base, .. } => Some(base),
-        _ => None,
-    })
-    .collect()
+    tree.path(lvalue).collect()
 }
 
 /// The indices of a path that must be evaluated only once.
@@ -159,28 +151,11 @@ fn indexed_swizzle(tree: &Tree, nodes: &[ExprId]) -> Option<ExprId> {
 
 /// All places that are written, namely targets and `out` arguments; they stay paths to a variable.
 fn written_places(tree: &Tree) -> HashSet<ExprId> {
-    let mut written = Vec::new();
-    for (_, expr) in tree.exprs.iter() {
-        match &expr.kind {
-            ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } => written.push(*target),
-            ExprKind::Call { function, arguments } => {
-                let outs = arguments.iter().zip(&tree[*function].parameters);
-                written.extend(outs.filter_map(|(&argument, &parameter)| {
-                    let is_in = matches!(
-                        tree[parameter].kind,
-                        VariableKind::Parameter(Direction::In | Direction::ConstIn)
-                    );
-                    (!is_in).then_some(argument)
-                }));
-            }
-            ExprKind::BuiltIn { function, arguments } => {
-                written.extend(function.out_parameter().and_then(|at| arguments.get(at).copied()));
-            }
-            _ => {}
-        }
+    let mut written = HashSet::new();
+    for id in tree.exprs.ids() {
+        tree.each_write(id, |place, _| written.extend(tree.path(place)));
     }
-    let paths = written.into_iter().flat_map(|place| path_nodes(tree, place));
-    paths.collect()
+    written
 }
 
 /// Simplifies swizzles of swizzles, and copies vectors whose swizzles are assigned to: `v.zyx.x = 1.`,
@@ -347,18 +322,11 @@ pub(super) fn lower_out_arguments(cx: &mut LoweringContext) {
             let directions = cx.tree[*function]
                 .parameters
                 .iter()
-                .map(|&parameter| direction(cx, parameter));
+                .map(|&parameter| walk::direction(&cx.tree, parameter));
             let arguments: Vec<_> = arguments.iter().copied().zip(directions).collect();
             copy_in_out(cx, id, &arguments, discarded.contains(&id));
         }
     });
-}
-
-fn direction(cx: &LoweringContext, parameter: VariableId) -> Direction {
-    match cx.tree[parameter].kind {
-        VariableKind::Parameter(direction) => direction,
-        _ => Direction::In,
-    }
 }
 
 fn is_out(direction: Direction) -> bool {

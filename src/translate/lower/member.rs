@@ -338,7 +338,7 @@ fn constructor_body(cx: &mut LoweringContext, function: FunctionId, structure: S
         );
         copy_elements(cx, target, value, at, &mut sets);
     }
-    let statement = |kind| Statement { kind, at };
+    let statement = |kind| Statement::new(kind, at);
     let result = cx.build(at).variable(made);
     std::iter::once(StatementKind::Declare(made))
         .chain(sets.into_iter().map(StatementKind::Expression))

@@ -29,7 +29,7 @@ const MAX_KEPT_DEPTHS: [u32; 2] = [8, 2];
 pub(super) fn run(cx: &mut LoweringContext) {
     flatten_conditionals(cx);
     for kept in MAX_KEPT_DEPTHS {
-        let depths = Depths::of(cx);
+        let depths = Depths::new(cx);
         if depths
             .of_image(cx)
             .is_none_or(|whole| whole.both.0 <= FLATTEN_ABOVE_DEPTH)
@@ -44,7 +44,7 @@ pub(super) fn run(cx: &mut LoweringContext) {
             }
         });
     }
-    let Some(whole) = Depths::of(cx).of_image(cx) else {
+    let Some(whole) = Depths::new(cx).of_image(cx) else {
         return;
     };
     let (what, (depth, at)) = if whole.loops.0 > MAX_DRIVER_DEPTH {
@@ -126,7 +126,7 @@ struct Depths {
 
 impl Depths {
     /// Computes the depths of all functions, callees before callers.
-    fn of(cx: &LoweringContext) -> Self {
+    fn new(cx: &LoweringContext) -> Self {
         let mut depths = Self {
             own: HashMap::new(),
             whole: HashMap::new(),

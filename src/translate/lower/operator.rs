@@ -248,7 +248,6 @@ fn expand_remainder_assignment(cx: &mut LoweringContext, id: ExprId) {
     }
 }
 
-/// Whether an operand is a nonnegative constant.
 fn is_nonnegative_constant(tree: &Tree, operand: ExprId) -> bool {
     let natural = |value: &Value| matches!(value, Value::Int(value) if *value >= 0);
     tree.value(operand)
@@ -335,10 +334,7 @@ pub(super) fn equality_body(cx: &mut LoweringContext, function: FunctionId, ty: 
                     None => equal,
                 });
             }
-            vec![Statement {
-                kind: StatementKind::Return(whole),
-                at,
-            }]
+            vec![Statement::new(StatementKind::Return(whole), at)]
         }
         Type::Array(id) => array_equality_body(cx, [a, b], cx.tree.array(id).size, at),
         _ => Block::new(),
@@ -371,7 +367,7 @@ fn array_equality_body(cx: &mut LoweringContext, arrays: [VariableId; 2], size: 
     let differs = build.binary(BinaryOp::NotEqual, left, right, Type::BOOL);
     let [no, yes] = [false, true].map(|value| Some(build.literal(Value::Bool(value))));
     replace_comparison(cx, differs, BinaryOp::NotEqual, left, right);
-    let statement = |kind| Statement { kind, at };
+    let statement = |kind| Statement::new(kind, at);
     let arm = Arm {
         condition: differs,
         body: vec![statement(StatementKind::Return(no))],

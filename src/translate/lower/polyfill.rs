@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_glsl::tree::{
-    BinaryOp, Constructor, Definition, Direction, ExprId, ExprKind, FunctionId, Item, Place, Scalar,
-    Statement, StatementKind, Swizzle, Type, VariableId, VariableKind, walk,
+    BinaryOp, Constructor, Definition, Direction, ExprId, ExprKind, FunctionId, Place, Scalar, Statement,
+    StatementKind, Swizzle, Type, VariableKind, walk,
 };
 use toyproof_math::{Binary, ExprGraph, FloatTerm, Kind, Matrix, Step, StepId, Unary};
 
@@ -21,7 +21,8 @@ use crate::lower::lookup::{self, lookup_function};
 pub(super) fn expand_inexact_functions(cx: &mut LoweringContext) {
     cx.each_expression(|cx, id| match &cx.tree[id].kind {
         ExprKind::BuiltIn { function, arguments }
-            if InexactFunction::of(*function, arguments.len()).is_some() && !is_selection(cx, arguments) =>
+            if InexactFunction::from_built_in(*function, arguments.len()).is_some()
+                && !is_selection(cx, arguments) =>
         {
             let (function, arguments) = (Expansion::Function(*function), arguments.clone());
             call(cx, id, function, arguments);
@@ -86,15 +87,7 @@ fn is_product(cx: &LoweringContext, left: ExprId, right: ExprId) -> bool {
 /// Makes local constants whose initializers now contain calls plain variables: only toyproof treats them as
 /// constant.
 fn demote_constants(cx: &mut LoweringContext) {
-    let global: HashSet<VariableId> = cx
-        .tree
-        .items
-        .iter()
-        .filter_map(|item| match *item {
-            Item::Variable(variable) => Some(variable),
-            _ => None,
-        })
-        .collect();
+    let global: HashSet<_> = cx.tree.global_variables().collect();
     for id in cx.tree.variables.ids() {
         let variable = &cx.tree[id];
         let calls = |root| walk::any(&cx.tree, root, |kind| matches!(kind, ExprKind::Call { .. }));
@@ -107,7 +100,8 @@ fn demote_constants(cx: &mut LoweringContext) {
     }
 }
 
-fn call(cx: &mut LoweringContext, id: ExprId, expansion: Expansion, arguments: Vec<ExprId>) {
+/// Makes an expression a call of the generated function for the types of these arguments.
+pub(super) fn call(cx: &mut LoweringContext, id: ExprId, expansion: Expansion, arguments: Vec<ExprId>) {
     let types: Vec<Type> = arguments.iter().map(|&argument| cx.tree[argument].ty).collect();
     let (ty, at) = (cx.tree[id].ty, cx.tree[id].at);
     let function = function(cx, expansion, types, ty, at);
@@ -205,16 +199,13 @@ fn componentwise_function(
         })
         .collect();
     let value = build.construct(Constructor::Vector, components, ty);
-    cx.tree[id].body = Some(vec![Statement {
-        kind: StatementKind::Return(Some(value)),
-        at,
-    }]);
+    cx.tree[id].body = Some(vec![Statement::new(StatementKind::Return(Some(value)), at)]);
     id
 }
 
 fn is_componentwise(expansion: Expansion, arguments: usize) -> bool {
     match expansion {
-        Expansion::Function(function) => InexactFunction::of(function, arguments)
+        Expansion::Function(function) => InexactFunction::from_built_in(function, arguments)
             .is_some_and(|function| function.definition.argument_count().is_some()),
         Expansion::UintToFloat => true,
         Expansion::Product | Expansion::Lookup { .. } | Expansion::LevelOfDetail | Expansion::Projection => {
@@ -236,7 +227,7 @@ fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: T
     }
     let results = match expansion {
         Expansion::Function(function) => {
-            let function = InexactFunction::of(function, types.len());
+            let function = InexactFunction::from_built_in(function, types.len());
             match function.map(|function| function.definition) {
                 Some(Definition::Glsl(body)) => return body.to_owned(),
                 Some(definition) => apply(definition, &arguments),

@@ -52,17 +52,11 @@ fn emit_effects(cx: &mut LoweringContext, root: ExprId, out: &mut Block) {
                 });
                 let otherwise = (!otherwise.is_empty()).then_some(otherwise);
                 let arms = vec![Arm { condition, body }];
-                out.push(Statement {
-                    kind: StatementKind::If { arms, otherwise },
-                    at,
-                });
+                out.push(Statement::new(StatementKind::If { arms, otherwise }, at));
             }
             _ if walk::has_side_effects(&cx.tree, id) => {
                 hoist_leading(cx, id, out);
-                out.push(Statement {
-                    kind: StatementKind::Expression(id),
-                    at,
-                });
+                out.push(Statement::new(StatementKind::Expression(id), at));
             }
             _ => {}
         }
@@ -220,8 +214,5 @@ fn declare_temporaries(
 }
 
 fn declaration(variable: VariableId, at: Place) -> Statement {
-    Statement {
-        kind: StatementKind::Declare(variable),
-        at,
-    }
+    Statement::new(StatementKind::Declare(variable), at)
 }

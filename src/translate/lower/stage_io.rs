@@ -69,15 +69,8 @@ pub(super) fn lower_stage_io(cx: &mut LoweringContext) {
 fn channel_time(cx: &mut LoweringContext) -> VariableId {
     let ty = cx.tree.array_of(Type::vector(Scalar::Float, 4), 4);
     let kind = VariableKind::Input(Input::ChannelTime);
-    let name = "iChannelTime".to_owned();
-    cx.tree.variables.push(Variable {
-        name,
-        ty,
-        kind,
-        initializer: None,
-        value: None,
-        at: None,
-    })
+    let variable = Variable::new("iChannelTime", ty, kind, None);
+    cx.tree.variables.push(variable)
 }
 
 fn is_channel_time(cx: &LoweringContext, id: ExprId, padded: VariableId) -> bool {
@@ -186,7 +179,7 @@ fn specialize(cx: &mut LoweringContext, call: ExprId, clones: &mut Clones) -> Op
     let arguments = left.collect();
     let key = (function, channels);
     let known = clones.get(&key).copied();
-    let special = known.unwrap_or_else(|| Cloner::of(cx, key.0, &positions, &key.1));
+    let special = known.unwrap_or_else(|| Cloner::clone_function(cx, key.0, &positions, &key.1));
     clones.insert(key, special);
     cx.tree[call].kind = ExprKind::Call {
         function: special,
@@ -202,7 +195,7 @@ struct Cloner<'a> {
 }
 
 impl Cloner<'_> {
-    fn of(
+    fn clone_function(
         cx: &mut LoweringContext,
         general: FunctionId,
         positions: &[usize],

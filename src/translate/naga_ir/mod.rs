@@ -148,13 +148,16 @@ impl ValidModule {
     }
 }
 
-fn has_fetches(module: &Module) -> bool {
+/// All functions of a module, and its entry points.
+pub fn functions(module: &Module) -> impl Iterator<Item = &naga::Function> {
     let entry_points = module.entry_points.iter().map(|entry| &entry.function);
     let functions = module.functions.iter().map(|(_, function)| function);
-    functions.chain(entry_points).any(|function| {
-        let mut expressions = function.expressions.iter();
-        expressions.any(|(_, expression)| matches!(expression, naga::Expression::ImageLoad { .. }))
-    })
+    functions.chain(entry_points)
+}
+
+fn has_fetches(module: &Module) -> bool {
+    let mut expressions = functions(module).flat_map(|function| function.expressions.iter());
+    expressions.any(|(_, expression)| matches!(expression, naga::Expression::ImageLoad { .. }))
 }
 
 fn naga_diagnostic(code: Code, message: &str, span: naga::Span, lowered: &Lowered) -> Diagnostic {

@@ -20,7 +20,7 @@ mod level {
     pub(super) const POSTFIX: u8 = 15;
 }
 
-enum Pending<'a> {
+enum Part<'a> {
     /// An expression, in parentheses if its precedence is below the level.
     Print(ExprId, u8),
     Token(Cow<'a, str>, Place),
@@ -38,17 +38,17 @@ impl<'a> Printer<'a> {
     }
 
     fn operand(&mut self, id: ExprId, at_least: u8) {
-        let mut pending = vec![Pending::Print(id, at_least)];
+        let mut pending = vec![Part::Print(id, at_least)];
         while let Some(next) = pending.pop() {
             match next {
-                Pending::Token(text, at) => self.token(&text, at),
-                Pending::Print(id, at_least) => {
+                Part::Token(text, at) => self.token(&text, at),
+                Part::Print(id, at_least) => {
                     let at = self.cx.tree[id].at;
                     let mut parts = Vec::new();
                     let level = self.parts(id, &mut parts);
                     if level < at_least {
                         self.token("(", at);
-                        parts.push(Pending::Token(")".into(), at));
+                        parts.push(Part::Token(")".into(), at));
                     }
                     pending.extend(parts.into_iter().rev());
                 }
@@ -57,39 +57,35 @@ impl<'a> Printer<'a> {
     }
 
     /// Collects the parts of an expression from left to right. Returns its precedence level.
-    fn parts(&self, id: ExprId, parts: &mut Vec<Pending<'a>>) -> u8 {
+    fn parts(&self, id: ExprId, parts: &mut Vec<Part<'a>>) -> u8 {
         let tree = &self.cx.tree;
         let at = tree[id].at;
-        let token = |text: &'a str| Pending::Token(text.into(), at);
+        let token = |text: &'a str| Part::Token(text.into(), at);
         match tree[id].kind {
             ExprKind::Unary {
                 op: UnaryOp::Plus,
                 operand,
             } => {
-                parts.push(Pending::Print(operand, level::UNARY));
+                parts.push(Part::Print(operand, level::UNARY));
                 level::UNARY
             }
             ExprKind::Unary { op, operand } => {
                 // `- -x` without the space is another operator.
-                parts.extend([token(op.symbol()), Pending::Print(operand, level::POSTFIX)]);
+                parts.extend([token(op.symbol()), Part::Print(operand, level::POSTFIX)]);
                 level::UNARY
             }
             ExprKind::Binary { op, left, right } => {
                 let level = op.precedence() + level::BINARY;
-                let symbol = Pending::Token(format!(" {} ", op.symbol()).into(), at);
-                parts.extend([
-                    Pending::Print(left, level),
-                    symbol,
-                    Pending::Print(right, level + 1),
-                ]);
+                let symbol = Part::Token(format!(" {} ", op.symbol()).into(), at);
+                parts.extend([Part::Print(left, level), symbol, Part::Print(right, level + 1)]);
                 level
             }
             ExprKind::Assign { op, target, value } => {
-                let symbol = Pending::Token(format!(" {}= ", op.map_or("", BinaryOp::symbol)).into(), at);
+                let symbol = Part::Token(format!(" {}= ", op.map_or("", BinaryOp::symbol)).into(), at);
                 parts.extend([
-                    Pending::Print(target, level::UNARY),
+                    Part::Print(target, level::UNARY),
                     symbol,
-                    Pending::Print(value, level::ASSIGN),
+                    Part::Print(value, level::ASSIGN),
                 ]);
                 level::ASSIGN
             }
@@ -98,27 +94,27 @@ impl<'a> Printer<'a> {
                 postfix: false,
                 target,
             } => {
-                parts.extend([token(op.symbol()), Pending::Print(target, level::UNARY)]);
+                parts.extend([token(op.symbol()), Part::Print(target, level::UNARY)]);
                 level::UNARY
             }
             ExprKind::Conditional { condition, yes, no } => {
-                parts.extend([Pending::Print(condition, level::CONDITIONAL + 1), token(" ? ")]);
-                parts.extend([Pending::Print(yes, level::ASSIGN), token(" : ")]);
-                parts.push(Pending::Print(no, level::CONDITIONAL));
+                parts.extend([Part::Print(condition, level::CONDITIONAL + 1), token(" ? ")]);
+                parts.extend([Part::Print(yes, level::ASSIGN), token(" : ")]);
+                parts.push(Part::Print(no, level::CONDITIONAL));
                 level::CONDITIONAL
             }
             ExprKind::Sequence { first, second } => {
                 parts.extend([
-                    Pending::Print(first, level::SEQUENCE),
+                    Part::Print(first, level::SEQUENCE),
                     token(", "),
-                    Pending::Print(second, level::ASSIGN),
+                    Part::Print(second, level::ASSIGN),
                 ]);
                 level::SEQUENCE
             }
             _ => {
                 self.postfix_parts(id, parts);
                 match parts.as_slice() {
-                    [Pending::Token(literal, _)] if literal.starts_with('-') => level::UNARY,
+                    [Part::Token(literal, _)] if literal.starts_with('-') => level::UNARY,
                     _ => level::POSTFIX,
                 }
             }
@@ -126,13 +122,13 @@ impl<'a> Printer<'a> {
     }
 
     /// Collects the parts of a postfix or primary expression.
-    fn postfix_parts(&self, id: ExprId, parts: &mut Vec<Pending<'a>>) {
+    fn postfix_parts(&self, id: ExprId, parts: &mut Vec<Part<'a>>) {
         let tree = &self.cx.tree;
         let at = tree[id].at;
-        let token = |text: &'a str| Pending::Token(text.into(), at);
+        let token = |text: &'a str| Part::Token(text.into(), at);
         match &tree[id].kind {
-            ExprKind::Literal(literal) => parts.push(Pending::Token(literal_text(literal), at)),
-            ExprKind::Variable(variable) => parts.push(Pending::Token(self.variable_text(*variable), at)),
+            ExprKind::Literal(literal) => parts.push(Part::Token(literal_text(literal), at)),
+            ExprKind::Variable(variable) => parts.push(Part::Token(self.variable_text(*variable), at)),
             ExprKind::Call { function, arguments } => {
                 call(self.function(*function).into(), arguments, at, parts);
             }
@@ -141,12 +137,12 @@ impl<'a> Printer<'a> {
                 call(self.type_name(tree[id].ty).into(), arguments, at, parts);
             }
             &ExprKind::Step { op, target, .. } => {
-                parts.extend([Pending::Print(target, level::POSTFIX), token(op.symbol())]);
+                parts.extend([Part::Print(target, level::POSTFIX), token(op.symbol())]);
             }
             &ExprKind::Swizzle { vector, components } => {
                 parts.extend([
-                    Pending::Print(vector, level::POSTFIX),
-                    Pending::Token(format!(".{}", components.name()).into(), at),
+                    Part::Print(vector, level::POSTFIX),
+                    Part::Token(format!(".{}", components.name()).into(), at),
                 ]);
             }
             &ExprKind::Member { structure, member } => {
@@ -154,23 +150,18 @@ impl<'a> Printer<'a> {
                     Type::Struct(id) => self.names.members.get(&(id, member)).map_or("", String::as_str),
                     _ => "",
                 };
-                parts.extend([Pending::Print(structure, level::POSTFIX), token("."), token(name)]);
+                parts.extend([Part::Print(structure, level::POSTFIX), token("."), token(name)]);
             }
             &ExprKind::Index { base, index } => {
-                let base = Pending::Print(base, level::POSTFIX);
-                parts.extend([
-                    base,
-                    token("["),
-                    Pending::Print(index, level::SEQUENCE),
-                    token("]"),
-                ]);
+                let base = Part::Print(base, level::POSTFIX);
+                parts.extend([base, token("["), Part::Print(index, level::SEQUENCE), token("]")]);
             }
             ExprKind::Length { array } => {
                 let size = match tree[*array].ty {
                     Type::Array(array) => tree.array(array).size,
                     _ => 0,
                 };
-                parts.push(Pending::Token(size.to_string().into(), at));
+                parts.push(Part::Token(size.to_string().into(), at));
             }
             // [`Self::parts`] handles the operators.
             _ => {}
@@ -200,13 +191,13 @@ fn literal_text(literal: &Literal) -> Cow<'_, str> {
 }
 
 /// `name(a, b)`
-fn call<'a>(name: Cow<'a, str>, arguments: &[ExprId], at: Place, parts: &mut Vec<Pending<'a>>) {
-    parts.extend([Pending::Token(name, at), Pending::Token("(".into(), at)]);
+fn call<'a>(name: Cow<'a, str>, arguments: &[ExprId], at: Place, parts: &mut Vec<Part<'a>>) {
+    parts.extend([Part::Token(name, at), Part::Token("(".into(), at)]);
     for (position, &argument) in arguments.iter().enumerate() {
         if position > 0 {
-            parts.push(Pending::Token(", ".into(), at));
+            parts.push(Part::Token(", ".into(), at));
         }
-        parts.push(Pending::Print(argument, level::ASSIGN));
+        parts.push(Part::Print(argument, level::ASSIGN));
     }
-    parts.push(Pending::Token(")".into(), at));
+    parts.push(Part::Token(")".into(), at));
 }

@@ -5,7 +5,7 @@
 //! b;`).
 
 mod expression;
-mod keyword;
+pub(crate) mod keyword;
 mod names;
 mod order;
 mod statement;
@@ -13,7 +13,7 @@ mod statement;
 use std::ops::Range;
 
 pub(super) use names::Numbering;
-pub(super) use order::Order;
+pub(super) use order::{CaseLabels, Order};
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
 use toyproof_glsl::Stage;
@@ -26,8 +26,8 @@ use crate::lower::context::LoweringContext;
 
 /// Prints everything that a shader's image depends on.
 pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered, Overdue> {
-    let order = Order::of(cx);
-    let names = Names::of(cx, &order);
+    let order = Order::new(cx, CaseLabels::Values);
+    let names = Names::new(cx, &order);
     let mut printer = Printer::new(cx, &names);
     printer.prelude(&order);
     for &item in &order.items {

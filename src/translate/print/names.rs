@@ -29,7 +29,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn of(cx: &LoweringContext, order: &Order) -> Self {
+    pub(super) fn new(cx: &LoweringContext, order: &Order) -> Self {
         let mut names = Self::default();
         let mut types = HashSet::new();
         // Names at global scope, which must be unique.

@@ -12,6 +12,15 @@ use toyproof_glsl::tree::{
 
 use crate::lower::context::LoweringContext;
 
+/// How `case` labels are printed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CaseLabels {
+    /// As values.
+    Values,
+    /// As written, with the constants that they name.
+    AsWritten,
+}
+
 /// Everything that an image depends on, definitions before uses.
 pub(crate) struct Order {
     pub(crate) items: Vec<Item>,
@@ -20,17 +29,7 @@ pub(crate) struct Order {
 }
 
 impl Order {
-    /// The order if `case` labels are printed as values.
-    pub(crate) fn of(cx: &LoweringContext) -> Self {
-        Self::build(cx, false)
-    }
-
-    /// The order if `case` labels are printed as written, with the constants that they name.
-    pub(crate) fn with_labels(cx: &LoweringContext) -> Self {
-        Self::build(cx, true)
-    }
-
-    fn build(cx: &LoweringContext, labels: bool) -> Self {
+    pub(crate) fn new(cx: &LoweringContext, labels: CaseLabels) -> Self {
         let mut collector = Collector {
             cx,
             labels,
@@ -76,8 +75,7 @@ fn locals(cx: &LoweringContext) -> HashSet<VariableId> {
 
 struct Collector<'a> {
     cx: &'a LoweringContext,
-    /// Whether items named by labels count as used.
-    labels: bool,
+    labels: CaseLabels,
     locals: HashSet<VariableId>,
     inputs: Vec<VariableId>,
 }
@@ -149,7 +147,9 @@ impl Collector<'_> {
                     self.add_type(cx.tree[variable].ty, dependencies);
                 }
                 self.add_expressions(walk::own_expressions(&cx.tree, statement), dependencies);
-                if let (true, StatementKind::Switch { cases, .. }) = (self.labels, &statement.kind) {
+                if self.labels == CaseLabels::AsWritten
+                    && let StatementKind::Switch { cases, .. } = &statement.kind
+                {
                     let labels = cases.iter().flat_map(|case| walk::values(&case.labels));
                     self.add_expressions(labels, dependencies);
                 }

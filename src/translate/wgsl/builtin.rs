@@ -25,28 +25,22 @@ impl Writer<'_> {
         if let Wgsl::Operator(op) = function.wgsl() {
             // WGSL compares vectors component by component, like numbers.
             let code: Vec<_> = texts.into_iter().map(Text::term).collect();
-            return Ok(Text {
-                code: code.join(&format!(" {} ", op.symbol())),
-                class: Class::Relation,
-            });
+            return Ok(Text::new(
+                code.join(&format!(" {} ", op.symbol())),
+                Class::Relation,
+            ));
         }
         self.uses_derivatives |= function.is_derivative();
         let name = match (function, function.wgsl()) {
             (B::Mod, _) => return self.modulo(texts, ty, types.last().copied().unwrap_or(ty)),
             (B::Not, _) => {
                 let operand = texts.pop().ok_or(Unprintable::Construct("this call"))?.operand();
-                return Ok(Text {
-                    code: format!("!{operand}"),
-                    class: Class::Unary,
-                });
+                return Ok(Text::new(format!("!{operand}"), Class::Unary));
             }
             (B::Atan, _) if texts.len() == 2 => "atan2",
             (B::DFdy, _) if self.style.is_upside_down(self.cx.stage) => {
                 let operand = Self::list(texts);
-                return Ok(Text {
-                    code: format!("-dpdy({operand})"),
-                    class: Class::Unary,
-                });
+                return Ok(Text::new(format!("-dpdy({operand})"), Class::Unary));
             }
             (B::DFdy, _) => "dpdy",
             (B::Mix, _) if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => "select",
@@ -78,10 +72,7 @@ impl Writer<'_> {
         if self.indent == 0 {
             // Module-scope initializers cannot call functions.
             let [x, y] = [x.operand(), y.operand()];
-            return Ok(Text {
-                code: format!("{x} - {y} * floor({x} / {y})"),
-                class: Class::Sum,
-            });
+            return Ok(Text::new(format!("{x} - {y} * floor({x} / {y})"), Class::Sum));
         }
         let name = self.type_name(ty);
         if ty != divisor {

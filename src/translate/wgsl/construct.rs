@@ -105,7 +105,7 @@ impl Writer<'_> {
                 Type::Vector(_, own) if single && own == size => text.code,
                 _ => self.converted(text, from, scalar, room)?,
             };
-            parts.push(Text { code, class });
+            parts.push(Text::new(code, class));
             room -= count;
         }
         Ok(Self::list(parts))

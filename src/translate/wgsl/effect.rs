@@ -197,10 +197,7 @@ impl Writer<'_> {
                     return Err(Unprintable::Construct("`++` or `--` of a matrix"));
                 }
                 if matches!(self.cx.tree[target].kind, ExprKind::Swizzle { .. }) {
-                    let after = Text {
-                        code: format!("{target_text} {sign} {one}"),
-                        class: Class::Sum,
-                    };
+                    let after = Text::new(format!("{target_text} {sign} {one}"), Class::Sum);
                     return self.set(target, &after);
                 }
                 self.line(&format!("{target_text} {sign}= {one};"));

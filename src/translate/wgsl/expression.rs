@@ -214,10 +214,7 @@ impl Writer<'_> {
             VariableKind::BuiltIn(_) | VariableKind::BuiltInConstant => {
                 Err(Unprintable::Construct("this built-in variable"))
             }
-            _ if is_out(self.cx, id) => Ok(Text {
-                code: format!("*{}", self.variable(id)),
-                class: Class::Unary,
-            }),
+            _ if is_out(self.cx, id) => Ok(Text::new(format!("*{}", self.variable(id)), Class::Unary)),
             _ => Ok(Text::primary(self.variable(id))),
         }
     }
@@ -225,18 +222,12 @@ impl Writer<'_> {
     fn unary(&mut self, op: UnaryOp, operand: ExprId) -> TextResult {
         if matches!(self.cx.tree[operand].ty, Type::Matrix { .. }) && op == UnaryOp::Minus {
             let operand = self.value(operand)?.within(&[Class::Primary]);
-            return Ok(Text {
-                code: format!("-1.0 * {operand}"),
-                class: Class::Product,
-            });
+            return Ok(Text::new(format!("-1.0 * {operand}"), Class::Product));
         }
         let operand = self.value(operand)?;
         Ok(match op {
             UnaryOp::Plus => operand,
-            _ => Text {
-                code: format!("{}{}", op.symbol(), operand.operand()),
-                class: Class::Unary,
-            },
+            _ => Text::new(format!("{}{}", op.symbol(), operand.operand()), Class::Unary),
         })
     }
 
@@ -307,10 +298,7 @@ impl Writer<'_> {
                 return Ok(match left_type {
                     Type::Vector(..) if op == BinaryOp::Equal => Text::primary(format!("all({code})")),
                     Type::Vector(..) => Text::primary(format!("any({code})")),
-                    _ => Text {
-                        code,
-                        class: Relation,
-                    },
+                    _ => Text::new(code, Relation),
                 });
             }
             BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor => {
@@ -331,10 +319,7 @@ impl Writer<'_> {
                 )
             }
         };
-        Ok(Text {
-            code: format!("{left} {} {right}", op.symbol()),
-            class,
-        })
+        Ok(Text::new(format!("{left} {} {right}", op.symbol()), class))
     }
 
     pub(super) fn index(&mut self, base: ExprId, index: ExprId) -> TextResult {

@@ -220,9 +220,9 @@ impl Writer<'_> {
             items: vec![Item::Function(first)],
             inputs: Vec::new(),
         };
-        let mut names = Names::of(&cx, &order, self.style);
+        let mut names = Names::new(&cx, &order, self.style);
         names.functions.insert(first, self.function(id).to_owned());
-        let facts = Facts::of(&cx);
+        let facts = Facts::new(&cx);
         let mut writer = Writer::new(&cx, &names, &facts, self.style, &files, self.deadline);
         writer.definition(first)?;
         self.uses_derivatives |= writer.uses_derivatives;

@@ -19,7 +19,7 @@ mod statement;
 mod style;
 mod writer;
 
-pub use style::{Hosted, Style};
+pub use style::{HostedShader, Style};
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue};
 use toyproof_glsl::Checked;
@@ -27,7 +27,7 @@ use toyproof_glsl::tree::BuiltIn;
 
 use crate::lower::context::LoweringContext;
 use crate::lower::{Pass, Passes, fold_except};
-use crate::print::Order;
+use crate::print::{CaseLabels, Order};
 
 /// Why this writer cannot print a shader.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -42,7 +42,7 @@ pub enum Unprintable {
 
 /// Why no text was printed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Failure {
+pub enum WgslFailure {
     /// An unsupported construct or feature.
     #[error(transparent)]
     Unprintable(#[from] Unprintable),
@@ -55,15 +55,20 @@ pub enum Failure {
 ///
 /// # Errors
 /// If a construct is not supported or the deadline passes.
-pub fn wgsl(checked: &Checked, files: &Files, style: Style, deadline: &Deadline) -> Result<String, Failure> {
+pub fn wgsl(
+    checked: &Checked,
+    files: &Files,
+    style: Style,
+    deadline: &Deadline,
+) -> Result<String, WgslFailure> {
     let mut cx = LoweringContext::new(checked);
     fold_except(&mut cx, is_computed_alike);
     passes().run(&mut cx, deadline)?;
-    let order = Order::with_labels(&cx);
+    let order = Order::new(&cx, CaseLabels::AsWritten);
     deadline.check()?;
-    let names = names::Names::of(&cx, &order, style);
+    let names = names::Names::new(&cx, &order, style);
     deadline.check()?;
-    let facts = writer::Facts::of(&cx);
+    let facts = writer::Facts::new(&cx);
     let writer = writer::Writer::new(&cx, &names, &facts, style, files, deadline);
     let written = writer.write(&order);
     // An expired deadline also makes the writer fail.

@@ -9,6 +9,7 @@ use toyproof_glsl::tree::{BuiltIn, ExprKind, FunctionId, Item, StructId, Type, V
 use super::style::Style;
 use super::writer::type_name;
 use crate::lower::context::LoweringContext;
+use crate::print::keyword::lists;
 use crate::print::{Numbering, Order};
 
 /// The names of a shader's items.
@@ -25,7 +26,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    pub(super) fn of(cx: &LoweringContext, order: &Order, style: Style) -> Self {
+    pub(super) fn new(cx: &LoweringContext, order: &Order, style: Style) -> Self {
         let tree = &cx.tree;
         let mut names = Self::default();
         let mut taken: HashSet<String> = style.reserved_names().map(str::to_owned).collect();
@@ -162,112 +163,21 @@ fn type_label(cx: &LoweringContext, names: &Names, ty: Type) -> String {
 }
 
 /// Types and functions that WGSL predeclares and that printed code may use. Authors may redeclare all others
-/// of `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`.
-const PREDECLARED: &[&str] = &[
-    "abs",
-    "acos",
-    "acosh",
-    "all",
-    "any",
-    "array",
-    "asin",
-    "asinh",
-    "atan",
-    "atan2",
-    "atanh",
-    "atomic",
-    // naga's extension of WGSL.
-    "binding_array",
-    "bitcast",
-    "bool",
-    "ceil",
-    "clamp",
-    "cos",
-    "cosh",
-    "cross",
-    "degrees",
-    "determinant",
-    "distance",
-    "dot",
-    "dpdx",
-    "dpdy",
-    "exp",
-    "exp2",
-    "f16",
-    "f32",
-    "faceForward",
-    "floor",
-    "fract",
-    "fwidth",
-    "i32",
-    "inverseSqrt",
-    "length",
-    "log",
-    "log2",
-    "mat2x2f",
-    "mat2x3f",
-    "mat2x4f",
-    "mat3x2f",
-    "mat3x3f",
-    "mat3x4f",
-    "mat4x2f",
-    "mat4x3f",
-    "mat4x4f",
-    "max",
-    "min",
-    "mix",
-    "normalize",
-    "pack2x16float",
-    "pack2x16snorm",
-    "pack2x16unorm",
-    "pow",
-    "ptr",
-    "radians",
-    "reflect",
-    "refract",
-    "round",
-    "sampler",
-    "select",
-    "sign",
-    "sin",
-    "sinh",
-    "smoothstep",
-    "sqrt",
-    "step",
-    "tan",
-    "tanh",
-    "texture_2d",
-    "texture_3d",
-    "texture_cube",
-    "textureDimensions",
-    "textureLoad",
-    "textureSample",
-    "textureSampleBias",
-    "textureSampleGrad",
-    "textureSampleLevel",
-    "transpose",
-    "trunc",
-    "u32",
-    "unpack2x16float",
-    "unpack2x16snorm",
-    "unpack2x16unorm",
-    "vec2",
-    "vec2f",
-    "vec2i",
-    "vec2u",
-    "vec3",
-    "vec3f",
-    "vec3i",
-    "vec3u",
-    "vec4",
-    "vec4f",
-    "vec4i",
-    "vec4u",
-];
+/// of `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`; `binding_array`
+/// is naga's extension.
+const PREDECLARED: &str = "\
+    abs acos acosh all any array asin asinh atan atan2 atanh atomic binding_array bitcast bool ceil clamp \
+    cos cosh cross degrees determinant distance dot dpdx dpdy exp exp2 f16 f32 faceForward floor fract \
+    fwidth i32 inverseSqrt length log log2 mat2x2f mat2x3f mat2x4f mat3x2f mat3x3f mat3x4f mat4x2f mat4x3f \
+    mat4x4f max min mix normalize pack2x16float pack2x16snorm pack2x16unorm pow ptr radians reflect \
+    refract round sampler select sign sin sinh smoothstep sqrt step tan tanh texture_2d texture_3d \
+    texture_cube textureDimensions textureLoad textureSample textureSampleBias textureSampleGrad \
+    textureSampleLevel transpose trunc u32 unpack2x16float unpack2x16snorm unpack2x16unorm vec2 vec2f \
+    vec2i vec2u vec3 vec3f vec3i vec3u vec4 vec4f vec4i vec4u";
 
 /// Whether the name is unavailable to variables, functions and structures.
 pub(super) fn is_taken(word: &str) -> bool {
-    is_reserved(word) || PREDECLARED.contains(&word)
+    is_reserved(word) || lists(PREDECLARED, word)
 }
 
 /// Whether a local variable may shadow a built-in function, if it is not called in the variable's scope. The

@@ -392,7 +392,7 @@ fn channel_number(condition: &str) -> Option<u8> {
 
 /// A complete WGSL module.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Hosted {
+pub struct HostedShader {
     /// The module's text, with our bindings and the entry point `main`.
     pub text: String,
     /// Whether row 0 of its target is the top of the image.
@@ -410,14 +410,14 @@ fn frame() -> String {
 
 impl Style {
     /// Embeds an image printed in this style in a substitute for its host, which reads our uniform block.
-    pub fn hosted(self, text: &str) -> Hosted {
+    pub fn hosted(self, text: &str) -> HostedShader {
         self.hosted_in(text, Stage::Image)
     }
 
     /// Embeds a pass printed in this style in a substitute for its host.
-    pub fn hosted_in(self, text: &str, stage: Stage) -> Hosted {
+    pub fn hosted_in(self, text: &str, stage: Stage) -> HostedShader {
         let Some(host) = self.host_template() else {
-            return Hosted {
+            return HostedShader {
                 text: text.to_owned(),
                 upside_down: false,
             };
@@ -430,7 +430,7 @@ impl Style {
             None => text.contains("shadertoy_mouse"),
         };
         let [before, after] = around_shader(host).map(|part| fill(part, reads, &[]));
-        Hosted {
+        HostedShader {
             text: format!("{}{before}{}{after}", frame(), self.adapted(text)),
             upside_down: self.is_upside_down(stage),
         }

@@ -4,7 +4,7 @@ use toyproof_glsl::{Options, check};
 
 use super::names::Names;
 use super::writer::{Facts, Writer};
-use super::{Failure, LoweringContext, Order, Style, Unprintable, wgsl};
+use super::{CaseLabels, LoweringContext, Order, Style, Unprintable, WgslFailure, wgsl};
 
 fn print(shader: &str, style: Style) -> String {
     let mut files = Files::default();
@@ -21,13 +21,13 @@ fn printing_stops_after_the_deadline() {
     let checked = check(&files, file, &Options::default()).unwrap();
     let over = Deadline::after(std::time::Duration::ZERO);
     let late = wgsl(&checked, &files, Style::Plain, &over);
-    assert!(matches!(late, Err(Failure::Overdue(_))), "{late:?}");
+    assert!(matches!(late, Err(WgslFailure::Overdue(_))), "{late:?}");
 
     // Each value, statement and item checks the deadline.
     let cx = LoweringContext::new(&checked);
-    let order = Order::with_labels(&cx);
-    let names = Names::of(&cx, &order, Style::Plain);
-    let facts = Facts::of(&cx);
+    let order = Order::new(&cx, CaseLabels::AsWritten);
+    let names = Names::new(&cx, &order, Style::Plain);
+    let facts = Facts::new(&cx);
     let mut writer = Writer::new(&cx, &names, &facts, Style::Plain, &files, &over);
     let body = checked.tree[checked.main_image].body.as_ref().unwrap();
     let value = checked.tree.exprs.ids().next().unwrap();
@@ -246,7 +246,7 @@ fn unsupported_inputs_and_derivatives_are_refused() {
         let file = files.add(File::new("shader", text));
         let checked = check(&files, file, &Options::default()).unwrap();
         match wgsl(&checked, &files, style, &Deadline::default()) {
-            Err(Failure::Unprintable(Unprintable::Host(diagnostic))) => {
+            Err(WgslFailure::Unprintable(Unprintable::Host(diagnostic))) => {
                 assert_eq!(diagnostic.message, message);
                 assert_eq!(files.position(diagnostic.span.unwrap()).line, line, "{message}");
             }

@@ -256,11 +256,13 @@ pub(super) struct Text {
 pub(super) type TextResult = Result<Text, Unprintable>;
 
 impl Text {
+    pub(super) fn new(code: impl Into<String>, class: Class) -> Self {
+        let code = code.into();
+        Self { code, class }
+    }
+
     pub(super) fn primary(code: impl Into<String>) -> Self {
-        Self {
-            code: code.into(),
-            class: Class::Primary,
-        }
+        Self::new(code, Class::Primary)
     }
 
     /// Returns the code, in parentheses unless its class is among `bare`.
@@ -290,14 +292,13 @@ pub(super) struct Facts {
     pub(super) written: HashSet<VariableId>,
     /// Variables with a dynamic index: an array or matrix must then be in memory.
     pub(super) indexed: HashSet<VariableId>,
-    /// Functions that are called.
     pub(super) called: HashSet<FunctionId>,
     /// The globals that each function names.
     pub(super) globals: HashMap<FunctionId, HashSet<VariableId>>,
 }
 
 impl Facts {
-    pub(super) fn of(cx: &LoweringContext) -> Self {
+    pub(super) fn new(cx: &LoweringContext) -> Self {
         let tree = &cx.tree;
         let mut facts = Self::default();
         let write = |written: &mut HashSet<VariableId>, target: ExprId| {

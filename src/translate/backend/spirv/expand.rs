@@ -27,7 +27,7 @@ pub fn expanded(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
     if spirv.len() < HEADER_WORDS {
         return Err("these are no words of SPIR-V".into());
     }
-    let types = Types::of(spirv);
+    let types = Types::new(spirv);
     let mut needs = Vec::new();
     let mut sites = HashMap::new();
     for (at, instruction) in instructions(spirv) {
@@ -64,16 +64,16 @@ struct Types {
     /// The GLSL names of the types of 32-bit floats and unsigned integers.
     names: HashMap<u32, String>,
     /// The types of values.
-    of: HashMap<u32, u32>,
+    of_values: HashMap<u32, u32>,
     /// The import of GLSL's extended instructions.
     glsl: Option<u32>,
 }
 
 impl Types {
-    fn of(spirv: &[u32]) -> Self {
+    fn new(spirv: &[u32]) -> Self {
         let mut types = Self {
             names: HashMap::new(),
-            of: HashMap::new(),
+            of_values: HashMap::new(),
             glsl: link::import(spirv),
         };
         for (_, instruction) in instructions(spirv) {
@@ -94,7 +94,7 @@ impl Types {
                     column.map(|rows| format!("mat{columns}x{rows}"))
                 }
                 (Some(op), &[ty, id, ..]) if has_type(op) => {
-                    types.of.insert(id, ty);
+                    types.of_values.insert(id, ty);
                     None
                 }
                 _ => None,
@@ -107,28 +107,28 @@ impl Types {
     }
 
     /// The library function for an instruction whose result depends on the driver, and its operands.
-    fn need(&self, instruction: &[u32]) -> Option<(Need, Vec<u32>)> {
+    fn need(&self, instruction: &[u32]) -> Option<(LibraryFunction, Vec<u32>)> {
         let result = self.names.get(instruction.get(1)?)?;
         let (value, operands) = match (opcode(instruction)?, instruction.get(3..)?) {
             (Op::ExtInst, [set, number, operands @ ..]) if Some(*set) == self.glsl => {
-                let function = InexactFunction::of_extended(GlslStd450Op::from_u32(*number)?)?;
+                let function = InexactFunction::from_extended(GlslStd450Op::from_u32(*number)?)?;
                 (function.built_in.name(), operands)
             }
             (Op::ConvertUToF, operands) => (result.as_str(), operands),
             (Op::MatrixTimesVector | Op::VectorTimesMatrix | Op::MatrixTimesMatrix, operands) => {
                 ("*", operands)
             }
-            (op, operands) => (InexactFunction::of_core(op)?.built_in.name(), operands),
+            (op, operands) => (InexactFunction::from_core(op)?.built_in.name(), operands),
         };
         let types: Option<Vec<_>> = operands
             .iter()
-            .map(|operand| self.names.get(self.of.get(operand)?).cloned())
+            .map(|operand| self.names.get(self.of_values.get(operand)?).cloned())
             .collect();
         let value = match value {
             "*" => "a * b".to_owned(),
             name => format!("{name}({})", ["a", "b", "c"].get(..operands.len())?.join(", ")),
         };
-        let need = Need {
+        let need = LibraryFunction {
             value,
             types: types?,
             result: result.clone(),
@@ -140,13 +140,13 @@ impl Types {
 /// A library function: GLSL that computes its value from `a`, `b` and `c`, their types, and the type of the
 /// value.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Need {
+struct LibraryFunction {
     value: String,
     types: Vec<String>,
     result: String,
 }
 
-impl Need {
+impl LibraryFunction {
     /// Returns the index of this need in a list, which it is appended to if missing.
     fn index_in(self, needs: &mut Vec<Self>) -> usize {
         needs.iter().position(|known| *known == self).unwrap_or_else(|| {
@@ -168,7 +168,7 @@ fn need_name(index: usize) -> String {
 ///
 /// # Errors
 /// Its first error message, in one line.
-fn library(needs: &[Need]) -> Result<ValidModule, TranslateError> {
+fn library(needs: &[LibraryFunction]) -> Result<ValidModule, TranslateError> {
     let mut text = String::new();
     let mut uses = String::new();
     for (index, need) in needs.iter().enumerate() {
@@ -179,7 +179,7 @@ fn library(needs: &[Need]) -> Result<ValidModule, TranslateError> {
             .map(|(ty, name)| format!("{ty} {name}"))
             .collect();
         let arguments: Vec<_> = need.types.iter().map(|ty| format!("{ty}(p.x)")).collect();
-        let (Need { value, result, .. }, name) = (need, need_name(index));
+        let (LibraryFunction { value, result, .. }, name) = (need, need_name(index));
         let _ = writeln!(
             text,
             "{result} {name}({}) {{ return {value}; }}",
@@ -272,7 +272,7 @@ mod tests {
                     + smoothstep(p, p.yzwx, p.wzyx) + unpack2x16float(u32(p.x)).xyxy;
             }";
         let expanded = expanded(&words_of_wgsl(text)).unwrap();
-        let types = Types::of(&expanded);
+        let types = Types::new(&expanded);
         let left = instructions(&expanded).filter(|(_, instruction)| types.need(instruction).is_some());
         // The library's own `unpackHalf2x16`, whose halves are exact.
         assert_eq!(left.count(), 2);
