@@ -99,7 +99,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     scene.film.size = args.size.unwrap_or(scene.film.size);
     scene.film.samples = args.samples.unwrap_or(scene.film.samples);
     scene.film.sampler = args.sampler.map_or(scene.film.sampler, Sampler::from);
-    let requirements = Requirements::of(&scene);
+    let requirements = Requirements::new(&scene);
     if !scene.film.sampler.is_stochastic()
         && (requirements.soft_shadows || requirements.path_tracing || args.max_error.is_some())
     {

@@ -40,7 +40,7 @@ pub use film::{Camera, Figure, Film, Integrator, MAX_SAMPLES, Outline, Projectio
 pub use material::{Background, Disney, Fresnel, Light, Material, Model, Pattern, PatternKind, Space};
 pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;
-pub use shape::{Cuboid, Equation, Quadric, QuadricKind, Scatter, Scattered, Shape, unit};
+pub use shape::{Cuboid, Equation, Quadric, QuadricKind, Scatter, ScatterObjects, Shape, unit};
 pub use template::template;
 
 /// A color, linear RGB; each component ≥ 0, nominally in [0, 1].
@@ -72,7 +72,7 @@ pub struct Scene {
     /// The surfaces.
     pub objects: Vec<Object>,
     /// The scatters, and which of the objects are theirs.
-    pub scatters: Vec<Scattered>,
+    pub scatters: Vec<ScatterObjects>,
     /// The motions of lights and surfaces, each alone or within an earlier one.
     pub motions: Vec<Motion>,
 }
@@ -107,7 +107,7 @@ impl Scene {
     pub fn release_changed_scatters(&mut self) {
         let objects = &self.objects;
         self.scatters.retain(
-            |Scattered {
+            |ScatterObjects {
                  scatter,
                  objects: own,
              }| {
@@ -180,7 +180,7 @@ mod tests {
                 .filter(|range| !range.contains(&removed))
                 .count();
             assert_eq!(other.scatters.len(), whole, "{removed}");
-            for Scattered { scatter, objects } in &other.scatters {
+            for ScatterObjects { scatter, objects } in &other.scatters {
                 assert!(
                     scatter
                         .spheres()

@@ -43,7 +43,7 @@ pub struct Requirements {
 
 impl Requirements {
     /// Determines the features that a scene uses.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene) -> Self {
         let surface =
             |uses: fn(&Model) -> bool| scene.objects.iter().any(|object| uses(&object.material.model));
         let path_tracing = scene.film.integrator == Integrator::Path;

@@ -253,7 +253,7 @@ pub struct Scatter {
 
 /// A scatter, and which of the scene's objects are its spheres.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scattered {
+pub struct ScatterObjects {
     /// The scatter.
     pub scatter: Scatter,
     /// The indices of its spheres in [`super::Scene::objects`].

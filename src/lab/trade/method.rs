@@ -266,7 +266,7 @@ const SAMPLERS: [(Sampler, &str); 3] = [
 
 /// All methods that use the tracer: varies only the settings that the scene requires.
 pub(super) fn scene_methods(scene: &Scene) -> Vec<Method> {
-    let requirements = Requirements::of(scene);
+    let requirements = Requirements::new(scene);
     let film = scene.film;
     let mut films = Vec::new();
     if requirements.samples {

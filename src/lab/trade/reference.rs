@@ -33,7 +33,7 @@ impl Reference {
     /// Renders the reference of a scene; a scene that requires samples gets as many as the time allows.
     pub(super) fn of_scene(scene: &Scene, frame: &Frame, time: Duration) -> Self {
         let frame_time = RenderContext::frame_time(frame);
-        if !Requirements::of(scene).samples {
+        if !Requirements::new(scene).samples {
             let image = Tracer::<f64>::at(scene, frame_time).render(|| ());
             // The effect of f64 rounding is estimated by moving the eye by a few units in the last place.
             let mut perturbed_scene = scene.clone();

@@ -24,13 +24,13 @@ use crate::{Requirements, Sampler, Scene};
 /// A feature of a scene that exported shaders do not support.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("{0} cannot be exported")]
-pub struct Unsupported(pub &'static str);
+pub struct UnsupportedFeature(pub &'static str);
 
 /// Returns a ShaderToy shader that renders the scene.
 ///
 /// # Errors
 /// If the scene has a feature that no exported shader supports.
-pub fn shader(scene: &Scene) -> Result<String, Unsupported> {
+pub fn shader(scene: &Scene) -> Result<String, UnsupportedFeature> {
     Ok(marked_shader(scene)?.text)
 }
 
@@ -38,21 +38,23 @@ pub fn shader(scene: &Scene) -> Result<String, Unsupported> {
 ///
 /// # Errors
 /// If the scene has a feature that no exported shader supports.
-pub fn marked_shader(scene: &Scene) -> Result<MarkedShader, Unsupported> {
+pub fn marked_shader(scene: &Scene) -> Result<MarkedShader, UnsupportedFeature> {
     if matches!(scene.film.sampler, Sampler::Stratified | Sampler::Sobol) {
-        return Err(Unsupported("a scene with the sampler `stratified` or `sobol`"));
+        return Err(UnsupportedFeature(
+            "a scene with the sampler `stratified` or `sobol`",
+        ));
     }
     let title = match scene.title.lines().next() {
         None | Some("") => "A scene",
         Some(title) => title,
     };
-    let template = Parts::of(scene).template(scene);
+    let template = Parts::new(scene).template(scene);
     Ok(MarkedShader::new(format!("// {title}\n\n"), &template))
 }
 
 impl Parts<'_> {
     fn template(&self, scene: &Scene) -> String {
-        let moves = Requirements::of(scene).motion;
+        let moves = Requirements::new(scene).motion;
         let mut pieces = vec![self.constants(scene)];
         if !scene.objects.is_empty() {
             if self.uses(Kind::Disney) {

@@ -1,7 +1,9 @@
 //! The code fragments that a scene needs.
 
 use super::pattern::{Patterns, is_own};
-use crate::{Cuboid, Fresnel, Integrator, Model, Object, Point, Quadric, Scatter, Scattered, Scene, Shape};
+use crate::{
+    Cuboid, Fresnel, Integrator, Model, Object, Point, Quadric, Scatter, ScatterObjects, Scene, Shape,
+};
 
 /// A reflection model without its parameters.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -22,7 +24,7 @@ pub(super) const REFLECTIVE: [Kind; 4] = [Kind::Lambert, Kind::Diffuse, Kind::Gl
 pub(super) const GLASS: [Kind; 2] = [Kind::Glass, Kind::Schlick];
 
 impl Kind {
-    pub(super) fn of(model: &Model) -> Self {
+    pub(super) fn from_model(model: &Model) -> Self {
         match model {
             Model::Facing => Self::Facing,
             Model::Lambert => Self::Lambert,
@@ -75,20 +77,20 @@ pub(super) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    pub(super) fn of(scene: &'a Scene) -> Self {
+    pub(super) fn new(scene: &'a Scene) -> Self {
         let mut parts = Self {
             spheres: Vec::new(),
             planes: Vec::new(),
             quadrics: Vec::new(),
             boxes: Vec::new(),
             grids: Vec::new(),
-            patterns: Patterns::of(scene),
+            patterns: Patterns::new(scene),
             models: Vec::new(),
             traces_paths: scene.film.integrator == Integrator::Path,
         };
         let mut in_grids = vec![false; scene.objects.len()];
-        for Scattered { scatter, objects } in &scene.scatters {
-            let is_emitter = parts.traces_paths && Kind::of(&scatter.material.model) == Kind::Emitter;
+        for ScatterObjects { scatter, objects } in &scene.scatters {
+            let is_emitter = parts.traces_paths && Kind::from_model(&scatter.material.model) == Kind::Emitter;
             let has_own_space = scatter.material.pattern.as_ref().is_some_and(is_own);
             if scatter.motion.is_none() && !is_emitter && !has_own_space {
                 in_grids[objects.clone()].fill(true);
@@ -96,7 +98,7 @@ impl<'a> Parts<'a> {
             }
         }
         for (object, in_grid) in scene.objects.iter().zip(in_grids) {
-            let kind = Kind::of(&object.material.model);
+            let kind = Kind::from_model(&object.material.model);
             if !parts.models.contains(&kind) {
                 parts.models.push(kind);
             }
@@ -136,5 +138,5 @@ impl<'a> Parts<'a> {
 }
 
 pub(super) fn is_emitter(object: &Object) -> bool {
-    Kind::of(&object.material.model) == Kind::Emitter
+    Kind::from_model(&object.material.model) == Kind::Emitter
 }

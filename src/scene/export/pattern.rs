@@ -21,7 +21,7 @@ pub(super) enum Patterns {
 }
 
 impl Patterns {
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &Scene) -> Self {
         let any = |has: fn(&Object, &Pattern) -> bool| {
             let mut objects = scene.objects.iter();
             objects.any(|object| {
@@ -176,7 +176,6 @@ impl Patterns {
         ))
     }
 
-    /// Returns the color of a surface at a point with a normal.
     pub(super) fn color(self, surface: &str, point: &str, normal: &str) -> String {
         match self {
             Self::None => format!("{surface}.color"),

@@ -18,7 +18,7 @@ pub(super) struct Property {
 const MODEL: Property = Property {
     kind: "int",
     name: "model",
-    value: |material| Kind::of(&material.model).glsl_name().to_owned(),
+    value: |material| Kind::from_model(&material.model).glsl_name().to_owned(),
 };
 
 const EXPONENT: Property = Property {

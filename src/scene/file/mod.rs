@@ -12,7 +12,7 @@ use toyproof_toml::{Format, Table};
 use self::checks::Checks;
 use self::film::{DEFAULT_CAMERA, DEFAULT_FILM, FilmTable};
 use self::surface::MotionNames;
-use super::{Background, Film, Integrator, Light, Model, Object, Scattered, Scene, Shape};
+use super::{Background, Film, Integrator, Light, Model, Object, ScatterObjects, Scene, Shape};
 
 /// Scene files.
 static FORMAT: Format = Format {
@@ -133,7 +133,7 @@ struct Surfaces<'a> {
     names: &'a MotionNames,
     film: Film,
     objects: Vec<Object>,
-    scatters: Vec<Scattered>,
+    scatters: Vec<ScatterObjects>,
 }
 
 impl Surfaces<'_> {
@@ -144,7 +144,7 @@ impl Surfaces<'_> {
         if let Some(object) = self.objects.get(first) {
             self.check_compatibility(object, model, table);
         }
-        self.scatters.push(Scattered {
+        self.scatters.push(ScatterObjects {
             scatter,
             objects: first..self.objects.len(),
         });

@@ -44,7 +44,7 @@ pub(super) const DOCUMENTED: &[Documented] = documented! {
 };
 
 pub(super) fn motions(changes: &mut Changes) {
-    if !Requirements::of(changes.scene).motion {
+    if !Requirements::new(changes.scene).motion {
         return;
     }
     let frame_time = changes.frame_time;
