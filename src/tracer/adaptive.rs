@@ -2,7 +2,6 @@
 
 use crate::ray_epsilon::Exact;
 use crate::real::{Real, Vector};
-use crate::sampler::Sample;
 use crate::tracer::Tracer;
 use crate::transfer::tone_map;
 
@@ -25,8 +24,14 @@ pub struct SamplingCost {
     pub error: f64,
 }
 
-/// A tile: its corner, size, colors in row order, and cost.
-pub(super) type AdaptiveTile = ([u32; 2], [u32; 2], Vec<[f64; 3]>, SamplingCost);
+/// A tile.
+pub struct AdaptiveTile {
+    pub(super) corner: [u32; 2],
+    pub(super) size: [u32; 2],
+    /// In the order of the rows.
+    pub(super) colors: Vec<[f64; 3]>,
+    pub(super) cost: SamplingCost,
+}
 
 impl<T: Real> Tracer<T> {
     pub(super) fn adaptive_tile(&self, corner: [u32; 2], max_error: f64) -> AdaptiveTile {
@@ -43,7 +48,10 @@ impl<T: Real> Tracer<T> {
             let colors: Vec<_> = (0..number)
                 .map(|at| {
                     let pixel = [corner[0] + at % size[0], corner[1] + at / size[0]];
-                    let [a, b] = [0, 1].map(|set| self.mean(pixel, count, set));
+                    let [a, b] = [0, 1].map(|set| {
+                        let mean = Self::mean(pixel, count, set, |sample| self.sample(sample, &Exact));
+                        mean.to_array().map(Real::to_f64)
+                    });
                     let [x, y] = [a, b].map(|mean| mean.map(|c| tone_map(&self.film, c).clamp(0.0, 1.0)));
                     square_sum += (0..3).map(|i| (0.5 * (x[i] - y[i])).powi(2)).sum::<f64>();
                     [0, 1, 2].map(|i| tone_map(&self.film, 0.5 * (a[i] + b[i])))
@@ -57,24 +65,14 @@ impl<T: Real> Tracer<T> {
                     per_pixel: [2 * count; 2],
                     error,
                 };
-                return (corner, size, colors, cost);
+                return AdaptiveTile {
+                    corner,
+                    size,
+                    colors,
+                    cost,
+                };
             }
             count *= 2;
         }
-    }
-
-    /// Computes the mean of one set of samples.
-    fn mean(&self, pixel: [u32; 2], count: u32, set: u32) -> [f64; 3] {
-        let mut sum = T::Vec3::ZERO;
-        for index in 0..count {
-            let sample = Sample {
-                pixel,
-                index,
-                count,
-                set,
-            };
-            sum = sum + self.sample(sample, &Exact);
-        }
-        (sum / T::from_f64(f64::from(count))).to_array().map(Real::to_f64)
     }
 }

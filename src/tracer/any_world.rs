@@ -37,7 +37,7 @@ impl<T: Real> AnyWorld<T> {
         store: impl FnOnce(&[NumberedSphere<T>]) -> Spheres<T>,
     ) -> Self {
         let shapes = scene.objects.iter().map(|object| &object.shape);
-        match shapes.clone().map(Sphere::of).collect() {
+        match shapes.clone().map(Sphere::from_shape).collect() {
             Some(spheres) => Self::Spheres(World::new(scene, level, store, spheres)),
             None => Self::Shapes(World::new(scene, level, store, shapes.map(Shape::new).collect())),
         }

@@ -1,10 +1,5 @@
 //! Camera rays of a pinhole or of a parallel projection, and the 2D figures that are drawn over the scene.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use toyproof_scene::{self as scene, Outline, Projection, Scene};
 
 use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};

@@ -1,7 +1,7 @@
 //! The range of colors of a pixel over the ray epsilons that a scene accepts.
 
 use crate::ray_epsilon::{Acne, LightPolicy, RayEpsilon, RayEpsilons};
-use crate::sampler::{Sample, SampleStream};
+use crate::sampler::Sample;
 use crate::tracer::Tracer;
 use crate::transfer::tone_map;
 
@@ -89,9 +89,7 @@ impl Tracer<f64> {
                 set: 0,
             };
             // The primary hit does not depend on the policy.
-            let mut stream = SampleStream::new(self.film.sampler, sample);
-            let position = Self::sample_position(sample.pixel, stream.jitter());
-            let primary = self.primary_hit(self.camera.screen(position));
+            let (primary, stream) = self.primary(self.film.sampler, sample);
             let mut range = ColorRange::EMPTY;
             for other in legal() {
                 if epsilons == EpsilonSet::Alike {
@@ -132,20 +130,11 @@ const MAX_ACNE_BOUNCES: u32 = 6;
 pub type EpsilonFamily = Vec<RayEpsilon>;
 
 impl Tracer<f64> {
-    /// Renders the pixel at (x, y) with the given epsilons. The components are tone-mapped but not clamped.
-    pub fn pixel_with_epsilons(&self, [x, y]: [u32; 2], epsilons: &RayEpsilons) -> [f64; 3] {
-        let count = self.film.samples;
-        let mut sum = glam::DVec3::ZERO;
-        for index in 0..count {
-            let sample = Sample {
-                pixel: [x, y],
-                index,
-                count,
-                set: 0,
-            };
-            sum += self.sample(sample, epsilons);
-        }
-        let mean = sum / f64::from(count);
+    /// Renders a pixel `[x, y]` with the given epsilons. The components are tone-mapped but not clamped.
+    pub fn pixel_with_epsilons(&self, pixel: [u32; 2], epsilons: &RayEpsilons) -> [f64; 3] {
+        let mean = Self::mean(pixel, self.film.samples, 0, |sample| {
+            self.sample(sample, epsilons)
+        });
         mean.to_array().map(|c| tone_map(&self.film, c))
     }
 

@@ -28,25 +28,15 @@ impl Tracer<f64> {
         self.world.integrator() == Integrator::Path
     }
 
-    /// Computes the mean of the samples of the pixel at (x, y), y up, with the scene's number of samples and
+    /// Computes the mean of the samples of a pixel `[x, y]`, y up, with the scene's number of samples and
     /// the `independent` sampler. Each `set` has different random numbers; set 0 is the scene's own. The
     /// result is not tone-mapped; see [`tone_mapped`](Self::tone_mapped).
-    pub fn resampled_mean(&self, [x, y]: [u32; 2], set: u32) -> [f64; 3] {
-        let count = self.film.samples;
-        let mut sum = glam::DVec3::ZERO;
-        for index in 0..count {
-            let sample = Sample {
-                pixel: [x, y],
-                index,
-                count,
-                set,
-            };
-            let mut stream = SampleStream::new(Sampler::Independent, sample);
-            let position = Self::sample_position(sample.pixel, stream.jitter());
-            let primary = self.primary_hit(self.camera.screen(position));
-            sum += self.radiance(primary, stream, &Exact);
-        }
-        (sum / f64::from(count)).to_array()
+    pub fn resampled_mean(&self, pixel: [u32; 2], set: u32) -> [f64; 3] {
+        let radiance = |sample| {
+            let (primary, stream) = self.primary(Sampler::Independent, sample);
+            self.radiance(primary, stream, &Exact)
+        };
+        Self::mean(pixel, self.film.samples, set, radiance).to_array()
     }
 
     /// Like [`resampled_mean`](Self::resampled_mean), but tone-mapped.

@@ -1,10 +1,5 @@
 //! Dielectrics: reflection and refraction at smooth surfaces.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use toyproof_scene::Fresnel;
 
 use crate::lanes::{Lanes, Wide, Wide3};

@@ -33,6 +33,11 @@
 //! one sphere) and `lanes` (a ray in each lane and one sphere). `tree` is a bounding volume hierarchy for
 //! many spheres, which `collapse` makes of a `binary` one.
 
+#![expect(
+    clippy::inline_always,
+    reason = "only what is inlined into a kernel is compiled for its instruction set"
+)]
+
 mod adaptive;
 mod any_world;
 mod camera;

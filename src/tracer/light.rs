@@ -1,10 +1,5 @@
 //! Light sources: point and sphere lights, and the background.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use toyproof_scene as scene;
 
 use crate::lanes::{Lanes, Wide, Wide3};

@@ -1,10 +1,5 @@
 //! Materials: surface colors and bidirectional reflectance distribution functions (BRDFs).
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use toyproof_scene::{self as scene, Disney};

@@ -3,7 +3,7 @@
 use crate::camera::topmost_figure;
 use crate::ray::{PrimaryHit, Ray};
 use crate::real::{Real, Vector};
-use crate::sampler::{Sample, SampleStream};
+use crate::sampler::Sample;
 use crate::tracer::Tracer;
 
 impl<T: Real> Tracer<T> {
@@ -24,11 +24,8 @@ impl<T: Real> Tracer<T> {
             })
         });
         let mut hits = samples.map(|sample| {
-            let position = Self::sample_position(
-                sample.pixel,
-                SampleStream::new(self.film.sampler, sample).jitter(),
-            );
-            self.primary_hit(self.camera.screen(position)).id()
+            let (hit, _) = self.primary(self.film.sampler, sample);
+            hit.id()
         });
         let first = hits.next();
         hits.any(|other| Some(other) != first)

@@ -1,10 +1,5 @@
 //! Rays, and their intersections with surfaces.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use crate::lanes::{Lanes, MAX_LANES, Wide, Wide3, lanes_of};
 use crate::real::Real;
 use crate::spheres::NO_SURFACE;
@@ -17,6 +12,24 @@ pub(super) struct Ray<T: Real> {
     pub(super) direction: T::Vec3,
     /// The surface on which the origin lies.
     pub(super) from: Option<usize>,
+}
+
+/// Where a ray starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RayKind {
+    /// At the camera.
+    Camera,
+    /// On a surface.
+    Secondary,
+}
+
+impl<T: Real> Ray<T> {
+    pub(super) fn kind(&self) -> RayKind {
+        match self.from {
+            None => RayKind::Camera,
+            Some(_) => RayKind::Secondary,
+        }
+    }
 }
 
 /// The first surface along a ray, if any.

@@ -6,6 +6,7 @@
 //! [`Tracer::color_range`](crate::Tracer::color_range) evaluates a pixel under all such policies. The scene
 //! states the largest legal offset: [`toyproof_scene::Scene::max_offset`].
 
+use crate::ray::RayKind;
 use crate::real::Real;
 
 /// How secondary rays start and how shadow rays treat lights. [`Exact`] compiles to no code.
@@ -15,7 +16,7 @@ pub(super) trait RayEpsilonPolicy<T: Real> {
     /// Offset of the origin along the ray, in scene units.
     fn along(&self) -> T;
     /// Exclusive lower bound for t of a hit; 0 for camera rays.
-    fn t_min(&self, secondary: bool) -> T;
+    fn t_min(&self, rays: RayKind) -> T;
     /// The policy of shadow rays; this one is for rays that continue.
     fn for_shadow_rays(&self) -> impl RayEpsilonPolicy<T>;
     /// How shadow rays treat lights.
@@ -65,7 +66,7 @@ impl<T: Real> RayEpsilonPolicy<T> for Exact {
     fn along(&self) -> T {
         T::zero()
     }
-    fn t_min(&self, _: bool) -> T {
+    fn t_min(&self, _: RayKind) -> T {
         T::zero()
     }
     fn for_shadow_rays(&self) -> impl RayEpsilonPolicy<T> {
@@ -98,8 +99,11 @@ impl RayEpsilonPolicy<f64> for RayEpsilon {
     fn along(&self) -> f64 {
         self.along
     }
-    fn t_min(&self, secondary: bool) -> f64 {
-        if secondary { self.t_min } else { 0.0 }
+    fn t_min(&self, rays: RayKind) -> f64 {
+        match rays {
+            RayKind::Camera => 0.0,
+            RayKind::Secondary => self.t_min,
+        }
     }
     fn for_shadow_rays(&self) -> impl RayEpsilonPolicy<f64> {
         *self
@@ -138,8 +142,8 @@ impl RayEpsilonPolicy<f64> for RayEpsilons {
     fn along(&self) -> f64 {
         self.other.along
     }
-    fn t_min(&self, secondary: bool) -> f64 {
-        self.other.t_min(secondary)
+    fn t_min(&self, rays: RayKind) -> f64 {
+        self.other.t_min(rays)
     }
     fn for_shadow_rays(&self) -> impl RayEpsilonPolicy<f64> {
         self.light

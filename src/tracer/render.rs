@@ -134,8 +134,9 @@ impl<T: Backend> Tracer<T> {
             per_pixel: [0, u32::MAX],
             error: 0.0,
         };
-        for ([left, bottom], [across, _], colors, cost) in bands.into_iter().flatten() {
-            for (at, color) in (0..).zip(colors) {
+        for tile in bands.into_iter().flatten() {
+            let ([left, bottom], [across, _], cost) = (tile.corner, tile.size, tile.cost);
+            for (at, color) in (0..).zip(tile.colors) {
                 let (x, y) = (left + at % across, bottom + at / across);
                 let [r, g, b] = color.map(|c| c as f32);
                 pixels[(y * width + x) as usize] = [r, g, b, 1.0];

@@ -1,11 +1,6 @@
 //! Random and quasi-random numbers: the position of each sample in its pixel, and the choices of lights and
 //! surfaces.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use toyproof_image::pcg;
 use toyproof_scene::{Sampler, unit};
 

@@ -1,6 +1,6 @@
 //! A scene in the tracer's number type, and the color of a pixel.
 
-use toyproof_scene::{Film, FrameTime, Requirements, Scene};
+use toyproof_scene::{Film, FrameTime, Requirements, Sampler, Scene};
 
 use crate::any_world::AnyWorld;
 use crate::camera::{Camera, Figure};
@@ -33,7 +33,7 @@ impl<T: Real> Tracer<T> {
         level: Level,
         previous: Option<Spheres<T>>,
     ) -> Self {
-        let requirements = Requirements::of(scene);
+        let requirements = Requirements::new(scene);
         let moved = requirements.motion.then(|| scene.at(frame_time));
         let scene = moved.as_ref().unwrap_or(scene);
         Self {
@@ -51,26 +51,40 @@ impl<T: Real> Tracer<T> {
 
     /// Renders a pixel: the tone-mapped mean of its samples.
     pub(super) fn pixel_color(&self, pixel: [u32; 2]) -> [T; 3] {
+        let mean = Self::mean(pixel, self.film.samples, 0, |sample| self.sample(sample, &Exact));
+        mean.to_array().map(|c| tone_map(&self.film, c))
+    }
+
+    /// Computes the mean of the radiances of a pixel's samples.
+    pub(super) fn mean(
+        pixel: [u32; 2],
+        count: u32,
+        set: u32,
+        radiance: impl Fn(Sample) -> T::Vec3,
+    ) -> T::Vec3 {
         let mut sum = T::Vec3::ZERO;
-        let count = self.film.samples;
         for index in 0..count {
             let sample = Sample {
                 pixel,
                 index,
                 count,
-                set: 0,
+                set,
             };
-            sum = sum + self.sample(sample, &Exact);
+            sum = sum + radiance(sample);
         }
-        let mean = sum / T::from_f64(f64::from(count));
-        mean.to_array().map(|c| tone_map(&self.film, c))
+        sum / T::from_f64(f64::from(count))
+    }
+
+    /// Computes what the camera ray of a sample hits. The stream continues after the sample's jitter.
+    pub(super) fn primary(&self, sampler: Sampler, sample: Sample) -> (PrimaryHit<T>, SampleStream) {
+        let mut stream = SampleStream::new(sampler, sample);
+        let position = Self::sample_position(sample.pixel, stream.jitter());
+        (self.primary_hit(self.camera.screen(position)), stream)
     }
 
     /// Computes the radiance of a sample.
     pub(super) fn sample(&self, sample: Sample, policy: &impl RayEpsilonPolicy<T>) -> T::Vec3 {
-        let mut stream = SampleStream::new(self.film.sampler, sample);
-        let position = Self::sample_position(sample.pixel, stream.jitter());
-        let primary = self.primary_hit(self.camera.screen(position));
+        let (primary, stream) = self.primary(self.film.sampler, sample);
         self.radiance(primary, stream, policy)
     }
 

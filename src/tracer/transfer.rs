@@ -1,10 +1,5 @@
 //! The transfer curve: tone mapping and gamma, from the mean of a pixel's samples to its color.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use toyproof_math::double;
 use toyproof_scene::{Film, ToneMap};
 

@@ -20,17 +20,19 @@ pub trait InstructionSet: Simd {
     fn bits64(self, mask: Self::m64s) -> u32;
 }
 
+/// An instruction set that has at most eight lanes itself.
+macro_rules! at_most_eight {
+    ($($type:ident $function:ident),*) => {
+        $(type $type = Self;
+        #[inline(always)]
+        fn $function(self) -> Self {
+            self
+        })*
+    };
+}
+
 impl InstructionSet for Scalar {
-    type Eight32 = Self;
-    type Eight64 = Self;
-    #[inline(always)]
-    fn eight32(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn eight64(self) -> Self {
-        self
-    }
+    at_most_eight!(Eight32 eight32, Eight64 eight64);
     #[inline(always)]
     fn bits32(self, mask: bool) -> u32 {
         u32::from(mask)
@@ -49,16 +51,7 @@ mod x86 {
     use super::InstructionSet;
 
     impl InstructionSet for V3 {
-        type Eight32 = Self;
-        type Eight64 = Self;
-        #[inline(always)]
-        fn eight32(self) -> Self {
-            self
-        }
-        #[inline(always)]
-        fn eight64(self) -> Self {
-            self
-        }
+        at_most_eight!(Eight32 eight32, Eight64 eight64);
         #[inline(always)]
         fn bits32(self, mask: m32x8) -> u32 {
             self.avx._mm256_movemask_ps(cast(mask)).cast_unsigned()
@@ -71,15 +64,11 @@ mod x86 {
 
     impl InstructionSet for V4 {
         type Eight32 = V3;
-        type Eight64 = Self;
         #[inline(always)]
         fn eight32(self) -> V3 {
             *self
         }
-        #[inline(always)]
-        fn eight64(self) -> Self {
-            self
-        }
+        at_most_eight!(Eight64 eight64);
         #[inline(always)]
         fn bits32(self, mask: b16) -> u32 {
             u32::from(mask.0)
@@ -99,16 +88,7 @@ mod aarch64 {
     use super::InstructionSet;
 
     impl InstructionSet for Neon {
-        type Eight32 = Self;
-        type Eight64 = Self;
-        #[inline(always)]
-        fn eight32(self) -> Self {
-            self
-        }
-        #[inline(always)]
-        fn eight64(self) -> Self {
-            self
-        }
+        at_most_eight!(Eight32 eight32, Eight64 eight64);
         #[inline(always)]
         fn bits32(self, mask: m32x4) -> u32 {
             let lanes: [u32; 4] = cast(mask);
@@ -215,73 +195,15 @@ macro_rules! lanes {
     };
 }
 
-lanes!(
-    f32,
-    f32s,
-    m32s,
-    F32_LANES,
-    Eight32,
-    eight32,
-    bits32,
-    splat_f32s,
-    as_simd_f32s,
-    as_mut_simd_f32s,
-    add_f32s,
-    sub_f32s,
-    mul_f32s,
-    div_f32s,
-    neg_f32s,
-    sqrt_f32s,
-    and_f32s,
-    or_f32s,
-    min_f32s,
-    max_f32s,
-    less_than_f32s,
-    less_than_or_equal_f32s,
-    equal_f32s,
-    select_f32s,
-    reduce_min_f32s,
-    reduce_max_f32s,
-    reduce_sum_f32s,
-    abs_f32s,
-    LANE_BITS_32,
-    as_simd_u32s,
-    splat_u32s,
-    and_u32s,
-    equal_u32s
-);
-lanes!(
-    f64,
-    f64s,
-    m64s,
-    F64_LANES,
-    Eight64,
-    eight64,
-    bits64,
-    splat_f64s,
-    as_simd_f64s,
-    as_mut_simd_f64s,
-    add_f64s,
-    sub_f64s,
-    mul_f64s,
-    div_f64s,
-    neg_f64s,
-    sqrt_f64s,
-    and_f64s,
-    or_f64s,
-    min_f64s,
-    max_f64s,
-    less_than_f64s,
-    less_than_or_equal_f64s,
-    equal_f64s,
-    select_f64s,
-    reduce_min_f64s,
-    reduce_max_f64s,
-    reduce_sum_f64s,
-    abs_f64s,
-    LANE_BITS_64,
-    as_simd_u64s,
-    splat_u64s,
-    and_u64s,
-    equal_u64s
-);
+lanes! {
+    f32, f32s, m32s, F32_LANES, Eight32, eight32, bits32, splat_f32s, as_simd_f32s, as_mut_simd_f32s,
+    add_f32s, sub_f32s, mul_f32s, div_f32s, neg_f32s, sqrt_f32s, and_f32s, or_f32s, min_f32s, max_f32s,
+    less_than_f32s, less_than_or_equal_f32s, equal_f32s, select_f32s, reduce_min_f32s, reduce_max_f32s,
+    reduce_sum_f32s, abs_f32s, LANE_BITS_32, as_simd_u32s, splat_u32s, and_u32s, equal_u32s
+}
+lanes! {
+    f64, f64s, m64s, F64_LANES, Eight64, eight64, bits64, splat_f64s, as_simd_f64s, as_mut_simd_f64s,
+    add_f64s, sub_f64s, mul_f64s, div_f64s, neg_f64s, sqrt_f64s, and_f64s, or_f64s, min_f64s, max_f64s,
+    less_than_f64s, less_than_or_equal_f64s, equal_f64s, select_f64s, reduce_min_f64s, reduce_max_f64s,
+    reduce_sum_f64s, abs_f64s, LANE_BITS_64, as_simd_u64s, splat_u64s, and_u64s, equal_u64s
+}

@@ -1,11 +1,6 @@
 //! SIMD: one operation on as many numbers as the processor has lanes. Each lane has the same bits as a scalar
 //! computation: nothing is fused or reordered, so that kernels give the same results on every processor.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 mod instruction_set;
 mod wide;
 

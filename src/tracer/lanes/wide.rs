@@ -23,7 +23,7 @@ impl<T, S: Lanes<T>> Copy for Wide<T, S> {}
 
 impl<T, S: Lanes<T>> Wide<T, S> {
     #[inline(always)]
-    fn of(self, numbers: S::Numbers) -> Self {
+    fn with_numbers(self, numbers: S::Numbers) -> Self {
         Self {
             simd: self.simd,
             numbers,
@@ -65,27 +65,27 @@ impl<T, S: Lanes<T>> Wide<T, S> {
     }
     #[inline(always)]
     pub(in super::super) fn sqrt(self) -> Self {
-        self.of(self.simd.sqrt(self.numbers))
+        self.with_numbers(self.simd.sqrt(self.numbers))
     }
     #[inline(always)]
     pub(in super::super) fn abs(self) -> Self {
-        self.of(self.simd.abs(self.numbers))
+        self.with_numbers(self.simd.abs(self.numbers))
     }
     #[inline(always)]
     pub(in super::super) fn and(self, other: Self) -> Self {
-        self.of(self.simd.and(self.numbers, other.numbers))
+        self.with_numbers(self.simd.and(self.numbers, other.numbers))
     }
     #[inline(always)]
     pub(in super::super) fn or(self, other: Self) -> Self {
-        self.of(self.simd.or(self.numbers, other.numbers))
+        self.with_numbers(self.simd.or(self.numbers, other.numbers))
     }
     #[inline(always)]
     pub(in super::super) fn min(self, other: Self) -> Self {
-        self.of(self.simd.min(self.numbers, other.numbers))
+        self.with_numbers(self.simd.min(self.numbers, other.numbers))
     }
     #[inline(always)]
     pub(in super::super) fn max(self, other: Self) -> Self {
-        self.of(self.simd.max(self.numbers, other.numbers))
+        self.with_numbers(self.simd.max(self.numbers, other.numbers))
     }
     #[inline(always)]
     pub(in super::super) fn less(self, other: Self) -> S::Mask {
@@ -106,7 +106,7 @@ impl<T, S: Lanes<T>> Wide<T, S> {
     }
     #[inline(always)]
     pub(in super::super) fn select(self, mask: S::Mask, no: Self) -> Self {
-        self.of(self.simd.select(mask, self.numbers, no.numbers))
+        self.with_numbers(self.simd.select(mask, self.numbers, no.numbers))
     }
 }
 
@@ -152,7 +152,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                self.of(self.simd.$name(self.numbers, other.numbers))
+                self.with_numbers(self.simd.$name(self.numbers, other.numbers))
             }
         })*
     };
@@ -163,7 +163,7 @@ impl<T, S: Lanes<T>> Neg for Wide<T, S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.of(self.simd.neg(self.numbers))
+        self.with_numbers(self.simd.neg(self.numbers))
     }
 }
 

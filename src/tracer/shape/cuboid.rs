@@ -1,15 +1,10 @@
 //! Boxes.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 use toyproof_scene as scene;
 
-use super::primitive::Primitive;
-use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
-use crate::ray::Ray;
+use super::primitive::{LaneSurface, Primitive, update_hits};
+use crate::lanes::{Lanes, Level, Wide, Wide3};
+use crate::ray::{Ray, RayKind};
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
 use crate::spheres::{LaneRays, Packet, PacketHits};
@@ -57,7 +52,17 @@ impl<T: Real> Cuboid<T> {
         (enter < leave).then_some([enter, leave])
     }
 
-    /// Returns t of rays in lanes, infinite where there is no hit, by the operations of [`Cuboid::interval`].
+    /// Returns the axis of the face on which a local point lies, up to rounding: the one whose face is
+    /// nearest.
+    fn face(&self, point: [T; 3]) -> usize {
+        let depth = |axis: usize| self.half[axis] - point[axis].abs();
+        let nearer = |best: usize, axis: usize| if depth(axis) < depth(best) { axis } else { best };
+        (1..3).fold(0, nearer)
+    }
+}
+
+impl<T: Real> LaneSurface<T> for Cuboid<T> {
+    /// By the operations of [`Cuboid::interval`].
     #[inline(always)]
     fn lane_ts<S: Lanes<T>>(
         &self,
@@ -85,20 +90,12 @@ impl<T: Real> Cuboid<T> {
         let t = enter.select(t_min.less(enter), leave);
         t.select(enter.less(leave), infinity)
     }
-
-    /// Returns the axis of the face on which a local point lies, up to rounding: the one whose face is
-    /// nearest.
-    fn face(&self, point: [T; 3]) -> usize {
-        let depth = |axis: usize| self.half[axis] - point[axis].abs();
-        let nearer = |best: usize, axis: usize| if depth(axis) < depth(best) { axis } else { best };
-        (1..3).fold(0, nearer)
-    }
 }
 
 impl<T: Real> Primitive<T> for Cuboid<T> {
     fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
         let d = self.axes.map(|axis| axis.dot(ray.direction));
-        let t_min = policy.t_min(ray.from.is_some());
+        let t_min = policy.t_min(ray.kind());
         let interval = self.interval(self.localize(ray.origin), d)?;
         interval.into_iter().find(|t| *t > t_min && t.is_finite())
     }
@@ -115,7 +112,7 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
         let leave = |axis: usize| (self.half[axis].copysign(d[axis]) - o[axis]) / d[axis];
         // 0 / 0 for a ray within the plane of a face: that face is ignored.
         let t = (0..3).map(leave).fold(T::infinity(), T::min);
-        (t > policy.t_min(true) && t.is_finite()).then_some(t)
+        (t > policy.t_min(RayKind::Secondary) && t.is_finite()).then_some(t)
     }
 
     fn update_packet(
@@ -125,17 +122,7 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
         found: &mut PacketHits<T>,
         number: u32,
     ) -> bool {
-        let cuboid = *self;
-        T::run(
-            level,
-            CuboidHits {
-                cuboid,
-                packet,
-                found,
-                number,
-            },
-        );
-        true
+        update_hits(*self, level, packet, found, number)
     }
 
     #[inline(always)]
@@ -146,7 +133,7 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
         policy: &impl RayEpsilonPolicy<T>,
         _: u32,
     ) -> Wide<T, S> {
-        let t_min = Wide::splat(simd, policy.t_min(true));
+        let t_min = Wide::splat(simd, policy.t_min(RayKind::Secondary));
         self.lane_ts(simd, rays.origin, rays.direction, t_min)
     }
 
@@ -163,25 +150,5 @@ impl<T: Real> Primitive<T> for Cuboid<T> {
                 outward
             },
         ]
-    }
-}
-
-/// Kernel for [`Primitive::update_packet`] of a box.
-struct CuboidHits<'a, T: Real> {
-    cuboid: Cuboid<T>,
-    packet: &'a Packet<T>,
-    found: &'a mut PacketHits<T>,
-    number: u32,
-}
-
-impl<T: Real> Kernel<T> for CuboidHits<'_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, simd: S) {
-        let cuboid = self.cuboid;
-        let intersect = |origin, direction, t_min| cuboid.lane_ts(simd, origin, direction, t_min);
-        self.found
-            .update_packet(simd, self.packet, self.number, intersect);
     }
 }

@@ -1,10 +1,5 @@
 //! Intersection of rays with surfaces.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 mod cuboid;
 mod primitive;
 #[cfg(test)]
@@ -13,9 +8,10 @@ mod tests;
 use toyproof_scene::{self as scene, Equation};
 
 use self::cuboid::Cuboid;
+use self::primitive::{LaneSurface, update_hits};
 pub(super) use self::primitive::{Primitive, Sphere};
-use crate::lanes::{Kernel, Lanes, Level, Wide, Wide3};
-use crate::ray::Ray;
+use crate::lanes::{Lanes, Level, Wide, Wide3};
+use crate::ray::{Ray, RayKind};
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
 use crate::spheres::{LaneRays, Packet, PacketHits};
@@ -40,32 +36,29 @@ impl<T: Real> Shape<T> {
     }
 }
 
+/// Evaluates an expression for the surface of any kind.
+macro_rules! each {
+    ($shape:expr, $surface:ident => $value:expr) => {
+        match $shape {
+            Shape::Sphere($surface) => $value,
+            Shape::Quadric($surface) => $value,
+            Shape::Plane($surface) => $value,
+            Shape::Box($surface) => $value,
+        }
+    };
+}
+
 impl<T: Real> Primitive<T> for Shape<T> {
     fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
-        match self {
-            Self::Sphere(sphere) => sphere.intersect(ray, policy),
-            Self::Quadric(quadric) => quadric.intersect(ray, policy),
-            Self::Plane(plane) => plane.intersect(ray, policy),
-            Self::Box(cuboid) => cuboid.intersect(ray, policy),
-        }
+        each!(self, surface => surface.intersect(ray, policy))
     }
 
     fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
-        match self {
-            Self::Sphere(sphere) => sphere.intersect_own(ray, policy),
-            Self::Quadric(quadric) => quadric.intersect_own(ray, policy),
-            Self::Plane(plane) => plane.intersect_own(ray, policy),
-            Self::Box(cuboid) => cuboid.intersect_own(ray, policy),
-        }
+        each!(self, surface => surface.intersect_own(ray, policy))
     }
 
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
-        match self {
-            Self::Sphere(sphere) => sphere.surface(ray, t),
-            Self::Quadric(quadric) => quadric.surface(ray, t),
-            Self::Plane(plane) => plane.surface(ray, t),
-            Self::Box(cuboid) => cuboid.surface(ray, t),
-        }
+        each!(self, surface => surface.surface(ray, t))
     }
 
     fn update_packet(
@@ -75,11 +68,7 @@ impl<T: Real> Primitive<T> for Shape<T> {
         found: &mut PacketHits<T>,
         number: u32,
     ) -> bool {
-        match self {
-            Self::Plane(plane) => plane.update_packet(level, packet, found, number),
-            Self::Box(cuboid) => cuboid.update_packet(level, packet, found, number),
-            Self::Sphere(_) | Self::Quadric(_) => false,
-        }
+        each!(self, surface => surface.update_packet(level, packet, found, number))
     }
 
     #[inline(always)]
@@ -90,12 +79,7 @@ impl<T: Real> Primitive<T> for Shape<T> {
         policy: &impl RayEpsilonPolicy<T>,
         active: u32,
     ) -> Wide<T, S> {
-        match self {
-            Self::Plane(plane) => plane.intersect_in_lanes(simd, rays, policy, active),
-            Self::Box(cuboid) => cuboid.intersect_in_lanes(simd, rays, policy, active),
-            Self::Quadric(quadric) => quadric.intersect_in_lanes(simd, rays, policy, active),
-            Self::Sphere(sphere) => sphere.intersect_in_lanes(simd, rays, policy, active),
-        }
+        each!(self, surface => surface.intersect_in_lanes(simd, rays, policy, active))
     }
 
     #[inline(always)]
@@ -106,19 +90,11 @@ impl<T: Real> Primitive<T> for Shape<T> {
         t: Wide<T, S>,
         active: u32,
     ) -> Wide3<T, S> {
-        match self {
-            Self::Plane(plane) => plane.normals_in_lanes(simd, rays, t, active),
-            Self::Box(cuboid) => cuboid.normals_in_lanes(simd, rays, t, active),
-            Self::Quadric(quadric) => quadric.normals_in_lanes(simd, rays, t, active),
-            Self::Sphere(sphere) => sphere.normals_in_lanes(simd, rays, t, active),
-        }
+        each!(self, surface => surface.normals_in_lanes(simd, rays, t, active))
     }
 
     fn sphere(&self) -> Option<&Sphere<T>> {
-        match self {
-            Self::Sphere(sphere) => Some(sphere),
-            Self::Quadric(_) | Self::Plane(_) | Self::Box(_) => None,
-        }
+        each!(self, surface => surface.sphere())
     }
 }
 
@@ -219,7 +195,7 @@ impl<T: Real> Primitive<T> for Quadric<T> {
         if disc.is_nan() || disc < T::zero() {
             return None;
         }
-        let t_min = policy.t_min(ray.from.is_some());
+        let t_min = policy.t_min(ray.kind());
         roots(a, b, c, disc).into_iter().find_map(|t| {
             let local = o + d * t;
             let t = (ahead + t) * self.unit;
@@ -233,7 +209,8 @@ impl<T: Real> Primitive<T> for Quadric<T> {
         let [a, b, _] = self.equation(o, d);
         let own = (b + b) / a;
         let t = own * self.unit;
-        (t > policy.t_min(true) && t.is_finite() && self.is_within_ends(o + d * own)).then_some(t)
+        (t > policy.t_min(RayKind::Secondary) && t.is_finite() && self.is_within_ends(o + d * own))
+            .then_some(t)
     }
 
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {
@@ -262,10 +239,17 @@ impl<T: Real> Plane<T> {
             normal: T::Vec3::from_f64(normal),
         }
     }
+}
 
-    /// Returns t of rays in lanes.
+impl<T: Real> LaneSurface<T> for Plane<T> {
     #[inline(always)]
-    fn lane_ts<S: Lanes<T>>(&self, simd: S, origin: Wide3<T, S>, direction: Wide3<T, S>) -> Wide<T, S> {
+    fn lane_ts<S: Lanes<T>>(
+        &self,
+        simd: S,
+        origin: Wide3<T, S>,
+        direction: Wide3<T, S>,
+        _: Wide<T, S>,
+    ) -> Wide<T, S> {
         let normal = Wide3::splat(simd, self.normal.to_array());
         let point = Wide3::splat(simd, self.point.to_array());
         normal.dot(point - origin) / normal.dot(direction)
@@ -276,7 +260,7 @@ impl<T: Real> Primitive<T> for Plane<T> {
     fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
         let t = self.normal.dot(self.point - ray.origin) / self.normal.dot(ray.direction);
         // A ray parallel to the plane divides by 0: t is infinite or NaN.
-        (t > policy.t_min(ray.from.is_some()) && t.is_finite()).then_some(t)
+        (t > policy.t_min(ray.kind()) && t.is_finite()).then_some(t)
     }
 
     fn intersect_own(&self, _: &Ray<T>, _: &impl RayEpsilonPolicy<T>) -> Option<T> {
@@ -290,17 +274,7 @@ impl<T: Real> Primitive<T> for Plane<T> {
         found: &mut PacketHits<T>,
         number: u32,
     ) -> bool {
-        let plane = *self;
-        T::run(
-            level,
-            PlaneHits {
-                plane,
-                packet,
-                found,
-                number,
-            },
-        );
-        true
+        update_hits(*self, level, packet, found, number)
     }
 
     #[inline(always)]
@@ -308,10 +282,11 @@ impl<T: Real> Primitive<T> for Plane<T> {
         &self,
         simd: S,
         rays: &LaneRays<T, S>,
-        _: &impl RayEpsilonPolicy<T>,
+        policy: &impl RayEpsilonPolicy<T>,
         _: u32,
     ) -> Wide<T, S> {
-        self.lane_ts(simd, rays.origin, rays.direction)
+        let t_min = Wide::splat(simd, policy.t_min(RayKind::Secondary));
+        self.lane_ts(simd, rays.origin, rays.direction, t_min)
     }
 
     #[inline(always)]
@@ -331,25 +306,5 @@ impl<T: Real> Primitive<T> for Plane<T> {
         let point = ray.origin + ray.direction * t;
         let facing = self.normal.dot(ray.direction) < T::zero();
         [point, if facing { self.normal } else { -self.normal }]
-    }
-}
-
-/// Kernel for [`Primitive::update_packet`] of a plane.
-struct PlaneHits<'a, T: Real> {
-    plane: Plane<T>,
-    packet: &'a Packet<T>,
-    found: &'a mut PacketHits<T>,
-    number: u32,
-}
-
-impl<T: Real> Kernel<T> for PlaneHits<'_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Lanes<T>>(self, simd: S) {
-        let plane = self.plane;
-        let intersect = |origin, direction, _| plane.lane_ts(simd, origin, direction);
-        self.found
-            .update_packet(simd, self.packet, self.number, intersect);
     }
 }

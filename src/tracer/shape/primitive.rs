@@ -4,8 +4,8 @@ use std::fmt::Debug;
 
 use toyproof_scene::Shape;
 
-use crate::lanes::{Columns, Lanes, Level, MAX_LANES, Wide, Wide3, lanes_of};
-use crate::ray::Ray;
+use crate::lanes::{Columns, Kernel, Lanes, Level, MAX_LANES, Wide, Wide3, lanes_of};
+use crate::ray::{Ray, RayKind};
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::{Real, Vector};
 use crate::spheres::{IntersectSphere, LaneRays, Packet, PacketHits};
@@ -68,7 +68,58 @@ pub(crate) trait Primitive<T: Real>: Debug + Send + Sync {
     }
 }
 
-/// A sphere.
+/// A surface whose intersections are computed in lanes.
+pub(super) trait LaneSurface<T: Real>: Copy {
+    /// Returns t of rays in lanes, not finite where there is no hit. Only t > `t_min` count.
+    fn lane_ts<S: Lanes<T>>(
+        &self,
+        simd: S,
+        origin: Wide3<T, S>,
+        direction: Wide3<T, S>,
+        t_min: Wide<T, S>,
+    ) -> Wide<T, S>;
+}
+
+/// [`Primitive::update_packet`] of a surface that has a kernel.
+pub(super) fn update_hits<T: Real>(
+    surface: impl LaneSurface<T>,
+    level: Level,
+    packet: &Packet<T>,
+    found: &mut PacketHits<T>,
+    number: u32,
+) -> bool {
+    T::run(
+        level,
+        UpdateHits {
+            surface,
+            packet,
+            found,
+            number,
+        },
+    );
+    true
+}
+
+/// Kernel for [`update_hits`].
+struct UpdateHits<'a, T: Real, P> {
+    surface: P,
+    packet: &'a Packet<T>,
+    found: &'a mut PacketHits<T>,
+    number: u32,
+}
+
+impl<T: Real, P: LaneSurface<T>> Kernel<T> for UpdateHits<'_, T, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<T>>(self, simd: S) {
+        let surface = self.surface;
+        let intersect = |origin, direction, t_min| surface.lane_ts(simd, origin, direction, t_min);
+        self.found
+            .update_packet(simd, self.packet, self.number, intersect);
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sphere<T: Real> {
     pub(crate) center: T::Vec3,
@@ -83,8 +134,8 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns none for another shape.
-    pub(crate) fn of(shape: &Shape) -> Option<Self> {
+    /// Returns `None` for another shape.
+    pub(crate) fn from_shape(shape: &Shape) -> Option<Self> {
         match shape {
             Shape::Sphere { center, radius } => Some(Self::new(*center, *radius)),
             _ => None,
@@ -106,12 +157,12 @@ impl<T: Real> Sphere<T> {
 
 impl<T: Real> Primitive<T> for Sphere<T> {
     fn intersect(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
-        self.nearest_root(ray, policy.t_min(ray.from.is_some()), false)
+        self.nearest_root(ray, policy.t_min(ray.kind()), false)
     }
 
     /// A ray that leaves the sphere does not hit it again; a ray that enters it hits the far side.
     fn intersect_own(&self, ray: &Ray<T>, policy: &impl RayEpsilonPolicy<T>) -> Option<T> {
-        self.nearest_root(ray, policy.t_min(true), true)
+        self.nearest_root(ray, policy.t_min(RayKind::Secondary), true)
     }
 
     fn surface(&self, ray: &Ray<T>, t: T) -> [T::Vec3; 2] {

@@ -23,7 +23,7 @@ struct SubtreeCosts {
 
 impl SubtreeCosts {
     /// Combines the costs of two halves.
-    fn of(area: f32, [one, other]: [&[f32; BLOCK_SIZE - 1]; 2]) -> Self {
+    fn new(area: f32, [one, other]: [&[f32; BLOCK_SIZE - 1]; 2]) -> Self {
         let partition = |children: usize| {
             (1..children)
                 .map(|k| {
@@ -70,7 +70,7 @@ impl<'a> Collapse<'a> {
         for node in (0..binary.len()).rev() {
             let area = binary.half_area(node);
             collapse.subtrees[node] = match binary.halves(node) {
-                Some(halves) => SubtreeCosts::of(area, halves.map(|half| &collapse.subtrees[half].costs)),
+                Some(halves) => SubtreeCosts::new(area, halves.map(|half| &collapse.subtrees[half].costs)),
                 None => SubtreeCosts {
                     costs: [area; BLOCK_SIZE - 1],
                     ..SubtreeCosts::default()

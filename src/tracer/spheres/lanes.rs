@@ -55,7 +55,6 @@ pub(in super::super) struct SpilledRays<T> {
 }
 
 impl<T: Real> SpilledRays<T> {
-    /// Returns the ray of a lane.
     #[inline]
     pub(in super::super) fn get(&self, lane: usize) -> Ray<T> {
         let from = self.from[lane].untag();

@@ -5,11 +5,6 @@
 //! single ray is tested against eight spheres or boxes at once ([`single_ray`]); the rays of a packet are
 //! tested against one sphere at a time ([`packet`]). All of them use the same formula ([`formula`]).
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 mod binary;
 mod block;
 mod collapse;

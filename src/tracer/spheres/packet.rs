@@ -31,7 +31,6 @@ impl<T: Real> Packet<T> {
         Self { origins, directions }
     }
 
-    /// Returns one ray.
     #[inline]
     pub(in super::super) fn ray(&self, at: usize) -> Ray<T> {
         let of = |[x, y, z]: &[Each<T>; 3]| T::Vec3::new(x[at], y[at], z[at]);
@@ -154,7 +153,6 @@ impl<T: Real> PacketHits<T> {
         nearer_bits != 0
     }
 
-    /// Returns the first hit of a ray.
     #[inline]
     pub(in super::super) fn get(&self, ray: usize) -> FirstHit<T> {
         FirstHit::new(self.t[ray], self.tags[ray].untag())

@@ -229,34 +229,14 @@ impl<'a, T: Real, S: Lanes<T>> RayTraversal<'a, T, S> {
     #[inline(always)]
     fn cross(&self, sides: &RayBoxes<T, S>, node: &Node<T>) -> (u32, Eight<T>) {
         let simd = self.simd;
+        let (origin, near, far) = (self.origin, sides.inverse_near, sides.inverse_far);
         let mut nears = [T::zero(); BLOCK_SIZE];
         let mut misses = 0;
         let mut at = 0;
         while at < BLOCK_SIZE {
-            let [near_x, far_x] = sides.axis(
-                node,
-                0,
-                at,
-                self.origin.0,
-                sides.inverse_near.0,
-                sides.inverse_far.0,
-            );
-            let [near_y, far_y] = sides.axis(
-                node,
-                1,
-                at,
-                self.origin.1,
-                sides.inverse_near.1,
-                sides.inverse_far.1,
-            );
-            let [near_z, far_z] = sides.axis(
-                node,
-                2,
-                at,
-                self.origin.2,
-                sides.inverse_near.2,
-                sides.inverse_far.2,
-            );
+            let [near_x, far_x] = sides.axis(node, 0, at, [origin.0, near.0, far.0]);
+            let [near_y, far_y] = sides.axis(node, 1, at, [origin.1, near.1, far.1]);
+            let [near_z, far_z] = sides.axis(node, 2, at, [origin.2, near.2, far.2]);
             let near = near_x.max(near_y).max(near_z.max(Wide::splat(simd, T::zero())));
             let far = far_x.min(far_y).min(far_z.min(Wide::splat(simd, self.t)));
             near.store(&mut nears[at..]);
@@ -296,9 +276,7 @@ impl<T: Real, S: Lanes<T>> RayBoxes<T, S> {
         node: &Node<T>,
         axis: usize,
         at: usize,
-        origin: Wide<T, S>,
-        inverse_near: Wide<T, S>,
-        inverse_far: Wide<T, S>,
+        [origin, inverse_near, inverse_far]: [Wide<T, S>; 3],
     ) -> [Wide<T, S>; 2] {
         let (mut first, mut last) = (&node.low[axis], &node.high[axis]);
         if self.is_negative[axis] {

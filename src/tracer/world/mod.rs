@@ -1,10 +1,5 @@
 //! The scene in the tracer's number type, and ray queries.
 
-#![expect(
-    clippy::inline_always,
-    reason = "only what is inlined into a kernel is compiled for its instruction set"
-)]
-
 mod path;
 mod points;
 mod queries;
@@ -156,7 +151,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         Query {
             origin: ray.origin.to_array(),
             direction: ray.direction.to_array(),
-            t_min: policy.t_min(ray.from.is_some()),
+            t_min: policy.t_min(ray.kind()),
             t_max,
             // No index is smaller, so that no hit at the bound counts.
             number: 0,

@@ -25,7 +25,6 @@ struct BrdfSamples<T, S: Lanes<T>> {
     lanes: u32,
 }
 
-/// The emitters that lanes have selected.
 struct SelectedEmitters<T, S: Lanes<T>> {
     center: Wide3<T, S>,
     radius: Wide<T, S>,

@@ -2,7 +2,7 @@
 
 use super::World;
 use crate::lanes::{Lanes, MAX_LANES, Wide, lanes_of};
-use crate::ray::FirstHit;
+use crate::ray::{FirstHit, RayKind};
 use crate::ray_epsilon::RayEpsilonPolicy;
 use crate::real::Real;
 use crate::shape::Primitive;
@@ -49,7 +49,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             return LaneHits { t, surface };
         }
         let rays = &Self::owned_rays(simd, rays, policy);
-        let t_min = Wide::splat(simd, policy.t_min(true));
+        let t_min = Wide::splat(simd, policy.t_min(RayKind::Secondary));
         let mut hits = self.spheres.nearest_in_lanes(simd, rays, t_min, active);
         for &other in &self.others {
             let t = self.intersect_other(simd, other, rays, policy, active);
@@ -69,7 +69,8 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         active: u32,
     ) -> Wide<T, S> {
         let shape = &self.shapes[other];
-        let [t_min, infinity] = [policy.t_min(true), T::infinity()].map(|number| Wide::splat(simd, number));
+        let [t_min, infinity] =
+            [policy.t_min(RayKind::Secondary), T::infinity()].map(|number| Wide::splat(simd, number));
         let own = simd.bits(rays.from.equal(Wide::splat(simd, T::tag(other as u32)))) & active;
         let mut t = infinity;
         if own != active {
@@ -120,7 +121,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
             }
         }
         let rays = &Self::owned_rays(simd, rays, policy);
-        let t_min = Wide::splat(simd, policy.t_min(true));
+        let t_min = Wide::splat(simd, policy.t_min(RayKind::Secondary));
         hidden |= self
             .spheres
             .any_in_lanes(simd, rays, [t_min, distance], light, active);

@@ -3,7 +3,7 @@
 use toyproof_scene::Integrator;
 
 use super::World;
-use super::whitted::Deferred;
+use super::whitted::DeferredRays;
 use crate::lanes::{Kernel, Lanes, Wide, Wide3};
 use crate::ray::{FirstHit, Ray};
 use crate::ray_epsilon::{Exact, RayEpsilonPolicy};
@@ -73,7 +73,6 @@ pub(crate) struct Samples<'a, T: Real> {
     pub(crate) radiance: [&'a mut [T]; 3],
 }
 
-/// Returns the arrays as slices.
 pub(crate) fn each_slice<T, const N: usize>(arrays: &[[T; N]; 3]) -> [&[T]; 3] {
     arrays.each_ref().map(|array| &array[..])
 }
@@ -96,7 +95,7 @@ impl<T: Real, P: Primitive<T>, R: RayEpsilonPolicy<T>> Kernel<T> for Trace<'_, T
             policy,
         } = self;
         let mut radiance = samples.radiance;
-        let mut deferred = Deferred::none();
+        let mut deferred = DeferredRays::none();
         let mut at = 0;
         while at < samples.t.len() {
             let active = (samples.active >> at) as u32 & (u32::MAX >> (32 - S::COUNT));

@@ -33,14 +33,25 @@ impl<T: Real, S: Lanes<T>> Branches<T, S> {
     }
 }
 
+/// The shadow rays from points to a light.
+struct LightRays<T, S: Lanes<T>> {
+    /// From the points, or from the origins of the rays, by the policy.
+    direction: Wide3<T, S>,
+    /// Of the direction and the normal.
+    cosine: Wide<T, S>,
+    rays: LaneRays<T, S>,
+    /// The lengths of the rays.
+    distance: Wide<T, S>,
+}
+
 /// The refracted rays that are traced later. Those of a sample form a stack with at most one ray for each
 /// number of segments: a ray that splits comes back to its refracted part when all longer ones are done.
-pub(super) struct Deferred<T, S: Lanes<T>> {
+pub(super) struct DeferredRays<T, S: Lanes<T>> {
     /// By the number of segments of the ray that was split, with the lanes that have one.
     levels: Vec<(Branches<T, S>, u32)>,
 }
 
-impl<T: Real, S: Lanes<T>> Deferred<T, S> {
+impl<T: Real, S: Lanes<T>> DeferredRays<T, S> {
     pub(super) fn none() -> Self {
         Self { levels: Vec::new() }
     }
@@ -92,7 +103,7 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         simd: S,
         rays: LaneRays<T, S>,
         mut hits: LaneHits<T, S>,
-        (streams, deferred): (&mut [SampleStream], &mut Deferred<T, S>),
+        (streams, deferred): (&mut [SampleStream], &mut DeferredRays<T, S>),
         mut active: u32,
         policy: &impl RayEpsilonPolicy<T>,
     ) -> Wide3<T, S> {
@@ -198,17 +209,24 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         };
         let mut sum = points.color.times(Wide3::splat(simd, self.ambient.to_array()));
         for (number, light) in self.lights.iter().enumerate() {
-            let (direction, cosine, rays, distance) = if light.radius > T::zero() {
+            let LightRays {
+                direction,
+                cosine,
+                rays,
+                distance,
+            } = if light.radius > T::zero() {
                 let [center, from] = [
                     Wide3::splat(simd, light.position.to_array()),
                     points.light_ray_origin(simd, policy),
                 ];
                 let cone = Cone::new(simd, center, Wide::splat(simd, light.radius), from);
                 let (direction, distance) = cone.sample(simd, next_disks(simd, streams, lit), lit);
-                let cosine = points.normal.dot(direction);
-                let along = Wide::splat(simd, policy.along());
-                let rays = points.spawn_rays(simd, direction, policy);
-                (direction, cosine, rays, distance - along)
+                LightRays {
+                    direction,
+                    cosine: points.normal.dot(direction),
+                    rays: points.spawn_rays(simd, direction, policy),
+                    distance: distance - Wide::splat(simd, policy.along()),
+                }
             } else {
                 Self::point_light_rays(simd, points, light, policy)
             };
@@ -230,16 +248,13 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         sum
     }
 
-    /// Returns the directions from points to a point light, their cosines to the normals, and the shadow rays
-    /// with their lengths.
     #[inline(always)]
-    #[expect(clippy::type_complexity, reason = "the results are only taken apart")]
     fn point_light_rays<S: Lanes<T>>(
         simd: S,
         points: &Points<T, S>,
         light: &Light<T>,
         policy: &impl RayEpsilonPolicy<T>,
-    ) -> (Wide3<T, S>, Wide<T, S>, LaneRays<T, S>, Wide<T, S>) {
+    ) -> LightRays<T, S> {
         let [zero, offset, along] =
             [T::zero(), policy.offset(), policy.along()].map(|number| Wide::splat(simd, number));
         let light = Wide3::splat(simd, light.position.to_array());
@@ -256,6 +271,11 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         }
         let mut rays = points.spawn_rays(simd, ray_direction, policy);
         rays.origin = origin + ray_direction * along;
-        (direction, cosine, rays, distance - along)
+        LightRays {
+            direction,
+            cosine,
+            rays,
+            distance: distance - along,
+        }
     }
 }
