@@ -10,7 +10,7 @@ use toyproof_eval::{Observed, bound};
 use toyproof_eval_native::Program;
 use toyproof_glsl::Sampling;
 use toyproof_gpu::browser::Chromium;
-use toyproof_gpu::{PlayedPasses, ShaderArtifact, Worker};
+use toyproof_gpu::{PassCode, ShaderArtifact, Worker};
 use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Target};
 use toyproof_translate::FloatMode;
@@ -57,7 +57,7 @@ impl Original {
             .map(|lowered| Ok((lowered?, FloatMode::Strict)))
             .collect::<Result<Vec<_>, _>>()
             .map_err(Unproved::Overdue)?;
-        let code = PlayedPasses::Lowered(lowered);
+        let code = PassCode::Lowered(lowered);
         let sampling = passes.sources.iter().map(|source| source.checked.sampling);
         let mut playback = open(worker, code, sampling, passes.graph, passes.media)?;
         let device = playback.device().to_owned();
@@ -121,7 +121,7 @@ impl Original {
         let upside_down = artifacts
             .iter()
             .any(|artifact| matches!(artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down));
-        let code = PlayedPasses::Converted(artifacts);
+        let code = PassCode::Converted(artifacts);
         let sampling = graph.sampling.iter().copied();
         let mut playback = open(worker, code, sampling, &graph.graph, passes.media)?;
         let targets: Vec<Target> = passes.graph.passes().iter().map(|pass| pass.target).collect();
@@ -213,7 +213,7 @@ struct Observations {
 /// Opens the passes of a graph, which start before the first frame.
 fn open<'a>(
     worker: &'a mut Worker,
-    code: PlayedPasses,
+    code: PassCode,
     sampling: impl Iterator<Item = [Sampling; 4]>,
     graph: &Graph,
     media: &[Texture],

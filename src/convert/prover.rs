@@ -168,10 +168,10 @@ pub enum Unproved {
     BrowserChannel,
     /// The browser does not render the original.
     #[error("the original shader cannot be rendered with WebGL 2: {0}")]
-    BrowserOriginal(browser::Failure),
+    BrowserOriginal(browser::BrowserFailure),
     /// The browser does not render the conversion.
     #[error(transparent)]
-    Browser(browser::Failure),
+    Browser(browser::BrowserFailure),
     /// The browser renders the conversion with other colors than the original.
     #[error(
         "in Chromium, {} of {} pixels {} from the original in WebGL 2, by at most {:.1}/255",

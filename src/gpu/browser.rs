@@ -21,7 +21,7 @@ use toyproof_image::{Frame, Image, Input, InputType};
 
 /// Why a browser rendered nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Failure {
+pub enum BrowserFailure {
     /// It rejects the shader with this message.
     #[error("Chromium cannot render the shader: {0}")]
     Refused(String),
@@ -111,7 +111,7 @@ impl Chromium {
         text: Text,
         sampling: [Sampling; 4],
         frames: &[Frame],
-    ) -> Result<Vec<Image>, Failure> {
+    ) -> Result<Vec<Image>, BrowserFailure> {
         let (language, text) = match text {
             Text::Glsl(text) => ("glsl", text),
             Text::Wgsl(text) => ("wgsl", text),
@@ -132,7 +132,7 @@ impl Chromium {
             if answer["contextLost"] == false {
                 self.live = Some(connection);
             }
-            return Err(Failure::Refused(
+            return Err(BrowserFailure::Refused(
                 reason.lines().next().unwrap_or_default().to_owned(),
             ));
         }
@@ -141,7 +141,7 @@ impl Chromium {
         let images: Option<Vec<Image>> = frames.iter().zip(images_base64).map(decode_image).collect();
         images
             .filter(|images| images.len() == frames.len())
-            .ok_or_else(|| Failure::Disconnected("unexpected reply".to_owned()))
+            .ok_or_else(|| BrowserFailure::Disconnected("unexpected reply".to_owned()))
     }
 
     /// Returns the browser's name and version after it has rendered.
@@ -218,8 +218,8 @@ const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 impl BrowserConnection {
     /// Starts the browser and opens the page.
-    fn launch(program: &Path, page: &str, deadline: Instant) -> Result<Self, Failure> {
-        let launch_error = |error: std::io::Error| Failure::Disconnected(error.to_string());
+    fn launch(program: &Path, page: &str, deadline: Instant) -> Result<Self, BrowserFailure> {
+        let launch_error = |error: std::io::Error| BrowserFailure::Disconnected(error.to_string());
         let profile = tempfile::Builder::new()
             .prefix("toyproof-browser-")
             .tempdir()
@@ -289,19 +289,19 @@ impl BrowserConnection {
     }
 
     /// Evaluates an expression in the page, and awaits it if it is a promise.
-    fn call(&mut self, expression: &str, timeout: Duration) -> Result<Value, Failure> {
+    fn call(&mut self, expression: &str, timeout: Duration) -> Result<Value, BrowserFailure> {
         let deadline = Instant::now() + timeout;
         let parameters = json!({"expression": expression, "awaitPromise": true, "returnByValue": true});
         let answer = self.request("Runtime.evaluate", &parameters, deadline);
         let mut answer = answer.map_err(|failure| match failure {
-            Failure::Timeout(_) => Failure::Timeout(timeout),
+            BrowserFailure::Timeout(_) => BrowserFailure::Timeout(timeout),
             other => other,
         })?;
         Ok(answer["result"]["value"].take())
     }
 
     /// Waits for the page to load and attaches to it.
-    fn attach(&mut self, url: &str, deadline: Instant) -> Result<(), Failure> {
+    fn attach(&mut self, url: &str, deadline: Instant) -> Result<(), BrowserFailure> {
         let version = self.request("Browser.getVersion", &json!({}), deadline)?;
         version["product"]
             .as_str()
@@ -329,7 +329,12 @@ impl BrowserConnection {
     }
 
     /// Sends a request and returns the result of its response.
-    fn request(&mut self, method: &str, parameters: &Value, deadline: Instant) -> Result<Value, Failure> {
+    fn request(
+        &mut self,
+        method: &str,
+        parameters: &Value,
+        deadline: Instant,
+    ) -> Result<Value, BrowserFailure> {
         self.last_id += 1;
         let mut message = json!({"id": self.last_id, "method": method, "params": parameters});
         if let Some(session) = &self.session {
@@ -340,19 +345,21 @@ impl BrowserConnection {
             requests.write_all(&bytes).and_then(|()| requests.flush())
         });
         if let Some(Err(error)) = sent {
-            return Err(Failure::Disconnected(error.to_string()));
+            return Err(BrowserFailure::Disconnected(error.to_string()));
         }
         let start = Instant::now();
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
             let mut answer = self.messages.recv_timeout(left).map_err(|error| match error {
-                RecvTimeoutError::Timeout => Failure::Timeout(start.elapsed()),
-                RecvTimeoutError::Disconnected => Failure::Disconnected("the browser exited".to_owned()),
+                RecvTimeoutError::Timeout => BrowserFailure::Timeout(start.elapsed()),
+                RecvTimeoutError::Disconnected => {
+                    BrowserFailure::Disconnected("the browser exited".to_owned())
+                }
             })?;
             // Other messages are events.
             if answer["id"] == self.last_id {
                 return match answer["error"]["message"].as_str() {
-                    Some(reason) => Err(Failure::Disconnected(reason.to_owned())),
+                    Some(reason) => Err(BrowserFailure::Disconnected(reason.to_owned())),
                     None => Ok(answer["result"].take()),
                 };
             }

@@ -39,17 +39,16 @@ impl Program {
     /// Emits SPIR-V for a module, decorated for strict arithmetic if `float` is strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
         let words = spirv::words(module).map_err(naga_failed)?;
-        Ok(Self {
-            words: apply_float_mode(words, float),
-            channels: module.channels(),
-            float,
-        })
+        Ok(Self::from_words(words, module.channels(), float))
     }
 
     /// Uses the words of a different compiler.
     pub(super) fn from_words(words: Vec<u32>, channels: [Shape; 4], float: FloatMode) -> Self {
         Self {
-            words: apply_float_mode(words, float),
+            words: match float {
+                FloatMode::Strict => spirv::strict(&words),
+                FloatMode::Fast => words,
+            },
             channels,
             float,
         }
@@ -58,13 +57,6 @@ impl Program {
     /// Returns the bytes of a `.spv` file.
     pub(super) fn bytes(&self) -> Vec<u8> {
         spirv::bytes(&self.words)
-    }
-}
-
-fn apply_float_mode(words: Vec<u32>, float: FloatMode) -> Vec<u32> {
-    match float {
-        FloatMode::Strict => spirv::strict(&words),
-        FloatMode::Fast => words,
     }
 }
 
@@ -78,7 +70,7 @@ pub(crate) const CLEAR_COLOR: wgpu::Color = wgpu::Color {
 
 /// A pipeline for frames of any size.
 #[derive(Debug)]
-pub(super) struct Compiled {
+pub(super) struct CompiledPipeline {
     pub(super) layout: Layout,
     pub(super) pipeline: RenderPipeline,
 }
@@ -91,11 +83,11 @@ impl Device {
     }
 
     /// Creates the pipeline; the driver may compile it at the first draw.
-    pub(super) fn compile(&self, program: &Program) -> Result<Compiled, Failure> {
+    pub(super) fn compile(&self, program: &Program) -> Result<CompiledPipeline, Failure> {
         self.with_error_scopes(|| {
             let layout = Layout::new(self, program.channels);
             let pipeline = layout.pipeline(&self.gpu, &self.driver_words(program));
-            Ok(Compiled { layout, pipeline })
+            Ok(CompiledPipeline { layout, pipeline })
         })
     }
 
@@ -113,7 +105,7 @@ impl Device {
     }
 
     /// Prepares the bindings and the target of a frame, with a draw that covers no pixel.
-    pub(super) fn stage(&self, compiled: &Compiled, frame: &Frame) -> Result<PreparedFrame, Failure> {
+    pub(super) fn stage(&self, compiled: &CompiledPipeline, frame: &Frame) -> Result<PreparedFrame, Failure> {
         self.with_error_scopes(|| {
             let target = flat(
                 &self.gpu,
@@ -176,23 +168,15 @@ impl Device {
     fn submit(&self, prepared: &PreparedFrame, vertices: Range<u32>) -> Result<(), Failure> {
         let view = prepared.target.create_view(&Default::default());
         let mut commands = self.gpu.create_command_encoder(&Default::default());
-        {
-            let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(CLEAR_COLOR),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(&prepared.pipeline);
-            pass.set_bind_group(0, &prepared.bindings, &[]);
-            pass.draw(vertices, 0..1);
-        }
+        let load = wgpu::LoadOp::Clear(CLEAR_COLOR);
+        encode(
+            &mut commands,
+            &view,
+            load,
+            &prepared.pipeline,
+            &prepared.bindings,
+            vertices,
+        );
         if let Some(rows) = prepared.bands.first() {
             prepared.readback.copy(&mut commands, &prepared.target, rows);
         }
@@ -230,6 +214,32 @@ impl Device {
             (None, None) => result,
         }
     }
+}
+
+/// Appends a draw of these vertices.
+pub(super) fn encode(
+    commands: &mut wgpu::CommandEncoder,
+    target: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+    pipeline: &RenderPipeline,
+    bindings: &BindGroup,
+    vertices: Range<u32>,
+) {
+    let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load,
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, bindings, &[]);
+    pass.draw(vertices, 0..1);
 }
 
 /// Joins the lines of wgpu's errors into one sentence.

@@ -38,7 +38,6 @@
 pub mod browser;
 mod device;
 mod draw;
-mod driver;
 mod pipeline;
 mod play;
 mod protocol;
@@ -54,7 +53,7 @@ pub use device::{
     pinned,
 };
 pub use draw::LocalRenderer;
-pub use protocol::{PlayedPasses, ShaderArtifact};
+pub use protocol::{PassCode, ShaderArtifact};
 pub use quirks::loop_cap::{LoopCap, SAFE_ITERATIONS};
 pub use sandbox::{SANDBOX_VARIABLE, Sandbox};
 use serde::{Deserialize, Serialize};

@@ -11,7 +11,7 @@ use toyproof_translate::{FloatMode, Lowered, lower_strict};
 use wgpu::{TextureUsages, TextureView, TextureViewDescriptor};
 
 use super::device::Device;
-use super::draw::{Compiled, Program};
+use super::draw::{CompiledPipeline, Program, encode};
 use super::texture::{extent, flat, upload, write};
 use super::{Failure, refused};
 
@@ -19,12 +19,12 @@ use super::{Failure, refused};
 #[derive(Debug)]
 pub(super) struct PassRenderer {
     device: Device,
-    passes: Vec<Compiled>,
+    passes: Vec<CompiledPipeline>,
     /// The samplers of each pass.
     sampling: Vec<[ChannelSampling; 4]>,
     media: Vec<wgpu::Texture>,
     /// Renders a mipmap from the next larger one; compiled if a buffer has mipmaps.
-    halving: OnceLock<Compiled>,
+    halving: OnceLock<CompiledPipeline>,
 }
 
 impl PassRenderer {
@@ -56,7 +56,6 @@ impl PassRenderer {
         self.device
     }
 
-    /// The name of the device.
     pub(super) fn device_name(&self) -> String {
         self.device.name()
     }
@@ -76,7 +75,7 @@ impl PassRenderer {
     /// Renders over a view of one level, whose pixels are kept where nothing is written.
     fn submit(
         &self,
-        compiled: &Compiled,
+        compiled: &CompiledPipeline,
         frame: &Frame,
         channels: [Option<(TextureView, [u32; 2])>; 4],
         sampling: [ChannelSampling; 4],
@@ -98,23 +97,8 @@ impl PassRenderer {
             .layout
             .bind(gpu, queue, &frame.block_with(sizes), &views, sampling);
         let mut commands = gpu.create_command_encoder(&Default::default());
-        {
-            let mut pass = commands.begin_render_pass(&wgpu::RenderPassDescriptor {
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Load,
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(&compiled.pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            pass.draw(0..3, 0..1);
-        }
+        let load = wgpu::LoadOp::Load;
+        encode(&mut commands, target, load, &compiled.pipeline, &bindings, 0..3);
         queue.submit([commands.finish()]);
         self.device.wait()
     }

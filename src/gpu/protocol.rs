@@ -8,7 +8,7 @@ use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{ChannelSampling, DrawOutput, DriverFailure as Failure, Graph, Phase, Readback, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::naga_ir::Shape;
-use toyproof_translate::wgsl::Hosted;
+use toyproof_translate::wgsl::HostedShader;
 use toyproof_translate::{FloatMode, Lowered};
 
 use super::{AdapterSelector, Driver, Sandbox};
@@ -18,24 +18,24 @@ use super::{AdapterSelector, Driver, Sandbox};
 pub(super) struct Setup {
     /// Whether a job may load a driver.
     pub(super) uses_driver: bool,
+    /// The adapter that all jobs use.
+    pub(super) selector: AdapterSelector,
 }
 
 /// A request from the parent.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Job {
     /// List the Vulkan drivers, the selected one first.
-    Probe(AdapterSelector),
+    Probe,
     /// Translate and emit. SPIR-V gets strict decorations if the float mode requires them.
     Translate(Lowered, Target, FloatMode),
     /// Parse and validate WGSL.
     ReadWgsl(String),
     /// Translate, compile and render a frame.
     Draw(Box<DrawJob>),
-    /// Compile and render a frame with the SPIR-V of a different compiler.
-    RunSpirv(Box<ForeignSpirv>),
     /// Parse a converted shader again, compile it with driver-dependent operations expanded, and render
     /// frames.
-    RenderArtifact(Box<ShaderArtifact>, Vec<Frame>, AdapterSelector),
+    RenderArtifact(Box<ShaderArtifact>, Vec<Frame>),
     /// Compile the passes of a shader, whose frames the next jobs render.
     OpenPlayer(Box<PlayJob>),
     /// Go on from a state.
@@ -47,7 +47,7 @@ pub(super) enum Job {
     /// Report how the process is restricted.
     Sandbox,
     /// Load the driver. There is no result: the next job has it.
-    Open(AdapterSelector),
+    Open,
 }
 
 impl Job {
@@ -69,14 +69,13 @@ pub(super) struct DrawJob {
     pub(super) lowered: Lowered,
     pub(super) frame: Frame,
     pub(super) float: FloatMode,
-    pub(super) selector: AdapterSelector,
 }
 
 /// The passes of a shader.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct PlayJob {
     /// In the order of the graph.
-    pub(super) passes: PlayedPasses,
+    pub(super) passes: PassCode,
     /// The samplers of each pass.
     pub(super) sampling: Vec<[ChannelSampling; 4]>,
     pub(super) graph: Graph,
@@ -84,12 +83,11 @@ pub(super) struct PlayJob {
     pub(super) media: Vec<Texture>,
     /// The state to continue from.
     pub(super) state: Option<State>,
-    pub(super) selector: AdapterSelector,
 }
 
 /// The code of the passes of a shader.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub enum PlayedPasses {
+pub enum PassCode {
     /// As they are lowered.
     Lowered(Vec<(Lowered, FloatMode)>),
     /// As they are converted. Operations in which drivers differ are expanded to operations on which they
@@ -97,20 +95,11 @@ pub enum PlayedPasses {
     Converted(Vec<ShaderArtifact>),
 }
 
-/// SPIR-V of a different compiler and the frame to render.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct ForeignSpirv {
-    pub(super) words: Vec<u32>,
-    pub(super) frame: Frame,
-    pub(super) float: FloatMode,
-    pub(super) selector: AdapterSelector,
-}
-
 /// A converted shader, as its file holds it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum ShaderArtifact {
     /// A WGSL file, with a replacement for its host.
-    Wgsl(Hosted),
+    Wgsl(HostedShader),
     /// GLSL: the lowered shader from which naga emitted a file, or a file that was parsed again.
     Lowered(Lowered),
     /// The words of a SPIR-V file, or those that a different compiler produced from a file, and the shapes of

@@ -15,9 +15,7 @@ use toyproof_translate::{FloatMode, Lowered};
 use super::device::{self, Device};
 use super::draw::{PreparedFrame, Program};
 use super::play::{self, DevicePlayer, PassRenderer};
-use super::protocol::{
-    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Reply, Setup, ShaderArtifact, receive, send,
-};
+use super::protocol::{DrawJob, Job, Output, PassCode, PlayJob, Reply, Setup, ShaderArtifact, receive, send};
 use super::quirks::loop_probe::{self, Probe};
 use super::quirks::{LOOP_CAP, loop_cap, loop_steps};
 use super::sandbox::{self, Sandbox};
@@ -46,6 +44,7 @@ pub fn serve(mut input: impl Read + Send, output: impl Write + Send) -> io::Resu
     let mut server = Server {
         output,
         sandbox,
+        selector: setup.selector,
         device: None,
         player: None,
     };
@@ -84,39 +83,22 @@ fn limit_process() {
 struct Server<W> {
     output: W,
     sandbox: Sandbox,
-    device: Option<(AdapterSelector, Device)>,
+    selector: AdapterSelector,
+    device: Option<Device>,
     /// The passes that are played, which own the device meanwhile.
-    player: Option<(AdapterSelector, DevicePlayer)>,
+    player: Option<DevicePlayer>,
 }
 
 impl<W: Write> Server<W> {
     fn serve(&mut self, mut input: impl Read) -> io::Result<()> {
         // The parent closes the input when it is done.
         while let Ok(job) = receive(&mut input) {
-            let result = match job {
-                Job::Open(selector) => {
-                    // If it fails, the next job fails again, and reports why.
-                    let _ = self.catch_panics(|server| server.open(&selector).map(|()| Output::Completed));
-                    continue;
-                }
-                Job::Probe(selector) => self.catch_panics(|server| server.probe(&selector)),
-                Job::Translate(lowered, target, float) => {
-                    self.catch_panics(|server| server.translate(lowered, target, float))
-                }
-                Job::ReadWgsl(text) => self.catch_panics(|server| server.read(text)),
-                Job::Draw(draw_job) => self.catch_panics(|server| server.draw(*draw_job)),
-                Job::RunSpirv(foreign) => self.catch_panics(|server| server.run(*foreign)),
-                Job::RenderArtifact(artifact, frames, selector) => {
-                    self.catch_panics(|server| server.render(*artifact, &frames, &selector))
-                }
-                Job::OpenPlayer(play_job) => self.catch_panics(|server| server.open_player(*play_job)),
-                Job::RestorePlayer(state) => self.catch_panics(|server| server.restore_player(&state)),
-                Job::Play(frame, wanted) => {
-                    self.catch_panics(|server| server.play(frame.as_deref(), &wanted))
-                }
-                Job::WatchLoops(draw_job) => self.catch_panics(|server| server.watch_loops(*draw_job)),
-                Job::Sandbox => Ok(Output::Sandbox(self.sandbox.clone())),
-            };
+            let is_silent = matches!(job, Job::Open);
+            let result = self.catch_panics(|server| server.run(job));
+            // If it fails to open the device, the next job fails again, and reports why.
+            if is_silent {
+                continue;
+            }
             if matches!(result, Err(Failure::Device(_))) {
                 self.device = None;
                 self.player = None;
@@ -124,6 +106,22 @@ impl<W: Write> Server<W> {
             send(&mut self.output, &Reply::Done(result))?;
         }
         Ok(())
+    }
+
+    fn run(&mut self, job: Job) -> Result<Output, Failure> {
+        match job {
+            Job::Open => self.open().map(|()| Output::Completed),
+            Job::Probe => self.probe(),
+            Job::Translate(lowered, target, float) => self.translate(lowered, target, float),
+            Job::ReadWgsl(text) => self.read(text),
+            Job::Draw(job) => self.draw(*job),
+            Job::RenderArtifact(artifact, frames) => self.render(*artifact, &frames),
+            Job::OpenPlayer(job) => self.open_player(*job),
+            Job::RestorePlayer(state) => self.restore_player(&state),
+            Job::Play(frame, wanted) => self.play(frame.as_deref(), &wanted),
+            Job::WatchLoops(job) => self.watch_loops(*job),
+            Job::Sandbox => Ok(Output::Sandbox(self.sandbox.clone())),
+        }
     }
 
     /// Converts panics, of wgpu or our own code, into failures: they affect the job and the device, not the
@@ -140,9 +138,9 @@ impl<W: Write> Server<W> {
         send_reply(&mut self.output, &Reply::Phase(phase))
     }
 
-    fn probe(&mut self, selector: &AdapterSelector) -> Result<Output, Failure> {
+    fn probe(&mut self) -> Result<Output, Failure> {
         self.phase(Phase::Starting)?;
-        device::probe(selector).map(Output::Drivers)
+        device::probe(&self.selector).map(Output::Drivers)
     }
 
     fn translate(&mut self, lowered: Lowered, target: Target, float: FloatMode) -> Result<Output, Failure> {
@@ -157,24 +155,18 @@ impl<W: Write> Server<W> {
         .map(Output::Translated)
     }
 
-    fn draw(&mut self, draw_job: DrawJob) -> Result<Output, Failure> {
+    fn draw(&mut self, job: DrawJob) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         let start = Instant::now();
-        let DrawJob {
-            lowered,
-            frame,
-            float,
-            selector,
-        } = draw_job;
         let (program, loops) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(refused)?;
-            Ok((Program::new(&module, float)?, loop_probe::has_loops(&module)))
+            let module = ValidModule::parse(&job.lowered).map_err(refused)?;
+            Ok((Program::new(&module, job.float)?, loop_probe::has_loops(&module)))
         })?;
         let translate = start.elapsed();
-        self.open(&selector)?;
+        self.open()?;
         self.phase(Phase::Compiling)?;
         let start = Instant::now();
-        let prepared = self.device()?.prepare(&program, &frame)?;
+        let prepared = self.device()?.prepare(&program, &job.frame)?;
         let compile = start.elapsed();
         self.phase(Phase::Drawing)?;
         let start = Instant::now();
@@ -191,27 +183,9 @@ impl<W: Write> Server<W> {
         })))
     }
 
-    fn run(&mut self, foreign: ForeignSpirv) -> Result<Output, Failure> {
-        let ForeignSpirv {
-            words,
-            frame,
-            float,
-            selector,
-        } = foreign;
-        self.open(&selector)?;
-        self.phase(Phase::Compiling)?;
-        let program = Program::from_words(words, [Shape::D2; 4], float);
-        let prepared = self.device()?.prepare(&program, &frame)?;
-        self.phase(Phase::Drawing)?;
-        self.render_and_send(&prepared)?;
-        Ok(Output::Completed)
-    }
-
     /// Renders a frame and sends its bands.
     fn render_and_send(&mut self, prepared: &PreparedFrame) -> Result<(), Failure> {
-        let Some((_, device)) = &self.device else {
-            return Err(device_lost());
-        };
+        let device = self.device.as_ref().ok_or_else(device_lost)?;
         let output = &mut self.output;
         device.render(prepared, |band| send_reply(&mut *output, &Reply::Band(band)))
     }
@@ -222,16 +196,11 @@ impl<W: Write> Server<W> {
         Ok(Output::Completed)
     }
 
-    fn render(
-        &mut self,
-        artifact: ShaderArtifact,
-        frames: &[Frame],
-        selector: &AdapterSelector,
-    ) -> Result<Output, Failure> {
+    fn render(&mut self, artifact: ShaderArtifact, frames: &[Frame]) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         let upside_down = artifact.is_upside_down();
         let program = on_translator_thread(move || artifact_program(artifact))?;
-        self.open(selector)?;
+        self.open()?;
         let mut images = Vec::new();
         self.phase(Phase::Compiling)?;
         let compiled = self.device()?.compile(&program)?;
@@ -246,52 +215,40 @@ impl<W: Write> Server<W> {
         Ok(Output::Rendered(images, name))
     }
 
-    fn open_player(&mut self, play_job: PlayJob) -> Result<Output, Failure> {
+    fn open_player(&mut self, job: PlayJob) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
-        let PlayJob {
-            passes,
-            graph,
-            media,
-            state,
-            sampling,
-            selector,
-        } = play_job;
-        let programs = on_translator_thread(move || match passes {
-            PlayedPasses::Lowered(passes) => play::programs(&passes),
-            PlayedPasses::Converted(artifacts) => artifacts.into_iter().map(artifact_program).collect(),
+        let programs = on_translator_thread(move || match job.passes {
+            PassCode::Lowered(passes) => play::programs(&passes),
+            PassCode::Converted(artifacts) => artifacts.into_iter().map(artifact_program).collect(),
         })?;
-        self.open(&selector)?;
+        self.open()?;
         self.phase(Phase::Compiling)?;
-        let (selector, device) = self.device.take().ok_or_else(device_lost)?;
-        match PassRenderer::new(device, &programs, sampling, &media) {
+        let device = self.device.take().ok_or_else(device_lost)?;
+        match PassRenderer::new(device, &programs, job.sampling, &job.media) {
             Ok(renderer) => {
                 let name = renderer.device_name();
-                self.player = Some((selector, Player::new(graph, renderer)));
-                if let Some(state) = state {
+                self.player = Some(Player::new(job.graph, renderer));
+                if let Some(state) = job.state {
                     self.restore_player(&state)?;
                 }
                 Ok(Output::Opened(name))
             }
             Err((device, failure)) => {
-                self.device = Some((selector, device));
+                self.device = Some(device);
                 Err(failure)
             }
         }
     }
 
     fn restore_player(&mut self, state: &State) -> Result<Output, Failure> {
-        let Some((_, player)) = &mut self.player else {
-            return Err(device_lost());
-        };
+        let player = self.player.as_mut().ok_or_else(device_lost)?;
         player.restore(state, PassRenderer::load)?;
         Ok(Output::Completed)
     }
 
     fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Output, Failure> {
         self.phase(Phase::Drawing)?;
-        let Some((_, player)) = &mut self.player else {
-            return Err(device_lost());
-        };
+        let player = self.player.as_mut().ok_or_else(device_lost)?;
         if let Some(frame) = frame {
             player.render(frame)?;
         }
@@ -302,20 +259,14 @@ impl<W: Write> Server<W> {
         Ok(Output::Completed)
     }
 
-    fn watch_loops(&mut self, draw_job: DrawJob) -> Result<Output, Failure> {
+    fn watch_loops(&mut self, job: DrawJob) -> Result<Output, Failure> {
         self.phase(Phase::WatchingLoops)?;
-        let DrawJob {
-            lowered,
-            frame,
-            float,
-            selector,
-        } = draw_job;
         let (module, iterations) = on_translator_thread(move || {
-            let module = ValidModule::parse(&lowered).map_err(refused)?;
-            let iterations = probe_program(&module, Probe::Iterations, float)?;
+            let module = ValidModule::parse(&job.lowered).map_err(refused)?;
+            let iterations = probe_program(&module, Probe::Iterations, job.float)?;
             Ok((module, iterations))
         })?;
-        self.open(&selector)?;
+        self.open()?;
         let device = self.device()?;
         let Some(cap) = device.loop_cap()? else {
             return Ok(Output::LoopTruncated(0));
@@ -323,7 +274,7 @@ impl<W: Write> Server<W> {
         // After an endless loop any value is possible, including a small number of iterations.
         if !loop_probe::has_infinite_loop(&module) {
             let (mut reached, mut may_reach) = (0, false);
-            device.render(&device.prepare(&iterations, &frame)?, |band| {
+            device.render(&device.prepare(&iterations, &job.frame)?, |band| {
                 reached += loop_cap::count_reached(&band, cap);
                 may_reach |= loop_cap::may_reach(&band, cap);
                 Ok(())
@@ -333,38 +284,35 @@ impl<W: Write> Server<W> {
             }
         }
         let discards = loop_probe::discards(&module);
-        let open = on_translator_thread(move || probe_program(&module, Probe::OpenLoops, float))?;
+        let open = on_translator_thread(move || probe_program(&module, Probe::OpenLoops, job.float))?;
         let device = self.device()?;
         let mut loop_truncated = 0;
-        device.render(&device.prepare(&open, &frame)?, |band| {
+        device.render(&device.prepare(&open, &job.frame)?, |band| {
             loop_truncated += loop_cap::count_truncated(&band, discards);
             Ok(())
         })?;
         Ok(Output::LoopTruncated(loop_truncated))
     }
 
-    fn open(&mut self, selector: &AdapterSelector) -> Result<(), Failure> {
-        if let Some((selector, player)) = self.player.take() {
-            self.device = Some((selector, player.into_renderer().into_device()));
+    fn open(&mut self) -> Result<(), Failure> {
+        if let Some(player) = self.player.take() {
+            self.device = Some(player.into_renderer().into_device());
         }
-        if self.device.as_ref().is_none_or(|(open, _)| open != selector) {
+        if self.device.is_none() {
             self.phase(Phase::Starting)?;
-            let device = Device::open(selector).map_err(|failure| match failure {
+            let device = Device::open(&self.selector).map_err(|failure| match failure {
                 Failure::Device(why) => {
                     Failure::NotStarted(format!("the Vulkan driver failed to start: {why}"))
                 }
                 failure => failure,
             })?;
-            self.device = Some((selector.clone(), device));
+            self.device = Some(device);
         }
         Ok(())
     }
 
     fn device(&mut self) -> Result<&mut Device, Failure> {
-        match &mut self.device {
-            Some((_, device)) => Ok(device),
-            None => Err(device_lost()),
-        }
+        self.device.as_mut().ok_or_else(device_lost)
     }
 }
 

@@ -10,7 +10,6 @@ use wgpu::{
 /// Format of all targets and textures: 32-bit floats, so that nothing is rounded.
 pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
-/// The dimension of views of textures with a shape.
 pub(super) fn dimension(shape: Shape) -> TextureViewDimension {
     match shape {
         Shape::D2 => TextureViewDimension::D2,

@@ -15,7 +15,7 @@ use serde_json::json;
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Options, Sampling, check};
 use toyproof::gpu::Worker;
-use toyproof::gpu::browser::{Chromium, Failure, Text, as_shadertoy};
+use toyproof::gpu::browser::{BrowserFailure, Chromium, Text, as_shadertoy};
 use toyproof::image::Frame;
 use toyproof::translate::backend::{Target, emit};
 use toyproof::translate::naga_ir::ValidModule;
@@ -47,7 +47,7 @@ fn frames() -> Vec<Frame> {
     SHOTS.map(frame).to_vec()
 }
 
-fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, Failure> {
+fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, BrowserFailure> {
     let images = browser.render(text, [Sampling::default(); 4], &frames())?;
     Ok(images.iter().flat_map(|image| image.pixels().to_vec()).collect())
 }

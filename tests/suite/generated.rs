@@ -19,8 +19,9 @@ use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Checked, Options, check};
-use toyproof::gpu::{DrawOutput, Failure, Worker};
+use toyproof::gpu::{DrawOutput, Failure, ShaderArtifact, Worker};
 use toyproof::image::{Frame, Image};
+use toyproof::translate::naga_ir::Shape;
 use toyproof::translate::{FloatMode, lower, lower_strict};
 
 use crate::glslang;
@@ -102,8 +103,11 @@ impl Renderers<'_> {
         }
         if let Some(folder) = self.glslang {
             let words = glslang::words(program, folder).map_err(wrong("glslang refuses it"))?;
-            let theirs = self
-                .again_after_a_crash(|worker| worker.run_spirv(words.clone(), frame(), FloatMode::Strict));
+            let artifact = ShaderArtifact::Words(words, [Shape::D2; 4]);
+            let theirs = self.again_after_a_crash(|worker| {
+                let (images, _) = worker.render(artifact.clone(), vec![frame()])?;
+                Ok(images.into_iter().next().expect("an image for each frame"))
+            });
             match theirs {
                 Ok(image) => images.push(("glslang's", image)),
                 Err(failure) => crashes = format!("{crashes}glslang's: {failure}"),

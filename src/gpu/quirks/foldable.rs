@@ -37,7 +37,7 @@ pub(super) struct Foldable {
 
 impl Foldable {
     /// Finds them, if the operands with the indices that `hidden_operands` returns are hidden.
-    pub(super) fn of(words: &[u32], hidden_operands: impl Fn(&[u32], &Operands) -> Vec<usize>) -> Self {
+    pub(super) fn new(words: &[u32], hidden_operands: impl Fn(&[u32], &Operands) -> Vec<usize>) -> Self {
         let mut foldable = Self::default();
         foldable.collect_parameters(words);
         loop {
@@ -189,7 +189,7 @@ mod tests {
             float twice(float x) {{ return x + x; }}
             void mainImage(out vec4 c, in vec2 p) {{ {body} c = vec4(y); }}"
         ));
-        let foldable = Foldable::of(&words, |_, _| Vec::new());
+        let foldable = Foldable::new(&words, |_, _| Vec::new());
         let exp = instructions(&words)
             .find(|(_, instruction)| opcode(instruction) == Some(Op::ExtInst) && instruction[4] == 27)
             .unwrap();

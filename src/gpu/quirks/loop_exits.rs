@@ -4,7 +4,7 @@
 use spirv::Op;
 use toyproof_translate::backend::spirv::{instructions, opcode};
 
-use super::opaque::{Opaque, push};
+use super::opaque::{Opaque, functions_start, push};
 
 /// Adds an exit that is never taken to the head of each loop that may assign a variable before its first
 /// exit.
@@ -19,22 +19,15 @@ use super::opaque::{Opaque, push};
 /// assignments, as in most `for` loops.
 pub(crate) fn with_early_exits(words: &[u32]) -> Vec<u32> {
     let exits = late_exits(words);
-    let Some(mut opaque) = Opaque::of(words).filter(|_| !exits.is_empty()) else {
+    let Some(mut opaque) = Opaque::new(words).filter(|_| !exits.is_empty()) else {
         return words.to_vec();
     };
     let mut code = Vec::new();
-    let mut first_function = words.len();
+    let start = functions_start(words);
     // The exit to add, and its condition, between a loop's head and the branch that ends it.
     let mut added = None;
-    for (at, instruction) in instructions(words) {
-        let op = opcode(instruction);
-        if op == Some(Op::Function) {
-            first_function = first_function.min(at);
-        }
-        if at < first_function {
-            continue;
-        }
-        match (op, instruction, added.take()) {
+    for (_, instruction) in instructions(words).filter(|(at, _)| *at >= start) {
+        match (opcode(instruction), instruction, added.take()) {
             (Some(Op::LoopMerge), &[_, exit, ..], _) if exits.contains(&exit) => {
                 added = Some((opaque.never(&mut code), exit));
                 code.extend(instruction);
@@ -45,7 +38,7 @@ pub(crate) fn with_early_exits(words: &[u32]) -> Vec<u32> {
             _ => code.extend(instruction),
         }
     }
-    opaque.finish(&words[..first_function], &code)
+    opaque.finish(&words[..start], &code)
 }
 
 /// The blocks after loops that may assign a variable before their first exit, or that never end.

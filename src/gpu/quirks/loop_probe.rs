@@ -7,7 +7,7 @@ use naga::{
     Scalar, ScalarKind, Span, Statement, Type, TypeInner,
 };
 use toyproof_translate::TranslateError;
-use toyproof_translate::naga_ir::ValidModule;
+use toyproof_translate::naga_ir::{ValidModule, functions};
 
 /// The value that a probe writes to alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,10 +41,7 @@ pub(crate) fn has_infinite_loop(module: &ValidModule) -> bool {
 }
 
 fn bodies(module: &Module) -> impl Iterator<Item = &Block> {
-    let functions = module.functions.iter().map(|(_, function)| function);
-    functions
-        .chain(module.entry_points.iter().map(|entry| &entry.function))
-        .map(|function| &function.body)
+    functions(module).map(|function| &function.body)
 }
 
 /// Whether `found` holds for any statement of the block, at any depth.
@@ -59,6 +56,16 @@ fn visit(block: &Block, found: &mut impl FnMut(&Statement) -> bool) -> bool {
                 _ => false,
             }
     })
+}
+
+/// The blocks within a statement other than a loop.
+pub(super) fn inner_blocks(statement: &mut Statement) -> Vec<&mut Block> {
+    match statement {
+        Statement::Block(inner) => vec![inner],
+        Statement::If { accept, reject, .. } => vec![accept, reject],
+        Statement::Switch { cases, .. } => cases.iter_mut().map(|case| &mut case.body).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// Whether a loop's body has a statement that leaves the loop. This includes a `break` of an inner loop or
@@ -176,7 +183,7 @@ struct Rewriter<'a> {
 /// The loops and switches around a statement: the number of loops that a `return` leaves, and whether a
 /// `break` leaves a switch.
 #[derive(Clone, Copy)]
-struct Enclosing {
+struct EnclosingLoops {
     loops: u32,
     switch: bool,
 }
@@ -192,7 +199,7 @@ impl Rewriter<'_> {
         let body = rewriter.block(
             body,
             Block::new(),
-            Enclosing {
+            EnclosingLoops {
                 loops: 0,
                 switch: false,
             },
@@ -201,7 +208,7 @@ impl Rewriter<'_> {
     }
 
     /// Appends the rewritten block to `out`.
-    fn block(&mut self, block: Block, mut out: Block, within: Enclosing) -> Block {
+    fn block(&mut self, block: Block, mut out: Block, within: EnclosingLoops) -> Block {
         for (statement, span) in block.span_into_iter() {
             match statement {
                 Statement::Loop {
@@ -209,7 +216,7 @@ impl Rewriter<'_> {
                     continuing,
                     break_if,
                 } => {
-                    let inside = Enclosing {
+                    let inside = EnclosingLoops {
                         loops: within.loops + 1,
                         switch: false,
                     };
@@ -249,41 +256,19 @@ impl Rewriter<'_> {
                     self.count_exits(within.loops, &mut out);
                     out.push(Statement::Return { value }, span);
                 }
-                Statement::Block(inner) => {
-                    let inner = self.block(inner, Block::new(), within);
-                    out.push(Statement::Block(inner), span);
-                }
-                Statement::If {
-                    condition,
-                    accept,
-                    reject,
-                } => {
-                    let accept = self.block(accept, Block::new(), within);
-                    let reject = self.block(reject, Block::new(), within);
-                    out.push(
-                        Statement::If {
-                            condition,
-                            accept,
-                            reject,
+                mut other => {
+                    let inside = match other {
+                        Statement::Switch { .. } => EnclosingLoops {
+                            switch: true,
+                            ..within
                         },
-                        span,
-                    );
-                }
-                Statement::Switch { selector, mut cases } => {
-                    for case in &mut cases {
-                        let body = std::mem::take(&mut case.body);
-                        case.body = self.block(
-                            body,
-                            Block::new(),
-                            Enclosing {
-                                switch: true,
-                                ..within
-                            },
-                        );
+                        _ => within,
+                    };
+                    for body in inner_blocks(&mut other) {
+                        *body = self.block(std::mem::take(body), Block::new(), inside);
                     }
-                    out.push(Statement::Switch { selector, cases }, span);
+                    out.push(other, span);
                 }
-                other => out.push(other, span),
             }
         }
         out

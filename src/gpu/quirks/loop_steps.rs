@@ -5,6 +5,8 @@ use naga::{Block, Statement};
 use toyproof_translate::TranslateError;
 use toyproof_translate::naga_ir::ValidModule;
 
+use super::loop_probe::inner_blocks;
+
 /// Returns the same module with the steps of its loops at the end of their bodies.
 ///
 /// Mesa 22.3 executes the step in SPIR-V's continue construct once too often if nothing continues the loop
@@ -26,12 +28,6 @@ pub(crate) fn with_steps_last(module: &ValidModule) -> Result<ValidModule, Trans
 fn move_steps(block: &mut Block) {
     for statement in block.iter_mut() {
         match statement {
-            Statement::Block(block) => move_steps(block),
-            Statement::If { accept, reject, .. } => {
-                move_steps(accept);
-                move_steps(reject);
-            }
-            Statement::Switch { cases, .. } => cases.iter_mut().for_each(|case| move_steps(&mut case.body)),
             Statement::Loop {
                 body,
                 continuing,
@@ -45,7 +41,7 @@ fn move_steps(block: &mut Block) {
                 }
             }
             Statement::Loop { body, .. } => move_steps(body),
-            _ => {}
+            other => inner_blocks(other).into_iter().for_each(move_steps),
         }
     }
 }

@@ -21,7 +21,7 @@ pub(super) struct Opaque {
 
 impl Opaque {
     /// Finds the ids in a module; `None` if it has no `gl_FragCoord`.
-    pub(super) fn of(words: &[u32]) -> Option<Self> {
+    pub(super) fn new(words: &[u32]) -> Option<Self> {
         let mut coordinates = Vec::new();
         let mut found = None;
         let mut pointees = HashMap::new();
@@ -122,6 +122,13 @@ impl Opaque {
         whole[BOUND] = self.bound;
         whole
     }
+}
+
+/// The index of the word at which the functions of a module begin.
+pub(super) fn functions_start(words: &[u32]) -> usize {
+    let mut all = instructions(words);
+    let first = all.find(|(_, instruction)| opcode(instruction) == Some(Op::Function));
+    first.map_or(words.len(), |(at, _)| at)
 }
 
 /// Appends an instruction.

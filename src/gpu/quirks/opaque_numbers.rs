@@ -6,7 +6,7 @@ use spirv::{GlslStd450Op, Op, StorageClass};
 use toyproof_translate::backend::spirv::{has_type, instructions, is_product, opcode};
 
 use super::foldable::{Foldable, Known, Operands};
-use super::opaque::{Opaque, push};
+use super::opaque::{Opaque, functions_start, push};
 
 /// Combines some numbers by or with the bits of `gl_FragCoord.z`, which are 0 if an image is
 /// rendered with triangles at depth 0. Their values do not change; neither does a module without
@@ -26,23 +26,16 @@ use super::opaque::{Opaque, push};
 /// - −2³¹ where it is compared or stored. To count a loop's iterations, Mesa divides what a variable runs
 ///   through by its step, and −2³¹ / −1 terminates the process.
 pub(crate) fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
-    let Some(mut rewriter) = Rewriter::of(words) else {
+    let Some(mut rewriter) = Rewriter::new(words) else {
         return words.to_vec();
     };
-    let foldable = Foldable::of(words, |instruction, known| {
+    let foldable = Foldable::new(words, |instruction, known| {
         rewriter.hidden_operands(instruction, known)
     });
     let mut code = Vec::new();
-    let mut first_function = words.len();
-    for (at, instruction) in instructions(words) {
-        let op = opcode(instruction);
-        if op == Some(Op::Function) {
-            first_function = first_function.min(at);
-        }
-        if at < first_function {
-            continue;
-        }
-        match (op, instruction) {
+    let start = functions_start(words);
+    for (_, instruction) in instructions(words).filter(|(at, _)| *at >= start) {
+        match (opcode(instruction), instruction) {
             (Some(Op::Load), &[_, ty, result, pointer, ..]) if rewriter.is_in_block(pointer) => {
                 match rewriter.shapes.get(&ty).copied() {
                     Some(shape) => {
@@ -61,7 +54,7 @@ pub(crate) fn with_opaque_numbers(words: &[u32]) -> Vec<u32> {
             }
         }
     }
-    rewriter.opaque.finish(&words[..first_function], &code)
+    rewriter.opaque.finish(&words[..start], &code)
 }
 
 /// Whether an instruction compares integers.
@@ -112,9 +105,9 @@ struct Rewriter {
 
 impl Rewriter {
     /// Collects the facts about a module; `None` if it has no `gl_FragCoord`.
-    fn of(words: &[u32]) -> Option<Self> {
+    fn new(words: &[u32]) -> Option<Self> {
         let mut rewriter = Self {
-            opaque: Opaque::of(words)?,
+            opaque: Opaque::new(words)?,
             shapes: HashMap::new(),
             into_blocks: Vec::new(),
             types: HashMap::new(),

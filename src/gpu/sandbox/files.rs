@@ -68,7 +68,7 @@ type Environment<'a> = &'a dyn Fn(&str) -> Option<OsString>;
 
 /// The files that a worker may access; none by default.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(super) struct Allowed {
+pub(super) struct AllowedFiles {
     /// Files, and folders with all that they contain.
     read: Vec<PathBuf>,
     /// Device files, and folders of such.
@@ -77,9 +77,9 @@ pub(super) struct Allowed {
     caches: Vec<PathBuf>,
 }
 
-impl Allowed {
+impl AllowedFiles {
     /// The files that drivers need in this environment.
-    pub(super) fn of(environment: Environment) -> Self {
+    pub(super) fn new(environment: Environment) -> Self {
         let mut read: Vec<PathBuf> = READABLE.iter().map(PathBuf::from).collect();
         let listed = |name: &str| -> Vec<PathBuf> {
             let list = environment(name).filter(|list| !list.is_empty());
@@ -196,7 +196,7 @@ pub(super) fn create_caches(environment: Environment) {
 ///
 /// # Errors
 /// Why the kernel does not restrict access to files.
-pub(super) fn restrict(allowed: &Allowed) -> Result<u32, String> {
+pub(super) fn restrict(allowed: &AllowedFiles) -> Result<u32, String> {
     let restricted = request(allowed).map_err(|error| error.to_string())?;
     match (restricted.landlock, restricted.ruleset) {
         (LandlockStatus::NotImplemented, _) => Err("not in this kernel".to_owned()),
@@ -212,7 +212,7 @@ pub(super) fn restrict(allowed: &Allowed) -> Result<u32, String> {
     }
 }
 
-fn request(allowed: &Allowed) -> Result<landlock::RestrictionStatus, RulesetError> {
+fn request(allowed: &AllowedFiles) -> Result<landlock::RestrictionStatus, RulesetError> {
     let read = AccessFs::ReadFile | AccessFs::ReadDir;
     let write = read | AccessFs::WriteFile;
     let fill = write
@@ -239,8 +239,8 @@ fn request(allowed: &Allowed) -> Result<landlock::RestrictionStatus, RulesetErro
 mod tests {
     use super::*;
 
-    fn allowed(variables: &[(&str, &str)]) -> Allowed {
-        Allowed::of(&|name| {
+    fn allowed(variables: &[(&str, &str)]) -> AllowedFiles {
+        AllowedFiles::new(&|name| {
             let (_, value) = variables.iter().find(|(known, _)| *known == name)?;
             Some(value.into())
         })

@@ -58,9 +58,9 @@ pub(super) fn enter(uses_driver: bool) -> Sandbox {
         return Sandbox::Disabled;
     }
     let allowed = if uses_driver {
-        files::Allowed::of(&|name| std::env::var_os(name))
+        files::AllowedFiles::new(&|name| std::env::var_os(name))
     } else {
-        files::Allowed::default()
+        files::AllowedFiles::default()
     };
     Sandbox::Enabled {
         landlock: files::restrict(&allowed),

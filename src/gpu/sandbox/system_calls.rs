@@ -192,7 +192,6 @@ fn forbidden(process: u32) -> Result<Rules, BackendError> {
     Ok(rules)
 }
 
-/// The rule that an argument compares with a value.
 fn when(argument: u8, compares: SeccompCmpOp, value: u64) -> Result<SeccompRule, BackendError> {
     let length = match (argument, &compares) {
         // A pointer.

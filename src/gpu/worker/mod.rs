@@ -1,23 +1,21 @@
 //! The parent's side: starts the worker, enforces deadlines, and classifies failures.
 
-use std::collections::VecDeque;
-use std::io::Read;
+mod process;
+
 use std::path::PathBuf;
-use std::process::{Child, ChildStderr, ChildStdin, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::thread::{self, JoinHandle};
+use std::process::Command;
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::path_name;
+use process::{Process, Startup, classify};
 use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{ChannelSampling, DrawOutput, Graph, Readback, State};
+use toyproof_player::{ChannelSampling, DrawOutput, Driver as _, Graph, Readback, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
-use super::protocol::{
-    DrawJob, ForeignSpirv, Job, Output, PlayJob, PlayedPasses, Reply, Setup, ShaderArtifact, receive, send,
-};
-use super::{AdapterSelector, Driver, Failure, MAX_MEMORY_BYTES, Phase, Sandbox, device, quirks, sandbox};
+use crate::protocol::{DrawJob, Job, Output, PassCode, PlayJob, Reply, Setup, ShaderArtifact, send};
+use crate::quirks::loop_cap::SAFE_ITERATIONS;
+use crate::{AdapterSelector, Driver, Failure, Phase, Sandbox, device, quirks, sandbox};
 
 /// A worker process, started on first use and restarted after each failure.
 #[derive(Debug)]
@@ -31,7 +29,7 @@ pub struct Worker {
     all_drivers: bool,
     manifest: Option<PathBuf>,
     plain_code: PlainCode,
-    running: Option<RunningWorker>,
+    running: Option<Process>,
     /// Whether a job has been completed.
     has_completed_job: bool,
     /// Why the driver did not start, if it never has. No further job waits for it.
@@ -53,31 +51,20 @@ enum PlainCode {
 const MAX_PLAIN_PIXELS: u64 = 320 * 240;
 /// Minimum time limit for the start of a driver: a busy machine needs a second or two.
 const START_TIMEOUT: Duration = Duration::from_secs(10);
-/// Time for a worker to exit after it has closed its pipe.
-const EXIT_GRACE_PERIOD: Duration = Duration::from_millis(500);
-/// Maximum number of replies in the queue: bands are large.
-const MAX_QUEUED_REPLIES: usize = 1;
-/// Capacity of the pipe for replies in bytes: the largest that every user may request by default.
-#[cfg(target_os = "linux")]
-const PIPE_BYTES: usize = 1 << 20;
 /// Environment variable that controls the code generation of Mesa's software driver.
 const COMPILER_FLAGS: &str = "GALLIVM_PERF";
-/// Maximum length of the kept end of a worker's standard error, in bytes.
-const MAX_STDERR_BYTES: usize = 4096;
-
-/// Puts a process out of reach of the terminal's interrupt, so that the current shader completes.
-fn detach(command: &mut Command) {
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(command, 0);
-    #[cfg(windows)]
-    {
-        const CREATE_NEW_PROCESS_GROUP: u32 = 0x200;
-        std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
-    }
+/// The value of the result that a job has.
+macro_rules! result {
+    ($output:expr, $result:pat => $value:expr) => {
+        match $output? {
+            $result => Ok($value),
+            _ => Err(Failure::Worker("unexpected reply".to_owned())),
+        }
+    };
 }
 
 impl Worker {
-    /// Creates a worker that runs `program` with `arguments`, which must call [`super::serve`] on its
+    /// Creates a worker that runs `program` with `arguments`, which must call [`crate::serve`] on its
     /// standard streams.
     pub fn new(
         program: PathBuf,
@@ -154,7 +141,7 @@ impl Worker {
         }
         let is_plain = self.plain_code.applies_to(Some(pixels));
         if let Ok(mut running) = self.start(is_plain)
-            && (!self.uses_driver || send(&mut running.requests, &Job::Open(self.selector.clone())).is_ok())
+            && (!self.uses_driver || send(&mut running.requests, &Job::Open).is_ok())
         {
             self.running = Some(running);
         }
@@ -172,10 +159,7 @@ impl Worker {
     /// # Errors
     /// [`Failure::NoDriver`] if none is usable.
     pub fn probe(&mut self) -> Result<Vec<Driver>, Failure> {
-        match self.run(&Job::Probe(self.selector.clone()))? {
-            Output::Drivers(drivers) => Ok(drivers),
-            _ => Err(unexpected_reply()),
-        }
+        result!(self.run(&Job::Probe), Output::Drivers(drivers) => drivers)
     }
 
     /// Returns how the worker process is restricted.
@@ -183,10 +167,7 @@ impl Worker {
     /// # Errors
     /// If it does not start.
     pub fn sandbox(&mut self) -> Result<Sandbox, Failure> {
-        match self.run(&Job::Sandbox)? {
-            Output::Sandbox(sandbox) => Ok(sandbox),
-            _ => Err(unexpected_reply()),
-        }
+        result!(self.run(&Job::Sandbox), Output::Sandbox(sandbox) => sandbox)
     }
 
     /// Translates the shader to a different language.
@@ -199,10 +180,7 @@ impl Worker {
         target: Target,
         float: FloatMode,
     ) -> Result<Vec<u8>, Failure> {
-        match self.run(&Job::Translate(lowered, target, float))? {
-            Output::Translated(bytes) => Ok(bytes),
-            _ => Err(unexpected_reply()),
-        }
+        result!(self.run(&Job::Translate(lowered, target, float)), Output::Translated(bytes) => bytes)
     }
 
     /// Parses and validates WGSL by naga.
@@ -210,10 +188,7 @@ impl Worker {
     /// # Errors
     /// [`Failure::Reread`] if naga rejects it; other failures if it could not be processed.
     pub fn read_wgsl(&mut self, text: &str) -> Result<(), Failure> {
-        match self.run(&Job::ReadWgsl(text.to_owned()))? {
-            Output::Completed => Ok(()),
-            _ => Err(unexpected_reply()),
-        }
+        result!(self.run(&Job::ReadWgsl(text.to_owned())), Output::Completed => ())
     }
 
     /// Renders a frame of the shader. If the driver may terminate long loops, the frame is rendered again to
@@ -246,77 +221,9 @@ impl Worker {
         watch: bool,
     ) -> Result<DrawOutput, Failure> {
         let mut bands = Vec::new();
-        let on_band = |band| bands.push(band);
-        let drawn = self.draw_in_bands(lowered, frame, float, on_band, |_, _| watch)?;
+        let on_band = &mut |band| bands.push(band);
+        let drawn = self.draw_in_bands((lowered, float), frame, on_band, &mut |_, _| watch)?;
         Ok(DrawOutput { bands, ..drawn })
-    }
-
-    /// Like [`Self::draw`], but passes the bands of [`Frame::bands`] to `on_band`, one after the other. The
-    /// time that it takes does not count. The check of loops runs only if `watch` returns true; it receives
-    /// the result and the time that rendering took. Callers may know that no pixel runs more iterations than
-    /// [`SAFE_ITERATIONS`](super::SAFE_ITERATIONS).
-    ///
-    /// # Errors
-    /// Why there is no image: [`Failure::Invalid`] also for a shader that nests deeper than drivers
-    /// support.
-    pub fn draw_in_bands(
-        &mut self,
-        lowered: Lowered,
-        frame: Frame,
-        float: FloatMode,
-        mut on_band: impl FnMut(Image),
-        watch: impl FnOnce(&DrawOutput, Duration) -> bool,
-    ) -> Result<DrawOutput, Failure> {
-        if let Some(diagnostic) = lowered.too_deep() {
-            return Err(Failure::Invalid(vec![diagnostic.clone()]));
-        }
-        let draw_job = Box::new(DrawJob {
-            lowered,
-            frame,
-            float,
-            selector: self.selector.clone(),
-        });
-        let job = Job::Draw(draw_job);
-        let start = Instant::now();
-        let mut band_time = Duration::ZERO;
-        let output = self.run_in_bands(&job, |band| {
-            let start = Instant::now();
-            on_band(band);
-            band_time += start.elapsed();
-        });
-        let mut drawn = match output? {
-            Output::Drawn(drawn) => *drawn,
-            _ => return Err(unexpected_reply()),
-        };
-        let watch_loops = watch(&drawn, start.elapsed().saturating_sub(band_time));
-        if let (true, Job::Draw(draw_job)) = (drawn.may_truncate_loops && watch_loops, job) {
-            // If this fails, the image is still valid.
-            drawn.loop_truncated = match self.run(&Job::WatchLoops(draw_job)) {
-                Ok(Output::LoopTruncated(pixels)) => Some(pixels),
-                _ => None,
-            };
-        }
-        Ok(drawn)
-    }
-
-    /// Renders a frame with the SPIR-V of a different compiler: one entry point `main`, the frame's block and
-    /// its two-dimensional channels at the bindings that [`toyproof_translate::backend`] documents. For
-    /// comparing compilers.
-    ///
-    /// # Errors
-    /// Why there is no image.
-    pub fn run_spirv(&mut self, words: Vec<u32>, frame: Frame, float: FloatMode) -> Result<Image, Failure> {
-        let foreign = ForeignSpirv {
-            words,
-            frame,
-            float,
-            selector: self.selector.clone(),
-        };
-        let mut bands = Vec::new();
-        match self.run_in_bands(&Job::RunSpirv(Box::new(foreign)), |band| bands.push(band))? {
-            Output::Completed => Ok(Image::of_bands(bands)),
-            _ => Err(unexpected_reply()),
-        }
     }
 
     /// Parses a converted shader again and renders its frames. Returns the images and the name of the device.
@@ -330,31 +237,25 @@ impl Worker {
         artifact: ShaderArtifact,
         frames: Vec<Frame>,
     ) -> Result<(Vec<Image>, String), Failure> {
-        match self.run(&Job::RenderArtifact(
-            Box::new(artifact),
-            frames,
-            self.selector.clone(),
-        ))? {
-            Output::Rendered(images, device) => Ok((images, device)),
-            _ => Err(unexpected_reply()),
-        }
+        let job = Job::RenderArtifact(Box::new(artifact), frames);
+        result!(self.run(&job), Output::Rendered(images, device) => (images, device))
     }
 
     /// Compiles the passes of a shader, in the order of their graph, with the samplers of each and the
     /// textures that do not change, and continues from a state, if there is one. Returns the name of the
-    /// device. [`Self::play`] then renders the frames, until another job follows.
+    /// device. [`play`](toyproof_player::Driver::play) then renders the frames, until another job follows.
     ///
     /// # Errors
     /// Why the passes cannot be rendered.
     pub fn open_player(
         &mut self,
-        passes: PlayedPasses,
+        passes: PassCode,
         sampling: Vec<[ChannelSampling; 4]>,
         graph: Graph,
         media: Vec<Texture>,
         state: Option<State>,
     ) -> Result<String, Failure> {
-        if let PlayedPasses::Lowered(passes) = &passes
+        if let PassCode::Lowered(passes) = &passes
             && let Some(diagnostic) = passes.iter().find_map(|(lowered, _)| lowered.too_deep())
         {
             return Err(Failure::Invalid(vec![diagnostic.clone()]));
@@ -365,43 +266,8 @@ impl Worker {
             graph,
             media,
             state,
-            selector: self.selector.clone(),
         }));
-        match self.run(&job)? {
-            Output::Opened(device) => Ok(device),
-            _ => Err(unexpected_reply()),
-        }
-    }
-
-    /// Resumes the opened passes from a saved state.
-    ///
-    /// # Errors
-    /// Why the state's textures cannot be made.
-    pub fn restore_player(&mut self, state: State) -> Result<(), Failure> {
-        match self.run(&Job::RestorePlayer(Box::new(state)))? {
-            Output::Completed => Ok(()),
-            _ => Err(unexpected_reply()),
-        }
-    }
-
-    /// Renders the next frame of the passes that were opened, if one is given, and returns these textures.
-    /// The channels of the frame do not count.
-    ///
-    /// # Errors
-    /// Why there is no image. The passes must then be opened again, and start with the first frame.
-    pub fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Vec<Image>, Failure> {
-        let mut images = Vec::with_capacity(wanted.len());
-        let inputs = frame.map(|frame| {
-            Box::new(Frame {
-                channels: [const { None }; 4],
-                ..frame.clone()
-            })
-        });
-        let job = Job::Play(inputs, wanted.to_vec());
-        match self.run_in_bands(&job, |image| images.push(image))? {
-            Output::Completed => Ok(images),
-            _ => Err(unexpected_reply()),
-        }
+        result!(self.run(&job), Output::Opened(device) => device)
     }
 
     /// Runs a job without images.
@@ -463,7 +329,7 @@ impl Worker {
     /// Runs a job under a deadline. The time that `on_band` or the start of the driver takes does not count.
     fn run_on(
         &mut self,
-        mut running: RunningWorker,
+        mut running: Process,
         job: &Job,
         mut on_band: impl FnMut(Image),
     ) -> Result<Output, Failure> {
@@ -530,7 +396,7 @@ impl Worker {
 
     /// Starts a process. If `is_plain`, its driver compiles without optimizations, unless the user has set
     /// the compiler's flags.
-    fn start(&self, is_plain: bool) -> Result<RunningWorker, Failure> {
+    fn start(&self, is_plain: bool) -> Result<Process, Failure> {
         if self.uses_driver {
             sandbox::create_caches();
         }
@@ -547,43 +413,12 @@ impl Worker {
             command.env(COMPILER_FLAGS, "nopt");
         }
         quirks::set_environment(&mut command);
-        detach(&mut command);
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .map_err(|error| Failure::Worker(format!("{}: {error}", path_name(&self.program))))?;
-        let missing = || Failure::Worker("no pipe to the worker".to_owned());
-        let mut requests = child.stdin.take().ok_or_else(missing)?;
-        let mut output = child.stdout.take().ok_or_else(missing)?;
-        let errors = child.stderr.take().ok_or_else(missing)?;
-        #[cfg(target_os = "linux")]
-        {
-            // If the system refuses, messages are read in more pieces.
-            let _ = rustix::pipe::fcntl_setpipe_size(&output, PIPE_BYTES);
-        }
         let setup = Setup {
             uses_driver: self.uses_driver,
+            selector: self.selector.clone(),
         };
-        // The end of the replies reveals a dead worker.
-        let _ = send(&mut requests, &setup);
-        let (sender, replies) = mpsc::sync_channel(MAX_QUEUED_REPLIES);
-        thread::spawn(move || {
-            while let Ok(reply) = receive(&mut output) {
-                if sender.send(reply).is_err() {
-                    break;
-                }
-            }
-        });
-        Ok(RunningWorker {
-            // Of other drivers it is not known.
-            is_plain: is_plain && default.is_some(),
-            child,
-            requests,
-            replies,
-            stderr: thread::spawn(move || stderr_tail(errors)),
-        })
+        // Of other drivers it is not known.
+        Process::spawn(command, &setup, is_plain && default.is_some())
     }
 }
 
@@ -598,125 +433,84 @@ impl PlainCode {
     }
 }
 
+impl toyproof_player::Driver for Worker {
+    type Code = (Lowered, FloatMode);
+
+    fn draw_in_bands(
+        &mut self,
+        (lowered, float): Self::Code,
+        frame: Frame,
+        on_band: &mut dyn FnMut(Image),
+        watch: &mut dyn FnMut(&DrawOutput, Duration) -> bool,
+    ) -> Result<DrawOutput, Failure> {
+        if let Some(diagnostic) = lowered.too_deep() {
+            return Err(Failure::Invalid(vec![diagnostic.clone()]));
+        }
+        let draw_job = Box::new(DrawJob {
+            lowered,
+            frame,
+            float,
+        });
+        let job = Job::Draw(draw_job);
+        let start = Instant::now();
+        let mut band_time = Duration::ZERO;
+        let output = self.run_in_bands(&job, |band| {
+            let start = Instant::now();
+            on_band(band);
+            band_time += start.elapsed();
+        });
+        let mut drawn = result!(output, Output::Drawn(drawn) => *drawn)?;
+        let watch_loops = watch(&drawn, start.elapsed().saturating_sub(band_time));
+        if let (true, Job::Draw(draw_job)) = (drawn.may_truncate_loops && watch_loops, job) {
+            // If this fails, the image is still valid.
+            drawn.loop_truncated = match self.run(&Job::WatchLoops(draw_job)) {
+                Ok(Output::LoopTruncated(pixels)) => Some(pixels),
+                _ => None,
+            };
+        }
+        Ok(drawn)
+    }
+
+    fn safe_iterations(&self) -> u32 {
+        SAFE_ITERATIONS
+    }
+
+    fn stop(&mut self) {
+        self.stop();
+    }
+
+    fn open_player(
+        &mut self,
+        passes: Vec<Self::Code>,
+        sampling: Vec<[ChannelSampling; 4]>,
+        graph: Graph,
+        media: Vec<Texture>,
+        state: Option<State>,
+    ) -> Result<String, Failure> {
+        self.open_player(PassCode::Lowered(passes), sampling, graph, media, state)
+    }
+
+    fn restore_player(&mut self, state: State) -> Result<(), Failure> {
+        result!(self.run(&Job::RestorePlayer(Box::new(state))), Output::Completed => ())
+    }
+
+    fn play(&mut self, frame: Option<&Frame>, wanted: &[Readback]) -> Result<Vec<Image>, Failure> {
+        let mut images = Vec::with_capacity(wanted.len());
+        let inputs = frame.map(|frame| {
+            Box::new(Frame {
+                channels: [const { None }; 4],
+                ..frame.clone()
+            })
+        });
+        let job = Job::Play(inputs, wanted.to_vec());
+        let output = self.run_in_bands(&job, |image| images.push(image));
+        result!(output, Output::Completed => images)
+    }
+}
+
 impl Drop for Worker {
     fn drop(&mut self) {
         self.stop();
-    }
-}
-
-/// A running worker process.
-#[derive(Debug)]
-struct RunningWorker {
-    /// Whether it is Mesa's software driver without LLVM's optimizations.
-    is_plain: bool,
-    child: Child,
-    requests: ChildStdin,
-    replies: Receiver<Reply>,
-    stderr: JoinHandle<String>,
-}
-
-impl RunningWorker {
-    /// Ends the worker. Returns its exit status, if it exited by itself, and the end of its standard error.
-    fn end(mut self) -> (Option<ExitStatus>, String) {
-        drop(self.requests);
-        let deadline = Instant::now() + EXIT_GRACE_PERIOD;
-        let closed = matches!(self.replies.try_recv(), Err(mpsc::TryRecvError::Disconnected));
-        let mut status = None;
-        while closed && status.is_none() && Instant::now() < deadline {
-            status = self.child.try_wait().ok().flatten();
-            thread::sleep(Duration::from_millis(2));
-        }
-        if status.is_none() {
-            // Killing fails only for a child that has exited.
-            let _ = self.child.kill();
-            let _ = self.child.wait();
-        }
-        (status, self.stderr.join().unwrap_or_default())
-    }
-}
-
-fn stderr_tail(mut from: ChildStderr) -> String {
-    let mut tail = VecDeque::new();
-    let mut buffer = [0; 1024];
-    while let Ok(count @ 1..) = from.read(&mut buffer) {
-        tail.extend(&buffer[..count]);
-        tail.drain(..tail.len().saturating_sub(MAX_STDERR_BYTES));
-    }
-    String::from_utf8_lossy(tail.make_contiguous()).trim().to_owned()
-}
-
-/// Classifies the end of a worker by the messages of Rust's allocator, its stack guard and LLVM.
-fn classify(phase: Phase, status: Option<ExitStatus>, stderr: &str) -> Failure {
-    if stderr.contains("has overflowed its stack") {
-        return Failure::StackOverflow { phase };
-    }
-    if stderr.contains("memory allocation of") || stderr.contains("out of memory") {
-        return Failure::OutOfMemory {
-            phase,
-            limit_bytes: MAX_MEMORY_BYTES,
-        };
-    }
-    Failure::Crash {
-        phase,
-        how: describe_exit(status, stderr),
-    }
-}
-
-/// Describes how a worker ended, as part of a sentence.
-fn describe_exit(status: Option<ExitStatus>, stderr: &str) -> String {
-    let end = status.map_or_else(
-        || "stopped responding".to_owned(),
-        |status| format!("terminated ({status})"),
-    );
-    match stderr.lines().last() {
-        Some(last) => format!("{end} with the message “{last}”"),
-        None => end,
-    }
-}
-
-/// The start of a worker process or, after its first reply, of its driver.
-struct Startup {
-    began: Instant,
-    deadline: Instant,
-    is_driver: bool,
-}
-
-impl Startup {
-    fn new(timeout: Duration) -> Self {
-        let began = Instant::now();
-        Self {
-            began,
-            deadline: began + timeout,
-            is_driver: false,
-        }
-    }
-
-    fn of_driver(timeout: Duration) -> Self {
-        Self {
-            is_driver: true,
-            ..Self::new(timeout)
-        }
-    }
-
-    fn timeout_failure(&self, after: Duration) -> Failure {
-        let what = if self.is_driver {
-            "the Vulkan driver did not start"
-        } else {
-            "the worker process did not respond"
-        };
-        Failure::NotStarted(format!("{what} within {} s", after.as_secs_f64()))
-    }
-
-    fn exit_failure(&self, status: Option<ExitStatus>, stderr: &str) -> Failure {
-        let when = if self.is_driver {
-            "while the Vulkan driver was starting"
-        } else {
-            "before its first reply"
-        };
-        Failure::NotStarted(format!(
-            "the worker process {} {when}",
-            describe_exit(status, stderr)
-        ))
     }
 }
 
@@ -729,8 +523,4 @@ fn with_pin_hint(failure: Failure) -> Failure {
         )),
         failure => failure,
     }
-}
-
-fn unexpected_reply() -> Failure {
-    Failure::Worker("unexpected reply".to_owned())
 }
