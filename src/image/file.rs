@@ -41,7 +41,7 @@ pub enum ImageError {
 pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     let [width, height] = image.size();
     let top_down = image.rows().rev().flatten();
-    match Format::of(path)? {
+    match Format::from_path(path)? {
         Format::Png => {
             let rows = image.rows().rev();
             let rows = rows.map(|row| row.iter().map(|&[r, g, b, _]| [r, g, b].map(quantize)).collect());
@@ -70,7 +70,7 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
 /// # Errors
 /// As [`encode`].
 pub fn encode_shown(image_rgb8: &Rgb8Image, path: &Path) -> Result<Vec<u8>, ImageError> {
-    match Format::of(path)? {
+    match Format::from_path(path)? {
         Format::Png => in_memory(path, |bytes| write_png(image_rgb8, bytes)),
         Format::Exr => encode(&Image::from(image_rgb8), path),
     }
@@ -90,7 +90,7 @@ enum Format {
 }
 
 impl Format {
-    fn of(path: &Path) -> Result<Self, ImageError> {
+    fn from_path(path: &Path) -> Result<Self, ImageError> {
         let format = path.extension().and_then(|extension| extension.to_str());
         match format.map(str::to_ascii_lowercase).as_deref() {
             Some("png") => Ok(Self::Png),
@@ -107,7 +107,7 @@ fn png<'a>(
     rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>> + Clone,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut compressed = Limited {
+    let mut compressed = LimitedBuffer {
         bytes: Vec::new(),
         limit: stored_size(size),
         is_exceeded: false,
@@ -150,13 +150,13 @@ fn png_with<'a>(
 }
 
 /// A file in memory that cannot become larger than a limit, in bytes.
-struct Limited {
+struct LimitedBuffer {
     bytes: Vec<u8>,
     limit: usize,
     is_exceeded: bool,
 }
 
-impl Write for Limited {
+impl Write for LimitedBuffer {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.is_exceeded |= self.bytes.len() + bytes.len() > self.limit;
         if self.is_exceeded {
@@ -219,7 +219,7 @@ pub fn read_shown(path: &Path) -> Result<Rgb8Image, ImageError> {
 /// # Errors
 /// [`ImageError::Extension`].
 pub fn check_extension(path: &Path) -> Result<(), ImageError> {
-    Format::of(path).map(|_| ())
+    Format::from_path(path).map(|_| ())
 }
 
 fn decode(path: &Path) -> Result<DynamicImage, ImageError> {

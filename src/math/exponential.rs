@@ -28,7 +28,7 @@ pub fn exp<F: Float>(x: F) -> F {
 /// `2ˣ`
 #[inline(always)]
 pub fn exp2<F: Float>(x: F) -> F {
-    let value = exp2_of(TwoFloat::of(x));
+    let value = exp2_of(TwoFloat::from_float(x));
     F::select(is_nan(x), x, value)
 }
 
@@ -102,7 +102,7 @@ fn power_of_two<F: Float>(n: F::Bits) -> F {
 /// `ln x`; −∞ for zero, NaN below.
 #[inline(always)]
 pub fn log<F: Float>(x: F) -> F {
-    let value = ln_of(TwoFloat::of(x), x.literal(0.0));
+    let value = ln_of(TwoFloat::from_float(x), x.literal(0.0));
     F::select(is_positive_normal(x), value, log_of_special(x))
 }
 
@@ -201,7 +201,7 @@ fn log2_of<F: Float>(x: F) -> TwoFloat<F> {
     const P: [f32; 3] = [0.200_000_76, 0.142_735_42, 0.117_099_5];
     let (k, m) = split(x);
     let one = x.literal(1.0);
-    let s = TwoFloat::of(m - one).divided_by(TwoFloat::ordered_sum(one, m));
+    let s = TwoFloat::from_float(m - one).divided_by(TwoFloat::ordered_sum(one, m));
     let z = s.times(s);
     let third = TwoFloat::constant(x, 1.0 / 3.0);
     let inner = TwoFloat::ordered_sum(third.hi, z.hi * polynomial(z.hi, P)).add_low(third.lo);
@@ -307,7 +307,7 @@ pub fn acosh<F: Float>(x: F) -> F {
 pub fn atanh<F: Float>(x: F) -> F {
     let a = x.abs();
     let one = a.literal(1.0);
-    let quotient = TwoFloat::of(a + a).divided_by(TwoFloat::ordered_sum(one, -a));
+    let quotient = TwoFloat::from_float(a + a).divided_by(TwoFloat::ordered_sum(one, -a));
     let sum = quotient.add_to(one);
     let value = ln_of(sum, a.literal(0.0)) * 0.5;
     let value = F::select(a.less(one), value, infinity(a));
@@ -321,6 +321,6 @@ pub fn atanh<F: Float>(x: F) -> F {
 fn ln_beyond_one<F: Float>(t: TwoFloat<F>, large: F) -> F {
     let one = large.literal(1.0);
     let is_large = !is_below(large, LARGE_ARGUMENT);
-    let sum = TwoFloat::select(is_large, TwoFloat::of(large), t.add_to(one));
+    let sum = TwoFloat::select(is_large, TwoFloat::from_float(large), t.add_to(one));
     ln_of(sum, F::select(is_large, one, one.literal(0.0)))
 }

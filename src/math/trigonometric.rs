@@ -107,7 +107,7 @@ fn reduce<F: Float>(x: F) -> (TwoFloat<F>, F::Bits) {
     let rest = fraction::<F>(high - (n << 30), low);
     let reduced = rest.times(TwoFloat::constant(x, FRAC_PI_2));
     let small = magnitude.less(magnitude.literal(FRAC_PI_4.to_bits()));
-    let r = TwoFloat::select(small, TwoFloat::of(x.abs()), reduced);
+    let r = TwoFloat::select(small, TwoFloat::from_float(x.abs()), reduced);
     (r, F::Bits::select(small, n.literal(0), n))
 }
 
@@ -275,7 +275,7 @@ fn arcsine<F: Float>(x: F) -> Arcsine<F> {
     let a = x.abs();
     let outer = a.literal(0.5).less(a);
     let half = (a.literal(1.0) - a) * 0.5;
-    let root = TwoFloat::of(half).sqrt();
+    let root = TwoFloat::from_float(half).sqrt();
     let t = F::select(outer, root.hi, a);
     let z = F::select(outer, half, a * a);
     let series = t * (z * polynomial(z, P));

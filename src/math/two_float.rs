@@ -118,7 +118,7 @@ impl<F: Float> TwoFloat<F> {
 
     /// Makes a sum with a zero low part.
     #[inline(always)]
-    pub(super) fn of(hi: F) -> Self {
+    pub(super) fn from_float(hi: F) -> Self {
         Self {
             hi,
             lo: hi.literal(0.0),

@@ -18,7 +18,7 @@ pub struct Moment {
 
 impl Moment {
     /// None without a date, a time or an offset.
-    fn of(value: &Datetime) -> Option<Self> {
+    fn from_datetime(value: &Datetime) -> Option<Self> {
         let (date, time) = (value.date?, value.time?);
         let offset = match value.offset? {
             Offset::Z => 0,
@@ -43,7 +43,7 @@ impl Value for Moment {
 
     fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
         let found = match value.get_ref() {
-            DeValue::Datetime(datetime) => match Self::of(datetime) {
+            DeValue::Datetime(datetime) => match Self::from_datetime(datetime) {
                 Some(moment) => return Ok(moment),
                 None if datetime.time.is_none() => "a date without a time".to_owned(),
                 None if datetime.date.is_none() => "a time without a date".to_owned(),

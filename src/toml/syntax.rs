@@ -8,12 +8,29 @@ use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 pub fn diagnostic(code: Code, error: &toml::de::Error, text: &str, file: FileId) -> Diagnostic {
     let bytes = error.span().unwrap_or_default();
     let bytes = bytes.start.min(text.len())..bytes.end.min(text.len());
-    let (bytes, message, help) = Site::of(text, bytes).explain(error.message());
+    let SyntaxError { bytes, message, help } = Site::new(text, bytes).explain(error.message());
     let diagnostic = Diagnostic::new(code, message).at(Span::new(file, bytes.start as u32, bytes.end as u32));
     if help.is_empty() {
         diagnostic
     } else {
         diagnostic.help(help)
+    }
+}
+
+/// An error, where it is, and advice, which may be empty.
+struct SyntaxError {
+    bytes: Range<usize>,
+    message: String,
+    help: String,
+}
+
+impl SyntaxError {
+    fn new(bytes: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self {
+            bytes,
+            message: message.into(),
+            help: help.into(),
+        }
     }
 }
 
@@ -30,7 +47,7 @@ struct Site<'t> {
 const SEPARATORS: [char; 5] = ['=', ',', '[', '{', '('];
 
 impl<'t> Site<'t> {
-    fn of(text: &'t str, bytes: Range<usize>) -> Self {
+    fn new(text: &'t str, bytes: Range<usize>) -> Self {
         // An error at the end of a line is about this line.
         let start = text[..bytes.start].rfind('\n').map_or(0, |at| at + 1);
         let end = text[bytes.start..]
@@ -61,10 +78,9 @@ impl<'t> Site<'t> {
         start..end.map_or(self.text.len(), |at| self.bytes.start + at)
     }
 
-    /// Returns where the error is, the message, and advice.
-    fn explain(self, message: &str) -> (Range<usize>, String, String) {
+    fn explain(self, message: &str) -> SyntaxError {
         let bytes = self.bytes.clone();
-        let at = |message: &str, help: &str| (bytes.clone(), message.to_owned(), help.to_owned());
+        let at = |message, help| SyntaxError::new(bytes.clone(), message, help);
         let line = self.line();
         let key = line.split(['=', ':', ' ']).next().unwrap_or_default();
         let reason = message.split(", expected").next().unwrap_or_default();
@@ -72,20 +88,12 @@ impl<'t> Site<'t> {
             "string values must be quoted" => self.unquoted(),
             "key with no value" if line.starts_with("//") || line.starts_with("/*") => {
                 let help = "start a comment with `#`";
-                (
-                    self.line.clone(),
-                    "unknown form of comment".to_owned(),
-                    help.to_owned(),
-                )
+                SyntaxError::new(self.line.clone(), "unknown form of comment", help)
             }
             "key with no value" | "missing assignment between key-value pairs" => {
                 let colon = line.contains(':').then_some("write `=` instead of `:`");
                 let help = colon.unwrap_or("write `key = value`");
-                (
-                    self.line.clone(),
-                    format!("missing `=` after `{key}`"),
-                    help.to_owned(),
-                )
+                SyntaxError::new(self.line.clone(), format!("missing `=` after `{key}`"), help)
             }
             "unexpected key or value" => self.trailing(),
             "duplicate key" => self.duplicate(),
@@ -140,12 +148,12 @@ impl<'t> Site<'t> {
             "missing array opening" | "missing inline table opening" | "missing table open" => {
                 at("unmatched closing bracket", "remove it")
             }
-            _ => (bytes, format!("invalid TOML: {message}"), String::new()),
+            _ => SyntaxError::new(bytes, format!("invalid TOML: {message}"), ""),
         }
     }
 
     /// A key or a table is given twice.
-    fn duplicate(self) -> (Range<usize>, String, String) {
+    fn duplicate(self) -> SyntaxError {
         let name = &self.text[self.bytes.clone()];
         let (message, help) = if self.line().starts_with("[[") {
             (
@@ -163,17 +171,17 @@ impl<'t> Site<'t> {
                 "remove one of the two".to_owned(),
             )
         };
-        (self.bytes, message, help)
+        SyntaxError::new(self.bytes, message, help)
     }
 
     /// The word around the mark is wrong.
-    fn word_error(&self, what: &str, help: &str) -> (Range<usize>, String, String) {
+    fn word_error(&self, what: &str, help: &str) -> SyntaxError {
         let word = self.word();
         let message = format!("`{}` {what}", &self.text[word.clone()]);
-        (word, message, help.to_owned())
+        SyntaxError::new(word, message, help)
     }
 
-    fn not_a_number(&self) -> (Range<usize>, String, String) {
+    fn not_a_number(&self) -> SyntaxError {
         let word = &self.text[self.word()];
         if word.ends_with(';') {
             self.word_error("is not a number", "remove the `;`")
@@ -188,29 +196,29 @@ impl<'t> Site<'t> {
     }
 
     /// A value is missing, or is a word without quotes.
-    fn unquoted(&self) -> (Range<usize>, String, String) {
+    fn unquoted(&self) -> SyntaxError {
         let written = self.text[self.bytes.clone()].trim();
         let bytes = self.bytes.clone();
         let bare = written.trim_matches(['“', '”', '„', '‘', '’', '`']);
         if written.is_empty() {
             let help = "write a value after `=`, such as `1.0` or `\"text\"`";
-            (bytes, "missing value".to_owned(), help.to_owned())
+            SyntaxError::new(bytes, "missing value", help)
         } else if written.len() > bare.len() {
             let help = format!("write straight quotes: `\"{bare}\"`");
-            (bytes, format!("`{written}` is not in straight quotes"), help)
+            SyntaxError::new(bytes, format!("`{written}` is not in straight quotes"), help)
         } else if written.contains(' ') {
             let help = "write a list as `[1.0, 2.0, 3.0]`";
-            (bytes, "missing `,` in a list".to_owned(), help.to_owned())
+            SyntaxError::new(bytes, "missing `,` in a list", help)
         } else if written.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
             self.not_a_number()
         } else {
             let help = format!("write `\"{written}\"`");
-            (bytes, format!("`{written}` is not in quotes"), help)
+            SyntaxError::new(bytes, format!("`{written}` is not in quotes"), help)
         }
     }
 
     /// Something follows a value or a header.
-    fn trailing(&self) -> (Range<usize>, String, String) {
+    fn trailing(&self) -> SyntaxError {
         let end = self.line.end.max(self.bytes.start);
         let rest = self.bytes.start..end;
         let line = self.line();
@@ -234,6 +242,6 @@ impl<'t> Site<'t> {
         } else {
             "a value"
         };
-        (rest, format!("unexpected text after {place}"), help)
+        SyntaxError::new(rest, format!("unexpected text after {place}"), help)
     }
 }

@@ -21,11 +21,11 @@ impl Mismatch {
     pub(super) fn new(value: &Spanned<DeValue>, found: String) -> Self {
         Self {
             found,
-            ..Self::of(value)
+            ..Self::from_value(value)
         }
     }
 
-    fn of(value: &Spanned<DeValue>) -> Self {
+    fn from_value(value: &Spanned<DeValue>) -> Self {
         Self {
             bytes: value.span(),
             found: describe(value.get_ref()),
@@ -33,11 +33,11 @@ impl Mismatch {
         }
     }
 
-    fn of_number(value: &Spanned<DeValue>) -> Self {
+    fn from_number(value: &Spanned<DeValue>) -> Self {
         let text = value.get_ref().as_str();
         Self {
             is_number_in_quotes: text.is_some_and(|text| text.parse::<f64>().is_ok()),
-            ..Self::of(value)
+            ..Self::from_value(value)
         }
     }
 }
@@ -84,7 +84,7 @@ impl Value for f64 {
             DeValue::Float(float) => float.as_str().parse().ok(),
             _ => None,
         };
-        number.ok_or_else(|| Mismatch::of_number(value))
+        number.ok_or_else(|| Mismatch::from_number(value))
     }
 }
 
@@ -97,7 +97,7 @@ impl Value for i64 {
             DeValue::Integer(integer) => integer_value(integer),
             _ => None,
         };
-        number.ok_or_else(|| Mismatch::of_number(value))
+        number.ok_or_else(|| Mismatch::from_number(value))
     }
 }
 
@@ -119,7 +119,10 @@ impl Value for bool {
     const EXAMPLE: &'static str = "true";
 
     fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
-        value.get_ref().as_bool().ok_or_else(|| Mismatch::of(value))
+        value
+            .get_ref()
+            .as_bool()
+            .ok_or_else(|| Mismatch::from_value(value))
     }
 }
 
@@ -129,7 +132,7 @@ impl Value for String {
 
     fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
         let text = value.get_ref().as_str().map(str::to_owned);
-        text.ok_or_else(|| Mismatch::of(value))
+        text.ok_or_else(|| Mismatch::from_value(value))
     }
 }
 
@@ -166,7 +169,7 @@ impl Value for Literal {
                 .map(Self::read)
                 .collect::<Result<_, _>>()
                 .map(Self::List),
-            _ => Err(Mismatch::of_number(value)),
+            _ => Err(Mismatch::from_number(value)),
         }
     }
 }
@@ -180,7 +183,7 @@ macro_rules! lists_of_any_length {
             fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
                 match value.get_ref() {
                     DeValue::Array(values) => values.iter().map(<$element>::read).collect(),
-                    _ => Err(Mismatch::of(value)),
+                    _ => Err(Mismatch::from_value(value)),
                 }
             }
         }
@@ -196,7 +199,7 @@ lists_of_any_length! {
 /// Reads a list of exactly `N` values.
 fn list<T: Value + Copy, const N: usize>(value: &Spanned<DeValue>, unit: T) -> Result<[T; N], Mismatch> {
     let DeValue::Array(values) = value.get_ref() else {
-        return Err(Mismatch::of(value));
+        return Err(Mismatch::from_value(value));
     };
     if values.len() != N {
         return Err(Mismatch::new(value, values.len().to_string()));

@@ -33,7 +33,7 @@ pub fn sin_cos<const L: usize>(x: [f64; L]) -> ([f64; L], [f64; L]) {
 
 /// The sines of the angles plus `quadrants·π/2`.
 #[inline(always)]
-fn sines<const L: usize>(reduced: [Reduced; L], quadrants: u64) -> [f64; L] {
+fn sines<const L: usize>(reduced: [ReducedAngle; L], quadrants: u64) -> [f64; L] {
     let mut results = [0.0; L];
     for lane in 0..L {
         results[lane] = reduced[lane].sin(quadrants);
@@ -43,8 +43,8 @@ fn sines<const L: usize>(reduced: [Reduced; L], quadrants: u64) -> [f64; L] {
 
 /// Reduces each angle.
 #[inline(always)]
-fn reduce_all<const L: usize>(x: [f64; L]) -> [Reduced; L] {
-    let mut reduced = [Reduced::default(); L];
+fn reduce_all<const L: usize>(x: [f64; L]) -> [ReducedAngle; L] {
+    let mut reduced = [ReducedAngle::default(); L];
     let mut irregular = 0;
     for lane in 0..L {
         reduced[lane] = reduce(x[lane]);
@@ -62,7 +62,7 @@ fn reduce_all<const L: usize>(x: [f64; L]) -> [Reduced; L] {
 
 /// An angle `head + tail + quadrants·π/2`; only the lowest two bits of `quadrants` count.
 #[derive(Debug, Clone, Copy, Default)]
-struct Reduced {
+struct ReducedAngle {
     quadrants: u64,
     head: f64,
     tail: f64,
@@ -70,7 +70,7 @@ struct Reduced {
 
 /// Reduces an angle of at most 2²⁰·π/2 in magnitude.
 #[inline(always)]
-fn reduce(x: f64) -> Reduced {
+fn reduce(x: f64) -> ReducedAngle {
     /// π/2 in three parts: the first two have 33 bits, so that their products with 20 bits are exact.
     const HALF_PI: [f64; 3] = [
         f64::from_bits(0x3FF9_21FB_5440_0000),
@@ -84,14 +84,14 @@ fn reduce(x: f64) -> Reduced {
     let second = first - product;
     let rest = n * HALF_PI[2] - ((first - second) - product);
     let head = second - rest;
-    Reduced {
+    ReducedAngle {
         quadrants: sum.to_bits(),
         head,
         tail: (second - head) - rest,
     }
 }
 
-impl Reduced {
+impl ReducedAngle {
     /// Whether [`reduce`] was accurate enough: the angle is not too large, and little of it canceled.
     #[inline(always)]
     fn is_accurate(self, x: f64) -> bool {
@@ -177,15 +177,15 @@ const TWO_OVER_PI: [u64; 21] = [
 /// Reduces any angle of at least π/4 in magnitude: x·2/π in integers, without the bits of 2/π whose products
 /// are multiples of 4. No f64 is closer to a multiple of π/2 than 2⁻⁶¹ or so, so 64 bits remain.
 #[inline(never)]
-fn reduce_by_integers(x: f64) -> Reduced {
+fn reduce_by_integers(x: f64) -> ReducedAngle {
     /// π/2·2⁶³
     const HALF_PI: u64 = 0xC90F_DAA2_2168_C235;
     /// The lowest bit of a significand with 53 bits in 64.
     const UNIT: u64 = 1 << 11;
     if !x.is_finite() {
-        return Reduced {
+        return ReducedAngle {
             head: f64::NAN,
-            ..Reduced::default()
+            ..ReducedAngle::default()
         };
     }
     // |x| is significand·2^(position − 62); the bit of 2/π at `position` is the first one used.
@@ -213,7 +213,7 @@ fn reduce_by_integers(x: f64) -> Reduced {
     } else {
         -scale
     };
-    Reduced {
+    ReducedAngle {
         quadrants: if x.is_sign_negative() {
             (n as u64).wrapping_neg()
         } else {
