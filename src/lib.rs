@@ -36,9 +36,10 @@
 //! | `explain` | the mistake that explains a wrong image, and its repair |
 //! | `gpu` | rendering on a Vulkan driver, in a worker process |
 //! | `convert` | conversions, and their proofs |
-//! | `lab` | measurements of stability, and of accuracy against time |
+//! | `stress` | numerical stability of ray–surface intersection, and tests of an author's own function |
+//! | `lab` | measurements of accuracy against time, and charts |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
-//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope; with `lab`, assignments |
+//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, Gradescope; with `classroom`, assignments |
 //! | `cli` | the command line |
 //!
 //! # Example
@@ -97,6 +98,8 @@ pub use toyproof_project as project;
 pub use toyproof_report as report;
 #[cfg(feature = "tracer")]
 pub use toyproof_scene as scene;
+#[cfg(feature = "stress")]
+pub use toyproof_stress as stress;
 #[cfg(feature = "tracer")]
 pub use toyproof_tracer as tracer;
 #[cfg(feature = "translate")]

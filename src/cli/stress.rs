@@ -4,9 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use toyproof_diagnostic::{Deadline, path_name};
+use toyproof_glsl::Checked;
 use toyproof_gpu::Worker;
-use toyproof_lab::stress::function::{self, Role, RoleMap, Signature};
-use toyproof_lab::stress::{self, Report, Settings, formula};
+use toyproof_image::Frame;
+use toyproof_lab::stress as output;
+use toyproof_player::{DrawOutput, DriverFailure};
+use toyproof_stress::function::{self, Role, RoleMap, Signature};
+use toyproof_stress::{self as stress, Gpu, Report, Settings, formula};
+use toyproof_translate::FloatMode;
 
 use super::inputs::{DriverArgs, LanguageArgs};
 use super::shader::{Shader, find_one};
@@ -72,10 +77,14 @@ fn parse_role(text: &str) -> Result<(String, Role), String> {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let mut worker = worker(&args.driver, terminal)?;
+    let mut renderer = worker
+        .as_mut()
+        .map(|worker| renderer(worker, args.driver.float()));
+    let gpu = renderer.as_mut().map(|renderer| renderer as &mut Gpu);
     let interrupted = terminal.watch_interrupts("stopping; no files are written");
     match &args.shader {
-        Some(shader) => examine(args, shader, worker.as_mut(), &interrupted, terminal),
-        None => study(args, worker.as_mut(), &interrupted, terminal),
+        Some(shader) => examine(args, shader, gpu, &interrupted, terminal),
+        None => study(args, gpu, &interrupted, terminal),
     }
 }
 
@@ -84,20 +93,19 @@ impl Args {
         Settings {
             seed: self.seed,
             cases: self.cases as usize,
-            float: self.driver.float(),
         }
     }
 }
 
 fn study(
     args: &Args,
-    worker: Option<&mut Worker>,
+    gpu: Option<&mut Gpu>,
     interrupted: &AtomicBool,
     terminal: &Terminal,
 ) -> Result<Exit, CliError> {
     let subjects = formula::subjects();
-    let bar = terminal.bar(stress::run_count(&subjects, worker.is_some()), "formulas tested");
-    let studied = stress::study(&subjects, worker, args.settings(), interrupted, || bar.inc(1));
+    let bar = terminal.bar(stress::run_count(&subjects, gpu.is_some()), "formulas tested");
+    let studied = stress::study(&subjects, gpu, args.settings(), interrupted, || bar.inc(1));
     bar.finish_and_clear();
     let report = studied?;
     for line in report.summary() {
@@ -106,33 +114,30 @@ fn study(
     for line in report.double_precision_summary() {
         terminal.detail(&line);
     }
-    write_results(&report, report.json(), args, terminal)?;
+    write_results(&report, output::json(&report), args, terminal)?;
     Ok(Exit::Success)
 }
 
 fn examine(
     args: &Args,
     path: &Path,
-    worker: Option<&mut Worker>,
+    gpu: Option<&mut Gpu>,
     interrupted: &AtomicBool,
     terminal: &Terminal,
 ) -> Result<Exit, CliError> {
     let input = find_one(path, "stress", terminal)?;
     let shader = Shader::load(&input, &args.language, Deadline::after(args.driver.timeout()));
-    let checked = shader.require_checked()?;
+    let checked = shader.require_single_pass()?;
     let map: RoleMap = args.map.iter().cloned().collect();
     let signature = match &args.function {
         Some(name) => Signature::recognize(checked, name, &map),
         None => Signature::only(checked, &map),
     };
     let signature = signature.map_err(|why| format!("{}: {why}", shader.name))?;
-    let subject = function::subject(
-        shader.text(checked),
-        &signature,
-        args.language.options(Deadline::after(args.driver.timeout())),
-    );
-    let bar = terminal.bar(2 + u64::from(worker.is_some()), "runs");
-    let examined = function::examine(&subject, &signature, worker, args.settings(), interrupted, || {
+    let options = args.language.options(Deadline::after(args.driver.timeout()));
+    let bar = terminal.bar(2 + u64::from(gpu.is_some()), "runs");
+    let (text, settings) = (shader.text(checked), args.settings());
+    let examined = function::examine(text, &signature, &options, gpu, settings, interrupted, || {
         bar.inc(1);
     });
     bar.finish_and_clear();
@@ -140,12 +145,20 @@ fn examine(
     for line in findings.summary(&signature.name) {
         terminal.result(&line);
     }
-    write_results(&findings.report, findings.json(), args, terminal)?;
+    write_results(&findings.report, output::json(&findings), args, terminal)?;
     Ok(if findings.mistake.is_some_and(|mistake| !mistake.recoverable) {
         Exit::ShaderFault
     } else {
         Exit::Success
     })
+}
+
+/// Renders the frames of subjects on the driver of a worker.
+fn renderer(
+    worker: &mut Worker,
+    float: FloatMode,
+) -> impl FnMut(&Checked, &Frame) -> Result<DrawOutput, DriverFailure> {
+    move |checked, frame| worker.draw_unwatched(float.lower(checked), frame.clone(), float)
 }
 
 /// Creates a worker that has a driver; `None` if only the evaluator is available.
@@ -165,10 +178,10 @@ fn worker(driver: &DriverArgs, terminal: &Terminal) -> Result<Option<Worker>, Cl
 
 fn write_results(report: &Report, json: String, args: &Args, terminal: &Terminal) -> Result<(), CliError> {
     let mut files = vec![
-        ("stress.csv".to_owned(), report.csv().into_bytes()),
+        ("stress.csv".to_owned(), output::csv(report).into_bytes()),
         ("stress.json".to_owned(), json.into_bytes()),
     ];
-    for (name, heat_map) in report.heat_maps() {
+    for (name, heat_map) in output::heat_maps(report) {
         files.push((format!("{name}.svg"), heat_map.svg().into_bytes()));
         let name = format!("{name}.png");
         let bytes = toyproof_image::encode(&heat_map.image(), name.as_ref())?;

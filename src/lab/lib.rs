@@ -1,22 +1,50 @@
-//! Measurements for authors of shaders and of this tool: accuracy against time ([`trade`]), failures of
-//! formulas at extreme arguments ([`stress`]), and the charts of both ([`chart`]).
+//! Measurements for authors of shaders and of this tool: accuracy against time ([`trade`]), the output of
+//! `toyproof_stress` ([`stress`]), and the charts of both ([`chart`]).
 //!
 //! ```
-//! use toyproof_lab::stress::formula::FORMULAS;
+//! use toyproof_lab::chart::{Point, Scatter};
 //!
-//! // The ray–sphere formulas whose failures `stress` measures.
-//! assert!(FORMULAS.iter().any(|formula| formula.name == "textbook"));
+//! let point = Point { x: 2.0, y: 0.1, name: "a".to_owned(), group: 0, on_front: true };
+//! let scatter = Scatter {
+//!     title: "Error against time".to_owned(),
+//!     x_title: "time (ms)".to_owned(),
+//!     y_title: "error".to_owned(),
+//!     groups: vec!["one".to_owned()],
+//!     points: vec![point],
+//!     reference_lines: Vec::new(),
+//! };
+//! assert!(scatter.svg().contains("Error against time"));
 //! ```
 //!
 //! # Parts
 //!
-//! - [`stress`]: formulas and authors' own functions against exact integers.
+//! - [`stress`]: tables and heat maps of the failures of formulas.
 //! - [`trade`]: accuracy against time of all methods to render an image, within a budget.
 //! - [`chart`]: scatter plots and heat maps.
 
 pub mod chart;
 pub mod stress;
 pub mod trade;
+
+use serde::Serialize;
+
+/// A file of results in JSON, with the version of its format. Infinite and NaN values are null.
+fn json_file(results: &impl Serialize) -> String {
+    #[derive(Serialize)]
+    struct File<'a, R> {
+        version: u32,
+        tool: &'static str,
+        #[serde(flatten)]
+        results: &'a R,
+    }
+    let file = File {
+        version: 2,
+        tool: concat!("toyproof ", env!("CARGO_PKG_VERSION")),
+        results,
+    };
+    // Strings and numbers always serialize.
+    serde_json::to_string_pretty(&file).unwrap_or_default() + "\n"
+}
 
 /// A table in the format of RFC 4180, with a row of the columns' names.
 fn csv_table<const N: usize>(columns: [&str; N], rows: impl Iterator<Item = Vec<String>>) -> String {

@@ -6,9 +6,10 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use serde_json::Value;
-use toyproof::glsl::Options;
-use toyproof::lab::stress::function::{self, Findings, Role, RoleMap, Signature};
-use toyproof::lab::stress::{self, Settings, formula};
+use toyproof::glsl::{Checked, Options};
+use toyproof::image::Frame;
+use toyproof::stress::function::{self, Findings, Role, RoleMap, Signature};
+use toyproof::stress::{self, Settings, formula};
 use toyproof::translate::FloatMode;
 
 use crate::program::{command, toyproof};
@@ -16,17 +17,12 @@ use crate::requirements::{require_driver, require_worker};
 use crate::support::wait::wait_until;
 use crate::support::{EVERY_EXERCISE, Edit, QUADRICS, SPHERE, checked, edited};
 
-const FEW_CASES: Settings = Settings {
-    seed: 1,
-    cases: 60,
-    float: FloatMode::Strict,
-};
+const FEW_CASES: Settings = Settings { seed: 1, cases: 60 };
 
 fn examine(text: &str, name: &str, map: &RoleMap) -> Findings {
     let signature = Signature::recognize(&checked(text), name, map).unwrap_or_else(|why| panic!("{why}"));
-    let subject = function::subject(text, &signature, Options::default());
-    let never = AtomicBool::new(false);
-    function::examine(&subject, &signature, None, FEW_CASES, &never, || ()).unwrap()
+    let (options, never) = (Options::default(), AtomicBool::new(false));
+    function::examine(text, &signature, &options, None, FEW_CASES, &never, || ()).unwrap()
 }
 
 fn mistake(text: &str, name: &str) -> Option<&'static str> {
@@ -348,7 +344,11 @@ fn a_strict_gpu_fails_where_the_cpu_does() {
     };
     let subjects = formula::subjects();
     let never = AtomicBool::new(false);
-    let report = stress::study(&subjects, Some(&mut worker), FEW_CASES, &never, || ()).unwrap();
+    let mut gpu = |checked: &Checked, frame: &Frame| {
+        let float = FloatMode::Strict;
+        worker.draw_unwatched(float.lower(checked), frame.clone(), float)
+    };
+    let report = stress::study(&subjects, Some(&mut gpu), FEW_CASES, &never, || ()).unwrap();
     let mut compared = 0;
     for row in report.rows.iter().filter(|row| row.device != stress::CPU) {
         let same = |other: &&stress::Row| {

@@ -1,17 +1,15 @@
 //! Tests of single functions: a function is called with arguments, in f64, and its results are compared.
 
 use std::fmt::Write as _;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use toyproof_diagnostic::{File, Files, plural};
-use toyproof_eval::{self as eval, UndefinedPolicy};
-use toyproof_eval_native::Program;
+use toyproof_diagnostic::{Files, plural};
 use toyproof_glsl::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
-use toyproof_lab::stress::Failure;
-use toyproof_lab::stress::function::{self, RoleMap, Signature, with_main};
 use toyproof_report::FunctionRecord;
+use toyproof_stress::function::{RoleMap, Signature, test_typical, with_main};
+use toyproof_stress::{RunError, ShaderRunner};
 use toyproof_toml::Literal;
 
 /// The default of [`FunctionCase::tolerance`]: results in an assignment are written with a few digits.
@@ -36,7 +34,7 @@ pub struct FunctionTest {
 pub enum FunctionCases {
     /// These, at least one.
     Listed(Vec<FunctionCase>),
-    /// The rays and spheres of [`stress`](toyproof_lab::stress) of typical size, for a function that
+    /// The rays and spheres of [`toyproof_stress`] of typical size, for a function that
     /// intersects a ray with a sphere, whatever its signature.
     Stress,
 }
@@ -140,9 +138,8 @@ impl FunctionTest {
     fn run_typical(&self, subject: &Subject) -> Result<FunctionRecord, String> {
         let signature = Signature::recognize(subject.checked, &self.name, &RoleMap::new());
         let signature = signature.map_err(|why| why.to_string())?;
-        let shader = function::subject(subject.text, &signature, subject.options());
-        let tested = function::test_typical(&shader, &signature, subject.timeout);
-        let tested = tested.map_err(|error| format!("the test cannot be run: {error}"))?;
+        let tested = test_typical(subject.text, &signature, &subject.options(), subject.timeout);
+        let tested = tested.map_err(not_run)?;
         let message = match tested.mistake {
             Some(mistake) => format!("it {}", mistake.description),
             None => "none of the known mistakes explains it".to_owned(),
@@ -223,13 +220,16 @@ impl FunctionCase {
 
     /// The signature that the values indicate.
     fn signature(&self, name: &str) -> String {
-        let result = self.result.as_ref().map_or_else(|| "void".to_owned(), type_of);
+        let result = self
+            .result
+            .as_ref()
+            .map_or_else(|| "void".to_owned(), likely_type);
         let outputs = self
             .outputs
             .iter()
             .flatten()
-            .map(|output| format!("out {}", type_of(output)));
-        let parameters: Vec<_> = self.arguments.iter().map(type_of).chain(outputs).collect();
+            .map(|output| format!("out {}", likely_type(output)));
+        let parameters: Vec<_> = self.arguments.iter().map(likely_type).chain(outputs).collect();
         format!("{result} {name}({})", parameters.join(", "))
     }
 }
@@ -243,7 +243,7 @@ fn flatten(literal: &Literal, into: &mut Vec<f64>) {
 }
 
 /// The type that a value most likely has.
-fn type_of(literal: &Literal) -> String {
+fn likely_type(literal: &Literal) -> String {
     match literal {
         Literal::Number { .. } => "float".to_owned(),
         Literal::Boolean(_) => "bool".to_owned(),
@@ -253,7 +253,10 @@ fn type_of(literal: &Literal) -> String {
                 Some(Literal::Number { .. }) if is_vector && list.iter().all(is_number) => {
                     format!("vec{}", list.len())
                 }
-                _ => format!("{{{}}}", list.iter().map(type_of).collect::<Vec<_>>().join(", ")),
+                _ => format!(
+                    "{{{}}}",
+                    list.iter().map(likely_type).collect::<Vec<_>>().join(", ")
+                ),
             }
         }
     }
@@ -355,31 +358,24 @@ impl Call {
             "void mainImage(out vec4 tpColor, in vec2 tpPlace) {{\n{}}}\n",
             self.text
         );
-        let mut files = Files::default();
-        let file = files.add(File::new("<test>", with_main(subject.text, &main)));
-        let checked = glsl::check(&files, file, &subject.options());
-        let failed = |why: String| format!("the test cannot be run: {why}");
-        let checked = checked.map_err(|errors| failed(Failure::Invalid(errors.into()).to_string()))?;
-        let program = Program::prepared_within(&checked, UndefinedPolicy::Plain, Some(subject.timeout));
-        let program = program.map_err(|refusal| failed(eval::Failure::from(refusal).to_string()))?;
         let frame = Frame {
             size: [cases.len() as u32, self.components.div_ceil(3).max(1) as u32],
             ..Frame::default()
         };
-        let settings = eval::Settings::<f64> {
-            undefined: UndefinedPolicy::Plain,
-            deadline: Some(Instant::now() + subject.timeout),
-            ..eval::Settings::default()
-        };
-        let rendered = program
-            .render(&frame, &settings)
-            .map_err(|failure| failed(failure.to_string()))?;
+        let text = with_main(subject.text, &main);
+        let colors = ShaderRunner::new(&text, &subject.options(), Some(subject.timeout))
+            .and_then(|runner| runner.colors::<f64>(&frame))
+            .map_err(not_run)?;
         let result = |x: usize| -> Vec<f64> {
-            let component = |index: usize| rendered.framebuffer.get(x as u32, (index / 3) as u32)[index % 3];
+            let component = |index: usize| colors[index / 3 * cases.len() + x][index % 3];
             (0..self.components).map(component).collect()
         };
         Ok((0..cases.len()).map(result).collect())
     }
+}
+
+fn not_run(error: RunError) -> String {
+    format!("the test cannot be run: {error}")
 }
 
 /// Expressions for the compared components: of the result, then of the outputs. `None` if some case expects

@@ -49,7 +49,7 @@ impl Rules {
                 violations.push(violation("must_define", message, None));
             }
         }
-        let calls = Calls::of(checked);
+        let calls = Calls::new(checked);
         for name in &self.must_not_call {
             if let Some(spans) = calls.by_name.get(name.as_str()) {
                 let message = format!("`{name}` must not be called{}", times(spans.len()));
@@ -94,7 +94,7 @@ struct Calls<'a> {
 }
 
 impl<'a> Calls<'a> {
-    fn of(checked: &'a Checked) -> Self {
+    fn new(checked: &'a Checked) -> Self {
         let tree = &checked.tree;
         let mut calls = Self::default();
         for (_, expr) in tree.exprs.iter() {

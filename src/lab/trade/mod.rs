@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 
 pub use method::Configuration;
 use method::{Group, Method, RenderContext, Shader};
-pub use reference::Error;
+pub use reference::ErrorStatistics;
 use reference::Reference;
-use schedule::{Cost, Runner};
+use schedule::{Cost, RunKind, Runner};
 pub use schedule::{TimeStatistics, median};
 use serde::Serialize;
 use toyproof_eval as eval;
@@ -21,8 +21,7 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::Scene;
-
-use super::stress;
+use toyproof_stress as stress;
 
 /// The scene or shader to measure.
 #[derive(Debug)]
@@ -47,13 +46,13 @@ pub struct Subject<'a> {
 
 /// The reason why nothing was measured.
 #[derive(Debug, thiserror::Error)]
-pub enum Failure {
+pub enum TradeError {
     /// The shader cannot be evaluated.
     #[error(transparent)]
     Cpu(#[from] eval::Failure),
     /// The shader's ray–sphere function cannot be evaluated.
     #[error(transparent)]
-    Function(#[from] stress::Failure),
+    Function(#[from] stress::RunError),
     /// The user interrupted the study.
     #[error("interrupted")]
     Interrupted,
@@ -70,7 +69,7 @@ pub struct MethodResult {
     /// The time of a frame.
     pub seconds_per_frame: TimeStatistics,
     /// The error relative to the reference.
-    pub error: Error,
+    pub error: ErrorStatistics,
     /// Whether the method is on the Pareto front: no other is both faster and more accurate.
     pub on_pareto_front: bool,
 }
@@ -105,8 +104,8 @@ const REFERENCE_BUDGET_SHARE: f64 = 0.35;
 ///
 /// # Errors
 ///
-/// [`Failure`] if nothing was measured; [`Failure::Interrupted`] soon after `interrupt` is set.
-pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -> Result<Report, Failure> {
+/// [`TradeError`] if nothing was measured; [`TradeError::Interrupted`] soon after `interrupt` is set.
+pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -> Result<Report, TradeError> {
     let Subject {
         name,
         scene,
@@ -139,8 +138,8 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     };
     let reference_time = budget.mul_f64(REFERENCE_BUDGET_SHARE);
     let reference = match (scene, context.shaders.first()) {
-        (Some(scene), _) => Reference::of_scene(scene, frame, reference_time),
-        (None, Some(shader)) => Reference::of_shader(shader, frame, reference_time)?,
+        (Some(scene), _) => Reference::from_scene(scene, frame, reference_time),
+        (None, Some(shader)) => Reference::from_shader(shader, frame, reference_time)?,
         (None, None) => return Err(eval::Failure::TimeUp.into()),
     };
     let background = scene.map(background);
@@ -171,7 +170,7 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
             Some(error) if !seconds.is_empty() => measured.push(MethodResult {
                 configuration: method.configuration.clone(),
                 group: group_name(method.group),
-                seconds_per_frame: TimeStatistics::of(&seconds),
+                seconds_per_frame: TimeStatistics::new(&seconds),
                 error: *error,
                 on_pareto_front: false,
             }),
@@ -231,7 +230,7 @@ struct Bench<'a, P> {
     budget: Duration,
     context: RenderContext<'a>,
     methods: Vec<Method>,
-    errors: Vec<Option<Error>>,
+    errors: Vec<Option<ErrorStatistics>>,
     reference: &'a Image,
     background: Option<Image>,
     interrupt: &'a AtomicBool,
@@ -239,11 +238,11 @@ struct Bench<'a, P> {
 }
 
 impl<P: Fn(f64)> Runner for Bench<'_, P> {
-    type Failure = Failure;
+    type Error = TradeError;
 
-    fn run(&mut self, method: usize, warm_up: bool) -> Result<Option<f64>, Failure> {
+    fn run(&mut self, method: usize, kind: RunKind) -> Result<Option<f64>, TradeError> {
         if self.interrupt.load(Ordering::Relaxed) {
-            return Err(Failure::Interrupted);
+            return Err(TradeError::Interrupted);
         }
         let left = self.budget.saturating_sub(self.start.elapsed());
         self.context.frame_timeout = left.max(Duration::from_millis(100));
@@ -252,8 +251,12 @@ impl<P: Fn(f64)> Runner for Bench<'_, P> {
         let Some((image, took)) = rendered else {
             return Ok(None);
         };
-        if warm_up {
-            self.errors[method] = Some(Error::of(self.reference, &image, self.background.as_ref()));
+        if kind == RunKind::WarmUp {
+            self.errors[method] = Some(ErrorStatistics::new(
+                self.reference,
+                &image,
+                self.background.as_ref(),
+            ));
         }
         Ok(Some(took.as_secs_f64()))
     }
@@ -287,7 +290,7 @@ mod tests {
                 median,
                 ..TimeStatistics::default()
             },
-            error: Error {
+            error: ErrorStatistics {
                 rmse,
                 max: 0.0,
                 differing_pixels_8bit: 0,

@@ -31,7 +31,7 @@ const HALVED_ERROR_TIME_FACTOR: f64 = 3.0;
 
 impl Reference {
     /// Renders the reference of a scene; a scene that requires samples gets as many as the time allows.
-    pub(super) fn of_scene(scene: &Scene, frame: &Frame, time: Duration) -> Self {
+    pub(super) fn from_scene(scene: &Scene, frame: &Frame, time: Duration) -> Self {
         let frame_time = RenderContext::frame_time(frame);
         if !Requirements::new(scene).samples {
             let image = Tracer::<f64>::at(scene, frame_time).render(|| ());
@@ -87,7 +87,7 @@ impl Reference {
     }
 
     /// Renders the reference of a shader alone, in f64.
-    pub(super) fn of_shader(shader: &Shader, frame: &Frame, time: Duration) -> Result<Self, eval::Failure> {
+    pub(super) fn from_shader(shader: &Shader, frame: &Frame, time: Duration) -> Result<Self, eval::Failure> {
         let deadline = Instant::now() + time;
         let image = shader.render::<f64>(frame, (), deadline)?;
         let perturbed = shader.render::<RandomRounding>(frame, Seed::double(1), deadline)?;
@@ -104,7 +104,7 @@ impl Reference {
 
 /// The difference of an image from the reference, both clamped to [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Error {
+pub struct ErrorStatistics {
     /// The root mean square over all components, in [0, 1].
     pub rmse: f64,
     /// The maximum absolute difference of a component.
@@ -116,9 +116,9 @@ pub struct Error {
     pub silhouette_flips: Option<u64>,
 }
 
-impl Error {
+impl ErrorStatistics {
     /// Compares an image with the reference. `background` is the scene's image without objects.
-    pub(super) fn of(reference: &Image, image: &Image, background: Option<&Image>) -> Self {
+    pub(super) fn new(reference: &Image, image: &Image, background: Option<&Image>) -> Self {
         let (comparison, _) = compare::compare(reference, image);
         Self {
             rmse: rmse(reference, image),
@@ -167,7 +167,7 @@ mod tests {
         let reference = image([0.0, 0.5, 1.0, 0.2]);
         let rendered = image([0.1, 0.5, 7.0, 0.0]);
         let background = image([0.0, 0.0, 0.0, 0.0]);
-        let error = Error::of(&reference, &rendered, Some(&background));
+        let error = ErrorStatistics::new(&reference, &rendered, Some(&background));
         assert!(
             (error.rmse - ((0.01f64 + 0.04) / 4.0).sqrt()).abs() < 1e-8,
             "{error:?}"
@@ -177,7 +177,7 @@ mod tests {
             (error.differing_pixels_8bit, error.silhouette_flips),
             (2, Some(2))
         );
-        let same = Error::of(&reference, &reference, None);
+        let same = ErrorStatistics::new(&reference, &reference, None);
         assert_eq!(
             (
                 same.rmse,

@@ -6,13 +6,21 @@ use serde::Serialize;
 /// Runs methods, and has a clock; a mock in tests.
 pub(super) trait Runner {
     /// The reason why it had to stop.
-    type Failure;
+    type Error;
 
     /// Runs a method. Returns the seconds of its frame; `None` if it cannot run and is to be skipped.
-    fn run(&mut self, method: usize, warm_up: bool) -> Result<Option<f64>, Self::Failure>;
+    fn run(&mut self, method: usize, kind: RunKind) -> Result<Option<f64>, Self::Error>;
 
     /// Seconds since the start.
     fn now(&self) -> f64;
+}
+
+/// The purpose of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RunKind {
+    /// The first run of a method, whose image is compared and whose time does not count.
+    WarmUp,
+    Measurement,
 }
 
 /// The maximum number of measured runs of a method.
@@ -57,7 +65,7 @@ pub(super) fn measure<R: Runner>(
     runner: &mut R,
     costs: &[Cost],
     budget: f64,
-) -> Result<Vec<Vec<f64>>, R::Failure> {
+) -> Result<Vec<Vec<f64>>, R::Error> {
     let mut seconds: Vec<Vec<f64>> = vec![Vec::new(); costs.len()];
     // Seconds of a whole run, including everything outside of the frame; `None` for skipped methods.
     let mut run_seconds: Vec<Option<f64>> = vec![None; costs.len()];
@@ -70,7 +78,7 @@ pub(super) fn measure<R: Runner>(
         if start + models[kind].estimate(size) > budget {
             continue;
         }
-        if let Some(frame) = runner.run(method, true)? {
+        if let Some(frame) = runner.run(method, RunKind::WarmUp)? {
             let took = runner.now() - start;
             run_seconds[method] = Some(took);
             models[kind].learn(size, took, frame);
@@ -92,7 +100,7 @@ pub(super) fn measure<R: Runner>(
             if start + run_seconds[method].unwrap_or(f64::INFINITY) > budget {
                 continue;
             }
-            if let Some(took) = runner.run(method, false)? {
+            if let Some(took) = runner.run(method, RunKind::Measurement)? {
                 seconds[method].push(took);
                 ran = true;
             }
@@ -149,7 +157,7 @@ fn deviation(values: &[f64], from: f64) -> f64 {
 impl TimeStatistics {
     /// Computes the statistics of times in seconds.
     #[must_use]
-    pub fn of(seconds: &[f64]) -> Self {
+    pub fn new(seconds: &[f64]) -> Self {
         let center = median(seconds);
         let spread = deviation(seconds, center);
         let is_inlier = |second: &f64| QUARTILE * (second - center).abs() <= MAX_MODIFIED_Z_SCORE * spread;
@@ -174,17 +182,17 @@ mod tests {
         now: f64,
         /// By method: seconds of a frame, and of the overhead.
         durations: Vec<(f64, f64)>,
-        ran: Vec<(usize, bool)>,
+        ran: Vec<(usize, RunKind)>,
         broken: Option<usize>,
     }
 
     impl Runner for Mock {
-        type Failure = ();
+        type Error = ();
 
-        fn run(&mut self, method: usize, warm_up: bool) -> Result<Option<f64>, ()> {
-            self.ran.push((method, warm_up));
+        fn run(&mut self, method: usize, kind: RunKind) -> Result<Option<f64>, ()> {
+            self.ran.push((method, kind));
             let (frame, overhead) = self.durations[method];
-            self.now += frame + overhead + if warm_up { overhead } else { 0.0 };
+            self.now += frame + overhead + if kind == RunKind::WarmUp { overhead } else { 0.0 };
             Ok((self.broken != Some(method)).then_some(frame))
         }
 
@@ -210,14 +218,20 @@ mod tests {
         let seconds = measure(&mut mock, &costs(&[1.0, 2.0, 3.0]), 1.0).unwrap();
         assert!(seconds.iter().all(|times| times.len() > 8), "{seconds:?}");
         assert_eq!(seconds[1][0], 0.02, "what surrounds a frame is not counted");
-        assert_eq!(mock.ran.iter().filter(|(_, warm_up)| *warm_up).count(), 3);
+        assert_eq!(
+            mock.ran
+                .iter()
+                .filter(|(_, kind)| *kind == RunKind::WarmUp)
+                .count(),
+            3
+        );
         let counts = seconds.iter().map(Vec::len);
         assert!(counts.clone().max().unwrap() - counts.min().unwrap() <= 2);
         // Each method has followed each other one.
         let measured: Vec<_> = mock
             .ran
             .iter()
-            .filter(|(_, warm_up)| !warm_up)
+            .filter(|(_, kind)| *kind == RunKind::Measurement)
             .map(|(method, _)| *method)
             .collect();
         for (a, b) in [(0, 1), (1, 0), (0, 2), (2, 0), (1, 2), (2, 1)] {
@@ -271,15 +285,15 @@ mod tests {
         assert_eq!(median(&[]), 0.0);
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
-        let times = TimeStatistics::of(&[1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 9.0]);
+        let times = TimeStatistics::new(&[1.0, 1.1, 0.9, 1.0, 1.05, 0.95, 9.0]);
         assert_eq!((times.runs, times.outliers, times.median), (7, 1, 1.0));
         assert!((times.deviation - 0.05).abs() < 1e-12);
     }
 
     #[test]
     fn uniform_and_equal_times_have_no_outliers() {
-        assert_eq!(TimeStatistics::of(&[1.0, 2.0, 3.0, 4.0, 5.0]).outliers, 0);
-        let times = TimeStatistics::of(&[2.0; 5]);
+        assert_eq!(TimeStatistics::new(&[1.0, 2.0, 3.0, 4.0, 5.0]).outliers, 0);
+        let times = TimeStatistics::new(&[2.0; 5]);
         assert_eq!((times.outliers, times.median, times.deviation), (0, 2.0, 0.0));
     }
 
@@ -287,11 +301,11 @@ mod tests {
     fn score_matches_iglewicz_and_hoaglin() {
         // With median 2 and deviation 1, the limit is 2 + 3.5 / 0.6745 = 7.189.
         assert_eq!(
-            TimeStatistics::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.18]).outliers,
+            TimeStatistics::new(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.18]).outliers,
             0
         );
         assert_eq!(
-            TimeStatistics::of(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.20]).outliers,
+            TimeStatistics::new(&[1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 7.20]).outliers,
             1
         );
     }

@@ -1,13 +1,12 @@
 //! Results of a study as CSV, JSON, a chart, and text.
 
-use serde::Serialize;
 use toyproof_diagnostic::{columns, grouped, magnitude, plural, spreadsheet_text};
+use toyproof_stress::formula::RECENTERED;
 
 use super::{Configuration, MethodResult, Report, median};
 use crate::chart::{Point, Scatter};
-use crate::csv_table;
-use crate::stress::formula::RECENTERED;
 use crate::trade::method::Group;
+use crate::{csv_table, json_file};
 
 const COLUMNS: [&str; 16] = [
     "renderer",
@@ -41,19 +40,7 @@ impl Report {
     /// All results as JSON.
     #[must_use]
     pub fn json(&self) -> String {
-        #[derive(Serialize)]
-        struct Whole<'a> {
-            version: u32,
-            tool: &'static str,
-            #[serde(flatten)]
-            report: &'a Report,
-        }
-        let whole = Whole {
-            version: 2,
-            tool: concat!("toyproof ", env!("CARGO_PKG_VERSION")),
-            report: self,
-        };
-        serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
+        json_file(self)
     }
 
     /// A chart of error against time.

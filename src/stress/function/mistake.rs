@@ -3,16 +3,17 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use crate::stress::case::RaySphere;
-use crate::stress::tally::Outcome;
+use super::{MissConvention, Signature};
+use crate::case::RaySphere;
+use crate::tally::Outcome;
 
 /// A common mistake.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Mistake {
-    /// Its identifier.
-    pub name: &'static str,
     /// The behavior of the function, as text to follow its name.
     pub description: &'static str,
+    /// Its identifier.
+    pub name: &'static str,
     /// Whether the function is right for callers that keep to its precondition.
     pub recoverable: bool,
 }
@@ -164,13 +165,12 @@ impl Model {
         }
     }
 
-    /// Whether a function's outcomes fit this model. `behind_is_miss`: whether the function reports hits
-    /// behind the origin as misses.
-    fn fits(&self, outcomes: &[(RaySphere, Outcome)], behind_is_miss: bool) -> bool {
+    /// Whether a function's outcomes fit this model.
+    fn fits(&self, outcomes: &[(RaySphere, Outcome)], convention: &MissConvention) -> bool {
         let same = |(ray_sphere, outcome): &&(RaySphere, Outcome)| match (self.t(ray_sphere), *outcome) {
             (Some(t), Outcome::Hit(hit)) => (t - hit).abs() <= 1e-5 * t.abs(),
             (Some(t), Outcome::Nan) => t.is_nan(),
-            (Some(t), Outcome::Miss) => behind_is_miss && t <= 0.0,
+            (Some(t), Outcome::Miss) => convention.behind_is_miss() && t <= 0.0,
             (None, outcome) => outcome == Outcome::Miss,
         };
         let fitting = outcomes.iter().filter(same).count();
@@ -181,52 +181,43 @@ impl Model {
 
 /// Recognizes the mistake that explains a function's outcomes for unit directions (`unit`) and for directions
 /// of other lengths (`other`). A function that never hits anything for another reason has the outcomes of one
-/// that adds the squared radius, so that its text decides (`adds_squared_radius`).
+/// that adds the squared radius, so that its text decides.
 pub(super) fn recognize(
     unit: &[(RaySphere, Outcome)],
     other: &[(RaySphere, Outcome)],
-    behind_is_miss: bool,
-    adds_squared_radius: bool,
+    convention: &MissConvention,
+    signature: &Signature,
 ) -> Option<Mistake> {
-    let fits = |model: &Model, outcomes| model.fits(outcomes, behind_is_miss);
+    let fits = |model: &Model, outcomes| model.fits(outcomes, convention);
     if fits(&CORRECT, unit) {
+        let unit = Model {
+            unit: true,
+            ..CORRECT
+        };
+        let recentered = Model {
+            recentered: true,
+            ..unit
+        };
+        let divided_by_two = Model {
+            divides_by_a: false,
+            ..CORRECT
+        };
+        let lengths = Model {
+            t_in_lengths: true,
+            ..CORRECT
+        };
         let with = [
-            (
-                UNIT,
-                Model {
-                    unit: true,
-                    ..CORRECT
-                },
-            ),
-            (
-                UNIT,
-                Model {
-                    unit: true,
-                    recentered: true,
-                    ..CORRECT
-                },
-            ),
-            (
-                DIVIDES_BY_TWO,
-                Model {
-                    divides_by_a: false,
-                    ..CORRECT
-                },
-            ),
-            (
-                LENGTHS,
-                Model {
-                    t_in_lengths: true,
-                    ..CORRECT
-                },
-            ),
+            (UNIT, unit),
+            (UNIT, recentered),
+            (DIVIDES_BY_TWO, divided_by_two),
+            (LENGTHS, lengths),
         ];
         let mut with = with.into_iter().filter(|_| !fits(&CORRECT, other));
         return with
             .find(|(_, model)| fits(model, other))
             .map(|(mistake, _)| mistake);
     }
-    let is_written = |mistake: &Mistake| adds_squared_radius || mistake.name != RADIUS_ADDED;
+    let is_written = |mistake: &Mistake| signature.adds_squared_radius || mistake.name != RADIUS_ADDED;
     let mut found = MISTAKES.iter().filter(|(mistake, _)| is_written(mistake));
     let found = found.find(|(_, model)| fits(model, unit));
     found.map(|&(mistake, _)| mistake)

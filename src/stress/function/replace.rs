@@ -2,28 +2,28 @@
 
 use std::ops::Range;
 
-use toyproof_eval::{self as eval, UndefinedPolicy};
-use toyproof_eval_native::Program;
 use toyproof_glsl::tree::{Scalar, Type};
 use toyproof_glsl::{self as glsl, Checked};
 
-use super::{FunctionRunner, MissConvention, Role, RoleMap, Signature, subject};
-use crate::stress::case::RaySphere;
-use crate::stress::formula::{FORMULAS, Formula, RECENTERED};
-use crate::stress::tally::Outcome;
-use crate::stress::{Failure, check_subject};
+use super::role::Output;
+use super::typical::DirectionLength;
+use super::{FunctionRunner, MissConvention, Role, RoleMap, Signature};
+use crate::case::RaySphere;
+use crate::formula::{FORMULAS, Formula, RECENTERED};
+use crate::run::RunError;
+use crate::tally::Outcome;
 
 /// The shader with its ray–sphere function replaced by each of the formulas, with the formula's name; empty
 /// if that function is not recognized, or its results for typical rays differ from the formulas'.
 ///
 /// # Errors
 ///
-/// [`Failure`] if the function cannot be run.
+/// [`RunError`] if the function cannot be run.
 pub fn replacements(
     text: &str,
     checked: &Checked,
     options: &glsl::Options,
-) -> Result<Vec<(&'static str, String)>, Failure> {
+) -> Result<Vec<(&'static str, String)>, RunError> {
     let all = Signature::all(checked, &RoleMap::new());
     let of_spheres = |one: &&Signature| one.name.to_lowercase().contains("sph");
     let Some(signature) = all.iter().find(of_spheres).or(all.first()) else {
@@ -32,15 +32,7 @@ pub fn replacements(
     let Some(body) = body(text, checked, &signature.name) else {
         return Ok(Vec::new());
     };
-    let checked_subject = check_subject(&subject(text, signature, options.clone()))?;
-    let limit = options.deadline.left();
-    let program = Program::prepared_within(&checked_subject, UndefinedPolicy::Plain, limit)
-        .map_err(eval::Failure::from)?;
-    let runner = FunctionRunner {
-        program: &program,
-        signature,
-        deadline: None,
-    };
+    let runner = FunctionRunner::new(text, signature, options, options.deadline.left())?;
     let Some(new_body) = runner.body()? else {
         return Ok(Vec::new());
     };
@@ -68,34 +60,29 @@ fn reserved_name(name: &str) -> String {
 
 impl FunctionRunner<'_> {
     /// Whether a shader's function of the same signature returns the same results for typical rays.
-    fn agrees(&self, text: &str, signature: &Signature, options: &glsl::Options) -> Result<bool, Failure> {
-        let Ok(checked) = check_subject(&subject(text, signature, options.clone())) else {
-            return Ok(false);
+    fn agrees(&self, text: &str, signature: &Signature, options: &glsl::Options) -> Result<bool, RunError> {
+        let other = match FunctionRunner::new(text, signature, options, options.deadline.left()) {
+            Err(RunError::Invalid(_)) => return Ok(false),
+            other => other?,
         };
-        let limit = options.deadline.left();
-        let program =
-            Program::prepared_within(&checked, UndefinedPolicy::Plain, limit).map_err(eval::Failure::from)?;
-        let other = FunctionRunner {
-            program: &program,
-            signature,
-            deadline: None,
+        let outcomes = |runner: &FunctionRunner| {
+            runner.typical_outcomes(DirectionLength::Unit, &runner.miss_convention::<f64>()?)
         };
-        let ray_spheres = super::typical_cases(true);
-        let ours = self.outcomes::<f64>(&ray_spheres, &self.miss_convention::<f64>()?)?;
-        let theirs = other.outcomes::<f64>(&ray_spheres, &other.miss_convention::<f64>()?)?;
-        let same = |(one, other): (&Outcome, &Outcome)| match (one, other) {
+        let (ours, theirs) = (outcomes(self)?, outcomes(&other)?);
+        let same = |one: Outcome, other: Outcome| match (one, other) {
             (Outcome::Hit(one), Outcome::Hit(other)) => (one - other).abs() < 1e-6 * one.abs(),
             (one, other) => one == other,
         };
-        let agreeing = ours.iter().zip(&theirs).filter(|pair| same(*pair)).count();
+        let pairs = ours.iter().zip(&theirs);
+        let agreeing = pairs.filter(|(one, other)| same(one.1, other.1)).count();
         // The user's function may be wrong for some rays, such as those from inside, or with the sphere
         // behind.
-        Ok(agreeing * 2 > ray_spheres.len())
+        Ok(agreeing * 2 > ours.len())
     }
 
     /// A body that calls `FORMULA` and returns its result in the function's own convention; `None` if that is
     /// not simple.
-    fn body(&self) -> Result<Option<String>, Failure> {
+    fn body(&self) -> Result<Option<String>, RunError> {
         let convention: MissConvention = self.miss_convention::<f32>()?;
         let path = |role: Role| {
             let mut inputs = self.signature.inputs.iter();
@@ -117,8 +104,9 @@ impl FunctionRunner<'_> {
         };
         let call = |t_min: &str| format!("FORMULA({o}, {d}, {c}, {r}, {t_min})");
         let pair = Type::vector(Scalar::Float, 2);
+        let is_result = |output: &Output| output.path == "return";
         let statements = match &self.signature.outputs[..] {
-            [(path, Role::T, ty)] if path == "return" && *ty == Type::FLOAT => {
+            [one] if is_result(one) && one.role == Role::T && one.ty == Type::FLOAT => {
                 let miss = match convention.positive_miss() {
                     Some(miss) => number(miss),
                     None if convention.behind_is_miss() => "-1.0".to_owned(),
@@ -129,7 +117,7 @@ impl FunctionRunner<'_> {
                     format!("return toyproof_t > {t_min} ? toyproof_t : {miss};"),
                 ]
             }
-            [(path, Role::T, ty)] if path == "return" && *ty == pair => {
+            [one] if is_result(one) && one.role == Role::T && one.ty == pair => {
                 let Some([near, _, far]) = convention.miss() else {
                     return Ok(None);
                 };
@@ -146,10 +134,12 @@ impl FunctionRunner<'_> {
                     ),
                 ]
             }
-            [(t, Role::T, Type::FLOAT), (flag, Role::Flag, Type::BOOL)]
-            | [(flag, Role::Flag, Type::BOOL), (t, Role::T, Type::FLOAT)]
-                if flag == "return" =>
+            [t, flag] | [flag, t]
+                if (t.role, t.ty) == (Role::T, Type::FLOAT)
+                    && (flag.role, flag.ty) == (Role::Flag, Type::BOOL)
+                    && is_result(flag) =>
             {
+                let t = &t.path;
                 // A value of 0 most likely means that the parameter is not written.
                 let miss = convention.miss().map_or(0.0, |[t, ..]| t);
                 let else_branch = if miss == 0.0 {
@@ -169,7 +159,7 @@ impl FunctionRunner<'_> {
     }
 
     /// The minimum accepted t of the function: 0, or 1, 2 or 5 times a power of ten.
-    fn smallest_t(&self, convention: &MissConvention) -> Result<f64, Failure> {
+    fn smallest_t(&self, convention: &MissConvention) -> Result<f64, RunError> {
         let decades = (1..=8).rev().map(|decade| 10f64.powi(-decade));
         let steps: Vec<f64> = decades
             .flat_map(|ten| [1.0, 2.0, 5.0].map(|step| step * ten))
@@ -195,14 +185,9 @@ impl FunctionRunner<'_> {
     }
 }
 
-/// A float literal.
+/// A literal of a float, which always has a point or an exponent.
 fn number(value: f64) -> String {
-    let text = format!("{:?}", value as f32);
-    if text.contains(['.', 'e']) {
-        text
-    } else {
-        text + ".0"
-    }
+    format!("{:?}", value as f32)
 }
 
 /// The byte range of a function's body, including its braces.
@@ -258,7 +243,7 @@ mod tests {
 
     #[test]
     fn each_formula_replaces_that_of_an_exercise() {
-        let text = include_str!("../../../../glsl/03-shading.glsl");
+        let text = include_str!("../../../glsl/03-shading.glsl");
         let made = replacements(text, &checked(text), &glsl::Options::default()).unwrap();
         assert_eq!(made.len(), FORMULAS.len());
         for (name, text) in made {

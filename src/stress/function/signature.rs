@@ -6,10 +6,10 @@ use thiserror::Error;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{BinaryOp, Direction, ExprId, ExprKind, Function, Tree, Type, VariableKind};
 
-use super::role::{Role, RoleMap, assign_input_roles, assign_output_roles, check_map, is_sphere, leaves};
-use crate::stress::case::RaySphere;
-use crate::stress::case_sampler::Random;
-use crate::stress::tally::Outcome;
+use super::role::{
+    Output, Role, RoleMap, assign_input_roles, assign_output_roles, check_map, is_sphere, leaves,
+};
+use crate::case::RaySphere;
 
 /// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
@@ -22,8 +22,7 @@ pub struct Signature {
     returns: Option<String>,
     /// The inputs: paths and roles.
     pub(super) inputs: Vec<(String, Role)>,
-    /// The outputs: paths, roles and types.
-    pub(super) outputs: Vec<(String, Role, Type)>,
+    pub(super) outputs: Vec<Output>,
     /// Whether the shader adds the square of a radius to anything.
     pub(super) adds_squared_radius: bool,
 }
@@ -44,7 +43,7 @@ impl Signature {
         let mut why = None;
         for (_, function) in tree.functions.iter() {
             if function.name == name && function.body.is_some() {
-                match Self::of(tree, function, map) {
+                match Self::from_function(tree, function, map) {
                     Ok(signature) => return Ok(signature),
                     Err(reason) => why = Some(reason),
                 }
@@ -66,7 +65,7 @@ impl Signature {
         let functions = checked.tree.functions.iter();
         let functions = functions.filter(|(_, function)| function.body.is_some());
         functions
-            .filter_map(|(_, function)| Self::of(&checked.tree, function, map).ok())
+            .filter_map(|(_, function)| Self::from_function(&checked.tree, function, map).ok())
             .collect()
     }
 
@@ -99,7 +98,7 @@ impl Signature {
         }
     }
 
-    fn of(tree: &Tree, function: &Function, map: &RoleMap) -> Result<Self, String> {
+    fn from_function(tree: &Tree, function: &Function, map: &RoleMap) -> Result<Self, String> {
         let mut input_leaves = Vec::new();
         let mut in_only_leaves = Vec::new();
         let mut output_leaves = Vec::new();
@@ -152,14 +151,14 @@ impl Signature {
         }
         let outputs = assign_output_roles(&output_leaves, map);
         // An `inout` t is compared with the t of nearer hits: it starts as the largest that is accepted.
-        let limits = outputs.iter().filter(|(path, role, ty)| {
-            let is_input = input_leaves.iter().any(|leaf| leaf.path == *path);
-            let has_role = inputs.iter().any(|(input, _)| input == path);
-            *role == Role::T && *ty == Type::FLOAT && is_input && !has_role
+        let limits = outputs.iter().filter(|output| {
+            let is_input = input_leaves.iter().any(|leaf| leaf.path == output.path);
+            let has_role = inputs.iter().any(|(input, _)| *input == output.path);
+            output.role == Role::T && output.ty == Type::FLOAT && is_input && !has_role
         });
-        let limits: Vec<_> = limits.map(|(path, ..)| (path.clone(), Role::TMax)).collect();
+        let limits: Vec<_> = limits.map(|output| (output.path.clone(), Role::TMax)).collect();
         inputs.extend(limits);
-        if !outputs.iter().any(|(_, role, _)| *role == Role::T) {
+        if !outputs.iter().any(|output| output.role == Role::T) {
             return Err(format!(
                 "no output of {name} is recognized as t; name it with --map, such as --map return.depth=t"
             ));
@@ -177,8 +176,8 @@ impl Signature {
     /// Whether the function returns both roots.
     #[must_use]
     pub fn has_second_root(&self) -> bool {
-        let two = |(_, role, ty): &(String, Role, Type)| {
-            *role == Role::Second || (*role == Role::T && *ty != Type::FLOAT)
+        let two = |output: &Output| {
+            output.role == Role::Second || (output.role == Role::T && output.ty != Type::FLOAT)
         };
         self.outputs.iter().any(two)
     }
@@ -186,7 +185,7 @@ impl Signature {
     /// Whether the function has a separate flag for a hit.
     #[must_use]
     pub fn has_flag(&self) -> bool {
-        self.outputs.iter().any(|(_, role, _)| *role == Role::Flag)
+        self.outputs.iter().any(|output| output.role == Role::Flag)
     }
 
     /// Statements that call the function for a case, and the color expression with t, flag and second t.
@@ -211,13 +210,12 @@ impl Signature {
             Some(ty) => writeln!(text, "    {ty} tpResult = {call};"),
             None => writeln!(text, "    {call};"),
         };
-        let of = |wanted: Role| {
-            let found = self.outputs.iter().find(|(_, role, _)| *role == wanted);
-            found.map(|(path, _, ty)| (local(path), *ty))
-        };
-        let (t, pair) = of(Role::T).map_or(("0.0".to_owned(), false), |(path, ty)| (path, ty != Type::FLOAT));
-        let second = of(Role::Second).map_or("0.0".to_owned(), |(path, _)| path);
-        let flag = of(Role::Flag).map_or("0.0".to_owned(), |(path, _)| format!("float({path})"));
+        let output = |role: Role| self.outputs.iter().find(|output| output.role == role);
+        let path = |role: Role| output(role).map(|output| local(&output.path));
+        let or_zero = |path: Option<String>| path.unwrap_or_else(|| "0.0".to_owned());
+        let pair = output(Role::T).is_some_and(|output| output.ty != Type::FLOAT);
+        let (t, second) = (or_zero(path(Role::T)), or_zero(path(Role::Second)));
+        let flag = or_zero(path(Role::Flag).map(|path| format!("float({path})")));
         let result = if pair {
             format!("vec3({t}.x, {flag}, {t}.y)")
         } else {
@@ -228,15 +226,8 @@ impl Signature {
 
     /// Statements that assign these values to the function's parameters.
     #[must_use]
-    pub fn assignments(&self, o: [f32; 3], d: [f32; 3], c: [f32; 3], r: f32) -> Vec<String> {
-        let number = |x: f32| {
-            let text = format!("{x:?}");
-            if text.contains(['.', 'e', 'N', 'i']) {
-                text
-            } else {
-                text + ".0"
-            }
-        };
+    pub fn assignments(&self, &RaySphere { o, d, c, r }: &RaySphere) -> Vec<String> {
+        let number = |x: f32| format!("{x:?}");
         let vector = |v: [f32; 3]| format!("vec3({})", v.map(number).join(", "));
         let value = |role: Role| match role {
             Role::Origin => Some(vector(o)),
@@ -311,96 +302,4 @@ fn place_name(tree: &Tree, id: ExprId) -> Option<(String, Vec<String>)> {
         }
         _ => None,
     }
-}
-
-// How a function reports a miss, determined by evaluating it.
-
-/// Rays that clearly miss a sphere: a result common to several of them is how the function reports a
-/// miss.
-pub(in crate::stress) fn clear_misses() -> Vec<RaySphere> {
-    let random = &mut Random::new(0, &["clear misses"]);
-    let ray_spheres = (0..16).map(|_| {
-        let c = random.direction() * random.between(0.0, 3.0);
-        let r = random.between(0.5, 1.5);
-        let ahead = random.direction();
-        let aside = ahead.cross(random.direction()).normalize_or(glam::DVec3::X);
-        let o = c - ahead * random.between(3.0, 8.0) + aside * (r * random.between(2.0, 5.0));
-        RaySphere {
-            o: o.to_array().map(|x| x as f32),
-            d: ahead.to_array().map(|x| x as f32),
-            c: c.to_array().map(|x| x as f32),
-            r: r as f32,
-        }
-    });
-    ray_spheres.collect()
-}
-
-/// How to interpret the color of a function's call: t, flag and second t.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MissConvention {
-    two: bool,
-    flag: bool,
-    /// Results for clear misses: colors that occur more than once.
-    misses: Vec<[f64; 3]>,
-}
-
-impl MissConvention {
-    /// Derives the convention of a function from its colors for [`clear_misses`].
-    pub(in crate::stress) fn of(signature: &Signature, colors: &[[f64; 3]]) -> Self {
-        let same = |color: &&[f64; 3]| colors.iter().filter(|other| same_bits(other, color)).count() > 1;
-        let mut misses: Vec<[f64; 3]> = Vec::new();
-        for color in colors.iter().filter(same) {
-            if !misses.iter().any(|other| same_bits(other, color)) {
-                misses.push(*color);
-            }
-        }
-        Self {
-            two: signature.has_second_root(),
-            flag: signature.has_flag(),
-            misses,
-        }
-    }
-
-    /// Whether a negative t is a miss: unless the function has a flag, or reports misses by a positive
-    /// number.
-    pub(in crate::stress) fn behind_is_miss(&self) -> bool {
-        !self.flag && !self.misses.iter().any(|[t, ..]| *t > 0.0)
-    }
-
-    pub(in crate::stress) fn outcome(&self, color: [f64; 3]) -> Outcome {
-        let [t, flag, second] = color;
-        if self.flag {
-            // A function that is wrong enough never reports a miss.
-            let is_miss_flag = |miss: &[f64; 3]| miss[1] == flag;
-            if self.misses.iter().any(is_miss_flag) || (self.misses.is_empty() && flag <= 0.0) {
-                return Outcome::Miss;
-            }
-        } else if !t.is_nan() && self.misses.iter().any(|miss| same_bits(miss, &color)) {
-            return Outcome::Miss;
-        }
-        match (t, self.two) {
-            (t, _) if !t.is_finite() => Outcome::Nan,
-            (t, _) if t > 0.0 => Outcome::Hit(t),
-            (_, true) if second > 0.0 => Outcome::Hit(second),
-            (_, true) => Outcome::Miss,
-            _ if self.behind_is_miss() => Outcome::Miss,
-            (t, _) => Outcome::Hit(t),
-        }
-    }
-
-    /// The result for a miss: t, flag and second t.
-    pub(in crate::stress) fn miss(&self) -> Option<[f64; 3]> {
-        self.misses.first().copied()
-    }
-
-    /// The positive number that the function returns for a miss, if any.
-    #[must_use]
-    pub fn positive_miss(&self) -> Option<f64> {
-        let first = self.misses.first().map(|miss| miss[0]);
-        first.filter(|t| *t > 0.0)
-    }
-}
-
-fn same_bits(a: &[f64; 3], b: &[f64; 3]) -> bool {
-    a.map(f64::to_bits) == b.map(f64::to_bits)
 }

@@ -171,10 +171,17 @@ const OTHER_SHAPES: [&str; 11] = [
 pub(super) fn leaves(tree: &Tree, path: &str, ty: Type, struct_name: &str) -> Vec<Leaf> {
     match ty {
         Type::Struct(id) => {
-            let of = &tree[id];
-            let members = of.members.iter();
+            let structure = &tree[id];
+            let members = structure.members.iter();
             members
-                .flat_map(|member| leaves(tree, &format!("{path}.{}", member.name), member.ty, &of.name))
+                .flat_map(|member| {
+                    leaves(
+                        tree,
+                        &format!("{path}.{}", member.name),
+                        member.ty,
+                        &structure.name,
+                    )
+                })
                 .collect()
         }
         Type::Scalar(_) | Type::Vector(..) => vec![Leaf {
@@ -366,14 +373,26 @@ pub(super) fn assign_input_roles(input_leaves: &[Leaf], map: &RoleMap) -> Vec<(S
     found
 }
 
-pub(super) fn assign_output_roles(output_leaves: &[Leaf], map: &RoleMap) -> Vec<(String, Role, Type)> {
-    let mut found: Vec<(String, Role, Type)> = Vec::new();
+/// An output of a function with a role.
+#[derive(Debug, Clone)]
+pub(super) struct Output {
+    pub(super) path: String,
+    pub(super) role: Role,
+    pub(super) ty: Type,
+}
+
+pub(super) fn assign_output_roles(output_leaves: &[Leaf], map: &RoleMap) -> Vec<Output> {
+    let mut found: Vec<Output> = Vec::new();
     let mut give = |leaf: &Leaf, role: Role| {
         let taken = found
             .iter()
-            .any(|(path, other, _)| *path == leaf.path || *other == role);
+            .any(|other| other.path == leaf.path || other.role == role);
         if !taken {
-            found.push((leaf.path.clone(), role, leaf.ty));
+            found.push(Output {
+                path: leaf.path.clone(),
+                role,
+                ty: leaf.ty,
+            });
         }
     };
     for leaf in output_leaves {

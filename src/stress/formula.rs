@@ -3,8 +3,8 @@
 
 use toyproof_glsl as glsl;
 
-use super::axis::Kind;
-use super::function::Signature;
+use crate::axis::Kind;
+use crate::function::Signature;
 
 /// A formula for ray–sphere intersection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -174,7 +174,7 @@ pub enum Reading {
 
 /// A `mainImage` that reads a case and returns `result`, an expression of type vec3 that may use the texels
 /// `a`, `b` and `c`.
-pub(super) fn main(steps: &str, result: &str) -> String {
+pub(crate) fn main(steps: &str, result: &str) -> String {
     format!(
         "void mainImage(out vec4 color, in vec2 place) {{
     ivec2 at = ivec2(place);

@@ -1,12 +1,13 @@
 //! Test axes: each takes one quantity of a ray or surface to its extremes, step by step.
 
-use super::case::{Case, Label, MARGIN, Step};
-use super::case_sampler::{
-    DEGENERATE_PARTS, Random, SPECIAL_QUADRIC_RAYS, SPHERE_ORIGINS, concentric_shells, degenerate_sphere,
+use crate::case::{Case, Label, MARGIN, Step};
+use crate::case_sampler::{
+    DEGENERATE_PARTS, SPECIAL_QUADRIC_RAYS, SPHERE_ORIGINS, concentric_shells, degenerate_sphere,
     distant_quadric, distant_sphere, grazing_secondary_ray, grazing_sphere, mirrored_ray,
     nearly_linear_quadric, offset_sphere, origin_near_sphere, scaled_sphere, special_quadric_ray,
     stretched_direction,
 };
+use crate::random::Random;
 
 /// The kind of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +55,7 @@ pub struct Axis {
 
 impl Axis {
     /// The description of a step.
-    pub(super) fn describe(&self, step: Step) -> String {
+    pub(crate) fn describe(&self, step: Step) -> String {
         match step {
             Step::Number(_) => format!("{} = {step}", self.label),
             Step::Label(label) if self.kind == Kind::Secondaries => format!("{}, {label}", self.label),
@@ -63,7 +64,7 @@ impl Axis {
     }
 
     /// Samples a case for a step, without checking its margin.
-    pub(super) fn sample(&self, random: &mut Random, step: Step) -> Option<Case> {
+    pub(crate) fn sample(&self, random: &mut Random, step: Step) -> Option<Case> {
         (self.sample)(random, step)
     }
 }

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use super::Row;
-use super::axis::{Axis, EasySteps};
-use super::case::{Step, step_value};
-use super::cells::{Alternative, Reference};
-use super::exact::DoubleDouble;
-use super::formula::Reading;
-use super::function::MissConvention;
+use crate::axis::{Axis, EasySteps};
+use crate::case::Step;
+use crate::cells::{Alternative, Reference};
+use crate::exact::DoubleDouble;
+use crate::formula::Reading;
+use crate::function::MissConvention;
+use crate::study::Row;
 
 /// The maximum relative error of a usable root: about ten thousand ULPs of f32.
 const MAX_RELATIVE_ERROR: f64 = 1e-3;
@@ -36,7 +36,7 @@ pub struct Tally {
 
 /// A shader's result for a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Outcome {
+pub(crate) enum Outcome {
     Miss,
     Hit(f64),
     Nan,
@@ -44,7 +44,7 @@ pub(super) enum Outcome {
 
 impl Outcome {
     /// Whether the result is usable, given the reference `exact`.
-    pub(super) fn is_right(self, exact: &Reference) -> bool {
+    pub(crate) fn is_right(self, exact: &Reference) -> bool {
         let agrees = |with: Option<DoubleDouble>| match (self, with) {
             (Self::Hit(t), Some(exact)) => (t - exact.high).abs() <= MAX_RELATIVE_ERROR * exact.high,
             (Self::Miss, None) => true,
@@ -60,29 +60,21 @@ impl Outcome {
     }
 }
 
-impl Reading {
-    /// Interprets a color.
-    ///
-    /// `misses`: how a function reports a miss.
-    pub(super) fn outcome(misses: Option<&MissConvention>, color: [f64; 3]) -> Outcome {
-        if let Some(convention) = misses {
-            return convention.outcome(color);
-        }
-        let [t, _, _] = color;
-        if !t.is_finite() {
-            Outcome::Nan
-        } else if t > 0.0 {
-            Outcome::Hit(t)
-        } else {
-            Outcome::Miss
-        }
+/// The result of a formula, whose color is t; a value that is not positive is a miss.
+fn root_outcome([t, _, _]: [f64; 3]) -> Outcome {
+    if !t.is_finite() {
+        Outcome::Nan
+    } else if t > 0.0 {
+        Outcome::Hit(t)
+    } else {
+        Outcome::Miss
     }
 }
 
 impl Tally {
     /// Counts the results of one step. `digits`: the precision of the number type, in bits; `convention`: how
     /// a function reports a miss.
-    pub(super) fn of(
+    pub(crate) fn new(
         reading: &Reading,
         digits: u32,
         convention: Option<&MissConvention>,
@@ -99,7 +91,8 @@ impl Tally {
                 tally.failing += u64::from(own || lost);
                 continue;
             }
-            let outcome = Reading::outcome(convention, color);
+            let outcome =
+                convention.map_or_else(|| root_outcome(color), |convention| convention.outcome(color));
             tally.failing += u64::from(!outcome.is_right(&exact));
             match (outcome, exact.t) {
                 (Outcome::Hit(t), Some(exact)) => errors.push(exact.ulps(t, digits)),
@@ -124,7 +117,7 @@ impl Tally {
     }
 
     /// Whether the share of unusable results is too large.
-    pub(super) fn fails(&self) -> bool {
+    pub(crate) fn fails(&self) -> bool {
         self.failing_share() > MAX_FAILING_SHARE
     }
 }
@@ -132,7 +125,7 @@ impl Tally {
 // Breakdowns: the steps from which a formula fails.
 
 /// A step fails if the share of unusable results exceeds this.
-pub(super) const MAX_FAILING_SHARE: f64 = 0.01;
+pub(crate) const MAX_FAILING_SHARE: f64 = 0.01;
 
 /// The first step at which a formula fails in one direction of an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -152,7 +145,7 @@ pub struct Breakdown {
 }
 
 /// All breakdowns in the rows of one formula, precision and device.
-pub(super) fn breakdowns(axes: &[Axis], rows: &[&Row]) -> Vec<Breakdown> {
+pub(crate) fn breakdowns(axes: &[Axis], rows: &[&Row]) -> Vec<Breakdown> {
     let found = axes.iter().flat_map(|axis| {
         let directions = directions(axis).into_iter();
         directions.filter_map(|direction| {
@@ -178,15 +171,15 @@ pub(super) fn breakdowns(axes: &[Axis], rows: &[&Row]) -> Vec<Breakdown> {
 }
 
 /// One direction in which the steps of an axis get harder.
-pub(super) struct Direction {
+pub(crate) struct Direction {
     /// The quantity with `≤` or `≥`; for a named step its description.
-    pub(super) condition: String,
+    pub(crate) condition: String,
     /// The steps, easiest first.
-    pub(super) steps: Vec<Step>,
+    pub(crate) steps: Vec<Step>,
 }
 
 /// The directions in which the steps of an axis get harder.
-pub(super) fn directions(axis: &Axis) -> Vec<Direction> {
+pub(crate) fn directions(axis: &Axis) -> Vec<Direction> {
     let label = axis.label;
     let where_number = |side: fn(f64) -> bool| {
         let steps = axis.steps.iter().copied();
@@ -195,7 +188,7 @@ pub(super) fn directions(axis: &Axis) -> Vec<Direction> {
     let direction = |condition: String, steps: Vec<Step>| Direction { condition, steps };
     match axis.easy {
         EasySteps::First => {
-            let sign = if step_value(axis.steps[0]) < step_value(axis.steps[axis.steps.len() - 1]) {
+            let sign = if axis.steps[0].value() < axis.steps[axis.steps.len() - 1].value() {
                 '≥'
             } else {
                 '≤'
@@ -248,12 +241,12 @@ mod tests {
             ..Reference::default()
         };
         let colors = cases.map(|(t, exact)| ([t, 0.0, 0.0], reference(exact)));
-        let tally = Tally::of(&Reading::Root, 24, None, colors.into_iter());
+        let tally = Tally::new(&Reading::Root, 24, None, colors.into_iter());
         assert_eq!((tally.cases, tally.wrong_hits, tally.non_finite), (8, 3, 2));
         assert_eq!(tally.failing, 5, "all but two hits and a miss");
         assert_eq!(tally.t_error_ulp, Some([1.0, 4_194_304.0, 4_194_304.0]));
         let secondary = [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0; 3]].map(|color| (color, reference(None)));
-        let tally = Tally::of(&Reading::Secondary, 24, None, secondary.into_iter());
+        let tally = Tally::new(&Reading::Secondary, 24, None, secondary.into_iter());
         assert_eq!(
             (tally.self_intersections, tally.missed_nearby, tally.failing),
             (2, 1, 2)
@@ -266,7 +259,7 @@ mod tests {
         let reference = Reference {
             t: Some(precise(1e-7)),
             alternative: Alternative::Hit(precise(2.0)),
-            undefined: false,
+            ..Reference::default()
         };
         for (outcome, right) in [
             (Outcome::Hit(1e-7), true),

@@ -5,93 +5,114 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::axis::{Axis, Kind};
-use super::case::{Case, RaySphere, Step};
-use super::case_sampler::Random;
-use super::exact::{self, DoubleDouble};
+use crate::axis::{Axis, Kind};
+use crate::case::{Case, Step};
+use crate::exact::{self, DoubleDouble};
+use crate::random::Random;
 
 /// The maximum number of samples per requested case: grazing cases are rare.
 const MAX_ATTEMPTS_PER_CASE: usize = 64;
 
 /// The cases of all axes of a kind, step by step.
 #[derive(Debug, Default)]
-pub(super) struct Cells {
-    pub(super) cases: Vec<Case>,
+pub(crate) struct Cells {
+    pub(crate) cases: Vec<Case>,
     /// The reference result of each case.
-    pub(super) references: Vec<Reference>,
-    pub(super) steps: Vec<Cell>,
+    pub(crate) references: Vec<Reference>,
+    pub(crate) steps: Vec<Cell>,
 }
 
 /// The cases of one step.
 #[derive(Debug)]
-pub(super) struct Cell {
-    pub(super) axis: &'static str,
-    pub(super) step: Step,
-    pub(super) range: Range<usize>,
+pub(crate) struct Cell {
+    pub(crate) axis: &'static str,
+    pub(crate) step: Step,
+    pub(crate) range: Range<usize>,
 }
 
 /// The reference result of a case.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Reference {
+pub(crate) struct Reference {
     /// The smallest t > 0.
-    pub(super) t: Option<DoubleDouble>,
+    pub(crate) t: Option<DoubleDouble>,
     /// The alternative result that is also accepted, if `t` is so small that the hit may count as the ray's
     /// origin.
-    pub(super) alternative: Alternative,
+    pub(crate) alternative: Alternative,
     /// A part of the case is infinite or NaN: both a miss and NaN are accepted.
-    pub(super) undefined: bool,
+    pub(crate) undefined: bool,
+    /// The distance from tangency, as in [`Intersection`](exact::Intersection).
+    pub(crate) discriminant: f64,
+}
+
+/// Where the ray of a case starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RayStart {
+    Anywhere,
+    /// At the surface or within a unit in the last place of it.
+    Surface,
+}
+
+impl RayStart {
+    /// Where the rays of an axis start.
+    pub(crate) fn on_axis(name: &str) -> Self {
+        match name {
+            "origin" => Self::Surface,
+            _ => Self::Anywhere,
+        }
+    }
 }
 
 /// An alternative result that is also accepted.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) enum Alternative {
+pub(crate) enum Alternative {
     #[default]
     Nothing,
     Miss,
     Hit(DoubleDouble),
 }
 
-impl Reference {
-    pub(super) const UNDEFINED: Self = Self {
-        t: None,
-        alternative: Alternative::Nothing,
-        undefined: true,
-    };
-}
-
 /// The distance below which a hit may be ignored by a ray that starts at a surface, in radii.
 const NEAR_HIT_RADII: f64 = 1e-3;
 
-/// The reference result of a case, and its discriminant; `None` for secondary rays, and if a part is infinite
-/// or NaN. `near`: whether the ray starts at the surface.
-pub(super) fn reference_of(case: &Case, near: bool) -> Option<(Reference, f64)> {
-    let (intersection, size) = match *case {
-        Case::Sphere(RaySphere { o, d, c, r }) => (exact::sphere(o, d, c, r)?, f64::from(r)),
-        Case::Quadric { o, d, q, g, k } => (exact::quadric(o, d, q, g, k)?, 1.0),
-        // Secondary rays are not tested for their hits.
-        Case::Secondary { .. } => return None,
+impl Reference {
+    /// The reference result of secondary rays, which are not tested for their hits, and of cases of which a
+    /// part is infinite or NaN.
+    const UNDEFINED: Self = Self {
+        t: None,
+        alternative: Alternative::Nothing,
+        undefined: true,
+        discriminant: f64::INFINITY,
     };
-    let next = intersection
-        .roots
-        .iter()
-        .find(|root| root.high > NEAR_HIT_RADII * size)
-        .copied();
-    let is_near = |t: DoubleDouble| near && t.high <= NEAR_HIT_RADII * size;
-    let reference = Reference {
-        t: intersection.t,
-        alternative: match (intersection.t.is_some_and(is_near), next) {
-            (false, _) => Alternative::Nothing,
-            (true, None) => Alternative::Miss,
-            (true, Some(next)) => Alternative::Hit(next),
-        },
-        undefined: false,
-    };
-    Some((reference, intersection.discriminant))
+
+    /// The reference result of a case.
+    pub(crate) fn new(case: &Case, start: RayStart) -> Self {
+        let (intersection, size) = match *case {
+            Case::Sphere(ray_sphere) => (ray_sphere.intersection(), f64::from(ray_sphere.r)),
+            Case::Quadric { o, d, q, g, k } => (exact::quadric(o, d, q, g, k), 1.0),
+            Case::Secondary { .. } => (None, 1.0),
+        };
+        let Some(intersection) = intersection else {
+            return Self::UNDEFINED;
+        };
+        let is_near = |t: &DoubleDouble| t.high <= NEAR_HIT_RADII * size;
+        let next = intersection.roots.iter().find(|root| !is_near(root)).copied();
+        let may_be_ignored = start == RayStart::Surface && intersection.t.as_ref().is_some_and(is_near);
+        Self {
+            t: intersection.t,
+            alternative: match (may_be_ignored, next) {
+                (false, _) => Alternative::Nothing,
+                (true, None) => Alternative::Miss,
+                (true, Some(next)) => Alternative::Hit(next),
+            },
+            undefined: false,
+            discriminant: intersection.discriminant,
+        }
+    }
 }
 
 impl Cells {
     /// Samples `count` cases for each step of the axes of a kind; `None` if interrupted.
-    pub(super) fn sample(
+    pub(crate) fn sample(
         axes: &[Axis],
         kind: Kind,
         seed: u64,
@@ -136,18 +157,16 @@ impl Cells {
 
 fn sample_case(axis: &Axis, step: Step, random: &mut Random) -> Option<(Case, Reference)> {
     let case = axis.sample(random, step)?;
-    match reference_of(&case, axis.name == "origin") {
-        Some((_, discriminant)) if discriminant.abs() < axis.margin => None,
-        Some((reference, _)) => Some((case, reference)),
-        None => Some((case, Reference::UNDEFINED)),
-    }
+    let reference = Reference::new(&case, RayStart::on_axis(axis.name));
+    let is_too_near_tangency = reference.discriminant.abs() < axis.margin;
+    (!is_too_near_tangency).then_some((case, reference))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::axis::axes;
-    use super::super::case::Label;
     use super::*;
+    use crate::axis::axes;
+    use crate::case::Label;
 
     #[test]
     fn steps_are_filled_and_reproducible() {

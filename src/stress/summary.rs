@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use toyproof_diagnostic::{columns, grouped, plural};
 
-use super::axis::{Axis, EasySteps, Kind, axes};
-use super::case::Step;
-use super::tally::{Breakdown, MAX_FAILING_SHARE, directions};
-use super::{CPU, Report, Row};
+use crate::axis::{Axis, EasySteps, Kind, axes};
+use crate::case::Step;
+use crate::study::{CPU, Report, Row};
+use crate::tally::{Breakdown, MAX_FAILING_SHARE, directions};
 
 /// Scales and direction lengths of ordinary scenes are within this factor of 1.
 const MAX_ORDINARY_SCALE: f64 = 1e15;
@@ -20,6 +20,15 @@ const LEGEND: [&str; 5] = [
     "docs/evidence/accuracy.md describes the formulas.",
     "",
 ];
+
+/// The range of steps in which a formula does not fail.
+struct FailureFree<'a> {
+    formula: &'a str,
+    /// The number of steps in the range.
+    right: usize,
+    /// The number of all steps.
+    steps: usize,
+}
 
 impl Report {
     /// The summary of the built-in formulas in f32, then the recommendations.
@@ -159,12 +168,12 @@ impl Report {
             (Kind::Quadrics, "quadrics"),
             (Kind::Secondaries, "secondary rays"),
         ] {
-            let Some((ordinary, right, steps)) = self.best(kind, true) else {
+            let Some(ordinary) = self.best(kind, is_ordinary) else {
                 continue;
             };
             let extreme = self
-                .best(kind, false)
-                .filter(|(extreme, ..)| *extreme != ordinary);
+                .best(kind, |_, _| true)
+                .filter(|extreme| extreme.formula != ordinary.formula);
             let range = match extreme {
                 Some(_) => format!(
                     " at scales from {:e} to {MAX_ORDINARY_SCALE:e}",
@@ -172,45 +181,52 @@ impl Report {
                 ),
                 None => String::new(),
             };
-            let mut line = format!("Recommended for {what}: {ordinary} ");
+            let FailureFree {
+                formula,
+                right,
+                steps,
+            } = ordinary;
+            let mut line = format!("Recommended for {what}: {formula} ");
             let range = if right == steps {
                 format!("(right in all {steps} steps{range})")
             } else {
                 format!("(largest range without failures{range}: {right} of {steps} steps)")
             };
             line += &range;
-            if let Some((extreme, ..)) = extreme {
-                let _ = write!(line, "\n  at any scale: {extreme}");
+            if let Some(extreme) = extreme {
+                let _ = write!(line, "\n  at any scale: {}", extreme.formula);
             }
             lines.push(line);
         }
         lines
     }
 
-    /// The formula with the largest range without failures in f32, the first of several, with the numbers of
-    /// the steps in that range and of all steps. `ordinary`: whether extreme scales are ignored.
-    fn best(&self, kind: Kind, ordinary: bool) -> Option<(&str, usize, usize)> {
+    /// The formula with the largest range without failures in f32, the first of several, counting only some
+    /// steps of each axis.
+    fn best(&self, kind: Kind, counts: fn(&Axis, Step) -> bool) -> Option<FailureFree<'_>> {
         let axes = axes();
         let ranges = self.formulas(kind, "f32").into_iter().map(|name| {
             let rows: Vec<&Row> = self.cpu_rows("f32").filter(|row| row.formula == name).collect();
-            let (mut right, mut total) = (0, 0);
+            let (mut right, mut steps) = (0, 0);
             for axis in axes.iter().filter(|axis| axis.kind == kind) {
                 for direction in directions(axis) {
-                    let steps = direction.steps.into_iter();
-                    let counted: Vec<Step> = steps
-                        .filter(|step| !ordinary || is_ordinary(axis, *step))
-                        .collect();
+                    let counted = direction.steps.into_iter();
+                    let counted: Vec<Step> = counted.filter(|step| counts(axis, *step)).collect();
                     let fails = |step: &Step| {
                         let mut rows = rows.iter();
                         rows.any(|row| row.axis == axis.name && row.value == *step && row.tally.fails())
                     };
                     right += counted.iter().position(fails).unwrap_or(counted.len());
-                    total += counted.len();
+                    steps += counted.len();
                 }
             }
-            (name, right, total)
+            FailureFree {
+                formula: name,
+                right,
+                steps,
+            }
         });
-        ranges.min_by_key(|(_, right, total)| total - right)
+        ranges.min_by_key(|range| range.steps - range.right)
     }
 
     /// Whether a GPU's results agree with the CPU's.

@@ -7,16 +7,17 @@
 
 use glam::DVec3;
 
-use super::case::{Case, Label, MARGIN, RaySphere, Step, step_value, to_f32};
-use super::exact;
+use crate::case::{Case, Label, MARGIN, RaySphere, Step};
+use crate::exact::Intersection;
+use crate::random::Random;
 
-pub(super) const SPHERE_ORIGINS: [Label; 4] = [
+pub(crate) const SPHERE_ORIGINS: [Label; 4] = [
     Label::OriginInside,
     Label::OriginOnSurface,
     Label::OriginUlpInside,
     Label::OriginUlpOutside,
 ];
-pub(super) const DEGENERATE_PARTS: [Label; 13] = [
+pub(crate) const DEGENERATE_PARTS: [Label; 13] = [
     Label::ZeroCoordinates,
     Label::ZeroDirection,
     Label::ZeroRadius,
@@ -60,49 +61,40 @@ impl TypicalCase {
         }
     }
 
-    fn case(self) -> Case {
-        Case::Sphere(RaySphere {
-            o: to_f32(self.o),
-            d: to_f32(self.d),
-            c: to_f32(self.c),
-            r: self.r as f32,
-        })
+    fn ray_sphere(&self) -> RaySphere {
+        RaySphere::rounded(self.o, self.d, self.c, self.r)
+    }
+
+    fn case(&self) -> Case {
+        Case::Sphere(self.ray_sphere())
     }
 }
 
 const TYPICAL_DISTANCE_RADII: [f64; 2] = [3.0, 10.0];
 
-pub(super) fn scaled_sphere(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn scaled_sphere(random: &mut Random, step: Step) -> Option<Case> {
     let TypicalCase { o, d, c, r } = TypicalCase::new(random, TYPICAL_DISTANCE_RADII);
-    let s = step_value(step);
-    Some(
-        TypicalCase {
-            o: o * s,
-            d,
-            c: c * s,
-            r: r * s,
-        }
-        .case(),
-    )
+    let s = step.value();
+    Some(Case::Sphere(RaySphere::rounded(o * s, d, c * s, r * s)))
 }
 
-pub(super) fn stretched_direction(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn stretched_direction(random: &mut Random, step: Step) -> Option<Case> {
     let typical = TypicalCase::new(random, TYPICAL_DISTANCE_RADII);
-    let d = typical.d * step_value(step);
+    let d = typical.d * step.value();
     Some(TypicalCase { d, ..typical }.case())
 }
 
-pub(super) fn offset_sphere(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn offset_sphere(random: &mut Random, step: Step) -> Option<Case> {
     let typical = TypicalCase::new(random, TYPICAL_DISTANCE_RADII);
-    let shift = random.direction() * step_value(step);
+    let shift = random.direction() * step.value();
     let (o, c) = (typical.o + shift, typical.c + shift);
     Some(TypicalCase { o, c, ..typical }.case())
 }
 
 /// Half of the rays are parallel to an axis: other f32 directions cannot be aimed accurately enough at a
 /// distant sphere.
-pub(super) fn distant_sphere(random: &mut Random, step: Step) -> Option<Case> {
-    let away = step_value(step);
+pub(crate) fn distant_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let away = step.value();
     let typical = TypicalCase::new(random, [1.05 * away, 2.0 * away]);
     if random.unit() < 0.5 {
         return Some(typical.case());
@@ -120,8 +112,8 @@ pub(super) fn distant_sphere(random: &mut Random, step: Step) -> Option<Case> {
 }
 
 /// δ = (r² − h²)/r² is the step's value, where h is the distance of the ray's line from the center.
-pub(super) fn grazing_sphere(random: &mut Random, step: Step) -> Option<Case> {
-    let delta = step_value(step);
+pub(crate) fn grazing_sphere(random: &mut Random, step: Step) -> Option<Case> {
+    let delta = step.value();
     let r = f64::from(random.between(0.5, 2.0) as f32);
     let far = f64::from((r * random.between(3.0, 10.0)) as f32);
     let ray_sphere = if delta.abs() > 3e-6 && random.unit() < 0.5 {
@@ -129,12 +121,8 @@ pub(super) fn grazing_sphere(random: &mut Random, step: Step) -> Option<Case> {
         let d = random.direction();
         let aside = d.cross(random.direction()).normalize_or(DVec3::X);
         let c = random.direction() * random.between(0.0, 3.0);
-        RaySphere {
-            o: to_f32(c + aside * (r * (1.0 - delta).sqrt()) - d * far),
-            d: to_f32(d),
-            c: to_f32(c),
-            r: r as f32,
-        }
+        let o = c + aside * (r * (1.0 - delta).sqrt()) - d * far;
+        RaySphere::rounded(o, d, c, r)
     } else {
         // Parallel to an axis: h² = x² + y², where x is a float slightly below h, and y is the remainder,
         // split into two floats.
@@ -154,13 +142,12 @@ pub(super) fn grazing_sphere(random: &mut Random, step: Step) -> Option<Case> {
             r: r as f32,
         }
     };
-    let delta_ratio =
-        exact::sphere(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r)?.discriminant / delta;
+    let delta_ratio = ray_sphere.intersection()?.discriminant / delta;
     (delta_ratio > 0.3 && delta_ratio < 3.0).then_some(Case::Sphere(ray_sphere))
 }
 
 /// Origins near the surface. Points of it are exact: (1, 2, 2) has length 3.
-pub(super) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case> {
     let Step::Label(label) = step else { return None };
     if label == Label::OriginInside {
         return Some(TypicalCase::new(random, [0.0, 0.9]).case());
@@ -185,15 +172,15 @@ pub(super) fn origin_near_sphere(random: &mut Random, step: Step) -> Option<Case
     let d = random.direction();
     (d.dot(normal).abs() > 0.05).then_some(Case::Sphere(RaySphere {
         o,
-        d: to_f32(d),
+        d: d.to_array().map(|x| x as f32),
         c: c.map(|x| x as f32),
         r: (3.0 * k) as f32,
     }))
 }
 
 /// Origins on a concentric shell at a relative distance of the step's value from the sphere's surface.
-pub(super) fn concentric_shells(random: &mut Random, step: Step) -> Option<Case> {
-    let gap = step_value(step);
+pub(crate) fn concentric_shells(random: &mut Random, step: Step) -> Option<Case> {
+    let gap = step.value();
     let r = random.between(0.5, 2.0);
     let c = random.direction() * random.between(0.0, 3.0);
     let (normal, d) = (random.direction(), random.direction());
@@ -213,11 +200,9 @@ pub(super) fn concentric_shells(random: &mut Random, step: Step) -> Option<Case>
     (d.dot(normal).abs() > 0.3).then(|| typical.case())
 }
 
-pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case> {
     let Step::Label(label) = step else { return None };
-    let Case::Sphere(mut ray_sphere) = TypicalCase::new(random, TYPICAL_DISTANCE_RADII).case() else {
-        return None;
-    };
+    let mut ray_sphere = TypicalCase::new(random, TYPICAL_DISTANCE_RADII).ray_sphere();
     let i = random.below(3);
     let infinite = random.sign() as f32 * f32::INFINITY;
     match label {
@@ -249,16 +234,15 @@ pub(super) fn degenerate_sphere(random: &mut Random, step: Step) -> Option<Case>
         Label::NanDirection => ray_sphere.d[i] = f32::NAN,
         _ => ray_sphere.r = f32::NAN,
     }
-    let is_grazing = |intersection: exact::Intersection| intersection.discriminant.abs() < MARGIN;
-    let exact = exact::sphere(ray_sphere.o, ray_sphere.d, ray_sphere.c, ray_sphere.r);
-    let is_well_conditioned =
-        matches!(label, Label::ZeroDirection | Label::ZeroRadius) || !exact.is_some_and(is_grazing);
+    let is_grazing = |intersection: Intersection| intersection.discriminant.abs() < MARGIN;
+    let is_well_conditioned = matches!(label, Label::ZeroDirection | Label::ZeroRadius)
+        || !ray_sphere.intersection().is_some_and(is_grazing);
     is_well_conditioned.then_some(Case::Sphere(ray_sphere))
 }
 
 // Rays and quadrics, each in its local coordinates.
 
-pub(super) const SPECIAL_QUADRIC_RAYS: [Label; 5] = [
+pub(crate) const SPECIAL_QUADRIC_RAYS: [Label; 5] = [
     Label::AlongCylinder,
     Label::AlongConeSide,
     Label::AlongParaboloidAxis,
@@ -266,16 +250,27 @@ pub(super) const SPECIAL_QUADRIC_RAYS: [Label; 5] = [
     Label::ThroughParaboloidApex,
 ];
 
-/// q, g and k.
-type Surface = ([f32; 3], f32, f32);
+/// The quadric q·p² + 2 g z + k = 0.
+#[derive(Clone, Copy)]
+struct Quadric {
+    q: [f32; 3],
+    g: f32,
+    k: f32,
+}
 
-const CYLINDER: Surface = ([1.0, 1.0, 0.0], 0.0, -1.0);
-const CONE: Surface = ([1.0, 1.0, -1.0], 0.0, 0.0);
-const HYPERBOLOID: Surface = ([1.0, 1.0, -1.0], 0.0, -1.0);
-const PARABOLOID: Surface = ([1.0, 1.0, 0.0], -0.5, 0.0);
-const ELLIPSOID: Surface = ([1.0, 0.25, 4.0], 0.0, -1.0);
+impl Quadric {
+    const fn new(q: [f32; 3], g: f32, k: f32) -> Self {
+        Self { q, g, k }
+    }
+}
 
-fn quadric_case((q, g, k): Surface, o: [f64; 3], d: [f64; 3]) -> Case {
+const CYLINDER: Quadric = Quadric::new([1.0, 1.0, 0.0], 0.0, -1.0);
+const CONE: Quadric = Quadric::new([1.0, 1.0, -1.0], 0.0, 0.0);
+const HYPERBOLOID: Quadric = Quadric::new([1.0, 1.0, -1.0], 0.0, -1.0);
+const PARABOLOID: Quadric = Quadric::new([1.0, 1.0, 0.0], -0.5, 0.0);
+const ELLIPSOID: Quadric = Quadric::new([1.0, 0.25, 4.0], 0.0, -1.0);
+
+fn quadric_case(Quadric { q, g, k }: Quadric, o: [f64; 3], d: [f64; 3]) -> Case {
     let [o, d] = [o, d].map(|v| v.map(|x| x as f32));
     Case::Quadric { o, d, q, g, k }
 }
@@ -285,8 +280,8 @@ fn point_in_cube(random: &mut Random, size: f64) -> [f64; 3] {
 }
 
 /// Directions for which the coefficient of t² is nearly 0.
-pub(super) fn nearly_linear_quadric(random: &mut Random, step: Step) -> Option<Case> {
-    let aside = random.sign() * step_value(step).sqrt();
+pub(crate) fn nearly_linear_quadric(random: &mut Random, step: Step) -> Option<Case> {
+    let aside = random.sign() * step.value().sqrt();
     let [x, y, z] = point_in_cube(random, 1.0);
     let o = [x * 1.5, y * 1.5, z * 5.0];
     Some(match random.below(4) {
@@ -297,15 +292,15 @@ pub(super) fn nearly_linear_quadric(random: &mut Random, step: Step) -> Option<C
     })
 }
 
-pub(super) fn distant_quadric(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn distant_quadric(random: &mut Random, step: Step) -> Option<Case> {
     let surface = [CYLINDER, CONE, HYPERBOLOID, PARABOLOID, ELLIPSOID][random.below(5)];
-    let o = random.direction() * (step_value(step) * random.between(2.0, 4.0));
-    let target = glam::DVec3::from_array(point_in_cube(random, 1.5));
+    let o = random.direction() * (step.value() * random.between(2.0, 4.0));
+    let target = DVec3::from_array(point_in_cube(random, 1.5));
     let d = (target - o).normalize();
     Some(quadric_case(surface, o.to_array(), d.to_array()))
 }
 
-pub(super) fn special_quadric_ray(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn special_quadric_ray(random: &mut Random, step: Step) -> Option<Case> {
     let Step::Label(label) = step else { return None };
     let [x, y, z] = point_in_cube(random, 1.0);
     let o = [x * 1.5, y * 1.5, z * 5.0];
@@ -347,15 +342,11 @@ fn primary_ray(random: &mut Random, step: Step) -> Option<RaySphere> {
         let aside = normal.cross(random.direction()) * (above * random.log_between(0.3, 10.0));
         (o, c + normal * r + aside)
     };
-    Some(RaySphere {
-        o: to_f32(o * scale),
-        d: to_f32((target - o).normalize()),
-        c: to_f32(c * scale),
-        r: (r * scale) as f32,
-    })
+    let d = (target - o).normalize();
+    Some(RaySphere::rounded(o * scale, d, c * scale, r * scale))
 }
 
-pub(super) fn mirrored_ray(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn mirrored_ray(random: &mut Random, step: Step) -> Option<Case> {
     Some(Case::Secondary {
         first: primary_ray(random, step)?,
         cosine: 0.0,
@@ -363,80 +354,9 @@ pub(super) fn mirrored_ray(random: &mut Random, step: Step) -> Option<Case> {
 }
 
 /// Secondary rays between 0.1 and 6 degrees above the surface.
-pub(super) fn grazing_secondary_ray(random: &mut Random, step: Step) -> Option<Case> {
+pub(crate) fn grazing_secondary_ray(random: &mut Random, step: Step) -> Option<Case> {
     Some(Case::Secondary {
         first: primary_ray(random, step)?,
         cosine: random.log_between(2e-3, 0.1) as f32,
     })
-}
-
-// Seeded random numbers.
-
-/// Steele, Lea and Flood's `SplitMix64`, “Fast splittable pseudorandom number generators” (OOPSLA 2014).
-#[derive(Debug, Clone)]
-pub(super) struct Random(u64);
-
-impl Random {
-    /// A stream of numbers for a seed and labels: independent of all other streams.
-    pub(super) fn new(seed: u64, labels: &[&str]) -> Self {
-        let mut random = Self(seed);
-        for byte in labels.iter().flat_map(|label| label.bytes().chain([0])) {
-            random.0 ^= u64::from(byte);
-            random.0 = random.next();
-        }
-        random
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number in [0, 1).
-    pub(super) fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 * 2f64.powi(-53)
-    }
-
-    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// A number with a uniformly distributed logarithm.
-    pub(super) fn log_between(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    /// An integer in [0, count).
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        (self.unit() * count as f64) as usize
-    }
-
-    pub(super) fn sign(&mut self) -> f64 {
-        if self.next() >> 63 == 0 { 1.0 } else { -1.0 }
-    }
-
-    /// A uniformly distributed unit vector.
-    pub(super) fn direction(&mut self) -> glam::DVec3 {
-        let z = self.between(-1.0, 1.0);
-        let (sine, cosine) = (std::f64::consts::TAU * self.unit()).sin_cos();
-        let rho = (1.0 - z * z).sqrt();
-        glam::DVec3::new(rho * cosine, rho * sine, z)
-    }
-
-    /// A random permutation of the axes with random signs: an exact rotation or reflection.
-    pub(super) fn rotation(&mut self) -> impl Fn([f64; 3]) -> [f64; 3] + use<> {
-        let first = self.below(3);
-        let step = 1 + self.below(2);
-        let signs = [self.sign(), self.sign(), self.sign()];
-        move |v| {
-            let mut turned = [0.0; 3];
-            for (i, value) in v.into_iter().enumerate() {
-                turned[(first + i * step) % 3] = signs[i] * value;
-            }
-            turned
-        }
-    }
 }

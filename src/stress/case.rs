@@ -2,8 +2,12 @@
 
 use std::fmt;
 
+use glam::DVec3;
+
+use crate::exact::{self, Intersection};
+
 /// The default margin: only the axis of grazing rays tests cases that rounding decides.
-pub(super) const MARGIN: f64 = 1e-3;
+pub(crate) const MARGIN: f64 = 1e-3;
 
 /// A test case, and its layout as three texels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,9 +49,22 @@ pub struct RaySphere {
     pub r: f32,
 }
 
+impl RaySphere {
+    /// Rounds a ray and a sphere to floats.
+    pub(crate) fn rounded(o: DVec3, d: DVec3, c: DVec3, r: f64) -> Self {
+        let [o, d, c] = [o, d, c].map(|v| v.to_array().map(|x| x as f32));
+        Self { o, d, c, r: r as f32 }
+    }
+
+    /// The intersection of the ray with the sphere; `None` if a part is infinite or NaN.
+    pub(crate) fn intersection(&self) -> Option<Intersection> {
+        exact::sphere(self.o, self.d, self.c, self.r)
+    }
+}
+
 impl Case {
     /// The texels from which a shader reads the case, in three channels.
-    pub(super) fn texels(&self) -> [[f32; 4]; 3] {
+    pub(crate) fn texels(&self) -> [[f32; 4]; 3] {
         let texel = |[x, y, z]: [f32; 3], w| [x, y, z, w];
         match *self {
             Self::Sphere(RaySphere { o, d, c, r }) => [texel(o, r), texel(d, 0.0), texel(c, 0.0)],
@@ -116,6 +133,16 @@ pub enum Step {
     Label(Label),
 }
 
+impl Step {
+    /// The quantity; 0 for a named configuration.
+    pub(crate) fn value(self) -> f64 {
+        match self {
+            Self::Number(number) => number,
+            Self::Label(_) => 0.0,
+        }
+    }
+}
+
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -123,16 +150,5 @@ impl fmt::Display for Step {
             Self::Number(number) => write!(f, "{number:e}"),
             Self::Label(label) => label.fmt(f),
         }
-    }
-}
-
-pub(super) fn to_f32(v: glam::DVec3) -> [f32; 3] {
-    v.to_array().map(|x| x as f32)
-}
-
-pub(super) fn step_value(step: Step) -> f64 {
-    match step {
-        Step::Number(number) => number,
-        Step::Label(_) => 0.0,
     }
 }
