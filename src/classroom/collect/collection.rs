@@ -11,8 +11,8 @@ use toyproof_report::Late;
 use toyproof_toml::Moment;
 
 use super::class::{Class, ClassAssignment, StudentList};
-use super::download::{self, Found};
-use super::naming::{Paths, Student, Submitted, is_archive, submitted};
+use super::download::{self, DownloadFile};
+use super::naming::{Paths, Student, SubmissionPath, is_archive, submission_path};
 use super::roster::FILE_NAME;
 use super::students::Students;
 use super::text::{self, Content};
@@ -103,11 +103,22 @@ fn utc(time: FileTime, deadline: Moment) -> i64 {
     }
 }
 
-/// The submissions of all students, each with the name of its folder.
+/// The folder of a student, and what it holds.
+#[derive(Debug)]
+pub struct StudentFolder {
+    /// The name of the folder.
+    pub name: String,
+    /// The student.
+    pub student: Student,
+    /// The student's files.
+    pub submission: Submission,
+}
+
+/// The submissions of all students.
 #[derive(Debug)]
 pub struct Collection {
-    /// The folder of each student, and what it holds.
-    pub students: Vec<(String, Student, Submission)>,
+    /// The folders of the students.
+    pub students: Vec<StudentFolder>,
     /// The downloads whose times are not those of submissions.
     pub copies: Vec<PathBuf>,
 }
@@ -148,12 +159,15 @@ impl Collection {
             return Err("there is no file to collect".to_owned());
         }
         let mut names = Paths::with_reserved(&[FILE_NAME]);
-        let named = submissions.into_iter().map(|(student, submission)| {
-            let folder = names.student(&student);
-            (folder, student, submission)
-        });
+        let folders = submissions
+            .into_iter()
+            .map(|(student, submission)| StudentFolder {
+                name: names.student(&student),
+                student,
+                submission,
+            });
         Ok(Self {
-            students: named.collect(),
+            students: folders.collect(),
             copies,
         })
     }
@@ -169,12 +183,12 @@ fn add(
 ) -> Result<bool, String> {
     let found = download::read(download).map_err(|error| unreadable(download, &error))?;
     let mut submitted_files = Vec::new();
-    for Found { path, content, time } in found {
-        let Submitted {
+    for DownloadFile { path, content, time } in found {
+        let SubmissionPath {
             student,
             path,
             is_late,
-        } = submitted(&path);
+        } = submission_path(&path);
         let file = SubmittedFile {
             path,
             content,

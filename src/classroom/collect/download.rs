@@ -13,7 +13,7 @@ use toyproof_project::archive::{self as zip, Archive, FileTime};
 use toyproof_project::files::{MAX_BYTES, is_hidden};
 use walkdir::WalkDir;
 
-use super::naming::{Student, is_archive, is_of_system, submitted};
+use super::naming::{Student, is_archive, is_of_system, submission_path};
 use super::text::{Content, content};
 
 /// The deepest archive in archives.
@@ -38,7 +38,7 @@ const MAX_PATH_BYTES: usize = 1000;
 
 /// A file of a download.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Found {
+pub(super) struct DownloadFile {
     /// Its path in the download; archives in it are components that end with `.zip`. The last component of an
     /// empty folder is empty.
     pub path: Vec<String>,
@@ -53,11 +53,11 @@ pub(super) struct Found {
 ///
 /// # Errors
 /// It cannot be read, or has too many files.
-pub(super) fn read(download: &Path) -> io::Result<Vec<Found>> {
+pub(super) fn read(download: &Path) -> io::Result<Vec<DownloadFile>> {
     let mut tree = if download.is_dir() {
-        Tree::of_folder(download)?
+        Tree::from_folder(download)?
     } else {
-        Tree::of_archive(Box::new(BufReader::new(input::open(download)?)), MAX_ENTRIES)?
+        Tree::from_archive(Box::new(BufReader::new(input::open(download)?)), MAX_ENTRIES)?
     };
     if tree.archive.as_ref().is_some_and(Archive::is_cut) {
         return Err(too_many());
@@ -114,7 +114,7 @@ impl Item {
 
 impl Tree {
     /// Lists a folder with its subfolders.
-    fn of_folder(folder: &Path) -> io::Result<Self> {
+    fn from_folder(folder: &Path) -> io::Result<Self> {
         fs::read_dir(folder)?;
         let mut items = Vec::new();
         let entries = WalkDir::new(folder).follow_root_links(true);
@@ -162,7 +162,7 @@ impl Tree {
     }
 
     /// Lists an archive with at most this many files and folders.
-    fn of_archive(input: Box<dyn Input>, max_entries: usize) -> io::Result<Self> {
+    fn from_archive(input: Box<dyn Input>, max_entries: usize) -> io::Result<Self> {
         let mut archive = Archive::open(input, max_entries)?;
         let items = archive.take_entries().into_iter().filter_map(|entry| {
             let parts = entry
@@ -228,7 +228,7 @@ impl Tree {
         let bytes = bytes
             .ok()
             .filter(|bytes| bytes.len() as u64 <= MAX_NESTED_BYTES)?;
-        let mut inner = Self::of_archive(Box::new(Cursor::new(bytes)), MAX_ENTRIES).ok()?;
+        let mut inner = Self::from_archive(Box::new(Cursor::new(bytes)), MAX_ENTRIES).ok()?;
         for item in &mut inner.items {
             item.path.insert(0, name.clone());
         }
@@ -252,7 +252,7 @@ fn unreadable(error: &io::Error) -> String {
 
 /// The files of a student that have been read.
 #[derive(Debug, Default)]
-struct Used {
+struct Usage {
     files: usize,
     entries: usize,
     text_bytes: usize,
@@ -263,15 +263,15 @@ struct Used {
 
 #[derive(Debug, Default)]
 struct Reader {
-    found: Vec<Found>,
+    found: Vec<DownloadFile>,
     text_bytes: usize,
-    students: HashMap<Student, Used>,
+    students: HashMap<Student, Usage>,
 }
 
 impl Reader {
     /// Reads the content of a name of the download.
     fn item(&mut self, tree: &mut Tree, item: Item) -> io::Result<()> {
-        let student = submitted(&item.path).student;
+        let student = submission_path(&item.path).student;
         let mut used = self.students.remove(&student).unwrap_or_default();
         let mut submission = Submission {
             used: &mut used,
@@ -290,8 +290,8 @@ impl Reader {
 
 /// The submission of a student, which grows up to the limits.
 struct Submission<'a> {
-    used: &'a mut Used,
-    found: &'a mut Vec<Found>,
+    used: &'a mut Usage,
+    found: &'a mut Vec<DownloadFile>,
 }
 
 impl Submission<'_> {
@@ -367,7 +367,7 @@ impl Submission<'_> {
             return self.add(path, Err("it is larger than 64 MiB".to_owned()), time);
         }
         let max_entries = MAX_STUDENT_ENTRIES - self.used.entries;
-        let mut tree = match Tree::of_archive(Box::new(Cursor::new(bytes)), max_entries) {
+        let mut tree = match Tree::from_archive(Box::new(Cursor::new(bytes)), max_entries) {
             Ok(tree) => tree,
             Err(error) if error.kind() == io::ErrorKind::InvalidData => {
                 return self.add(path, Err(format!("it is {error}")), time);
@@ -396,7 +396,7 @@ impl Submission<'_> {
 
     fn add(&mut self, path: Vec<String>, content: Result<Content, String>, time: Option<FileTime>) {
         self.used.files += 1;
-        self.found.push(Found { path, content, time });
+        self.found.push(DownloadFile { path, content, time });
     }
 
     /// Leaves out this file and the following ones.
@@ -404,7 +404,7 @@ impl Submission<'_> {
         if !std::mem::replace(&mut self.used.is_full, true) {
             let content = Err(format!("{reason}; the others were left out"));
             let path = shortened(path);
-            self.found.push(Found {
+            self.found.push(DownloadFile {
                 path,
                 content,
                 time: None,

@@ -6,9 +6,9 @@ use std::path::Path;
 use toyproof_project::files::is_hidden;
 use unicode_normalization::UnicodeNormalization;
 
-/// A file of a download.
+/// What the path of a file in a download says.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Submitted {
+pub struct SubmissionPath {
     /// Its owner.
     pub student: Student,
     /// Its path in the submission; empty for a folder.
@@ -33,11 +33,11 @@ pub struct Student {
 /// # Panics
 /// If the path is empty.
 #[must_use]
-pub fn submitted(path: &[String]) -> Submitted {
+pub fn submission_path(path: &[String]) -> SubmissionPath {
     let (first, rest) = path.split_first().expect("the path is not empty");
     let is_file = rest.is_empty() || is_archive(first);
     let named = moodle(first).or_else(|| canvas(first).filter(|_| is_file));
-    let Named {
+    let NameParts {
         student,
         file,
         is_late,
@@ -47,7 +47,7 @@ pub fn submitted(path: &[String]) -> Submitted {
         name: student.name.nfc().collect(),
         ..student
     };
-    Submitted {
+    SubmissionPath {
         student,
         path: file.into_iter().chain(rest.iter().cloned()).collect(),
         is_late,
@@ -55,12 +55,12 @@ pub fn submitted(path: &[String]) -> Submitted {
 }
 
 /// The student of a folder or a file that no system named.
-fn by_place(first: &str, is_file: bool) -> Named {
+fn by_place(first: &str, is_file: bool) -> NameParts {
     let name = match first.rsplit_once('.') {
         Some((stem, _)) if is_file && !stem.is_empty() => stem,
         _ => first,
     };
-    Named {
+    NameParts {
         student: Student {
             name: name.to_owned(),
             id: None,
@@ -84,7 +84,7 @@ pub fn is_of_system(name: &str) -> bool {
 }
 
 /// The parts of a name.
-struct Named {
+struct NameParts {
     student: Student,
     /// The name that the student gave to the file; `None` for a folder.
     file: Option<String>,
@@ -94,14 +94,14 @@ struct Named {
 /// Moodle: `Anna Smith_1234567_assignsubmission_file_shader.glsl`, or a folder `Anna
 /// Smith_1234567_assignsubmission_file`, with or without a last `_`; `onlinetext` instead of `file` where the
 /// text was typed.
-fn moodle(name: &str) -> Option<Named> {
+fn moodle(name: &str) -> Option<NameParts> {
     let (student, rest) = name.split_once("_assignsubmission_")?;
     let (name, id) = student.rsplit_once('_')?;
     let file = ["file", "onlinetext"]
         .iter()
         .find_map(|kind| rest.strip_prefix(kind))?;
     let file = file.strip_prefix('_').or_else(|| file.is_empty().then_some(""))?;
-    is_number(id).then(|| Named {
+    is_number(id).then(|| NameParts {
         student: Student {
             name: name.to_owned(),
             id: Some(id.to_owned()),
@@ -113,13 +113,13 @@ fn moodle(name: &str) -> Option<Named> {
 
 /// Canvas: `smithanna_12345_678901_shader.glsl`, or `smithanna_LATE_12345_678901_shader.glsl`: the student's
 /// name and number, the number of the file and its name.
-fn canvas(name: &str) -> Option<Named> {
+fn canvas(name: &str) -> Option<NameParts> {
     let (student, rest) = name.split_once('_')?;
     let late = rest.strip_prefix("LATE_");
     let mut parts = late.unwrap_or(rest).splitn(3, '_');
     let (id, number, file) = (parts.next()?, parts.next()?, parts.next()?);
     let is_name = !student.is_empty() && !file.is_empty();
-    (is_name && is_number(id) && is_number(number)).then(|| Named {
+    (is_name && is_number(id) && is_number(number)).then(|| NameParts {
         student: Student {
             name: student.to_owned(),
             id: Some(id.to_owned()),
@@ -276,49 +276,49 @@ mod tests {
 
     fn read(path: &str) -> (String, Option<String>, String, bool) {
         let path: Vec<_> = path.split('/').map(str::to_owned).collect();
-        let Submitted {
+        let SubmissionPath {
             student,
             path,
             is_late,
-        } = submitted(&path);
+        } = submission_path(&path);
         (student.name, student.id, path.join("/"), is_late == Some(true))
     }
 
     #[test]
     fn systems_name_students_and_files() {
-        let of = |name: &str, id: &str, path: &str, is_late| {
+        let file = |name: &str, id: &str, path: &str, is_late| {
             let id = (!id.is_empty()).then(|| id.to_owned());
             (name.to_owned(), id, path.to_owned(), is_late)
         };
         for (path, expected) in [
             (
                 "Anna Smith_12_assignsubmission_file/a.glsl",
-                of("Anna Smith", "12", "a.glsl", false),
+                file("Anna Smith", "12", "a.glsl", false),
             ),
             (
                 "Anna Smith_12_assignsubmission_file_/x/a.glsl",
-                of("Anna Smith", "12", "x/a.glsl", false),
+                file("Anna Smith", "12", "x/a.glsl", false),
             ),
             (
                 "Bo van_Dam_7_assignsubmission_file_my_a.glsl",
-                of("Bo van_Dam", "7", "my_a.glsl", false),
+                file("Bo van_Dam", "7", "my_a.glsl", false),
             ),
             (
                 "Participant 9_9_assignsubmission_onlinetext/onlinetext.html",
-                of("Participant 9", "9", "onlinetext.html", false),
+                file("Participant 9", "9", "onlinetext.html", false),
             ),
-            ("doejane_12_345_a.glsl", of("doejane", "12", "a.glsl", false)),
+            ("doejane_12_345_a.glsl", file("doejane", "12", "a.glsl", false)),
             (
                 "doejane_LATE_12_345_my_a-1.glsl",
-                of("doejane", "12", "my_a-1.glsl", true),
+                file("doejane", "12", "my_a-1.glsl", true),
             ),
-            ("anna/a_1_2_b.glsl", of("anna", "", "a_1_2_b.glsl", false)),
-            ("anna_1_2_x/a.glsl", of("anna_1_2_x", "", "a.glsl", false)),
-            ("anna.glsl", of("anna", "", "anna.glsl", false)),
-            ("anna.lee/a.glsl", of("anna.lee", "", "a.glsl", false)),
+            ("anna/a_1_2_b.glsl", file("anna", "", "a_1_2_b.glsl", false)),
+            ("anna_1_2_x/a.glsl", file("anna_1_2_x", "", "a.glsl", false)),
+            ("anna.glsl", file("anna", "", "anna.glsl", false)),
+            ("anna.lee/a.glsl", file("anna.lee", "", "a.glsl", false)),
             (
                 "a_x_assignsubmission_file/a.glsl",
-                of("a_x_assignsubmission_file", "", "a.glsl", false),
+                file("a_x_assignsubmission_file", "", "a.glsl", false),
             ),
         ] {
             assert_eq!(read(path), expected, "{path}");

@@ -41,12 +41,12 @@ pub struct Entry {
     /// The files that were collected.
     pub files: Vec<String>,
     /// The files that were not.
-    pub skipped: Vec<Skipped>,
+    pub skipped: Vec<SkippedFile>,
 }
 
 /// A file that was not collected.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Skipped {
+pub struct SkippedFile {
     /// Its path.
     pub file: String,
     /// Why, in one sentence.
@@ -57,7 +57,7 @@ impl Entry {
     /// The files submitted instead of a shader, in parentheses; empty if there are none.
     fn instead(&self) -> String {
         let list =
-            |skipped: &Skipped| printable(&format!("{}: {}", skipped.file, skipped.reason)).into_owned();
+            |skipped: &SkippedFile| printable(&format!("{}: {}", skipped.file, skipped.reason)).into_owned();
         match &self.skipped[..] {
             [] => String::new(),
             [first] => format!(" ({})", list(first)),
@@ -137,13 +137,13 @@ impl Owners {
 
     /// The student who submitted an input, if any.
     #[must_use]
-    pub fn of(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
-        let path = path_of(input)?;
+    pub fn find(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
+        let path = input_path(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))
     }
 }
 
-fn path_of(input: &Result<Input, ReadError>) -> Option<PathBuf> {
+fn input_path(input: &Result<Input, ReadError>) -> Option<PathBuf> {
     match input {
         Ok(input) => input.path().map(Path::to_owned),
         Err(ReadError::NotSubmitted(folder, _)) => Some(folder.clone()),
@@ -155,7 +155,7 @@ fn path_of(input: &Result<Input, ReadError>) -> Option<PathBuf> {
 /// order of their paths.
 fn add_missing(folder: &Path, roster: &Roster, inputs: &mut Vec<Result<Input, ReadError>>) {
     let is_of_folder =
-        |input: &Result<Input, ReadError>| path_of(input).is_some_and(|path| path.starts_with(folder));
+        |input: &Result<Input, ReadError>| input_path(input).is_some_and(|path| path.starts_with(folder));
     let at = inputs.iter().position(is_of_folder).unwrap_or(inputs.len());
     let count = inputs[at..]
         .iter()
@@ -164,7 +164,7 @@ fn add_missing(folder: &Path, roster: &Roster, inputs: &mut Vec<Result<Input, Re
     let mut own: Vec<_> = inputs.drain(at..at + count).collect();
     own.retain(|input| !matches!(input, Err(ReadError::NoShader(empty)) if empty == folder));
     let first_part = |input: &Result<Input, ReadError>| {
-        let path = path_of(input)?;
+        let path = input_path(input)?;
         let part = path.strip_prefix(folder).ok()?.iter().next()?;
         Some(part.to_owned())
     };
@@ -177,6 +177,6 @@ fn add_missing(folder: &Path, roster: &Roster, inputs: &mut Vec<Result<Input, Re
         let own = folder.join(&student.folder);
         Err(ReadError::NotSubmitted(own, student.instead()))
     }));
-    own.sort_by_cached_key(path_of);
+    own.sort_by_cached_key(input_path);
     inputs.splice(at..at, own);
 }

@@ -7,9 +7,9 @@ use toyproof_diagnostic::{grouped, path_name, plural, printable};
 use toyproof_image::output;
 
 use super::class::ClassAssignment;
-use super::collection::{Lateness, Submission};
-use super::naming::{Paths, Student, file_name};
-use super::roster::{Entry, FILE_NAME, Roster, Skipped};
+use super::collection::{Lateness, StudentFolder};
+use super::naming::{Paths, file_name};
+use super::roster::{Entry, FILE_NAME, Roster, SkippedFile};
 use super::text::Content;
 
 /// The largest number of skipped files of a student that have sentences of their own.
@@ -26,13 +26,13 @@ const MAX_NOTES: usize = 10;
 pub fn write_student(
     folder: &Path,
     assignment: Option<&ClassAssignment>,
-    (own, student, submission): (&str, &Student, &Submission),
+    own: &StudentFolder,
     lateness: Lateness,
 ) -> Result<(Entry, Vec<String>), String> {
     let mut entry = Entry {
-        folder: own.to_owned(),
-        name: student.name.clone(),
-        id: student.id.clone(),
+        folder: own.name.clone(),
+        name: own.student.name.clone(),
+        id: own.student.id.clone(),
         late: match lateness {
             Lateness::Late(late) => Some(late),
             Lateness::OnTime | Lateness::Unknown => None,
@@ -42,11 +42,11 @@ pub fn write_student(
     };
     let mut notes = Vec::new();
     let mut paths = Paths::default();
-    for handed in &submission.files {
+    for handed in &own.submission.files {
         let original = handed.original_path();
         let mut skip = |reason: &str| {
             let (file, reason) = (original.clone(), reason.to_owned());
-            entry.skipped.push(Skipped { file, reason });
+            entry.skipped.push(SkippedFile { file, reason });
         };
         let belongs = assignment.is_none_or(|assignment| assignment.has(&original));
         match &handed.content {
@@ -60,7 +60,7 @@ pub fn write_student(
             }) => {
                 let (last, parents) = handed.path.split_last().expect("a file has a name");
                 let file = paths.file(parents, &output_name(last, *is_renamed));
-                let path = folder.join(own).join(&file);
+                let path = folder.join(&own.name).join(&file);
                 match output::write_inside(folder, &path, text.as_bytes()) {
                     Ok(()) => {}
                     // The path is invalid; another one may be valid.

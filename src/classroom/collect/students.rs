@@ -27,7 +27,7 @@ impl Students {
         };
         let mut rows: Vec<Vec<String>> = rows(text, separator(text));
         rows.retain(|row| row.iter().any(|cell| !cell.is_empty()));
-        let columns = rows.first().and_then(|row| Columns::of(row));
+        let columns = rows.first().and_then(|row| Columns::from_header(row));
         let skipped = usize::from(columns.is_some());
         let mut students = Self::default();
         for row in rows.iter().skip(skipped) {
@@ -66,7 +66,7 @@ impl Students {
         let known: BTreeSet<String> = keys
             .into_iter()
             .map(|one| key(&one))
-            .chain(keys_of(&name))
+            .chain(name_keys(&name))
             .collect();
         for known in known {
             self.places.entry(known).or_default().push(place);
@@ -123,7 +123,7 @@ struct Columns {
 
 impl Columns {
     /// The columns that a row names; `None` if it names no student's name.
-    fn of(row: &[String]) -> Option<Self> {
+    fn from_header(row: &[String]) -> Option<Self> {
         let names: Vec<String> = row.iter().map(|cell| cell.to_lowercase()).collect();
         let first = |known: &[&str]| names.iter().position(|name| known.contains(&name.as_str()));
         let is_number = |name: &str| {
@@ -202,7 +202,7 @@ fn key(text: &str) -> String {
 
 /// The names of a student in downloads: `Smith, Anna` and `Anna Smith` for Moodle, and `smithanna`
 /// for Canvas.
-fn keys_of(name: &str) -> Vec<String> {
+fn name_keys(name: &str) -> Vec<String> {
     let name = key(name);
     let (given, surname) = match name.split_once(',') {
         Some((surname, given)) => (given.trim(), surname.trim()),

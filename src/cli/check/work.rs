@@ -89,7 +89,7 @@ impl Work {
                 if let (Ok(input), Some(name)) = (&mut input, &part.name) {
                     input.relative = Path::new(name).join(&input.relative);
                 }
-                let submitted = owners.of(&input).cloned();
+                let submitted = owners.find(&input).cloned();
                 let submission =
                     Submission::new(input, &options.check, &plan, &references, &mut names, build);
                 work.submissions.push(Submission {

@@ -108,13 +108,14 @@ fn write_class(
         };
         writer.write(collection)?;
     }
-    for (folder, _, submission) in &collection.students {
-        for file in &submission.files {
+    for own in &collection.students {
+        for file in &own.submission.files {
             let path = file.original_path();
             let is_of_none = !class.assignments.iter().any(|assignment| assignment.has(&path));
             if file.is_shader() && is_of_none {
                 terminal.warn(format_args!(
-                    "{folder}: {} was left out: no assignment of the class has this file",
+                    "{}: {} was left out: no assignment of the class has this file",
+                    own.name,
                     printable(&path)
                 ));
             }

@@ -32,15 +32,14 @@ pub(super) struct Writer<'a> {
 impl Writer<'_> {
     /// Writes the shaders of all students, and the roster, and prints what happened to them.
     pub(super) fn write(&self, collection: &Collection) -> Result<(), CliError> {
-        let names = collection.students.iter().map(|(folder, ..)| folder.as_str());
+        let names = collection.students.iter().map(|own| own.name.as_str());
         let layout = Layout::new(names, self.terminal.width(), Detail::Normal, false);
         let mut students = Vec::new();
         let mut unknown = 0;
-        for (folder, student, submission) in &collection.students {
-            let lateness = submission.lateness(self.assignment);
+        for own in &collection.students {
+            let lateness = own.submission.lateness(self.assignment);
             unknown += u64::from(lateness == Lateness::Unknown);
-            let submitted = (folder.as_str(), student, submission);
-            let (entry, notes) = write_student(self.folder, self.assignment, submitted, lateness)?;
+            let (entry, notes) = write_student(self.folder, self.assignment, own, lateness)?;
             self.print(&entry, &notes, &layout);
             students.push(entry);
         }
