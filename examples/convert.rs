@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use toyproof::convert::{Prover, Runner, Source, Written};
+use toyproof::convert::{Prover, Runner, Source, TargetCode};
 use toyproof::diagnostic::{Deadline, File, Files, short};
 use toyproof::glsl::{Options, check};
 use toyproof::translate::wgsl::{Style, wgsl};
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         checked: &checked,
         files: &files,
     };
-    let proved = prover.prove(source, &Written::Wgsl(text.clone(), Style::Plain))?;
+    let proved = prover.prove(source, &TargetCode::Wgsl(text.clone(), Style::Plain))?;
     println!("{text}// {} pixels equal", proved.proof().equal());
     Ok(())
 }

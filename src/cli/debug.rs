@@ -65,8 +65,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let shader = Shader::load(&input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     let kind = args.pass.unwrap_or(PassKind::Image);
-    if let Some(passes) = &shader.passes
-        && (passes.has_history() || kind != PassKind::Image)
+    let image = shader.require_image()?;
+    if let Some(passes) = shader.project()
+        && (shader.has_passes || kind != PassKind::Image)
     {
         return print_pass(args, (&shader, passes), kind, frame, scene, terminal);
     }
@@ -76,10 +77,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
             shader.name
         )));
     }
-    let checked = shader.require_checked()?;
     print_trace(
         args,
-        (&shader, checked),
+        (&shader, image),
         &frame,
         Reference { scene, given },
         terminal,

@@ -40,27 +40,18 @@ pub(super) fn target(kind: PassKind) -> Target {
     }
 }
 
-/// The files of the images that a project reads from its folder.
-pub(super) fn image_files(input: &Input) -> Vec<PathBuf> {
-    let Ok(Texts::Project(texts @ ProjectTexts::Folder { .. })) = files::read(input) else {
+/// The files of the images that an input with these texts reads from its folder, if it is a project.
+pub(super) fn image_files(input: &Input, texts: Texts) -> Vec<PathBuf> {
+    let (Texts::Project(texts @ ProjectTexts::Folder { .. }), Some(folder)) = (texts, input.path()) else {
         return Vec::new();
     };
-    let (Some(folder), Ok(project)) = (input.path(), texts.parse(&mut Files::default())) else {
+    let Ok(project) = texts.parse(&mut Files::default()) else {
         return Vec::new();
     };
     let names = project.image_inputs().map(|(_, name)| name);
     names
         .filter_map(|name| files::project_image(folder, name).ok())
         .collect()
-}
-
-/// Whether the image of an input reads other passes: not of one that cannot be read.
-pub(super) fn has_passes(input: &Input) -> bool {
-    let Ok(Texts::Project(texts)) = files::read(input) else {
-        return false;
-    };
-    let project = texts.parse(&mut Files::default());
-    project.is_ok_and(|project| !project.needed_by_image().is_empty())
 }
 
 /// Import a project from ShaderToy's JSON into a folder

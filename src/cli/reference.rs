@@ -255,7 +255,7 @@ impl Evaluation<'_> {
         let name = self.name;
         let spinner = terminal.spinner(name);
         let mut frame = frame.clone();
-        let bound = shader.passes.as_ref().map_or(Ok(()), |passes| {
+        let bound = shader.project().map_or(Ok(()), |passes| {
             let rendering = rendering(passes, PassKind::Image)?;
             bind_reference(&pass_shader(passes, &rendering), &mut frame, self.timeout)
         });
@@ -350,19 +350,16 @@ fn read(path: &Path, language: &LanguageArgs, timeout: Duration) -> Result<(Cont
         folder: None,
     };
     let shader = Shader::load(&Ok(input), language, Deadline::after(timeout));
-    if let (Err(Unusable::Unrendered(_)), Some(passes)) = (&shader.checked, &shader.passes) {
-        let bytes = passes.project.to_json(&shader.files).into_bytes();
-        let checked = Box::new(passes.image().clone());
-        return Ok((Content::Shader(Box::new(shader), checked), bytes));
-    }
-    if let Err(Unusable::Invalid(diagnostics)) = &shader.checked {
+    if let Err(Unusable::Invalid(diagnostics)) = &shader.content {
         let error = CliError::diagnostics(diagnostics.clone(), &shader.files);
         return Err(error.with_message(format_args!(
             "the reference {name} is invalid; no shader was checked"
         )));
     }
-    let checked = shader.require_checked()?;
-    let bytes = shader.text(checked).as_bytes().to_vec();
-    let checked = Box::new(checked.clone());
+    let checked = Box::new(shader.require_image()?.clone());
+    let bytes = match shader.project().filter(|_| shader.has_passes) {
+        Some(project) => project.project.to_json(&shader.files).into_bytes(),
+        None => shader.text(&checked).as_bytes().to_vec(),
+    };
     Ok((Content::Shader(Box::new(shader), checked), bytes))
 }

@@ -19,16 +19,23 @@ use super::{CliError, Exit, Terminal};
 /// The lints may take one part in this many of a shader's time limit.
 const LINT_TIME_SHARE: u32 = 4;
 
-/// A shader's text, and its tree or the reason why there is none. The shader of a project is its image.
+/// The text of a shader or of a project, and its trees or the reason why there are none.
 pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
-    pub(super) checked: Result<Checked, Unusable>,
+    pub(super) content: Result<Content, Unusable>,
+    /// Of a project: those of its image, with the warnings about all tabs.
     pub(super) lints: Lints,
-    /// All tabs, if it is a project.
-    pub(super) passes: Option<CompiledProject>,
+    /// Whether it is a project whose image reads other passes, and so depends on earlier frames.
+    pub(super) has_passes: bool,
     /// Whether a student submitted no shader.
     pub(super) is_missing: bool,
+}
+
+/// What compiles.
+pub(super) enum Content {
+    Shader(Checked),
+    Project(CompiledProject),
 }
 
 /// Why a shader cannot be used.
@@ -37,18 +44,6 @@ pub(super) enum Unusable {
     Invalid(Vec<Diagnostic>),
     /// It cannot be read.
     Unreadable(Unreadable),
-    /// It is valid, but is an image that reads other passes of a project.
-    Unrendered(Unreadable),
-}
-
-impl Unusable {
-    /// Distinguishes invalid content, whose text is added to `files`, from a file that cannot be read.
-    pub(super) fn of(error: ReadError, files: &mut Files) -> Self {
-        match content_diagnostic(error, files) {
-            Ok(diagnostic) => Self::Invalid(vec![diagnostic]),
-            Err(error) => Self::Unreadable((&error).into()),
-        }
-    }
 }
 
 /// Reads and parses a file that the user named, other than a shader.
@@ -98,52 +93,87 @@ impl Shader {
     ) -> Self {
         let mut files = Files::default();
         let mut lints = Lints::default();
-        let mut passes = None;
-        let (name, checked) = match found {
+        let mut has_passes = false;
+        let (name, content) = match found {
             Err(error) => (error.name(), Err(Unusable::Unreadable(error.into()))),
             Ok(found) => {
-                let checked = read(
-                    found,
-                    &mut files,
-                    &mut lints,
-                    &mut passes,
-                    &language.options(deadline),
-                );
+                let options = language.options(deadline);
+                let content = read(found, &mut files, &mut lints, &mut has_passes, &options);
                 let denied = denied(&mut lints.warnings, language.denied());
-                let checked = match checked {
-                    Ok(_) | Err(Unusable::Unrendered(_)) if !denied.is_empty() => {
-                        Err(Unusable::Invalid(denied))
-                    }
-                    checked => checked,
+                let content = match content {
+                    Ok(_) if !denied.is_empty() => Err(Unusable::Invalid(denied)),
+                    content => content,
                 };
-                (found.name(), checked)
+                (found.name(), content)
             }
         };
         Self {
             name,
             files,
-            checked,
+            content,
             lints,
-            passes,
+            has_passes,
             is_missing: matches!(found, Err(ReadError::NotSubmitted(..))),
         }
     }
 
-    /// The tree, which a command needs.
-    pub(super) fn require_checked(&self) -> Result<&Checked, CliError> {
-        self.checked.as_ref().map_err(|unusable| match unusable {
+    /// All tabs, if it is a project.
+    pub(super) fn project(&self) -> Option<&CompiledProject> {
+        match &self.content {
+            Ok(Content::Project(project)) => Some(project),
+            _ => None,
+        }
+    }
+
+    /// The tree of the shader, or of the image of a project, which may read other passes.
+    pub(super) fn image(&self) -> Result<&Checked, &Unusable> {
+        self.content.as_ref().map(|content| match content {
+            Content::Shader(checked) => checked,
+            Content::Project(project) => project.image(),
+        })
+    }
+
+    /// The tree of an image that reads no other passes.
+    pub(super) fn single_pass(&self) -> Option<&Checked> {
+        self.image().ok().filter(|_| !self.has_passes)
+    }
+
+    /// Why a command that renders the image alone cannot use a project; `None` if the image reads no pass.
+    pub(super) fn unrendered(&self) -> Option<String> {
+        let project = self.project().filter(|_| self.has_passes)?;
+        let needed = project.project.needed_by_image();
+        let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
+        Some(format!(
+            "the image reads {}, which this command does not render",
+            names.join(", ")
+        ))
+    }
+
+    /// The tree of the image, which a command needs, whether or not it reads other passes.
+    pub(super) fn require_image(&self) -> Result<&Checked, CliError> {
+        self.image().map_err(|unusable| match unusable {
             Unusable::Invalid(diagnostics) => {
                 CliError::diagnostics(diagnostics.clone(), &self.files).with_exit(Exit::ShaderFault)
             }
-            Unusable::Unreadable(error) | Unusable::Unrendered(error) => CliError::new(error),
+            Unusable::Unreadable(error) => CliError::new(error),
         })
+    }
+
+    /// The tree of an image that reads no other passes, which a command needs.
+    pub(super) fn require_single_pass(&self) -> Result<&Checked, CliError> {
+        let checked = self.require_image()?;
+        match self.unrendered() {
+            Some(reason) => Err(CliError::new(format_args!("{}: {reason}", self.name))),
+            None => Ok(checked),
+        }
     }
 
     /// The trees of all passes; empty for a shader that cannot be used.
     pub(super) fn trees(&self) -> Vec<&Checked> {
-        match &self.passes {
-            Some(passes) => passes.checked.iter().collect(),
-            None => self.checked.iter().collect(),
+        match &self.content {
+            Ok(Content::Shader(checked)) => vec![checked],
+            Ok(Content::Project(project)) => project.checked.iter().collect(),
+            Err(_) => Vec::new(),
         }
     }
 
@@ -171,42 +201,32 @@ fn read(
     found: &Input,
     files: &mut Files,
     lints: &mut Lints,
-    passes: &mut Option<CompiledProject>,
+    has_passes: &mut bool,
     options: &glsl::Options,
-) -> Result<Checked, Unusable> {
+) -> Result<Content, Unusable> {
     match files::read(found) {
         Ok(Texts::Shader(text)) => {
             let file = files.add(text);
             let checked = glsl::check(files, file, options)
                 .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, options)))?;
             *lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
-            Ok(checked)
+            Ok(Content::Shader(checked))
         }
         Ok(Texts::Project(texts)) => {
-            let compiled = CompiledProject::compile(texts, files, options);
-            let (project, of_project) = compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
+            let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());
+            let folder = texts.folder().map(Path::to_owned);
+            let project = texts.parse(files).map_err(invalid)?;
+            *has_passes = !project.needed_by_image().is_empty();
+            let compiled = CompiledProject::compile(project, folder.as_deref(), files, options);
+            let (project, of_project) = compiled.map_err(invalid)?;
             *lints = of_project;
-            let project = passes.insert(project);
-            match unrendered(project, &found.name()) {
-                None => Ok(project.image().clone()),
-                Some(unrendered) => Err(Unusable::Unrendered(unrendered)),
-            }
+            Ok(Content::Project(project))
         }
-        Err(error) => Err(Unusable::of(error, files)),
+        Err(error) => Err(match content_diagnostic(error, files) {
+            Ok(diagnostic) => Unusable::Invalid(vec![diagnostic]),
+            Err(error) => Unusable::Unreadable((&error).into()),
+        }),
     }
-}
-
-/// Why a command that renders the image alone cannot use the project; `None` if the image reads no pass.
-fn unrendered(project: &CompiledProject, name: &str) -> Option<Unreadable> {
-    let needed = project.project.needed_by_image();
-    let names: Vec<_> = needed.iter().map(ToString::to_string).collect();
-    (!names.is_empty()).then(|| Unreadable {
-        name: name.to_owned(),
-        reason: format!(
-            "the image reads {}, which this command does not render",
-            names.join(", ")
-        ),
-    })
 }
 
 /// Finds all shaders that the arguments name, in their order; standard input is read once. Warns of links

@@ -116,15 +116,19 @@ fn read(paths: &[PathBuf], language: &LanguageArgs, terminal: &Terminal) -> Vec<
         let text = input.as_ref().ok().and_then(|input| files::read(input).ok());
         let text = text.map(|texts| {
             let texts: Vec<_> = texts.files().iter().map(|file| file.text()).collect();
-            Fingerprints::of_text(&texts.join("\n"))
+            Fingerprints::from_text(&texts.join("\n"))
         });
-        let (tree, reason) = match &shader.checked {
-            Ok(checked) => (Some(Fingerprints::of(checked, &shader.files)), ""),
-            Err(Unusable::Invalid(_)) => (None, "it does not compile"),
-            Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)) => (None, error.reason.as_str()),
+        let (tree, reason) = match (shader.image(), shader.unrendered()) {
+            (Ok(_), Some(reason)) => (None, reason),
+            (Ok(checked), None) => (
+                Some(Fingerprints::from_tree(checked, &shader.files)),
+                String::new(),
+            ),
+            (Err(Unusable::Invalid(_)), _) => (None, "it does not compile".to_owned()),
+            (Err(Unusable::Unreadable(error)), _) => (None, error.reason.clone()),
         };
         match text {
-            Some(text) if tree.is_some() || matches!(shader.checked, Err(Unusable::Invalid(_))) => {
+            Some(text) if tree.is_some() || matches!(shader.content, Err(Unusable::Invalid(_))) => {
                 if tree.is_none() {
                     terminal.warn(format_args!("{} is compared by its text: {reason}", shader.name));
                 }

@@ -18,7 +18,7 @@ use super::inputs::{
     FrameArgs, LOADS_DRIVERS, LanguageArgs, STATIC_PROGRAM, parse_adapter, parse_time_limit, worker,
 };
 use super::render::load_scene;
-use super::shader::{Shader, Unusable, find_one};
+use super::shader::{Content, Shader, Unusable, find_one};
 use super::{CliError, Exit, Terminal};
 
 /// Measure rendering time against accuracy
@@ -78,7 +78,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
     let (scene, shader) = if files::is_shader(&args.subject) {
         let input = find_one(&args.subject, "trade", terminal)?;
         let shader = Shader::load(&input, &args.language, deadline.clone());
-        shader.require_checked()?;
+        shader.require_single_pass()?;
         (scene_for_shader(&args.subject), Some(shader))
     } else {
         let scene = load_scene(&args.subject)?;
@@ -88,7 +88,7 @@ fn measure(args: &Args, interrupted: &AtomicBool, terminal: &Terminal) -> Result
     let (scene, frame) = fit_size(scene, frame, args.frame.size);
     let checked = shader
         .as_ref()
-        .and_then(|shader| Some((shader, shader.checked.as_ref().ok()?)));
+        .and_then(|shader| Some((shader, shader.single_pass()?)));
     let subject = Subject {
         name: subject_name(&args.subject),
         scene: scene.as_ref(),
@@ -137,11 +137,12 @@ fn shader_for_scene(path: &Path, scene: &Scene, args: &Args, deadline: &Deadline
     let file = files.add(File::new("<exported>", text));
     Some(Shader {
         name: "<exported>".to_owned(),
-        checked: toyproof_glsl::check(&files, file, &args.language.options(deadline.clone()))
+        content: toyproof_glsl::check(&files, file, &args.language.options(deadline.clone()))
+            .map(Content::Shader)
             .map_err(|errors| Unusable::Invalid(errors.into())),
         files,
         lints: Lints::default(),
-        passes: None,
+        has_passes: false,
         is_missing: false,
     })
 }

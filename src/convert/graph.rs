@@ -9,7 +9,7 @@ use toyproof_image::{BLOCK_BYTES, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 use toyproof_project::{Input, PassKind, Project, Rendering, Source, Tab};
 
-use crate::ReadGraph;
+use crate::passes::GraphContent;
 
 /// The name of the file.
 pub const GRAPH_FILE: &str = "graph.json";
@@ -20,7 +20,7 @@ const VERSION: u32 = 1;
 /// The content of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct GraphFile {
+pub(crate) struct GraphFile {
     version: u32,
     generator: String,
     /// The name of the project.
@@ -67,18 +67,20 @@ enum Initial {
 
 /// What a channel of a pass reads, and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct InputEntry {
+pub(crate) struct InputEntry {
     /// What it reads.
     #[serde(flatten)]
-    pub source: SourceEntry,
-    filter: FilterName,
-    wrap: WrapName,
+    pub(crate) source: SourceEntry,
+    #[serde(with = "FilterName")]
+    pub(crate) filter: Filter,
+    #[serde(with = "WrapName")]
+    pub(crate) wrap: Wrap,
 }
 
 /// The source of a channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "source", rename_all = "lowercase")]
-pub enum SourceEntry {
+pub(crate) enum SourceEntry {
     /// What a pass renders, in this frame or in the previous one.
     Buffer {
         /// The name of the target.
@@ -114,45 +116,46 @@ pub enum SourceEntry {
 /// The frame in which a buffer was rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum FrameName {
+pub(crate) enum FrameName {
     /// This frame.
     This,
     /// The frame before.
     Previous,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+/// The names of filters in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Filter", rename_all = "lowercase")]
 enum FilterName {
     Nearest,
     Linear,
     Mipmap,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+/// The names of wraps in the file.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Wrap", rename_all = "lowercase")]
 enum WrapName {
     Clamp,
     Repeat,
 }
 
 /// The passes of a project, and the textures for their proof.
-pub struct HostGraph<'a> {
+pub(crate) struct HostGraph<'a> {
     project: &'a Project,
     rendering: &'a Rendering,
     checked: &'a [&'a Checked],
     /// What is rendered in proofs: media that are not available are replaced by noise.
-    pub graph: Graph,
+    pub(crate) graph: Graph,
     /// The textures of a proof.
-    pub media: Vec<Texture>,
+    pub(crate) media: Vec<Texture>,
     /// What [`Self::media`] are.
     known: Vec<(SourceEntry, usize)>,
 }
 
 impl<'a> HostGraph<'a> {
     /// Plays the passes of a rendering, whose trees are given in its order.
-    #[must_use]
-    pub fn new(project: &'a Project, rendering: &'a Rendering, checked: &'a [&'a Checked]) -> Self {
+    pub(crate) fn new(project: &'a Project, rendering: &'a Rendering, checked: &'a [&'a Checked]) -> Self {
         let mut played = Self {
             project,
             rendering,
@@ -208,8 +211,13 @@ impl<'a> HostGraph<'a> {
     }
 
     /// The file for passes in this language, with these names.
-    #[must_use]
-    pub fn file(&self, shader: &str, language: &str, entry_point: &str, names: &[String]) -> GraphFile {
+    pub(crate) fn file(
+        &self,
+        shader: &str,
+        language: &str,
+        entry_point: &str,
+        names: &[String],
+    ) -> GraphFile {
         let passes = self
             .graph
             .passes()
@@ -236,27 +244,25 @@ impl<'a> HostGraph<'a> {
     }
 
     /// What a channel of a pass reads, and how.
-    #[must_use]
-    pub fn entry(&self, pass: usize, channel: usize) -> Option<InputEntry> {
+    pub(crate) fn entry(&self, pass: usize, channel: usize) -> Option<InputEntry> {
         let input = self.input(pass, channel)?;
         let sampling = self.checked[pass].sampling[channel];
         let source = match input.source {
             Source::Buffer(buffer) => SourceEntry::Buffer {
                 buffer: target_name(Target::Buffer(buffer as usize)).to_owned(),
-                frame: frame_of(&self.graph.passes()[..pass], Target::Buffer(buffer as usize)),
+                frame: frame_name(&self.graph.passes()[..pass], Target::Buffer(buffer as usize)),
             },
             _ => media_entry(input),
         };
         Some(InputEntry {
             source,
-            filter: sampling.filter.into(),
-            wrap: sampling.wrap.into(),
+            filter: sampling.filter,
+            wrap: sampling.wrap,
         })
     }
 
     /// What a pass needs that wgpu-shadertoy 0.2 does not have.
-    #[must_use]
-    pub fn missing_in_wgpu_shadertoy(&self, pass: usize) -> Option<String> {
+    pub(crate) fn missing_in_wgpu_shadertoy(&self, pass: usize) -> Option<String> {
         let kind = self.project.passes[self.rendering.passes[pass]].kind;
         let checked = self.checked[pass];
         let mut discards = false;
@@ -273,18 +279,26 @@ impl<'a> HostGraph<'a> {
         }
         let entries = (0..4).filter_map(|channel| self.entry(pass, channel));
         for (channel, entry) in entries.enumerate() {
-            if entry.filter == FilterName::Mipmap && matches!(entry.source, SourceEntry::Buffer { .. }) {
+            if entry.filter == Filter::Mipmap && matches!(entry.source, SourceEntry::Buffer { .. }) {
                 return Some(format!("{kind} reads mipmaps of a buffer in iChannel{channel}"));
             }
         }
         None
     }
 
+    /// The graph as its file contains it.
+    pub(crate) fn content(&self) -> GraphContent {
+        GraphContent {
+            graph: self.graph.clone(),
+            sampling: self.checked.iter().map(|checked| checked.sampling).collect(),
+        }
+    }
+
     /// Reads a file of this project again.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn read(&self, text: &str) -> Result<ReadGraph, String> {
+    pub(crate) fn read(&self, text: &str) -> Result<GraphContent, String> {
         let file: GraphFile = serde_json::from_str(text).map_err(|error| error.to_string())?;
         if (file.version, &file.uniforms) != (VERSION, &uniforms()) {
             return Err("another version of the format".to_owned());
@@ -295,19 +309,19 @@ impl<'a> HostGraph<'a> {
         for pass in &file.passes {
             let target = target_named(&pass.target).ok_or("an unknown target")?;
             let mut inputs = [None; 4];
-            let mut of_pass = [Sampling::default(); 4];
+            let mut pass_sampling = [Sampling::default(); 4];
             for (channel, input) in pass.inputs.iter().enumerate() {
                 let Some(input) = input else { continue };
-                of_pass[channel] = Sampling {
-                    filter: input.filter.into(),
-                    wrap: input.wrap.into(),
+                pass_sampling[channel] = Sampling {
+                    filter: input.filter,
+                    wrap: input.wrap,
                 };
                 inputs[channel] = match &input.source {
                     SourceEntry::Buffer { buffer, frame } => {
                         let Some(read @ Target::Buffer(number)) = target_named(buffer) else {
                             return Err(format!("{} reads {buffer}, which is not a buffer", pass.name));
                         };
-                        if *frame != frame_of(&passes, read) {
+                        if *frame != frame_name(&passes, read) {
                             return Err(format!(
                                 "{} reads {buffer} of another frame than its order implies",
                                 pass.name
@@ -325,37 +339,22 @@ impl<'a> HostGraph<'a> {
                 mipmaps[number] |= pass.mipmaps;
             }
             passes.push(player::Pass { target, inputs });
-            sampling.push(of_pass);
+            sampling.push(pass_sampling);
         }
         if passes.last().map(|pass| pass.target) != Some(Target::Image) || passes.len() != self.checked.len()
         {
             return Err("other passes than the project's".to_owned());
         }
-        Ok(ReadGraph {
+        Ok(GraphContent {
             graph: Graph::new(passes, mipmaps),
             sampling,
         })
     }
 }
 
-impl InputEntry {
-    /// Whether texels are not interpolated.
-    #[must_use]
-    pub fn is_nearest(&self) -> bool {
-        self.filter == FilterName::Nearest
-    }
-
-    /// Whether the texture is repeated.
-    #[must_use]
-    pub fn repeats(&self) -> bool {
-        self.wrap == WrapName::Repeat
-    }
-}
-
 impl GraphFile {
     /// The text of the file.
-    #[must_use]
-    pub fn to_json(&self) -> String {
+    pub(crate) fn to_json(&self) -> String {
         // Strings, lists and options always serialize.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
@@ -371,7 +370,7 @@ fn uniforms() -> Uniforms {
 }
 
 /// Whether a pass after these reads the texture that a buffer's pass renders in this frame.
-fn frame_of(before: &[player::Pass], buffer: Target) -> FrameName {
+fn frame_name(before: &[player::Pass], buffer: Target) -> FrameName {
     if before.iter().any(|pass| pass.target == buffer) {
         FrameName::This
     } else {
@@ -399,59 +398,21 @@ fn media_entry(input: &Input) -> SourceEntry {
 }
 
 /// The name of a target, which is that of its file without the extension.
-pub fn target_name(target: Target) -> &'static str {
-    let named = Tab::ALL.into_iter().find(|&tab| target_of(tab) == Some(target));
+pub(crate) fn target_name(target: Target) -> &'static str {
+    let named = Tab::ALL.into_iter().find(|&tab| tab_target(tab) == Some(target));
     named.map_or("", Tab::name)
 }
 
 fn target_named(name: &str) -> Option<Target> {
     let tab = Tab::ALL.into_iter().find(|tab| tab.name() == name)?;
-    target_of(tab)
+    tab_target(tab)
 }
 
-fn target_of(tab: Tab) -> Option<Target> {
+fn tab_target(tab: Tab) -> Option<Target> {
     match tab {
         Tab::Pass(PassKind::Image) => Some(Target::Image),
         Tab::Pass(PassKind::Buffer(buffer)) => Some(Target::Buffer(buffer as usize)),
         Tab::Common | Tab::Pass(PassKind::CubeA | PassKind::Sound) => None,
-    }
-}
-
-impl From<Filter> for FilterName {
-    fn from(filter: Filter) -> Self {
-        match filter {
-            Filter::Nearest => Self::Nearest,
-            Filter::Linear => Self::Linear,
-            Filter::Mipmap => Self::Mipmap,
-        }
-    }
-}
-
-impl From<FilterName> for Filter {
-    fn from(filter: FilterName) -> Self {
-        match filter {
-            FilterName::Nearest => Self::Nearest,
-            FilterName::Linear => Self::Linear,
-            FilterName::Mipmap => Self::Mipmap,
-        }
-    }
-}
-
-impl From<Wrap> for WrapName {
-    fn from(wrap: Wrap) -> Self {
-        match wrap {
-            Wrap::Clamp => Self::Clamp,
-            Wrap::Repeat => Self::Repeat,
-        }
-    }
-}
-
-impl From<WrapName> for Wrap {
-    fn from(wrap: WrapName) -> Self {
-        match wrap {
-            WrapName::Clamp => Self::Clamp,
-            WrapName::Repeat => Self::Repeat,
-        }
     }
 }
 

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use toyproof_diagnostic::{grouped, plural};
 use toyproof_translate::backend::{Target, spirv};
 
-use crate::{Against, FRAMES, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, Proved, Rgb8Comparison};
+use crate::{
+    FRAMES, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, ProofReference, Rgb8Comparison, ShaderProof,
+};
 
 /// The version of naga that is linked.
 const NAGA: &str = "30.0.1";
@@ -16,7 +18,7 @@ pub enum ProofStatus {
     /// No proof was requested.
     NotRequested,
     /// It is proved.
-    Proved(Proved),
+    Proved(ShaderProof),
     /// All passes are proved.
     ProvedPasses(PassesProof),
     /// It is not proved, for this reason.
@@ -61,7 +63,7 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
     let mut head = format!("// {name}, converted by toyproof {version} (naga {NAGA}).\n");
     match status {
         ProofStatus::NotRequested => {}
-        ProofStatus::Proved(Proved::File(proof, readers)) => {
+        ProofStatus::Proved(ShaderProof::File(proof, readers)) => {
             let names: Vec<_> = readers.run.iter().map(ToString::to_string).collect();
             let _ = writeln!(
                 head,
@@ -75,7 +77,7 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
             }
             in_browser(&mut head, readers.browser.as_ref());
         }
-        ProofStatus::Proved(Proved::Source(proof)) => {
+        ProofStatus::Proved(ShaderProof::Source(proof)) => {
             head.push_str(
                 "// Proved: the module that this text was written from. No compiler for the text was installed.\n",
             );
@@ -98,8 +100,10 @@ fn header_text(name: &str, status: &ProofStatus) -> String {
 /// Appends the reference of the comparison, the frames, and the number of pixels that were left out.
 fn settings(head: &mut String, proof: &Proof) {
     let against = match proof.against {
-        Against::Evaluator => "renders the same image as the original in toyproof's float32 evaluator",
-        Against::StrictRun => "renders the same image as the original does there with strict arithmetic",
+        ProofReference::Evaluator => "renders the same image as the original in toyproof's float32 evaluator",
+        ProofReference::StrictRun => {
+            "renders the same image as the original does there with strict arithmetic"
+        }
     };
     let frames: Vec<_> = FRAMES
         .iter()
@@ -107,8 +111,8 @@ fn settings(head: &mut String, proof: &Proof) {
         .collect();
     let _ = writeln!(head, "// {against}: {}.", describe_proof(proof));
     let channels = match proof.against {
-        Against::Evaluator => "",
-        Against::StrictRun => "; 2D channels hold noise",
+        ProofReference::Evaluator => "",
+        ProofReference::StrictRun => "; 2D channels hold noise",
     };
     let _ = writeln!(head, "// Frames: {}{channels}.", frames.join(", "));
     head.push_str("// Functions with implementation-defined precision, such as sin, were replaced by the evaluator's.\n");

@@ -6,17 +6,18 @@
 //! else is the file's. So no tolerance is needed: a conversion is proved if every pixel has the evaluator's
 //! bits.
 //!
-//! A [`Converter`] writes files, with naga in a worker process; a [`Prover`] proves the [`Written`] file, on
-//! a driver or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
+//! A [`Converter`] writes [`TargetCode`], with naga in a worker process; a [`Prover`] proves it, on a driver or
+//! on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
 //! any worker.
 
-pub mod graph;
+mod graph;
 pub mod header;
 mod original;
 mod passes;
+mod project;
 mod proof;
 mod prover;
-pub mod script;
+mod script;
 mod tool;
 
 #[cfg(test)]
@@ -24,12 +25,15 @@ mod tests;
 
 use std::time::Duration;
 
+pub use graph::GRAPH_FILE;
 pub use passes::{
-    PASS_FRAMES, PASS_SIZES, PassComparison, PassSources, PassesConversion, PassesProof, PixelDifference,
-    ReadGraph,
+    GraphContent, PASS_FRAMES, PASS_SIZES, PassComparison, PassSources, PassesProof, PixelDifference,
 };
-pub use proof::{Against, FRAMES, Proof, Rgb8Comparison, Runner, TestFrame, compare_with_original, frames};
-pub use prover::{Proved, Prover, Reader, Readers, Unproved};
+pub use project::{HostFile, PassFile, ProjectConversion, ProjectError, ProjectSource};
+pub use proof::{
+    FRAMES, Proof, ProofReference, Rgb8Comparison, Runner, TestFrame, compare_with_original, frames,
+};
+pub use prover::{ProofError, Prover, Reader, Readers, ShaderProof};
 use thiserror::Error;
 pub use tool::ToolError;
 use toyproof_diagnostic::{Deadline, Files, Overdue};
@@ -56,6 +60,9 @@ impl Source<'_> {
     }
 }
 
+/// The extension of the lowered GLSL that naga parses.
+const LOWERED_EXTENSION: &str = "lowered.glsl";
+
 /// The settings of a conversion.
 #[derive(Debug, Clone, Copy)]
 pub struct Converter {
@@ -69,9 +76,9 @@ pub struct Converter {
     pub timeout: Duration,
 }
 
-/// A converted shader.
+/// A shader in the target language.
 #[derive(Debug, Clone)]
-pub enum Written {
+pub enum TargetCode {
     /// The GLSL that naga parses.
     Lowered(Lowered),
     /// WGSL for a kind of host.
@@ -87,7 +94,7 @@ pub enum Written {
     },
 }
 
-impl Written {
+impl TargetCode {
     /// The bytes of the file.
     #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
@@ -103,9 +110,9 @@ impl Written {
 #[derive(Debug)]
 pub struct Conversion {
     /// The file.
-    pub written: Written,
+    pub code: TargetCode,
     /// The proof; `None` if no proof was requested.
-    pub proof: Option<Result<Proved, Unproved>>,
+    pub proof: Option<Result<ShaderProof, ProofError>>,
     /// Why naga wrote the WGSL, which the author recognizes less well.
     pub fallback: Option<FallbackReason>,
 }
@@ -118,7 +125,7 @@ pub enum FallbackReason {
     Unwritable(WgslError),
     /// Its text could not be proved, and naga's could.
     #[error(transparent)]
-    Unproved(Unproved),
+    Unproved(ProofError),
 }
 
 /// Why our own WGSL writer wrote nothing.
@@ -159,13 +166,13 @@ impl Conversion {
     ///
     /// # Errors
     /// If the shader takes too long to compile.
-    fn new(source: Source, written: Written, prover: Option<&mut Prover>) -> Result<Self, ConvertError> {
-        let proof = match prover.map(|prover| prover.prove(source, &written)) {
-            Some(Err(Unproved::Overdue(overdue))) => return Err(overdue.into()),
+    fn new(source: Source, code: TargetCode, prover: Option<&mut Prover>) -> Result<Self, ConvertError> {
+        let proof = match prover.map(|prover| prover.prove(source, &code)) {
+            Some(Err(ProofError::Overdue(overdue))) => return Err(overdue.into()),
             proof => proof,
         };
         Ok(Self {
-            written,
+            code,
             proof,
             fallback: None,
         })
@@ -197,7 +204,7 @@ impl Converter {
     ) -> Result<Conversion, ConvertError> {
         let Some(target) = self.target else {
             let lowered = self.lower(source)?;
-            return Conversion::new(source, Written::Lowered(lowered), prover);
+            return Conversion::new(source, TargetCode::Lowered(lowered), prover);
         };
         if !self.prints_wgsl() {
             let written = self.write_with_naga(source, target, translator)?;
@@ -235,6 +242,12 @@ impl Converter {
         }
     }
 
+    /// The extension of files in the target language, without the dot.
+    #[must_use]
+    pub fn extension(&self) -> &'static str {
+        self.target.map_or(LOWERED_EXTENSION, Target::extension)
+    }
+
     /// Whether our own writer prints the files.
     fn prints_wgsl(&self) -> bool {
         self.target == Some(Target::Wgsl) && self.float == FloatMode::Fast
@@ -251,7 +264,7 @@ impl Converter {
     }
 
     /// Writes WGSL that keeps the author's names and comments, and that naga reads.
-    fn write_wgsl(&self, source: Source, translator: &mut Worker) -> Result<Written, ConvertError> {
+    fn write_wgsl(&self, source: Source, translator: &mut Worker) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
         let text = wgsl::wgsl(source.checked, source.files, self.style, &deadline);
         let text = text.map_err(|failure| match failure {
@@ -262,7 +275,7 @@ impl Converter {
             }),
         })?;
         match translator.read_wgsl(&self.style.hosted(&text).text) {
-            Ok(()) => Ok(Written::Wgsl(text, self.style)),
+            Ok(()) => Ok(TargetCode::Wgsl(text, self.style)),
             Err(failure @ gpu::Failure::Timeout { .. }) => Err(failure.into()),
             Err(gpu::Failure::Reread(why)) => Err(ConvertError::Unwritable(WgslError::Refused(why))),
             Err(failure) => Err(ConvertError::Unwritable(WgslError::Worker(failure))),
@@ -274,15 +287,15 @@ impl Converter {
         source: Source,
         target: Target,
         translator: &mut Worker,
-    ) -> Result<Written, ConvertError> {
+    ) -> Result<TargetCode, ConvertError> {
         let lowered = self.lower(source)?;
         let bytes = translator.translate(lowered.clone(), target, self.float)?;
         Ok(match target {
             Target::Wgsl => {
                 let text = String::from_utf8_lossy(&bytes).into_owned();
-                Written::Wgsl(text, Style::Plain)
+                TargetCode::Wgsl(text, Style::Plain)
             }
-            _ => Written::Naga {
+            _ => TargetCode::Naga {
                 target,
                 bytes,
                 lowered,

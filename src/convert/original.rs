@@ -18,10 +18,10 @@ use toyproof_verify::evaluator::{Evaluated, Evaluator};
 use toyproof_verify::project::playback::{DevicePlayback, channel_sampling};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, within};
 
-use super::passes::{PASS_FRAMES, PASS_SIZES, PassComparison, PassSources, ReadGraph};
+use super::passes::{GraphContent, PASS_FRAMES, PASS_SIZES, PassComparison, PassSources};
 use super::proof::Rgb8Comparison;
-use super::prover::{Unproved, in_browser};
-use super::{Source, Written};
+use super::prover::{ProofError, in_browser};
+use super::{Source, TargetCode};
 
 /// The frames of the original shader.
 pub(super) struct Original {
@@ -49,14 +49,14 @@ impl Original {
         worker: &mut Worker,
         timeout: Duration,
         pool: Option<&ThreadPool>,
-    ) -> Result<Self, Unproved> {
+    ) -> Result<Self, ProofError> {
         let deadline = Deadline::after(timeout);
         let lowered = passes.sources.iter();
         let lowered = lowered.map(|source| FloatMode::Strict.lower_for_host(source.checked, &deadline));
         let lowered = lowered
             .map(|lowered| Ok((lowered?, FloatMode::Strict)))
             .collect::<Result<Vec<_>, _>>()
-            .map_err(Unproved::Overdue)?;
+            .map_err(ProofError::Overdue)?;
         let code = PassCode::Lowered(lowered);
         let sampling = passes.sources.iter().map(|source| source.checked.sampling);
         let mut playback = open(worker, code, sampling, passes.graph, passes.media)?;
@@ -92,8 +92,8 @@ impl Original {
         &self,
         browser: &mut Chromium,
         sources: &[Source],
-        written: &[&Written],
-    ) -> Result<Option<(String, Rgb8Comparison)>, Unproved> {
+        written: &[TargetCode],
+    ) -> Result<Option<(String, Rgb8Comparison)>, ProofError> {
         let mut all: Option<(String, Rgb8Comparison)> = None;
         for (pass, (source, written)) in sources.iter().zip(written).enumerate() {
             let undefined = self.frames.iter().map(|frame| frame.undefined[pass].clone());
@@ -116,7 +116,7 @@ impl Original {
         passes: &PassSources,
         worker: &mut Worker,
         artifacts: Vec<ShaderArtifact>,
-        graph: &ReadGraph,
+        graph: &GraphContent,
     ) -> Result<Vec<PassComparison>, Failure> {
         let upside_down = artifacts
             .iter()

@@ -5,14 +5,14 @@
 use std::fmt;
 
 use toyproof_glsl::Sampling;
-use toyproof_gpu::{ShaderArtifact, Worker};
+use toyproof_gpu::ShaderArtifact;
 use toyproof_image::{Image, Texture};
 use toyproof_player::{Graph, Target};
 
 use super::original::{Original, PlayedFrame};
 use super::proof::{Rgb8Comparison, Runner};
-use super::prover::{Prover, Reader, Unproved, fully_undefined, unobserved, validate};
-use super::{ConvertError, Converter, FallbackReason, Source, Written};
+use super::prover::{ProofError, Prover, Reader, fully_undefined, unobserved, validate};
+use super::{Source, TargetCode};
 
 /// The sizes in which the passes are played, in pixels: the textures of one size are not multiples of the
 /// other's.
@@ -35,20 +35,11 @@ pub struct PassSources<'a> {
 
 /// The contents of a written graph, with the media of the original.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ReadGraph {
+pub struct GraphContent {
     /// The order of the passes, and what they read.
     pub graph: Graph,
     /// How the channels of each pass are sampled.
     pub sampling: Vec<[Sampling; 4]>,
-}
-
-/// A converted shader with several passes.
-#[derive(Debug)]
-pub struct PassesConversion {
-    /// The file of each pass, and why naga wrote it, if our own writer could have.
-    pub files: Vec<(Written, Option<FallbackReason>)>,
-    /// The proof; `None` if no proof was requested.
-    pub proof: Option<Result<PassesProof, Unproved>>,
 }
 
 /// The result of playing converted passes and their original.
@@ -134,56 +125,6 @@ impl PassesProof {
     }
 }
 
-impl Converter {
-    /// Converts the passes of a shader; `translator` runs naga. With a prover, the conversion is proved too,
-    /// as `graph` determines how it is played. If plain WGSL is not proved, naga writes all passes.
-    ///
-    /// # Errors
-    /// The number of the first pass that cannot be converted, and why.
-    pub fn convert_passes(
-        &self,
-        passes: &PassSources,
-        graph: &ReadGraph,
-        translator: &mut Worker,
-        mut prover: Option<&mut Prover>,
-    ) -> Result<PassesConversion, (usize, ConvertError)> {
-        let mut files = Vec::new();
-        for (number, &source) in passes.sources.iter().enumerate() {
-            let converted = self.convert(source, translator, None);
-            let converted = converted.map_err(|error| (number, error))?;
-            files.push((converted.written, converted.fallback));
-        }
-        let mut prove = |files: &[(Written, Option<FallbackReason>)]| {
-            let prover = prover.as_deref_mut()?;
-            let written: Vec<&Written> = files.iter().map(|(written, _)| written).collect();
-            Some(prover.prove_passes(passes, &written, graph))
-        };
-        let own = prove(&files);
-        let Some(Err(unproved)) = own else {
-            return Ok(PassesConversion { files, proof: own });
-        };
-        if self.may_fall_back() && !unproved.is_of_shader() {
-            let other = passes.sources.iter().map(|&source| {
-                let written = self.write_with_naga(source, self.target?, translator).ok()?;
-                Some((written, None))
-            });
-            if let Some(mut other) = other.collect::<Option<Vec<_>>>()
-                && let Some(Ok(proof)) = prove(&other)
-            {
-                other[0].1 = Some(FallbackReason::Unproved(unproved));
-                return Ok(PassesConversion {
-                    files: other,
-                    proof: Some(Ok(proof)),
-                });
-            }
-        }
-        Ok(PassesConversion {
-            files,
-            proof: Some(Err(unproved)),
-        })
-    }
-}
-
 impl Prover<'_> {
     /// Proves that written passes, played by the graph, render the same textures as the shader: to the
     /// bit in [`PASS_FRAMES`] frames of each of [`PASS_SIZES`], except in pixels that depend on undefined
@@ -195,9 +136,9 @@ impl Prover<'_> {
     pub fn prove_passes(
         &mut self,
         passes: &PassSources,
-        written: &[&Written],
-        graph: &ReadGraph,
-    ) -> Result<PassesProof, Unproved> {
+        written: &[TargetCode],
+        graph: &GraphContent,
+    ) -> Result<PassesProof, ProofError> {
         if let Some(unobserved) = passes
             .sources
             .iter()
@@ -211,7 +152,7 @@ impl Prover<'_> {
         for (source, written) in passes.sources.iter().zip(written) {
             validator = validate(written)?;
             let mut of_pass = self.readings(source.checked, written)?;
-            if let (true, Written::Naga { lowered, .. }) = (of_pass.is_empty(), written) {
+            if let (true, TargetCode::Naga { lowered, .. }) = (of_pass.is_empty(), written) {
                 is_read = false;
                 of_pass.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
             }
@@ -223,7 +164,7 @@ impl Prover<'_> {
             }
         }
         let Runner::Driver(worker) = &mut self.runner else {
-            return Err(Unproved::PassesWithoutDriver);
+            return Err(ProofError::PassesWithoutDriver);
         };
         let original = Original::play(passes, worker, self.timeout, self.pool)?;
         let mut proofs = Vec::new();
@@ -231,7 +172,7 @@ impl Prover<'_> {
         for (reader, artifacts) in readings {
             let proof = original.compare(passes, worker, artifacts, graph)?;
             if proof.iter().any(|pass| pass.differing > 0) {
-                return Err(Unproved::PassesDiffer(proof));
+                return Err(ProofError::PassesDiffer(proof));
             }
             proofs.push(proof);
             readers.push(reader);

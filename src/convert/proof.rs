@@ -19,7 +19,7 @@ use toyproof_verify::compare::{self, CheckSummary};
 use toyproof_verify::evaluator::{Evaluated, Evaluator};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, join, within};
 
-use super::prover::Unproved;
+use super::prover::ProofError;
 
 /// The device that runs a converted shader.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ pub struct Proof {
     /// The device that rendered it.
     pub device: String,
     /// The reference.
-    pub against: Against,
+    pub against: ProofReference,
     /// The pixels of each frame that depend on undefined behavior.
     pub undefined_at: Vec<Vec<bool>>,
     /// The undefined operation that occurs in most pixels of a frame.
@@ -48,7 +48,7 @@ pub struct Proof {
 
 /// The reference of a conversion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Against {
+pub enum ProofReference {
     /// The evaluator's image in f32.
     Evaluator,
     /// The image of the original shader by the same driver, strictly: texture filters differ from the
@@ -145,7 +145,7 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
     } else {
         [const { None }; 4]
     };
-    let of = |test_frame: TestFrame| Frame {
+    let frame = |test_frame: TestFrame| Frame {
         size: test_frame.size,
         time: test_frame.time,
         frame: test_frame.frame,
@@ -154,7 +154,7 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
         channels: channels.clone(),
         ..Frame::default()
     };
-    FRAMES.map(of).to_vec()
+    FRAMES.map(frame).to_vec()
 }
 
 /// Renders the artifacts of a converted shader in each of the frames, and compares them with the shader: a
@@ -170,7 +170,7 @@ pub fn compare_with_original(
     frames: &[Frame],
     timeout: Duration,
     pool: Option<&ThreadPool>,
-) -> Result<Vec<Proof>, Unproved> {
+) -> Result<Vec<Proof>, ProofError> {
     let stop = AtomicBool::new(false);
     let singles = || evaluate(checked, frames, timeout, &stop);
     let (rendered, singles) = thread::scope(|scope| {
@@ -191,12 +191,12 @@ pub fn compare_with_original(
     }
     let (against, expected) = match runner {
         Runner::Driver(worker) if checked.reads_textures() => (
-            Against::StrictRun,
+            ProofReference::StrictRun,
             strict_images(worker, checked, frames, timeout)?,
         ),
         _ => {
             let images = singles.iter().map(|single| single.image.clone());
-            (Against::Evaluator, images.collect())
+            (ProofReference::Evaluator, images.collect())
         }
     };
     let faults = singles.iter().flat_map(|single| &single.observed.faults);
@@ -234,7 +234,7 @@ pub struct Rgb8Comparison {
 impl Rgb8Comparison {
     /// Compares images of the same frames, except the excluded pixels.
     #[must_use]
-    pub fn of(original: &[Image], converted: &[Image], excluded: &[Vec<bool>]) -> Self {
+    pub fn new(original: &[Image], converted: &[Image], excluded: &[Vec<bool>]) -> Self {
         let mut shown = Self {
             pixels: 0,
             differing: 0,
@@ -281,7 +281,7 @@ impl Runner<'_> {
         frames: &[Frame],
         timeout: Duration,
         pool: Option<&ThreadPool>,
-    ) -> Result<(Vec<Image>, String), Unproved> {
+    ) -> Result<(Vec<Image>, String), ProofError> {
         match self {
             Self::Driver(worker) => Ok(worker.render(artifact, frames.to_vec()).map_err(Failure::Gpu)?),
             Self::Evaluator => {
@@ -292,7 +292,7 @@ impl Runner<'_> {
                     ShaderArtifact::Lowered(lowered) => {
                         ValidModule::parse(&lowered).map_err(|errors| gpu::Failure::Refused(errors.into()))
                     }
-                    ShaderArtifact::Words(..) => return Err(Unproved::Binary),
+                    ShaderArtifact::Words(..) => return Err(ProofError::Binary),
                 };
                 let text = module.and_then(|module| {
                     roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))
@@ -314,7 +314,7 @@ impl Runner<'_> {
 }
 
 /// Reads a converted shader, as `ShaderToy` would run it, with our own front end.
-pub(super) fn read_shadertoy(text: &str, stage: Stage, timeout: Duration) -> Result<Checked, Unproved> {
+pub(super) fn read_shadertoy(text: &str, stage: Stage, timeout: Duration) -> Result<Checked, ProofError> {
     let mut files = Files::default();
     let file = files.add(File::new("written", text));
     let options = glsl::Options {
@@ -324,10 +324,10 @@ pub(super) fn read_shadertoy(text: &str, stage: Stage, timeout: Duration) -> Res
     };
     glsl::check(&files, file, &options).map_err(|errors| {
         if let Err(overdue) = options.deadline.check() {
-            return Unproved::Overdue(overdue);
+            return ProofError::Overdue(overdue);
         }
         let first = errors.first().map(|error| short(error, &files));
-        Unproved::FrontEnd(first.unwrap_or_default())
+        ProofError::FrontEnd(first.unwrap_or_default())
     })
 }
 

@@ -19,9 +19,11 @@ use toyproof_translate::wgsl::Style;
 use toyproof_verify::Failure;
 
 use super::passes::PassComparison;
-use super::proof::{Against, Proof, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy};
+use super::proof::{
+    Proof, ProofReference, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy,
+};
 use super::tool::{self, ToolError};
-use super::{Source, Written};
+use super::{Source, TargetCode};
 
 /// Proves conversions.
 #[derive(Debug)]
@@ -38,14 +40,14 @@ pub struct Prover<'a> {
 
 /// A conversion that renders the same image as the original.
 #[derive(Debug, Clone)]
-pub enum Proved {
+pub enum ShaderProof {
     /// The file was read again.
     File(Proof, Readers),
     /// The shader that naga wrote the file from was run; no reader reads the file itself.
     Source(Proof),
 }
 
-impl Proved {
+impl ShaderProof {
     /// The comparison with the original, of the first reader if there are several.
     #[must_use]
     pub fn proof(&self) -> &Proof {
@@ -92,7 +94,7 @@ impl fmt::Display for Reader {
 
 /// Why a conversion is not proved.
 #[derive(Debug, Error)]
-pub enum Unproved {
+pub enum ProofError {
     /// A tool rejects the file.
     #[error(transparent)]
     Tool(#[from] ToolError),
@@ -124,8 +126,8 @@ pub enum Unproved {
         grouped(*pixels),
         plural(*differing, "differs", "differ"),
         match against {
-            Against::Evaluator => "the evaluator's image",
-            Against::StrictRun => "the original's image on the same driver",
+            ProofReference::Evaluator => "the evaluator's image",
+            ProofReference::StrictRun => "the original's image on the same driver",
         },
         reader.as_ref().map_or_else(String::new, |reader| format!(" as read by {reader}")),
     )]
@@ -139,7 +141,7 @@ pub enum Unproved {
         /// The largest difference of a component.
         max_abs: f64,
         /// The reference.
-        against: Against,
+        against: ProofReference,
     },
     /// A pass of a shader with several differs from the original's on the same driver.
     #[error("{}", differing_passes(.0))]
@@ -183,7 +185,7 @@ pub enum Unproved {
     BrowserDiffers(Rgb8Comparison),
 }
 
-impl Unproved {
+impl ProofError {
     /// Returns whether the reason applies to every conversion of the shader: it takes too long, depends on
     /// undefined behavior, or cannot be run.
     #[must_use]
@@ -203,7 +205,7 @@ impl Unproved {
     }
 }
 
-impl From<Failure> for Unproved {
+impl From<Failure> for ProofError {
     fn from(failure: Failure) -> Self {
         match failure {
             Failure::Gpu(failure) if failure.is_without_driver() => Self::NoDriver(failure),
@@ -219,11 +221,11 @@ impl Prover<'_> {
     ///
     /// # Errors
     /// Returns why it is not proved.
-    pub fn prove(&mut self, source: Source, written: &Written) -> Result<Proved, Unproved> {
+    pub fn prove(&mut self, source: Source, written: &TargetCode) -> Result<ShaderProof, ProofError> {
         let validator = validate(written)?;
         let mut readings = self.readings(source.checked, written)?;
         let is_unread = readings.is_empty();
-        if let (true, Written::Naga { lowered, .. }) = (is_unread, written) {
+        if let (true, TargetCode::Naga { lowered, .. }) = (is_unread, written) {
             readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
         }
         if let Some(unobserved) = unobserved(source.checked) {
@@ -232,13 +234,13 @@ impl Prover<'_> {
         let frames = frames(source.checked);
         let (run, proof) = self.run(source, readings, &frames)?;
         if is_unread {
-            return Ok(Proved::Source(proof));
+            return Ok(ShaderProof::Source(proof));
         }
         let browser = match &mut self.browser {
             Some(browser) => in_browser(browser, source, written, &frames, &proof.undefined_at)?,
             None => None,
         };
-        Ok(Proved::File(
+        Ok(ShaderProof::File(
             proof,
             Readers {
                 run,
@@ -252,19 +254,19 @@ impl Prover<'_> {
     pub(super) fn readings(
         &self,
         checked: &Checked,
-        written: &Written,
-    ) -> Result<Vec<(Reader, ShaderArtifact)>, Unproved> {
+        written: &TargetCode,
+    ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
         let (target, bytes) = match written {
-            Written::Lowered(lowered) => {
+            TargetCode::Lowered(lowered) => {
                 return Ok(vec![(Reader::Naga, ShaderArtifact::Lowered(lowered.clone()))]);
             }
-            Written::Wgsl(text, style) => {
+            TargetCode::Wgsl(text, style) => {
                 return Ok(vec![(
                     Reader::Naga,
                     ShaderArtifact::Wgsl(style.hosted_in(text, checked.stage)),
                 )]);
             }
-            Written::Naga { target, bytes, .. } => (*target, bytes),
+            TargetCode::Naga { target, bytes, .. } => (*target, bytes),
         };
         let channels = checked.channels.map(|shape| match shape {
             SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
@@ -274,14 +276,14 @@ impl Prover<'_> {
         let mut readings = Vec::new();
         match target {
             Target::Spirv => {
-                let words = spirv::of_bytes(bytes).ok_or(Unproved::PartialWord)?;
+                let words = spirv::of_bytes(bytes).ok_or(ProofError::PartialWord)?;
                 readings.push((Reader::Driver, ShaderArtifact::Words(words, channels)));
             }
             Target::Glsl => {
                 let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
                 let again = read_shadertoy(&text, checked.stage, self.timeout)?;
                 let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
-                let lowered = lowered.map_err(Unproved::Overdue)?;
+                let lowered = lowered.map_err(ProofError::Overdue)?;
                 readings.push((Reader::FrontEnd, ShaderArtifact::Lowered(lowered)));
             }
             Target::Wgsl | Target::Hlsl | Target::Msl => {}
@@ -300,7 +302,7 @@ impl Prover<'_> {
         source: Source,
         readings: Vec<(Reader, ShaderArtifact)>,
         frames: &[Frame],
-    ) -> Result<(Vec<Reader>, Proof), Unproved> {
+    ) -> Result<(Vec<Reader>, Proof), ProofError> {
         let (readers, artifacts): (Vec<_>, Vec<_>) = readings.into_iter().unzip();
         let mut proofs = compare_with_original(
             &mut self.runner,
@@ -318,7 +320,7 @@ impl Prover<'_> {
         }
         let different = proofs.iter().zip(&readers).find(|(proof, _)| !proof.holds());
         if let Some((proof, reader)) = different {
-            return Err(Unproved::Differs {
+            return Err(ProofError::Differs {
                 reader: (readers.len() > 1).then(|| reader.clone()),
                 differing: proof.differing(),
                 pixels: proof.pixels(),
@@ -337,17 +339,17 @@ fn differing_passes(passes: &[PassComparison]) -> String {
 }
 
 /// Validates a file with an external tool, if one is installed; returns its name and version.
-pub(super) fn validate(written: &Written) -> Result<Option<String>, ToolError> {
+pub(super) fn validate(written: &TargetCode) -> Result<Option<String>, ToolError> {
     match written {
-        Written::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
-        Written::Naga { target, bytes, .. } => tool::validate(*target, bytes),
+        TargetCode::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
+        TargetCode::Naga { target, bytes, .. } => tool::validate(*target, bytes),
         // Only their hosts complete them.
-        Written::Wgsl(..) | Written::Lowered(_) => Ok(None),
+        TargetCode::Wgsl(..) | TargetCode::Lowered(_) => Ok(None),
     }
 }
 
 /// The first channel whose texture is black in the compared frames.
-pub(super) fn unobserved(checked: &Checked) -> Option<Unproved> {
+pub(super) fn unobserved(checked: &Checked) -> Option<ProofError> {
     let channels = checked.channels.iter().enumerate();
     channels
         .filter_map(|(channel, shape)| match shape {
@@ -355,16 +357,16 @@ pub(super) fn unobserved(checked: &Checked) -> Option<Unproved> {
             SamplerShape::D3 => Some((channel, "a volume texture")),
             SamplerShape::D2 | SamplerShape::D2Array => None,
         })
-        .map(|(channel, shape)| Unproved::Unobserved { channel, shape })
+        .map(|(channel, shape)| ProofError::Unobserved { channel, shape })
         .next()
 }
 
 /// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.
-pub(super) fn fully_undefined(by: Observed, files: &Files) -> Unproved {
+pub(super) fn fully_undefined(by: Observed, files: &Files) -> ProofError {
     let span = by.site.at.span;
     let place = files.position(span);
     let name = files.name(span);
-    Unproved::FullyUndefined {
+    ProofError::FullyUndefined {
         fault: by.site.fault,
         at: format!("{name}:{}:{}", place.line, place.column),
     }
@@ -376,33 +378,33 @@ pub(super) fn fully_undefined(by: Observed, files: &Files) -> Unproved {
 pub(super) fn in_browser(
     browser: &mut Chromium,
     source: Source,
-    written: &Written,
+    written: &TargetCode,
     frames: &[Frame],
     undefined: &[Vec<bool>],
-) -> Result<Option<(String, Rgb8Comparison)>, Unproved> {
+) -> Result<Option<(String, Rgb8Comparison)>, ProofError> {
     let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
     if source.checked.reads_textures() && !source.checked.channels.iter().all(is_flat) {
-        return Err(Unproved::BrowserChannel);
+        return Err(ProofError::BrowserChannel);
     }
     let original = browser::as_shadertoy(source.text());
     let sampling = source.checked.sampling;
     let render_original = |browser: &mut Chromium| {
         let images = browser.render(Text::Glsl(&original), sampling, frames);
-        images.map_err(Unproved::BrowserOriginal)
+        images.map_err(ProofError::BrowserOriginal)
     };
     let (original, converted) = match written {
-        Written::Wgsl(text, style) => {
+        TargetCode::Wgsl(text, style) => {
             let hosted = style.hosted_in(text, source.checked.stage);
             let original = render_original(browser)?;
             let images = browser.render(Text::Wgsl(&hosted.text), sampling, frames);
-            let images = images.map_err(Unproved::Browser)?;
+            let images = images.map_err(ProofError::Browser)?;
             if hosted.upside_down {
                 (original, images.iter().map(Image::upside_down).collect())
             } else {
                 (original, images)
             }
         }
-        Written::Naga {
+        TargetCode::Naga {
             target: Target::Glsl,
             bytes,
             ..
@@ -410,13 +412,13 @@ pub(super) fn in_browser(
             let original = render_original(browser)?;
             let text = String::from_utf8_lossy(bytes);
             let images = browser.render(Text::Glsl(&text), sampling, frames);
-            (original, images.map_err(Unproved::Browser)?)
+            (original, images.map_err(ProofError::Browser)?)
         }
-        Written::Naga { .. } | Written::Lowered(_) => return Ok(None),
+        TargetCode::Naga { .. } | TargetCode::Lowered(_) => return Ok(None),
     };
-    let shown = Rgb8Comparison::of(&original, &converted, undefined);
+    let shown = Rgb8Comparison::new(&original, &converted, undefined);
     if shown.differing > 0 {
-        return Err(Unproved::BrowserDiffers(shown));
+        return Err(ProofError::BrowserDiffers(shown));
     }
     let name = browser.name().unwrap_or("Chromium").to_owned();
     Ok(Some((name, shown)))

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
+use toyproof_glsl::{Filter, Wrap};
 use toyproof_player::Target;
 
 use crate::graph::{HostGraph, SourceEntry};
 
 /// The name of the script.
-pub const SCRIPT_FILE: &str = "shader.py";
+pub(crate) const SCRIPT_FILE: &str = "shader.py";
 
 const HEAD: &str = "\
 from pathlib import Path
@@ -25,7 +26,7 @@ def code(name):
 ///
 /// # Errors
 /// What the package does not have.
-pub fn script(host_graph: &HostGraph, names: &[String]) -> Result<String, String> {
+pub(crate) fn script(host_graph: &HostGraph, names: &[String]) -> Result<String, String> {
     let mut text = HEAD.to_owned();
     text += "buffers = [\n";
     let passes = host_graph.graph.passes();
@@ -69,8 +70,14 @@ fn inputs(host_graph: &HostGraph, pass: usize) -> String {
         let line = match input {
             None => "None,".to_owned(),
             Some(input) => {
-                let wrap = if input.repeats() { "repeat" } else { "clamp" };
-                let filter = if input.is_nearest() { "nearest" } else { "linear" };
+                let wrap = match input.wrap {
+                    Wrap::Clamp => "clamp",
+                    Wrap::Repeat => "repeat",
+                };
+                let filter = match input.filter {
+                    Filter::Nearest => "nearest",
+                    Filter::Linear | Filter::Mipmap => "linear",
+                };
                 let sampler = format!("filter=\"{filter}\", wrap=\"{wrap}\"");
                 match input.source {
                     SourceEntry::Buffer { buffer, .. } => {

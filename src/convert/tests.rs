@@ -12,7 +12,7 @@ use toyproof_translate::wgsl::{Style, wgsl};
 use toyproof_verify::Failure;
 
 use super::proof::evaluate;
-use super::{Proved, Prover, Runner, Source, Unproved, Written, frames};
+use super::{ProofError, Prover, Runner, ShaderProof, Source, TargetCode, frames};
 
 const TIME_LIMIT: Duration = Duration::from_secs(60);
 
@@ -35,7 +35,11 @@ fn checked(files: &mut Files, text: &str) -> Checked {
 }
 
 /// Proves a conversion of `shader` on the evaluator.
-fn prove(shader: &str, timeout: Duration, convert: impl Fn(&Source) -> Written) -> Result<Proved, Unproved> {
+fn prove(
+    shader: &str,
+    timeout: Duration,
+    convert: impl Fn(&Source) -> TargetCode,
+) -> Result<ShaderProof, ProofError> {
     let mut files = Files::default();
     let checked = checked(&mut files, shader);
     let source = Source {
@@ -52,10 +56,10 @@ fn prove(shader: &str, timeout: Duration, convert: impl Fn(&Source) -> Written) 
 }
 
 /// The shader's WGSL with one edit.
-fn edited(source: &Source, style: Style, from: &str, to: &str) -> Written {
+fn edited(source: &Source, style: Style, from: &str, to: &str) -> TargetCode {
     let text = wgsl(source.checked, source.files, style, &Deadline::default()).unwrap();
     assert!(text.contains(from), "{text}");
-    Written::Wgsl(text.replacen(from, to, 1), style)
+    TargetCode::Wgsl(text.replacen(from, to, 1), style)
 }
 
 #[test]
@@ -67,7 +71,7 @@ fn wgsl_of_every_style_is_proved() {
             Style::ComputeToys => WAVES.replace("iDate.w", "iMouse.z"),
         };
         let proved = prove(&shader, TIME_LIMIT, |source| edited(source, style, "", ""));
-        let Ok(Proved::File(proof, _)) = proved else {
+        let Ok(ShaderProof::File(proof, _)) = proved else {
             panic!("{}: {proved:?}", style.name());
         };
         assert_eq!((proof.equal(), proof.differing()), (proof.pixels(), 0));
@@ -84,7 +88,7 @@ fn a_changed_operator_is_found() {
         let unproved = prove(WAVES, TIME_LIMIT, |source| edited(source, Style::Plain, from, to));
         match &unproved {
             Err(
-                unproved @ Unproved::Differs {
+                unproved @ ProofError::Differs {
                     differing, pixels, ..
                 },
             ) => {
@@ -107,7 +111,7 @@ fn glsl_is_read_again_and_metal_only_in_its_source() {
         move |source: &Source| {
             let lowered = lower(source.checked);
             let module = ValidModule::parse(&lowered).unwrap();
-            Written::Naga {
+            TargetCode::Naga {
                 target,
                 bytes: emit(&module, target).unwrap(),
                 lowered,
@@ -116,15 +120,15 @@ fn glsl_is_read_again_and_metal_only_in_its_source() {
     };
     assert!(matches!(
         prove(WAVES, TIME_LIMIT, by_naga(Target::Glsl)),
-        Ok(Proved::File(..))
+        Ok(ShaderProof::File(..))
     ));
     assert!(matches!(
         prove(WAVES, TIME_LIMIT, by_naga(Target::Msl)),
-        Ok(Proved::Source(_))
+        Ok(ShaderProof::Source(_))
     ));
     assert!(matches!(
         prove(WAVES, TIME_LIMIT, by_naga(Target::Spirv)),
-        Err(Unproved::Binary)
+        Err(ProofError::Binary)
     ));
 }
 
@@ -152,5 +156,5 @@ fn a_file_that_takes_too_long_to_read_is_overdue() {
     let unproved = prove(WAVES, Duration::from_nanos(1), |source| {
         edited(source, Style::Plain, "", "")
     });
-    assert!(matches!(unproved, Err(Unproved::Overdue(_))), "{unproved:?}");
+    assert!(matches!(unproved, Err(ProofError::Overdue(_))), "{unproved:?}");
 }

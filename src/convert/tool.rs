@@ -52,7 +52,7 @@ struct Tool {
 }
 
 /// The validator of a language.
-fn validator_of(target: Target) -> Option<Tool> {
+fn validator(target: Target) -> Option<Tool> {
     let (name, arguments, version): (_, &[&str], _) = match target {
         Target::Wgsl => ("tint", &["--format", "wgsl"], None),
         Target::Spirv => ("spirv-val", &["--target-env", "vulkan1.0"], Some("--version")),
@@ -70,7 +70,7 @@ fn validator_of(target: Target) -> Option<Tool> {
 const GLSLANG: &str = "glslangValidator";
 
 /// glslang as a compiler of a language for Vulkan.
-fn compiler_of(target: Target) -> Option<Tool> {
+fn compiler(target: Target) -> Option<Tool> {
     let arguments: &[&str] = match target {
         Target::Glsl => &["-V", "-S", "frag"],
         // Without `-Od`, its optimizer does algebra: it turns `2.0 * x / 240.0` into one product, and
@@ -91,7 +91,7 @@ fn compiler_of(target: Target) -> Option<Tool> {
 /// # Errors
 /// The tool's first error message.
 pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, ToolError> {
-    let Some(tool) = validator_of(target) else {
+    let Some(tool) = validator(target) else {
         return Ok(None);
     };
     let file = tool.file(target, bytes)?;
@@ -106,7 +106,7 @@ pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, T
 /// The tool's first error message.
 pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, String)>, ToolError> {
     let text = String::from_utf8_lossy(bytes);
-    let (Some(tool), Some(text)) = (compiler_of(target), roundtrip::for_glslang(target, &text)) else {
+    let (Some(tool), Some(text)) = (compiler(target), roundtrip::for_glslang(target, &text)) else {
         return Ok(None);
     };
     let file = tool.file(target, text.as_bytes())?;

@@ -1,12 +1,14 @@
 //! A project whose tabs compile.
 
+use std::path::Path;
+
 use toyproof_diagnostic::{Diagnostics, Files};
 use toyproof_glsl::{Checked, Options};
 use toyproof_image as image;
 use toyproof_lint::Lints;
 
 use crate::check::check;
-use crate::files::{ProjectTexts, project_image};
+use crate::files::project_image;
 use crate::graph::{NotRendered, Rendering};
 use crate::pass::PassKind;
 use crate::project::Project;
@@ -21,24 +23,20 @@ pub struct CompiledProject {
 }
 
 impl CompiledProject {
-    /// Reads a project from its texts, which are added to `files`, and from the images in its folder, and
-    /// compiles all its tabs. The lints are those of the image, with the warnings about all tabs.
+    /// Reads the images in the folder of a project, if it has one, and compiles all its tabs. The lints are
+    /// those of the image, with the warnings about all tabs.
     ///
     /// # Errors
-    /// The project is invalid, or one of its tabs.
+    /// An image cannot be read, or one of the tabs is invalid.
     pub fn compile(
-        texts: ProjectTexts,
+        mut project: Project,
+        folder: Option<&Path>,
         files: &mut Files,
         options: &Options,
     ) -> Result<(Self, Lints), Diagnostics> {
-        let folder = match &texts {
-            ProjectTexts::Folder { folder, .. } => folder.clone(),
-            ProjectTexts::Json(_) => None,
-        };
-        let mut project = texts.parse(files)?;
         if let Some(folder) = folder {
             let added = project.add_images(|name| {
-                let path = project_image(&folder, name)?;
+                let path = project_image(folder, name)?;
                 image::read(&path).map_err(|error| error.to_string())
             });
             added.map_err(|errors| Diagnostics::new(errors, files))?;
@@ -78,11 +76,5 @@ impl CompiledProject {
         let mut passes = self.project.passes.iter().zip(&self.checked);
         let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
         image.expect("every project has an image").1
-    }
-
-    /// Whether the image reads other passes, and so depends on earlier frames.
-    #[must_use]
-    pub fn has_history(&self) -> bool {
-        !self.project.needed_by_image().is_empty()
     }
 }

@@ -6,7 +6,9 @@ use std::time::Duration;
 use std::{env, fs};
 
 use ::spirv::Op;
-use toyproof::convert::{Proof, Prover, Runner, Source, Unproved, Written, compare_with_original, frames};
+use toyproof::convert::{
+    Proof, ProofError, Prover, Runner, Source, TargetCode, compare_with_original, frames,
+};
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::gpu::{ShaderArtifact, Worker};
@@ -35,7 +37,7 @@ fn proof(worker: &mut Worker, shader: &str, style: Style, edit: impl Fn(String) 
 }
 
 /// Compares a conversion with the shader.
-fn proof_of(worker: &mut Worker, checked: &Checked, written: ShaderArtifact) -> Result<Proof, Unproved> {
+fn proof_of(worker: &mut Worker, checked: &Checked, written: ShaderArtifact) -> Result<Proof, ProofError> {
     let mut runner = Runner::Driver(worker);
     let frames = frames(checked);
     let proofs = compare_with_original(&mut runner, checked, vec![written], &frames, TIMEOUT, None)?;
@@ -81,7 +83,7 @@ fn every_exercise_is_proved_without_a_driver() {
             checked: &checked,
             files: &files,
         };
-        let proved = prover.prove(source, &Written::Wgsl(text, Style::Plain));
+        let proved = prover.prove(source, &TargetCode::Wgsl(text, Style::Plain));
         assert!(proved.is_ok(), "{}: {proved:?}", exercise.name);
     }
 }

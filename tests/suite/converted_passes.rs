@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::{Value, json};
-use toyproof::convert::{PassSources, PassesProof, Prover, ReadGraph, Runner, Source, Unproved, Written};
+use toyproof::convert::{
+    GraphContent, PassSources, PassesProof, ProofError, Prover, Runner, Source, TargetCode,
+};
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{self, Checked, Filter, Wrap};
 use toyproof::image;
@@ -45,7 +47,7 @@ struct Converted {
     passes: Vec<Checked>,
     rendering: Rendering,
     texts: Vec<String>,
-    graph: ReadGraph,
+    graph: GraphContent,
 }
 
 impl Converted {
@@ -60,7 +62,7 @@ impl Converted {
         let text = |pass: &Checked| wgsl(pass, &files, Style::Plain, &Deadline::default()).unwrap();
         Self {
             texts: passes.iter().map(text).collect(),
-            graph: ReadGraph {
+            graph: GraphContent {
                 graph: rendering.graph.clone(),
                 sampling: passes.iter().map(|pass| pass.sampling).collect(),
             },
@@ -79,7 +81,7 @@ impl Converted {
     }
 
     /// Proves it; none without a driver.
-    fn prove(&self) -> Option<Result<PassesProof, Unproved>> {
+    fn prove(&self) -> Option<Result<PassesProof, ProofError>> {
         let mut worker = require_worker()?;
         let files = &self.files;
         let sources: Vec<_> = self
@@ -94,7 +96,7 @@ impl Converted {
         };
         let texts = self.texts.iter();
         let written: Vec<_> = texts
-            .map(|text| Written::Wgsl(text.clone(), Style::Plain))
+            .map(|text| TargetCode::Wgsl(text.clone(), Style::Plain))
             .collect();
         let mut prover = Prover {
             runner: Runner::Driver(&mut worker),
@@ -102,14 +104,13 @@ impl Converted {
             timeout: TIMEOUT,
             pool: None,
         };
-        let written: Vec<_> = written.iter().collect();
         Some(prover.prove_passes(&passes, &written, &self.graph))
     }
 
     /// What the proof says of the first pass that differs.
     fn difference(&self) -> String {
         match self.prove() {
-            Some(Err(error @ Unproved::PassesDiffer(_))) => error.to_string(),
+            Some(Err(error @ ProofError::PassesDiffer(_))) => error.to_string(),
             Some(other) => panic!("the fault is not found: {other:?}"),
             None => String::new(),
         }

@@ -7,9 +7,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use toyproof_diagnostic::{Files, Span};
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{
-    Condition, ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
-};
+use toyproof_glsl::tree::{ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk};
 
 use super::tokens::tokens;
 
@@ -33,17 +31,17 @@ struct Node {
 impl Fingerprints {
     /// The fingerprints of a shader's functions.
     #[must_use]
-    pub fn of(checked: &Checked, files: &Files) -> Self {
+    pub fn from_tree(checked: &Checked, files: &Files) -> Self {
         let mut kept = HashMap::new();
         for (_, function) in checked.tree.functions.iter() {
-            let mut flat = Flat {
+            let mut list = NodeList {
                 tree: &checked.tree,
                 nodes: Vec::new(),
             };
-            flat.block(function.body.as_deref().unwrap_or_default());
-            let kinds: Vec<u64> = flat.nodes.iter().map(|node| node.kind).collect();
+            list.block(function.body.as_deref().unwrap_or_default());
+            let kinds: Vec<u64> = list.nodes.iter().map(|node| node.kind).collect();
             keep(&mut kept, &kinds, NODES, |at| {
-                files.position(flat.nodes[at].span).line
+                files.position(list.nodes[at].span).line
             });
         }
         Self(kept)
@@ -52,7 +50,7 @@ impl Fingerprints {
     /// The fingerprints of a text's tokens, which exist even for a shader that does not compile. They are
     /// comparable with each other only.
     #[must_use]
-    pub fn of_text(text: &str) -> Self {
+    pub fn from_text(text: &str) -> Self {
         let tokens = tokens(text);
         let kinds: Vec<u64> = tokens.iter().map(|&(kind, _)| kind).collect();
         let mut kept = HashMap::new();
@@ -156,12 +154,12 @@ enum Kind<T> {
 }
 
 /// The nodes of a function's tree, in the order of evaluation.
-struct Flat<'a> {
+struct NodeList<'a> {
     tree: &'a Tree,
     nodes: Vec<Node>,
 }
 
-impl Flat<'_> {
+impl NodeList<'_> {
     fn add<T: Hash>(&mut self, kind: &Kind<T>, span: Span) {
         self.nodes.push(Node {
             kind: hash(kind),
@@ -186,24 +184,16 @@ impl Flat<'_> {
                 }
                 self.block(otherwise.as_deref().unwrap_or_default());
             }
-            StatementKind::For {
-                init,
-                condition,
-                step,
-                body,
-            } => {
+            StatementKind::For { init, step, body, .. } => {
                 self.block(init);
                 self.add(&Kind::<()>::Loop, span);
-                self.condition(condition.as_ref());
+                let mut own = walk::own_expressions(self.tree, statement);
+                own.retain(|expression| Some(*expression) != *step);
+                own.into_iter().for_each(|condition| self.expression(condition));
                 self.block(body);
                 if let Some(step) = step {
                     self.expression(*step);
                 }
-            }
-            StatementKind::While { condition, body } => {
-                self.add(&Kind::<()>::Loop, span);
-                self.condition(Some(condition));
-                self.block(body);
             }
             StatementKind::DoWhile { condition, body } => {
                 self.add(&Kind::<()>::Loop, span);
@@ -213,6 +203,7 @@ impl Flat<'_> {
             StatementKind::Declare(variable) => self.declare(*variable, span),
             kind => {
                 match kind {
+                    StatementKind::While { .. } => self.add(&Kind::<()>::Loop, span),
                     StatementKind::Switch { .. } => self.add(&Kind::<()>::Switch, span),
                     StatementKind::Break
                     | StatementKind::Continue
@@ -229,18 +220,6 @@ impl Flat<'_> {
                     self.block(block);
                 }
             }
-        }
-    }
-
-    fn condition(&mut self, condition: Option<&Condition>) {
-        match condition {
-            Some(&Condition::Expression(expression)) => self.expression(expression),
-            Some(&Condition::Declare(variable)) => {
-                if let Some(value) = self.tree[variable].initializer {
-                    self.expression(value);
-                }
-            }
-            None => {}
         }
     }
 
@@ -319,10 +298,10 @@ mod tests {
             color = vec4(vec3(1.0 / (1.0 + t * t * 0.1)), 1.0);
         }";
 
-    fn of(text: &str) -> Fingerprints {
+    fn fingerprints(text: &str) -> Fingerprints {
         let mut files = Files::default();
         let file = files.add(File::new("a", text));
-        Fingerprints::of(
+        Fingerprints::from_tree(
             &glsl::check(&files, file, &glsl::Options::default()).unwrap(),
             &files,
         )
@@ -330,7 +309,7 @@ mod tests {
 
     #[test]
     fn names_numbers_layout_and_order_do_not_matter() {
-        let original = of(ORIGINAL);
+        let original = fingerprints(ORIGINAL);
         assert!(original.count() > 10, "{}", original.count());
         let (march, main) = ORIGINAL.split_once("void mainImage").unwrap();
         let reordered = format!("float march(vec3 o, vec3 d);\nvoid mainImage{main}\n{march}");
@@ -344,46 +323,46 @@ mod tests {
             .replace("-4", "7");
         let flat = ORIGINAL.split_whitespace().collect::<Vec<_>>().join(" ");
         for copy in [reordered, renamed, renumbered, flat] {
-            let copy = of(&copy);
+            let copy = fingerprints(&copy);
             assert_eq!(
                 (original.shared(&copy), copy.count()),
                 (original.count(), original.count())
             );
         }
         let named = format!("const float STEP = 0.001;\n{}", ORIGINAL.replace("0.001", "STEP"));
-        assert_eq!(original.shared(&of(&named)), original.count());
+        assert_eq!(original.shared(&fingerprints(&named)), original.count());
     }
 
     #[test]
     fn texts_that_do_not_compile_are_compared_by_tokens() {
-        let original = Fingerprints::of_text(ORIGINAL);
+        let original = Fingerprints::from_text(ORIGINAL);
         let copy = ORIGINAL
             .replace("march", "go")
             .replace("vec3 p ", "vec3  point ")
             .replace("p.", "point.")
             .replace("0.001", "1e-3 /* small */")
             .replace("t += h;", "t += h; // step\n");
-        let broken = Fingerprints::of_text(&copy.replace("return t;", "return t"));
+        let broken = Fingerprints::from_text(&copy.replace("return t;", "return t"));
         let share = original.shared(&broken) as f64 / original.count() as f64;
         assert!(
             original.count() > 10 && share > 0.7,
             "{share} of {}",
             original.count()
         );
-        assert_eq!(original.shared(&Fingerprints::of_text(&copy)), original.count());
+        assert_eq!(original.shared(&Fingerprints::from_text(&copy)), original.count());
     }
 
     #[test]
     fn other_shaders_share_little_and_parts_are_located() {
-        let original = of(ORIGINAL);
-        let other = of("void mainImage(out vec4 c, in vec2 p) {
+        let original = fingerprints(ORIGINAL);
+        let other = fingerprints("void mainImage(out vec4 c, in vec2 p) {
             vec2 z = vec2(0);
             for (int i = 0; i < 50; i++) z = vec2(z.x * z.x - z.y * z.y, 2.0 * z.x * z.y) + p / iResolution.xy;
             c = vec4(dot(z, z) < 4.0 ? vec3(0) : vec3(1, 0.5, 0), 1);
         }");
         assert_eq!(original.shared(&other), 0);
         let (march, _) = ORIGINAL.split_once("void mainImage").unwrap();
-        let part = of(&format!(
+        let part = fingerprints(&format!(
             "{march} void mainImage(out vec4 c, in vec2 p) {{ c = vec4(march(vec3(0), vec3(1))); }}"
         ));
         let lines = original.shared_lines(&part);

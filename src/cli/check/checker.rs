@@ -147,7 +147,7 @@ impl<'a> Checker<'a> {
         let mut log = Log::default();
         log.report(shader.lints.warnings.clone(), &shader.files);
         let (mut record, findings) = self.check_frames(context, &mut log, &shader, reference.as_ref());
-        if record.verdict == Verdict::Wrong && self.options.search > 0.0 && has_history(&shader) {
+        if record.verdict == Verdict::Wrong && self.options.search > 0.0 && shader.has_passes {
             record = record.with_unsearched();
         }
         if let Some((assignment, _)) = &self.plan.assignment {
@@ -311,7 +311,7 @@ impl<'a> Checker<'a> {
         explains: bool,
     ) -> Result<Findings, Failure> {
         let checked = image(shader)?;
-        let has_history = has_history(shader);
+        let has_history = shader.has_passes;
         let mut key = index;
         if has_history && self.plan.assignment.is_none() && !matches!(reference, Some(Reference::Given(_))) {
             // The reference has the time of the frame that the user does not name.
@@ -327,7 +327,7 @@ impl<'a> Checker<'a> {
         }
         let cached = reference.map(|reference| self.cached(reference, (index, key), has_history, frame));
         let cached = cached.transpose()?;
-        let from_start = match &shader.passes {
+        let from_start = match shader.project() {
             Some(passes) => self.bind(context, log, shader, passes, (frame, reference.is_some()))?,
             None => None,
         };
@@ -454,7 +454,7 @@ impl<'a> Checker<'a> {
         donors: &Donors,
     ) -> Option<Outcome> {
         let shader = self.load(submission);
-        let checked = shader.checked.as_ref().ok()?;
+        let checked = shader.single_pass()?;
         let reference = self.references.find(submission.input.as_ref().ok()?)?;
         let index = record.shown_frame();
         let mut frame = self.plan.frames[index].frame.clone();
@@ -505,7 +505,7 @@ impl<'a> Checker<'a> {
     /// Collects the expressions of correct shaders.
     pub(super) fn donors<'s>(&self, correct: impl Iterator<Item = &'s Submission>) -> Donors {
         let shaders: Vec<Shader> = correct.map(|submission| self.load(submission)).collect();
-        Donors::new(shaders.iter().filter_map(|shader| shader.checked.as_ref().ok()))
+        Donors::new(shaders.iter().filter_map(Shader::single_pass))
     }
 
     fn search_options<'s>(&self, shader: &'s Shader, checked: &Checked) -> SearchOptions<'s> {
@@ -542,37 +542,26 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Whether the image of a shader depends on other passes, or on earlier frames.
-fn has_history(shader: &Shader) -> bool {
-    shader.passes.as_ref().is_some_and(CompiledProject::has_history)
-}
-
 /// The tree of the image, with whatever it reads.
 fn image(shader: &Shader) -> Result<&Checked, Failure> {
-    match (&shader.checked, &shader.passes) {
-        (Ok(checked), _) => Ok(checked),
-        (Err(Unusable::Unrendered(_)), Some(passes)) => Ok(passes.image()),
-        (Err(Unusable::Unreadable(error)), _) if shader.is_missing => {
-            Err(Failure::Missing(error.reason.clone()))
-        }
-        (Err(Unusable::Unreadable(error) | Unusable::Unrendered(error)), _) => {
-            Err(Failure::Unreadable(error.reason.clone()))
-        }
-        (Err(Unusable::Invalid(diagnostics)), _) => Err(Failure::Invalid(diagnostics.clone())),
-    }
+    shader.image().map_err(|unusable| match unusable {
+        Unusable::Unreadable(error) if shader.is_missing => Failure::Missing(error.reason.clone()),
+        Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),
+        Unusable::Invalid(diagnostics) => Failure::Invalid(diagnostics.clone()),
+    })
 }
 
 /// A sentence about the media that a shader reads and that toyproof does not have; `None` if it has all. An
 /// image that the user can bind does not count, and neither does one that the author allows to be missing.
 fn missing_media(shader: &Shader, frame: &Frame) -> Option<String> {
-    let checked = shader.checked.as_ref().ok()?;
+    let checked = shader.single_pass()?;
     let warned = unbound(checked, &shader.lints, frame);
     let is_warned = |span: Span| warned.iter().any(|warning| warning.span == Some(span));
     let missing = unbound_channels(checked, frame)
         .into_iter()
         .filter_map(|(channel, span)| {
             let kind = match checked.channels[channel] {
-                SamplerShape::D2 if shader.passes.is_none() => return None,
+                SamplerShape::D2 if shader.project().is_none() => return None,
                 SamplerShape::D2 => "texture",
                 SamplerShape::Cube => "cube map",
                 SamplerShape::D3 => "volume",

@@ -108,12 +108,13 @@ fn identity(
     add(format!("{settings:?} {named:?} {}", found.name()).as_bytes());
     let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
     add(assignment.unwrap_or_default());
-    for file in files::read(found).ok()?.files() {
+    let texts = files::read(found).ok()?;
+    for file in texts.files() {
         add(file.name().as_bytes());
         add(file.text().as_bytes());
         bytes += file.text().len() as u64;
     }
-    for path in image_files(found) {
+    for path in image_files(found, texts) {
         add(&input::read(&path).ok()?);
     }
     if let Some(content) = references.content(found) {

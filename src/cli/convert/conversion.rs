@@ -1,19 +1,19 @@
-//! Converts one shader, with the workers and pools of its thread.
+//! Converts a shader or a project, with the workers and pools of its thread.
 
 use std::path::PathBuf;
 
 use rayon::ThreadPool;
 use toyproof_convert::header::{self, ProofStatus};
 use toyproof_convert::{
-    self as conversion, ConvertError, Converter, FRAMES, FallbackReason, Prover, Runner, Source, Unproved,
-    WgslError,
+    self as convert, ConvertError, Converter, FRAMES, FallbackReason, ProjectConversion, ProjectError,
+    ProjectSource, ProofError, Prover, Runner, Source, TargetCode, WgslError,
 };
 use toyproof_diagnostic::{Deadline, Diagnostic};
-use toyproof_glsl as glsl;
+use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
-use toyproof_project::PassKind;
 use toyproof_project::files::{Input, ReadError};
+use toyproof_project::{CompiledProject, PassKind};
 use toyproof_translate::wgsl::Unprintable;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
@@ -76,7 +76,7 @@ impl Refusal {
     }
 
     /// Names the pass to which a message without a position applies.
-    pub(super) fn of_pass(self, pass: PassKind) -> Self {
+    fn in_pass(self, pass: PassKind) -> Self {
         match self {
             Self::Message(why, exit) => Self::Message(format!("{pass}: {why}"), exit),
             other => other,
@@ -104,36 +104,25 @@ impl Settings<'_> {
         })
     }
 
+    pub(super) fn load(&self, input: &Result<Input, ReadError>) -> Shader {
+        Shader::load(input, self.language, Deadline::after(self.driver.timeout()))
+    }
+
     pub(super) fn convert(
         &self,
         context: &mut Result<WorkerContext, String>,
-        input: &Result<Input, ReadError>,
-    ) -> (Shader, Result<Conversion, Refusal>) {
-        let shader = Shader::load(input, self.language, Deadline::after(self.driver.timeout()));
-        let converted = match (&shader.checked, context) {
-            (Ok(_) | Err(Unusable::Unrendered(_)), Err(error)) => {
-                Err(Refusal::Message(error.clone(), Exit::Error))
-            }
-            (Ok(checked), Ok(context)) => {
-                let source = Source {
-                    checked,
-                    files: &shader.files,
-                };
-                self.convert_checked(context, source, &shader.name)
-            }
-            (Err(Unusable::Unrendered(error)), Ok(context)) => match &shader.passes {
-                Some(passes) => {
-                    let (translator, mut prover) = self.parts(context);
-                    self.convert_project(translator, prover.as_mut(), &shader, passes)
-                }
-                None => Err(Refusal::Unreadable(error.reason.clone())),
-            },
-            (Err(Unusable::Invalid(diagnostics)), _) => {
-                Err(Refusal::Diagnostics(diagnostics.clone(), Exit::ShaderFault))
-            }
-            (Err(Unusable::Unreadable(error)), _) => Err(Refusal::Unreadable(error.reason.clone())),
-        };
-        (shader, converted)
+        shader: &Shader,
+    ) -> Result<Conversion, Refusal> {
+        let image = shader.image().map_err(|unusable| match unusable {
+            Unusable::Invalid(diagnostics) => Refusal::Diagnostics(diagnostics.clone(), Exit::ShaderFault),
+            Unusable::Unreadable(error) => Refusal::Unreadable(error.reason.clone()),
+        })?;
+        let context = context.as_mut();
+        let context = context.map_err(|error| Refusal::Message(error.clone(), Exit::Error))?;
+        match shader.project() {
+            Some(project) if shader.has_passes => self.convert_project(context, shader, project),
+            _ => self.convert_shader(context, shader, image),
+        }
     }
 
     /// The process that translates, and what proves, if proofs are requested.
@@ -148,33 +137,90 @@ impl Settings<'_> {
         (&mut context.translator, prover)
     }
 
-    fn convert_checked(
+    fn convert_shader(
         &self,
         context: &mut WorkerContext,
-        source: Source,
-        name: &str,
+        shader: &Shader,
+        checked: &Checked,
     ) -> Result<Conversion, Refusal> {
         let (translator, mut prover) = self.parts(context);
+        let source = Source {
+            checked,
+            files: &shader.files,
+        };
         let converted = self.converter.convert(source, translator, prover.as_mut());
-        let conversion::Conversion {
-            written,
+        let convert::Conversion {
+            code,
             proof,
             fallback,
         } = converted.map_err(refusal)?;
         let status = self.status(proof.map(|proof| proof.map(ProofStatus::Proved)));
-        let mut bytes = written.into_bytes();
-        if let Some(target) = self.converter.target {
-            header::insert(&mut bytes, target, name, &status);
-        }
         Ok(Conversion {
-            files: vec![OutputFile { name: None, bytes }],
+            files: vec![self.output_file(None, code, &shader.name, &status)],
             status,
             fallback,
         })
     }
 
+    /// Converts a project whose image reads other passes.
+    fn convert_project(
+        &self,
+        context: &mut WorkerContext,
+        shader: &Shader,
+        project: &CompiledProject,
+    ) -> Result<Conversion, Refusal> {
+        let (translator, mut prover) = self.parts(context);
+        let source = ProjectSource {
+            name: &shader.name,
+            project,
+            files: &shader.files,
+        };
+        let converted = self
+            .converter
+            .convert_project(source, translator, prover.as_mut());
+        let ProjectConversion {
+            passes,
+            host,
+            proof,
+            fallback,
+        } = converted.map_err(|error| match error {
+            ProjectError::Pass { pass, error } => refusal(error).in_pass(pass),
+            error => Refusal::Message(error.to_string(), Exit::Error),
+        })?;
+        let status = self.status(proof.map(|proof| proof.map(ProofStatus::ProvedPasses)));
+        let passes = passes.into_iter().map(|pass| {
+            let name = format!("{}, {}", shader.name, pass.kind);
+            self.output_file(Some(pass.name), pass.code, &name, &status)
+        });
+        // It is complete when the host's file is there: its passes precede it.
+        let host = OutputFile {
+            name: Some(host.name.to_owned()),
+            bytes: host.text.into_bytes(),
+        };
+        Ok(Conversion {
+            files: passes.chain([host]).collect(),
+            status,
+            fallback,
+        })
+    }
+
+    /// A file with a header that names its source.
+    fn output_file(
+        &self,
+        name: Option<String>,
+        code: TargetCode,
+        source: &str,
+        status: &ProofStatus,
+    ) -> OutputFile {
+        let mut bytes = code.into_bytes();
+        if let Some(target) = self.converter.target {
+            header::insert(&mut bytes, target, source, status);
+        }
+        OutputFile { name, bytes }
+    }
+
     /// The status of a proof, if there is a prover.
-    pub(super) fn status(&self, proof: Option<Result<ProofStatus, Unproved>>) -> ProofStatus {
+    fn status(&self, proof: Option<Result<ProofStatus, ProofError>>) -> ProofStatus {
         match proof {
             Some(Ok(proved)) => proved,
             Some(Err(unproved)) => ProofStatus::NotProved(unproved.to_string()),
@@ -186,7 +232,7 @@ impl Settings<'_> {
     }
 }
 
-pub(super) fn refusal(error: ConvertError) -> Refusal {
+fn refusal(error: ConvertError) -> Refusal {
     match error {
         ConvertError::Overdue(overdue) => {
             Refusal::Diagnostics(vec![glsl::overdue(overdue)], Exit::ShaderFault)

@@ -30,7 +30,7 @@ use crate::cli::inputs::{
 };
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::sequence::{self, FrameEnd, Frames, Sequence};
-use crate::cli::shader::{Shader, Unusable, find};
+use crate::cli::shader::{Shader, find};
 use crate::cli::terminal::file_size;
 use crate::cli::{CliError, Exit, Terminal};
 
@@ -159,14 +159,12 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
             (true, _) | (false, Err(_)) => output.clone(),
             (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), ".png"),
         };
-        if let Some(passes) = &shader.passes
-            && !matches!(shader.checked, Err(Unusable::Invalid(_)))
-        {
+        if let Some(passes) = shader.project() {
             let ended = runner.project(&shader, passes, &path);
             exit = exit.max(ended.unwrap_or_else(|error| terminal.fail(&error)));
             continue;
         }
-        if let Ok(checked) = &shader.checked {
+        if let Ok(checked) = shader.image() {
             terminal.diagnostics(&unbound(checked, &shader.lints, &runner.frame), &shader.files);
         }
         let rendered = match args.frames {
@@ -309,7 +307,7 @@ impl Runner<'_> {
     /// Renders the frames of a shader, each into its file; stops at the first failure.
     fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Result<(), CliError> {
         let mut hasher = DefaultHasher::new();
-        if let Ok(checked) = &shader.checked {
+        if let Ok(checked) = shader.image() {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
         }
         let fingerprint = self.fingerprint(hasher);
@@ -359,7 +357,7 @@ impl Runner<'_> {
     /// Renders the shader. The evaluator shows its progress, and ends early if the user interrupts it, unless
     /// the image is one of a sequence, whose flag is given.
     fn render(&mut self, shader: &Shader, interrupted: Option<&AtomicBool>) -> Result<Rendered, NotRendered> {
-        let checked = shader.require_checked()?;
+        let checked = shader.require_image()?;
         if self.prefers_evaluator {
             match self.evaluate::<f32>(checked, interrupted) {
                 Err(failure) if self.worker.is_some() && is_too_large(&failure) => {

@@ -63,6 +63,15 @@ fn read_folder(folder: &Path) -> Result<ProjectTexts, ReadError> {
 }
 
 impl ProjectTexts {
+    /// The folder of a project; `None` for JSON, and for a shader that is read as a project.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        match self {
+            Self::Folder { folder, .. } => folder.as_deref(),
+            Self::Json(_) => None,
+        }
+    }
+
     /// Reads a project from its texts, which are added to `files`.
     ///
     /// # Errors

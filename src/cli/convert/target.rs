@@ -1,0 +1,167 @@
+//! The target language and the kind of output, which the arguments and the extension of the output determine.
+
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use toyproof_diagnostic::path_name;
+use toyproof_translate::backend::Target;
+use toyproof_translate::wgsl::Style;
+
+use super::Args;
+use crate::cli::CliError;
+use crate::cli::inputs::Format;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum To {
+    Wgsl,
+    #[value(alias = "spirv")]
+    Spv,
+    #[value(alias = "msl")]
+    Metal,
+    Hlsl,
+    Glsl,
+    /// The GLSL 450 that naga reads
+    Lowered,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum StyleName {
+    /// A fragment shader with the bindings below; row 0 of its target is the bottom
+    Plain,
+    /// A `shader_main` function for the Python package wgpu-shadertoy
+    WgpuShadertoy,
+    /// A compute shader for compute.toys
+    ComputeToys,
+    /// A fragment shader for a Material2d of Bevy
+    Bevy,
+}
+
+impl From<StyleName> for Style {
+    fn from(name: StyleName) -> Self {
+        match name {
+            StyleName::Plain => Self::Plain,
+            StyleName::WgpuShadertoy => Self::WgpuShadertoy,
+            StyleName::ComputeToys => Self::ComputeToys,
+            StyleName::Bevy => Self::Bevy,
+        }
+    }
+}
+
+impl To {
+    pub(super) fn target(self) -> Option<Target> {
+        match self {
+            Self::Wgsl => Some(Target::Wgsl),
+            Self::Spv => Some(Target::Spirv),
+            Self::Metal => Some(Target::Msl),
+            Self::Hlsl => Some(Target::Hlsl),
+            Self::Glsl => Some(Target::Glsl),
+            Self::Lowered => None,
+        }
+    }
+
+    /// Its name on the command line.
+    pub(super) fn name(self) -> &'static str {
+        self.target().map_or("lowered", Target::name)
+    }
+
+    /// Returns whether it may be written to a file with the extension of `other`: lowered output is GLSL.
+    fn may_end_as(self, other: Self) -> bool {
+        self == other || (self, other) == (Self::Lowered, Self::Glsl)
+    }
+
+    fn from_extension(path: &Path) -> Option<Self> {
+        let target = Target::from_path(path)?;
+        Self::value_variants()
+            .iter()
+            .copied()
+            .find(|to| to.target() == Some(target))
+    }
+}
+
+/// The kind of output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OutputKind {
+    /// A shader, as one file.
+    File,
+    /// The passes of a project.
+    Passes,
+    /// Several shaders or projects.
+    Shaders,
+}
+
+/// Returns the output that the arguments name, or its default, which several shaders do not have.
+pub(super) fn output(args: &Args, kind: OutputKind) -> Result<PathBuf, CliError> {
+    match &args.output {
+        Some(output) => Ok(output.clone()),
+        None if kind == OutputKind::File => Ok(PathBuf::from("-")),
+        None => Err(needs_folder(kind, Path::new("-"))),
+    }
+}
+
+/// Returns the language that the arguments or the extension of the output name.
+///
+/// # Errors
+/// They disagree, or the output cannot take the results.
+pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> Result<To, CliError> {
+    let standard = output == Path::new("-");
+    let several = kind != OutputKind::File;
+    let of_extension = (!standard && !output.is_dir())
+        .then(|| To::from_extension(output))
+        .flatten();
+    let to = match (args.to, of_extension) {
+        (Some(to), Some(other)) if !to.may_end_as(other) => {
+            let error = CliError::new(format_args!(
+                "the extension of {} means {}, but --to is {}",
+                path_name(output),
+                other.name(),
+                to.name()
+            ));
+            return Err(error.with_help("leave out --to, or give the output another extension"));
+        }
+        (to, of) => to.or(of),
+    };
+    let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
+        let error = format!("cannot determine the language of {}", path_name(output));
+        return Err(CliError::new(error).with_help(
+            "give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to",
+        ));
+    };
+    if several && (standard || of_extension.is_some()) {
+        return Err(needs_folder(kind, output));
+    }
+    if standard && to == To::Spv && io::stdout().is_terminal() {
+        let error = CliError::new("SPIR-V is binary and is not written to a terminal");
+        return Err(error.with_help("name a file with -o"));
+    }
+    if standard && args.format == Format::Json {
+        let error = CliError::new("--format json needs standard output, and so does the converted shader");
+        return Err(error.with_help("name a file or a folder with -o"));
+    }
+    Ok(to)
+}
+
+/// Checks that the options apply to the target language.
+pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
+    if args.style != StyleName::Plain && to != To::Wgsl {
+        return Err("--style applies to WGSL only");
+    }
+    if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
+        return Err("--browser applies to WGSL and GLSL, the languages that browsers run");
+    }
+    Ok(())
+}
+
+/// Several files cannot be written to one.
+fn needs_folder(kind: OutputKind, output: &Path) -> CliError {
+    let output = if output == Path::new("-") {
+        "standard output".to_owned()
+    } else {
+        path_name(output)
+    };
+    let what = match kind {
+        OutputKind::Passes => "the passes of a project",
+        OutputKind::File | OutputKind::Shaders => "several shaders",
+    };
+    CliError::new(format_args!("{what} cannot be written to {output}")).with_help("name a folder with -o")
+}

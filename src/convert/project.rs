@@ -1,0 +1,192 @@
+//! Converts a project: the passes that its image needs, and the file that says how a host plays them.
+
+use thiserror::Error;
+use toyproof_diagnostic::Files;
+use toyproof_gpu::Worker;
+use toyproof_project::{CompiledProject, NotRendered, PassKind};
+use toyproof_translate::backend::Target;
+use toyproof_translate::wgsl::Style;
+
+use crate::graph::{GRAPH_FILE, HostGraph, target_name};
+use crate::passes::{GraphContent, PassSources, PassesProof};
+use crate::script::{SCRIPT_FILE, script};
+use crate::{ConvertError, Converter, FallbackReason, ProofError, Prover, Source, TargetCode};
+
+/// A project to convert.
+#[derive(Debug, Clone, Copy)]
+pub struct ProjectSource<'a> {
+    /// Its name, for the host.
+    pub name: &'a str,
+    /// The project.
+    pub project: &'a CompiledProject,
+    /// The files that it was read from.
+    pub files: &'a Files,
+}
+
+/// A converted project.
+#[derive(Debug)]
+pub struct ProjectConversion {
+    /// The passes, in the order in which they are rendered.
+    pub passes: Vec<PassFile>,
+    /// The file that says how a host plays the passes.
+    pub host: HostFile,
+    /// The proof; `None` if no proof was requested.
+    pub proof: Option<Result<PassesProof, ProofError>>,
+    /// Why naga wrote a pass, if our own writer could have.
+    pub fallback: Option<FallbackReason>,
+}
+
+/// The file of a pass.
+#[derive(Debug)]
+pub struct PassFile {
+    /// The pass.
+    pub kind: PassKind,
+    /// The name of the file.
+    pub name: String,
+    /// Its content.
+    pub code: TargetCode,
+}
+
+/// The file that says how a host plays the passes: [`GRAPH_FILE`], or a script.
+#[derive(Debug)]
+pub struct HostFile {
+    /// Its name.
+    pub name: &'static str,
+    /// Its content.
+    pub text: String,
+}
+
+/// Why a project could not be converted.
+#[derive(Debug, Error)]
+pub enum ProjectError {
+    /// Hosts of this style render one pass.
+    #[error(
+        "its image reads other passes, which the style `{}` does not support; use `--style plain` or `--style {}`",
+        .0.name(),
+        Style::WgpuShadertoy.name()
+    )]
+    Style(Style),
+    /// A pass is needed that cannot be rendered.
+    #[error("the project {0}")]
+    NotRendered(#[from] NotRendered),
+    /// The script's package does not have something that the passes need.
+    #[error("{0}")]
+    Script(String),
+    /// The file of the graph is not read as it was written.
+    #[error("{GRAPH_FILE}: {0}")]
+    Graph(String),
+    /// A pass cannot be converted.
+    #[error("{pass}: {error}")]
+    Pass {
+        /// The pass.
+        pass: PassKind,
+        /// Why.
+        error: ConvertError,
+    },
+}
+
+impl Converter {
+    /// Converts a project whose image reads other passes; `translator` runs naga. With a prover, the
+    /// conversion is proved too.
+    ///
+    /// # Errors
+    /// Returns why there is no conversion. One that is not proved is not an error.
+    pub fn convert_project(
+        &self,
+        source: ProjectSource,
+        translator: &mut Worker,
+        mut prover: Option<&mut Prover>,
+    ) -> Result<ProjectConversion, ProjectError> {
+        if matches!(self.style, Style::ComputeToys | Style::Bevy) {
+            return Err(ProjectError::Style(self.style));
+        }
+        let ProjectSource { project, files, .. } = source;
+        let rendering = project.rendering(PassKind::Image)?;
+        let checked: Vec<_> = project.checked_of(&rendering).collect();
+        let host_graph = HostGraph::new(&project.project, &rendering, &checked);
+        let extension = self.extension();
+        let passes = host_graph.graph.passes().iter();
+        let names: Vec<String> = passes
+            .map(|pass| format!("{}.{extension}", target_name(pass.target)))
+            .collect();
+        let (host, content) = self.host(&host_graph, source.name, &names)?;
+        let sources: Vec<_> = checked.iter().map(|checked| Source { checked, files }).collect();
+        let passes = PassSources {
+            sources: &sources,
+            graph: &host_graph.graph,
+            media: &host_graph.media,
+        };
+        let kind = |pass: usize| project.project.passes[rendering.passes[pass]].kind;
+        let mut codes = Vec::new();
+        let mut fallback = None;
+        for (pass, &source) in sources.iter().enumerate() {
+            let converted = self.convert(source, translator, None);
+            let converted = converted.map_err(|error| ProjectError::Pass {
+                pass: kind(pass),
+                error,
+            })?;
+            codes.push(converted.code);
+            fallback = fallback.or(converted.fallback);
+        }
+        let mut prove = |codes: &[TargetCode]| {
+            let prover = prover.as_deref_mut()?;
+            Some(prover.prove_passes(&passes, codes, &content))
+        };
+        let mut proof = prove(&codes);
+        // If plain WGSL is not proved, naga may write all passes.
+        if let Some(Err(unproved)) = &proof
+            && self.may_fall_back()
+            && !unproved.is_of_shader()
+        {
+            let sources = sources.iter();
+            let other = sources.map(|&source| self.write_with_naga(source, self.target?, translator).ok());
+            if let Some(other) = other.collect::<Option<Vec<_>>>()
+                && let Some(Ok(other_proof)) = prove(&other)
+                && let Some(Err(unproved)) = proof.replace(Ok(other_proof))
+            {
+                codes = other;
+                fallback = Some(FallbackReason::Unproved(unproved));
+            }
+        }
+        let passes = names.into_iter().zip(codes).enumerate();
+        let passes = passes.map(|(pass, (name, code))| PassFile {
+            kind: kind(pass),
+            name,
+            code,
+        });
+        Ok(ProjectConversion {
+            passes: passes.collect(),
+            host,
+            proof,
+            fallback,
+        })
+    }
+
+    /// The file for the host of passes in these files, and the graph that it contains.
+    fn host(
+        &self,
+        host_graph: &HostGraph,
+        name: &str,
+        names: &[String],
+    ) -> Result<(HostFile, GraphContent), ProjectError> {
+        if self.style == Style::WgpuShadertoy {
+            let text = script(host_graph, names).map_err(ProjectError::Script)?;
+            let host = HostFile {
+                name: SCRIPT_FILE,
+                text,
+            };
+            return Ok((host, host_graph.content()));
+        }
+        let language = self.target.map_or("lowered", Target::name);
+        // Metal reserves `main`.
+        let is_metal = self.target == Some(Target::Msl);
+        let entry_point = if is_metal { "main_" } else { "main" };
+        let text = host_graph.file(name, language, entry_point, names).to_json();
+        let content = host_graph.read(&text).map_err(ProjectError::Graph)?;
+        let host = HostFile {
+            name: GRAPH_FILE,
+            text,
+        };
+        Ok((host, content))
+    }
+}
