@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 use toyproof_diagnostic::{Diagnostic, File, Files};
-use toyproof_eval::{self as eval, Number, UndefinedPolicy};
+use toyproof_eval::{self as eval, Arithmetic, Number, UndefinedPolicy};
 use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::{Frame, Image, Texture};
@@ -77,7 +77,7 @@ impl ShaderRunner {
         let framebuffer = self.program.render(frame, &settings)?.framebuffer;
         let [width, height] = frame.size;
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let colors = places.map(|(x, y)| framebuffer.get(x, y).map(|component| component.to_f64()));
+        let colors = places.map(|(x, y)| framebuffer.get(x, y).map(Arithmetic::to_f64));
         Ok(colors.collect())
     }
 }
