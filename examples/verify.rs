@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         size: scene.film.size,
         ..Frame::default()
     };
-    let expected = Expected::of_scene(scene, &frame);
+    let expected = Expected::from_scene(scene, &frame);
     let case = Case::new(&checked, &lints, &frame).with_expected(&expected);
     // The first argument would be a `gpu::Worker`; without one the toolchain check is left out.
     let findings = check(None, &case, &Options::default())?;

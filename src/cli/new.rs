@@ -276,7 +276,7 @@ fn from_scene(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, Cl
     };
     for (index, mut frame) in load(&model)?.into_iter().enumerate() {
         frame.size = scene.film.size;
-        let expected = Expected::of_scene(scene.clone(), &frame);
+        let expected = Expected::from_scene(scene.clone(), &frame);
         files.push(thumbnail(index, &expected, &frame)?);
     }
     files.push((FILE_NAME.to_owned(), model.assignment(SCENE).into_bytes()));

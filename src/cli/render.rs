@@ -198,7 +198,7 @@ fn warn_if_ill_conditioned(scene: &Scene, frame_time: FrameTime, args: &Args, te
         time: frame_time.time as f32,
         ..Frame::default()
     };
-    if let Some(conditioning) = Expected::of_scene(scene.clone(), &frame).conditioning() {
+    if let Some(conditioning) = Expected::from_scene(scene.clone(), &frame).conditioning() {
         let name = path_name(&args.scene);
         terminal.warn(ill_conditioned(&name, frame.size, &conditioning));
     }

@@ -14,7 +14,7 @@ use toyproof_gpu::{PassCode, ShaderArtifact, Worker};
 use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Target};
 use toyproof_translate::FloatMode;
-use toyproof_verify::evaluator::{Evaluated, Evaluator};
+use toyproof_verify::evaluator::{Evaluation, Evaluator};
 use toyproof_verify::project::playback::{DevicePlayback, channel_sampling};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, within};
 
@@ -298,7 +298,7 @@ impl Renderer for Observer<'_> {
         let frame = bound(frame, channels, self.media);
         let stop = AtomicBool::new(false);
         let evaluator = Evaluator::new(&self.programs[pass], &frame, self.limit, &stop);
-        let Evaluated {
+        let Evaluation {
             undefined, observed, ..
         } = evaluator.single(&frame.rows())?;
         if observed.beyond_cap > 0 {

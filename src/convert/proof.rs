@@ -16,7 +16,7 @@ use toyproof_translate::FloatMode;
 use toyproof_translate::backend::roundtrip;
 use toyproof_translate::naga_ir::ValidModule;
 use toyproof_verify::compare::{self, CheckSummary};
-use toyproof_verify::evaluator::{Evaluated, Evaluator};
+use toyproof_verify::evaluator::{Evaluation, Evaluator};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, join, within};
 
 use super::prover::ProofError;
@@ -360,9 +360,9 @@ pub(super) fn evaluate(
     frames: &[Frame],
     timeout: Duration,
     stop: &AtomicBool,
-) -> Result<Vec<Evaluated>, Failure> {
+) -> Result<Vec<Evaluation>, Failure> {
     let program = Program::within(checked, timeout * EVALUATOR_TIME_FACTOR).map_err(refused)?;
-    let single = |frame: &Frame| -> Result<Evaluated, Failure> {
+    let single = |frame: &Frame| -> Result<Evaluation, Failure> {
         let evaluator = Evaluator::new(&program, frame, timeout * EVALUATOR_TIME_FACTOR, stop);
         Ok(evaluator.single(&frame.rows())?)
     };

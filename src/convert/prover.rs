@@ -147,7 +147,7 @@ pub enum ProofError {
     #[error("{}", differing_passes(.0))]
     PassesDiffer(Vec<PassComparison>),
     /// Every pixel depends on undefined behavior.
-    #[error("every pixel depends on undefined behavior, such as {} at {at}", fault.words())]
+    #[error("every pixel depends on undefined behavior, such as {} at {at}", fault.description())]
     FullyUndefined {
         /// The operation that occurs in most pixels.
         fault: Fault,

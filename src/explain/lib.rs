@@ -26,7 +26,7 @@
 //! let lints = toyproof_lint::lint(&files, &checked, &Deadline::default());
 //! let frame = Frame { size: [16, 9], ..Frame::default() };
 //! let hypotheses = Hypotheses::new(&scene, &frame);
-//! let expected = Expected::of_scene(scene, &frame);
+//! let expected = Expected::from_scene(scene, &frame);
 //! let case = Case::new(&checked, &lints, &frame).with_expected(&expected);
 //! let options = Options { hypotheses: hypotheses.as_ref(), ..Options::default() };
 //! let findings = check(None, &case, &options)?;

@@ -478,7 +478,7 @@ mod tests {
                 _ => PixelStatus::Agrees,
             })
             .collect();
-        algorithm.regions = Regions::of(PixelStatus::Differs, &statuses, 20);
+        algorithm.regions = Regions::new(PixelStatus::Differs, &statuses, 20);
         assert_eq!(verdict(checks), Verdict::Wrong);
     }
 

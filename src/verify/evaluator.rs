@@ -81,7 +81,7 @@ pub struct DoubleBand {
 }
 
 /// An image in one number type, with its undefined pixels and observations.
-pub struct Evaluated {
+pub struct Evaluation {
     /// Rounded to f32.
     pub image: Image,
     /// Pixels whose color depends on undefined behavior.
@@ -135,7 +135,7 @@ impl<'a> Evaluator<'a> {
     ///
     /// # Errors
     /// If the evaluator fails or is interrupted.
-    pub fn single(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
+    pub fn single(&self, rows: &Range<u32>) -> Result<Evaluation, Failure> {
         let rendered = self.render_as::<f32>(self.frame, rows, UndefinedPolicy::Observed, &self.single)?;
         self.with_undefined::<f32>(self.frame, rows, rendered)
     }
@@ -144,7 +144,7 @@ impl<'a> Evaluator<'a> {
     ///
     /// # Errors
     /// If the evaluator fails or is interrupted.
-    pub fn double(&self, rows: &Range<u32>) -> Result<Evaluated, Failure> {
+    pub fn double(&self, rows: &Range<u32>) -> Result<Evaluation, Failure> {
         let frame = self.double_frame.unwrap_or(self.frame);
         let start = Instant::now();
         let rendered = self.render_as::<f64>(frame, rows, UndefinedPolicy::Observed, &self.double)?;
@@ -229,9 +229,9 @@ impl<'a> Evaluator<'a> {
         frame: &Frame,
         rows: &Range<u32>,
         rendered: RenderedF32,
-    ) -> Result<Evaluated, Failure> {
+    ) -> Result<Evaluation, Failure> {
         let candidates = rendered.undefined;
-        let is_derivative = |observed: &Observed| observed.site.fault == Fault::LonelyDerivative;
+        let is_derivative = |observed: &Observed| observed.site.fault == Fault::NonUniformDerivative;
         // Derivatives have no substitute value.
         let has_substitutes = !rendered.observations.faults.iter().any(is_derivative);
         let mut substituted = has_substitutes.then(Vec::new);
@@ -249,7 +249,7 @@ impl<'a> Evaluator<'a> {
                 pixels.map(|(at, &candidate)| candidate && changes(at)).collect()
             }
         };
-        Ok(Evaluated {
+        Ok(Evaluation {
             image: rendered.image,
             undefined,
             substituted,

@@ -55,7 +55,7 @@
 //! let checked = toyproof_glsl::check(&files, shader, &Default::default())?;
 //! let lints = toyproof_lint::lint(&files, &checked, &Deadline::default());
 //! let frame = Frame { size: [16, 9], ..Frame::default() };
-//! let expected = Expected::of_scene(scene, &frame);
+//! let expected = Expected::from_scene(scene, &frame);
 //! let case = Case::new(&checked, &lints, &frame).with_expected(&expected);
 //! // Without a driver, the toolchain check is left out.
 //! assert_eq!(verify(None, &case)?.ruling().verdict, Verdict::Correct);

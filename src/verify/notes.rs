@@ -144,7 +144,7 @@ pub(super) fn only_single(failure: &eval::Failure) -> Diagnostic {
 fn undefined(observed: &Observed, excludes_pixels: bool) -> Diagnostic {
     let message = format!(
         "{} in {}; the result is undefined in GLSL",
-        observed.site.fault.words(),
+        observed.site.fault.description(),
         pixels(observed)
     );
     let diagnostic = Diagnostic::new(Code::UndefinedOperation, message).at(observed.site.at.span);

@@ -14,7 +14,7 @@ use toyproof_translate::FloatMode;
 
 use crate::bounds::explanation_deadline;
 use crate::case::Case;
-use crate::compare::{self, CheckResult, Comparison, DiffLevel, Mixed, Reference, SEEN, Undefined};
+use crate::compare::{self, CheckResult, Comparison, DiffLevel, EpsilonSearch, Reference, SEEN, Undefined};
 use crate::contain::{Part, contain};
 use crate::driver::GpuRun;
 use crate::evaluator::{Band, DoubleBand, Evaluator};
@@ -44,7 +44,7 @@ pub(super) struct VerifySession<'a, 'e> {
     pub(super) observed: Observations,
     excludes_pixels: bool,
     algorithm: CheckResult,
-    mixed: Mixed,
+    mixed: EpsilonSearch,
     precision: CheckResult,
     toolchain: Option<CheckResult>,
     comparison: Option<(Comparison, Vec<DiffLevel>)>,
@@ -78,9 +78,9 @@ impl<'a, 'e> VerifySession<'a, 'e> {
             evaluator,
             observed: Observations::default(),
             excludes_pixels: false,
-            algorithm: CheckResult::of_pixels(pixels),
-            mixed: Mixed::of(pixels as u64),
-            precision: CheckResult::of_pixels(pixels),
+            algorithm: CheckResult::with_capacity(pixels),
+            mixed: EpsilonSearch::new(pixels as u64),
+            precision: CheckResult::with_capacity(pixels),
             toolchain: None,
             comparison: None,
             actual: empty(),
@@ -221,7 +221,7 @@ impl<'a, 'e> VerifySession<'a, 'e> {
             let statuses = compare::toolchain(&band.single, drawn, &band.undefined);
             let check = self
                 .toolchain
-                .get_or_insert_with(|| CheckResult::of_pixels(pixels));
+                .get_or_insert_with(|| CheckResult::with_capacity(pixels));
             check.extend(&band.single, drawn, &statuses, offset);
         }
         self.excludes_pixels |= band.undefined.contains(&true);
@@ -378,7 +378,7 @@ impl Reference for BandReference<'_> {
             NumberType::Single => self.expected.tolerance().max(SEEN),
         }
     }
-    fn accept_epsilons(&self, band: &mut compare::Band, mixed: &mut Mixed) {
+    fn accept_epsilons(&self, band: &mut compare::Band, mixed: &mut EpsilonSearch) {
         self.expected.accept_epsilons(self.rows, band, mixed);
     }
     fn is_across_edge(&self, x: u32, y: u32) -> bool {

@@ -156,7 +156,7 @@ fn judge_against(
         size: [16, 9],
         ..Frame::default()
     };
-    let expected = scene.map(|scene| Expected::of_scene(scene.clone(), &frame));
+    let expected = scene.map(|scene| Expected::from_scene(scene.clone(), &frame));
     let lints = Lints::default();
     let case = Case {
         expected: expected.as_ref(),

@@ -364,7 +364,7 @@ fn random_scenes_and_their_shaders_agree() {
             // By the evaluator alone: Mesa 22.3 compiles the shaders of some scenes, such as the fourth, for
             // minutes.
             let findings = check_exercise_with(None, shader, &exercise);
-            let expected = Expected::of_scene(parsed(&exercise), &frame(&exercise, size));
+            let expected = Expected::from_scene(parsed(&exercise), &frame(&exercise, size));
             let is_reported = expected.conditioning().is_some();
             ill_conditioned += u32::from(is_reported);
             let is_right = findings.verdict == Verdict::Correct

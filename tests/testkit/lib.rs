@@ -283,7 +283,7 @@ pub fn check_and_repair_within(
     exercise: &Exercise,
 ) -> Option<Findings> {
     let frame = frame(exercise, exercise.size);
-    let expected = Expected::of_scene(scene(exercise), &frame);
+    let expected = Expected::from_scene(scene(exercise), &frame);
     let hypotheses = Hypotheses::new(&scene(exercise), &frame).expect("the scene is cheap");
     let (checked, lints) = linted(shader);
     let options = Options {
@@ -354,7 +354,7 @@ fn check_with(
     exercise: &Exercise,
 ) -> Findings {
     let frame = frame(exercise, exercise.size);
-    let expected = Expected::of_scene(scene(exercise), &frame);
+    let expected = Expected::from_scene(scene(exercise), &frame);
     check_expected(&expected, hypotheses, search, worker, shader, exercise)
 }
 

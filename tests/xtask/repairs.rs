@@ -154,7 +154,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
         ..Frame::default()
     };
     let checked = checked(&sample.shader);
-    let expected = Expected::of_scene(scene.clone(), &frame);
+    let expected = Expected::from_scene(scene.clone(), &frame);
     let hypotheses = names.then(|| Hypotheses::new(&scene, &frame)).flatten();
     let search = SearchOptions {
         source: &sample.shader,

@@ -6,7 +6,7 @@ use toyproof::image::{Frame, Image};
 use toyproof::scene::{FrameTime, Point, Projection, Scene, Shape};
 use toyproof::tracer::{ColorRange, EpsilonFamily, EpsilonSet, RayEpsilons, Tracer};
 use toyproof::verify::compare::{
-    Band, CheckSummary, EXACT_TOLERANCE, EpsilonColors, Mixed, PERTURBATIONS, Reference, Undefined,
+    Band, CheckSummary, EXACT_TOLERANCE, EpsilonColors, EpsilonSearch, PERTURBATIONS, Reference, Undefined,
     accept_epsilons, algorithm,
 };
 use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
@@ -129,7 +129,7 @@ impl Reference for Traced {
     fn tolerance(&self) -> f64 {
         EXACT_TOLERANCE
     }
-    fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed) {
+    fn accept_epsilons(&self, band: &mut Band, mixed: &mut EpsilonSearch) {
         accept_epsilons(band, self, mixed);
     }
     /// The exercises take no derivatives.
@@ -208,7 +208,7 @@ impl Subject {
                 families: tracer.epsilon_families(),
                 tracer,
             },
-            &mut Mixed::of(self.exact.pixels().len() as u64),
+            &mut EpsilonSearch::new(self.exact.pixels().len() as u64),
             |seed, _| self.perturbed.get(seed as usize).cloned(),
         );
         let answer = CheckSummary::new(&expected, &self.exact, &standings);

@@ -311,7 +311,7 @@ impl SceneCache {
             .iter()
             .position(|(known_index, known)| *known_index == index && known.expected.scene() == Some(&scene));
         let known = before.and_then(|at| latest.remove(at)).map_or_else(
-            || Arc::new(CachedReference::new(Expected::of_scene(scene, frame))),
+            || Arc::new(CachedReference::new(Expected::from_scene(scene, frame))),
             |(_, known)| known,
         );
         latest.push_front((index, Arc::clone(&known)));

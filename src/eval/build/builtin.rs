@@ -195,7 +195,12 @@ impl Builder<'_> {
                 O::Atanh
             }
             (B::DFdx | B::DFdy | B::Fwidth, _) => {
-                self.check(Fault::LonelyDerivative, at, Predicate::PartialQuad, [NONE, NONE]);
+                self.check(
+                    Fault::NonUniformDerivative,
+                    at,
+                    Predicate::PartialQuad,
+                    [NONE, NONE],
+                );
                 match function {
                     B::DFdx => O::DFdx,
                     B::DFdy => O::DFdy,

@@ -252,7 +252,7 @@ impl Builder<'_> {
             }
             _ => {
                 self.check(
-                    Fault::LonelyDerivative,
+                    Fault::NonUniformDerivative,
                     self.at(call),
                     Predicate::PartialQuad,
                     [NONE, NONE],

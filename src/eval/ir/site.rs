@@ -45,7 +45,7 @@ pub enum Fault {
     /// A texture lookup at coordinates that are infinite, NaN, or too large to identify a texel.
     NoPlace,
     /// A derivative in non-uniform control flow: not all pixels of the quad are active.
-    LonelyDerivative,
+    NonUniformDerivative,
     /// A read of an uninitialized variable: zero, as in WebGL.
     NeverWritten,
 }
@@ -70,7 +70,7 @@ impl Fault {
 
     /// Returns the description for messages, such as `an index out of bounds`.
     #[must_use]
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             Self::IndexOutOfBounds => "an index out of bounds",
             Self::DivisionByZero => "an integer division by zero",
@@ -89,7 +89,7 @@ impl Fault {
             Self::ArcOfNothing => "`atan(0, 0)`",
             Self::NoLevel => "`textureSize` of a mip level that does not exist",
             Self::NoPlace => "a texture lookup at infinite, NaN or very large coordinates",
-            Self::LonelyDerivative => "a derivative in non-uniform control flow",
+            Self::NonUniformDerivative => "a derivative in non-uniform control flow",
             Self::NeverWritten => "a read of an uninitialized variable",
         }
     }

@@ -140,7 +140,7 @@ impl<'a> Confirmer<'a> {
             let is_serious = match fault {
                 Fault::IndexOutOfBounds | Fault::NeverWritten => true,
                 // At an edge of any shader that takes derivatives.
-                Fault::LonelyDerivative => false,
+                Fault::NonUniformDerivative => false,
                 _ => excludes_more && fault.is_undefined(),
             };
             is_serious && count(faults, fault) > count(self.faults, fault)

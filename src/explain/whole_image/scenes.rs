@@ -37,7 +37,7 @@ fn other_scene(submission: &Submission, scenes: &OtherScenes) -> Option<Alternat
         {
             return None;
         }
-        let expected = Expected::of_scene(scene.clone(), frame);
+        let expected = Expected::from_scene(scene.clone(), frame);
         let probed = expected.colors_in(frame, &submission.probes)?;
         if !submission.agree(&submission.probes, &probed, &actual) {
             return None;

@@ -19,7 +19,7 @@ pub trait Reference: Sync {
     /// The largest difference of a component of colors that agree.
     fn tolerance(&self) -> f64;
     /// Accepts colors that the reference has for other ray epsilons than its own.
-    fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed);
+    fn accept_epsilons(&self, band: &mut Band, mixed: &mut EpsilonSearch);
     /// Whether the shader takes derivatives, and the pixel's quad lies across an edge.
     fn is_across_edge(&self, x: u32, y: u32) -> bool;
     /// Returns those of the `wanted` pixels, bottom row first, in which the reference itself changes color
@@ -71,17 +71,17 @@ pub trait EpsilonColors: Sync {
 /// State that is kept between bands: how many more pixels may be compared with other ray epsilons, and the
 /// shader's epsilons, if they were found.
 #[derive(Debug, Clone, Copy)]
-pub struct Mixed {
+pub struct EpsilonSearch {
     budget: f64,
     /// The number of pixels that may be compared with all ray epsilons one by one.
     single_pixel_budget: f64,
     fitted: Option<FittedEpsilons>,
 }
 
-impl Mixed {
+impl EpsilonSearch {
     /// The state at the start of an image with that number of pixels.
     #[must_use]
-    pub fn of(pixels: u64) -> Self {
+    pub fn new(pixels: u64) -> Self {
         Self {
             budget: MAX_MIXED_SHARE * pixels as f64,
             single_pixel_budget: MAX_MIXED_SHARE * pixels as f64,
@@ -122,7 +122,7 @@ pub fn algorithm(
     actual: &Image,
     undefined: &Undefined,
     reference: &impl Reference,
-    mixed: &mut Mixed,
+    mixed: &mut EpsilonSearch,
     perturbed: impl FnMut(u64, &[bool]) -> Option<Image>,
 ) -> Vec<PixelStatus> {
     assert_eq!(expected.size(), actual.size());
@@ -247,7 +247,7 @@ impl Band<'_> {
 /// Accepts the colors of a scene for the legal ray epsilons: first for a few. More epsilons are tried only
 /// where pixels are still outside: `mixed` ones if few are, then the shader's own, which are fitted to some
 /// of the pixels, then all that authors use, in each pixel by itself.
-pub fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut Mixed) {
+pub fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut EpsilonSearch) {
     let is_within = |pixel: &Pixel, epsilons| {
         let range = colors.color_range(pixel.x, pixel.y, epsilons);
         range.distance(pixel.actual.map(f64::from)) <= EXACT_TOLERANCE
@@ -429,7 +429,7 @@ mod tests {
         fn tolerance(&self) -> f64 {
             EXACT_TOLERANCE
         }
-        fn accept_epsilons(&self, band: &mut Band, mixed: &mut Mixed) {
+        fn accept_epsilons(&self, band: &mut Band, mixed: &mut EpsilonSearch) {
             accept_epsilons(band, self, mixed);
         }
         fn is_across_edge(&self, x: u32, _: u32) -> bool {
@@ -474,7 +474,7 @@ mod tests {
             in_reference: &[false, false, false, true],
         };
         let reference = black(|_, _| point(0.0));
-        let mixed = &mut Mixed::of(4);
+        let mixed = &mut EpsilonSearch::new(4);
         let statuses = algorithm(&expected, &actual, &undefined, &reference, mixed, |_, _| None);
         let left_out = PixelStatus::Undefined;
         assert_eq!(statuses, [PixelStatus::Differs, left_out, left_out, left_out]);
@@ -492,7 +492,7 @@ mod tests {
             &actual,
             &undefined(&[false; 3]),
             &reference,
-            &mut Mixed::of(3),
+            &mut EpsilonSearch::new(3),
             |_, _| None,
         );
         assert_eq!(
@@ -513,7 +513,7 @@ mod tests {
         let undefined = undefined(&pixels);
         let moving =
             |seed, _: &[bool]| Some(row(&[0.0, 0.0, if seed == 1 { 0.0 } else { 0.3 }, 0.30005, 0.3]));
-        let mixed = &mut Mixed::of(5);
+        let mixed = &mut EpsilonSearch::new(5);
         let statuses = algorithm(&expected, &actual, &undefined, &black(range), mixed, moving);
         assert_eq!(
             statuses,
@@ -529,7 +529,7 @@ mod tests {
 
     #[test]
     fn mixed_epsilons_are_tried_where_few_pixels_differ() {
-        let mut mixed = Mixed::of(2000);
+        let mut mixed = EpsilonSearch::new(2000);
         let mut count_differing = |differing: usize| {
             let none = row(&[0.0; 1000]);
             let mut reds = [0.0; 1000];
@@ -558,7 +558,7 @@ mod tests {
             evaluations += 1;
             Some(row(&[1.0]))
         };
-        let mixed = &mut Mixed::of(1);
+        let mixed = &mut EpsilonSearch::new(1);
         let reference = black(|_, _| point(0.0));
         algorithm(&none, &none, &undefined(&[false]), &reference, mixed, &mut count);
         assert_eq!(evaluations, 0, "nothing differs");
@@ -586,7 +586,7 @@ mod tests {
             &row(&[f32::NAN]),
             &undefined(&[false]),
             &black(|_, _| point(0.0)),
-            &mut Mixed::of(1),
+            &mut EpsilonSearch::new(1),
             |_, _| None,
         );
         assert_eq!(statuses, [PixelStatus::Differs]);
@@ -613,7 +613,7 @@ mod tests {
             .map(|x| (0.7 * f64::from(x % 7 + 1)).sin().abs() as f32)
             .collect();
         let expected = row(&[0.0; 1000]);
-        let mixed = &mut Mixed::of(1000);
+        let mixed = &mut EpsilonSearch::new(1000);
         let statuses = algorithm(
             &expected,
             &row(&reds),
@@ -627,7 +627,7 @@ mod tests {
         // A pixel that no offset explains is wrong, however many others are explained.
         let mut reds = reds;
         reds[500] = f32::NAN;
-        let mixed = &mut Mixed::of(1000);
+        let mixed = &mut EpsilonSearch::new(1000);
         let statuses = algorithm(
             &expected,
             &row(&reds),
@@ -656,7 +656,7 @@ mod tests {
             &row(&reds),
             &undefined(&[false; 1000]),
             &reference,
-            &mut Mixed::of(1000),
+            &mut EpsilonSearch::new(1000),
             |_, _| None,
         );
         assert_eq!(statuses[3..5], [PixelStatus::Agrees, PixelStatus::Differs]);
@@ -670,7 +670,7 @@ mod tests {
         };
         let mut reds = [0.0; 100];
         reds[..3].fill(0.5);
-        let mixed = &mut Mixed::of(100);
+        let mixed = &mut EpsilonSearch::new(100);
         let statuses = algorithm(
             &row(&[0.0; 100]),
             &row(&reds),

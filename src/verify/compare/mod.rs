@@ -14,7 +14,7 @@ mod region;
 mod result;
 
 pub use algorithm::{
-    Band, EpsilonColors, Mixed, PERTURBATIONS, Reference, Undefined, accept_epsilons, algorithm,
+    Band, EpsilonColors, EpsilonSearch, PERTURBATIONS, Reference, Undefined, accept_epsilons, algorithm,
 };
 pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
 pub use check::{

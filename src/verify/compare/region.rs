@@ -57,7 +57,7 @@ impl Region {
 impl Regions {
     /// Finds the regions of the pixels with this status in an image that many pixels wide, bottom row first.
     #[must_use]
-    pub fn of(status: PixelStatus, statuses: &[PixelStatus], width: u32) -> Self {
+    pub fn new(status: PixelStatus, statuses: &[PixelStatus], width: u32) -> Self {
         let mut regions = Self::default();
         let mut search = Search {
             status,
@@ -154,7 +154,7 @@ mod tests {
                 _ => PixelStatus::IllConditioned,
             })
             .collect();
-        Regions::of(PixelStatus::Differs, &statuses, rows[0].len() as u32)
+        Regions::new(PixelStatus::Differs, &statuses, rows[0].len() as u32)
     }
 
     #[test]

@@ -58,7 +58,7 @@ impl CheckResult {
     /// The result of no band, with the memory for an image of that many pixels: growing step by step would
     /// leave unused parts behind.
     #[must_use]
-    pub fn of_pixels(count: usize) -> Self {
+    pub fn with_capacity(count: usize) -> Self {
         Self {
             diff_levels: Vec::with_capacity(count),
             statuses: Vec::with_capacity(count),
@@ -87,7 +87,7 @@ impl CheckResult {
     /// were added.
     #[must_use]
     pub fn with_regions(mut self, width: u32) -> Self {
-        let regions = |status| Regions::of(status, &self.statuses, width);
+        let regions = |status| Regions::new(status, &self.statuses, width);
         self.summary.regions = regions(PixelStatus::Differs);
         self.summary.undefined_region = regions(PixelStatus::Undefined).largest_compact;
         self

@@ -226,9 +226,9 @@ mod tests {
     fn tile_edges_on_pixel_centers_are_found_and_the_edit_moves_them() {
         // The eye is above an edge of the tiles, and in images of odd width a column of pixels is.
         let scene = scene(FLOOR);
-        let even = Expected::of_scene(scene.clone(), &frame([160, 90]));
+        let even = Expected::from_scene(scene.clone(), &frame([160, 90]));
         assert_eq!(even.conditioning(), None);
-        let odd = Expected::of_scene(scene.clone(), &frame([161, 90]));
+        let odd = Expected::from_scene(scene.clone(), &frame([161, 90]));
         let found = odd.conditioning().unwrap();
         // Half of the column sees the floor.
         let ratio = found.ill_conditioned.ratio() * 161.0;
@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(found.edit.as_deref(), Some(edit));
         let mut edited = scene;
         edited.camera.eye = [0.0013, 0.0009, 0.0005];
-        let edited = Expected::of_scene(edited, &frame([161, 90]));
+        let edited = Expected::from_scene(edited, &frame([161, 90]));
         assert_eq!(edited.conditioning(), None);
     }
 
@@ -247,7 +247,7 @@ mod tests {
         let sphere = "[[sphere]]\ncenter = [0.0, 3.0, -6.0]\nradius = 1.0\n\
                       material = { model = \"lambert\", color = [1.0, 1.0, 1.0] }\n";
         let scene = scene(&(FLOOR.replace("[3.0, 4.0, 1.0]", "[0.6, 2.2, -6.0]") + sphere));
-        let found = Expected::of_scene(scene, &frame([160, 90])).conditioning();
+        let found = Expected::from_scene(scene, &frame([160, 90])).conditioning();
         let edit = found.and_then(|found| found.edit);
         assert!(
             edit.as_ref()
@@ -260,7 +260,7 @@ mod tests {
     fn the_template_is_well_conditioned() {
         let scene = scene(&scene::template("week 1"));
         for size in [scene.film.size, [320, 180], [161, 91], [500, 500]] {
-            let expected = Expected::of_scene(scene.clone(), &frame(size));
+            let expected = Expected::from_scene(scene.clone(), &frame(size));
             assert_eq!(expected.conditioning(), None, "{size:?}");
         }
     }

@@ -30,7 +30,7 @@ pub use self::number_type::NumberType;
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
 use crate::bounds::MAX_ITERATIONS;
-use crate::compare::{Band, EXACT_TOLERANCE, Mixed, SEEN, accept_epsilons};
+use crate::compare::{Band, EXACT_TOLERANCE, EpsilonSearch, SEEN, accept_epsilons};
 use crate::evaluator::evaluate_at;
 use crate::random::estimates::Resampled;
 
@@ -60,7 +60,7 @@ pub enum ReferenceKind {
 impl Expected {
     /// Creates the reference of a scene at the time and in the size of the frame.
     #[must_use]
-    pub fn of_scene(scene: Scene, frame: &Frame) -> Self {
+    pub fn from_scene(scene: Scene, frame: &Frame) -> Self {
         Self::Scene(Box::new(SceneReference::new(scene, frame)))
     }
 
@@ -116,7 +116,7 @@ impl Expected {
     #[must_use]
     pub fn in_frame(&self, frame: &Frame) -> Option<Self> {
         match self {
-            Self::Scene(scene) => Some(Self::of_scene(scene.scene().clone(), frame)),
+            Self::Scene(scene) => Some(Self::from_scene(scene.scene().clone(), frame)),
             Self::Shader(shader) => Some(Self::Shader(Box::new(shader.in_frame(frame)?))),
             Self::Image(_) => None,
         }
@@ -286,7 +286,7 @@ impl Expected {
 
     /// Accepts the colors of a band that the reference has for other ray epsilons, or if it marches
     /// differently.
-    pub(crate) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band, mixed: &mut Mixed) {
+    pub(crate) fn accept_epsilons(&self, rows: &Range<u32>, band: &mut Band, mixed: &mut EpsilonSearch) {
         match self {
             Self::Scene(scene) => accept_epsilons(band, &scene.band(rows), mixed),
             Self::Shader(shader) => shader.accept_epsilons(rows, band),
