@@ -39,9 +39,9 @@ pub(crate) fn compile(
         number_values(&mut function, fold, options.trace);
         deadline.check()?;
         eliminate_dead_code(&mut function);
-        let groups = AliasGroups::of(&function);
+        let groups = AliasGroups::new(&function);
         deadline.check()?;
-        let divergence = Divergence::of(&function, &groups);
+        let divergence = Divergence::new(&function, &groups);
         fuse(&mut function, &divergence);
         pair(&mut function);
         deadline.check()?;

@@ -68,7 +68,7 @@ impl ParametricProgram {
         settings: &Settings<'_, f64>,
         work: impl FnOnce(&mut PointEvaluator<'_>) -> T,
     ) -> T {
-        let limits = Limits::of(settings);
+        let limits = Limits::new(settings);
         let job = FrameJob::new(
             &self.lowered,
             &self.code,

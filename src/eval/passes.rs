@@ -8,11 +8,9 @@ use toyproof_player::{Channel, Renderer};
 
 use crate::exec::evaluate::Number;
 use crate::exec::limits::Failure;
-use crate::exec::observe::Observations;
 use crate::exec::settings::Settings;
 use crate::exec::texture::texel;
 use crate::program::Program;
-use crate::render::Rendered;
 
 /// Renders passes in a number type; buffers hold numbers of that type.
 #[derive(Debug)]
@@ -20,7 +18,6 @@ pub struct PassRenderer<'a, N: Number> {
     programs: Vec<&'a Program>,
     media: &'a [Texture],
     settings: Settings<'a, N>,
-    observations: Vec<Observations>,
 }
 
 /// Why a pass was not rendered.
@@ -41,10 +38,8 @@ impl<'a, N: Number> PassRenderer<'a, N> {
         media: &'a [Texture],
         settings: Settings<'a, N>,
     ) -> Self {
-        let programs: Vec<_> = programs.into_iter().collect();
         Self {
-            observations: vec![Observations::default(); programs.len()],
-            programs,
+            programs: programs.into_iter().collect(),
             media,
             settings,
         }
@@ -61,20 +56,13 @@ impl<'a, N: Number> PassRenderer<'a, N> {
         let [width, height] = texture.size();
         let texel = |x, y| [0, 1, 2, 3].map(|component| texel::<N>(texture, 0, [x, y], component));
         let texels = (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y)));
-        let loaded = N::texture(texture.size(), texels.collect());
-        if mipmaps { loaded.with_mipmaps() } else { loaded }
+        with_mipmaps(N::texture(texture.size(), texels.collect()), mipmaps)
     }
 
     /// A frame with these channels.
     #[must_use]
     pub fn bound(&self, frame: &Frame, channels: [Channel<'_, Texture>; 4]) -> Frame {
         bound(frame, channels, self.media)
-    }
-
-    /// The observations of each pass, over all frames.
-    #[must_use]
-    pub fn observations(&self) -> &[Observations] {
-        &self.observations
     }
 }
 
@@ -92,14 +80,21 @@ pub fn bound(frame: &Frame, channels: [Channel<'_, Texture>; 4], media: &[Textur
     }
 }
 
+/// The texture with mipmaps, if it has any.
+fn with_mipmaps(texture: Texture, mipmaps: bool) -> Texture {
+    if mipmaps { texture.with_mipmaps() } else { texture }
+}
+
 impl<N: Number> Renderer for PassRenderer<'_, N> {
     type Texture = Texture;
     type Error = PassFailure;
 
     fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Texture, PassFailure> {
         let count = size[0] as usize * size[1] as usize;
-        let texture = N::texture(size, vec![[N::default(); 4]; count]);
-        Ok(if mipmaps { texture.with_mipmaps() } else { texture })
+        Ok(with_mipmaps(
+            N::texture(size, vec![[N::default(); 4]; count]),
+            mipmaps,
+        ))
     }
 
     fn draw(
@@ -111,27 +106,12 @@ impl<N: Number> Renderer for PassRenderer<'_, N> {
     ) -> Result<Texture, PassFailure> {
         let frame = self.bound(frame, channels);
         let rendered = self.programs[pass].render(&frame, &self.settings);
-        let Rendered {
-            framebuffer,
-            observations,
-        } = rendered.map_err(|failure| PassFailure { pass, failure })?;
-        self.observations[pass].merge(&observations);
-        let has_mipmaps = over.levels() > 1;
-        let texture = framebuffer.texture_over(&over);
-        Ok(if has_mipmaps {
-            texture.with_mipmaps()
-        } else {
-            texture
-        })
+        let rendered = rendered.map_err(|failure| PassFailure { pass, failure })?;
+        let texture = rendered.framebuffer.texture_over(&over);
+        Ok(with_mipmaps(texture, over.levels() > 1))
     }
 
     fn resized(&mut self, texture: Texture, size: [u32; 2]) -> Result<Texture, PassFailure> {
-        let has_mipmaps = texture.levels() > 1;
-        let texture = texture.cropped(size);
-        Ok(if has_mipmaps {
-            texture.with_mipmaps()
-        } else {
-            texture
-        })
+        Ok(with_mipmaps(texture.cropped(size), texture.levels() > 1))
     }
 }

@@ -65,23 +65,7 @@ impl Program {
         settings: &Settings<'_, N>,
     ) -> Result<RenderedF32, Failure> {
         let size = [frame.size[0], rows.len() as u32];
-        let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
-        let mut flags = vec![0; pixels.len()];
-        let part = Part::Rows(rows);
-        let executable = self.executable(settings.undefined)?;
-        let observations = N::fill(
-            executable,
-            frame,
-            part,
-            settings,
-            Pixels::Rounded(&mut pixels),
-            &mut flags,
-        )?;
-        Ok(RenderedF32 {
-            image: Image::new(size[0], size[1], pixels),
-            undefined: flags.into_iter().map(|flag| flag & UNDEFINED != 0).collect(),
-            observations,
-        })
+        self.render_part(frame, Part::Rows(rows), size, settings)
     }
 
     /// Evaluates a frame at some positions only, rounded to f32: a pixel for each.
@@ -95,20 +79,30 @@ impl Program {
         settings: &Settings<'_, N>,
     ) -> Result<Image, Failure> {
         let size = places.size();
-        let mut pixels = vec![[0.0; 4]; size[0] as usize * size[1] as usize];
-        let mut flags = vec![0; pixels.len()];
-        if !pixels.is_empty() {
-            let part = Part::Places(places);
-            let executable = self.executable(settings.undefined)?;
-            N::fill(
-                executable,
-                frame,
-                part,
-                settings,
-                Pixels::Rounded(&mut pixels),
-                &mut flags,
-            )?;
+        if size.contains(&0) {
+            return Ok(Image::new(size[0], size[1], Vec::new()));
         }
-        Ok(Image::new(size[0], size[1], pixels))
+        let rendered = self.render_part(frame, Part::Places(places), size, settings)?;
+        Ok(rendered.image)
+    }
+
+    /// Renders a part of a frame, rounded to f32, as an image of this size.
+    fn render_part<N: Number>(
+        &self,
+        frame: &Frame,
+        part: Part<'_>,
+        [width, height]: [u32; 2],
+        settings: &Settings<'_, N>,
+    ) -> Result<RenderedF32, Failure> {
+        let mut colors = vec![[0.0; 4]; width as usize * height as usize];
+        let mut flags = vec![0; colors.len()];
+        let executable = self.executable(settings.undefined)?;
+        let pixels = Pixels::Rounded(&mut colors);
+        let observations = N::fill(executable, frame, part, settings, pixels, &mut flags)?;
+        Ok(RenderedF32 {
+            image: Image::new(width, height, colors),
+            undefined: flags.into_iter().map(|flag| flag & UNDEFINED != 0).collect(),
+            observations,
+        })
     }
 }

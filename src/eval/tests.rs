@@ -76,7 +76,7 @@ impl FunctionBuilder {
         let function = self.output([0, 0]);
         linearize(
             &function,
-            &Divergence::of(&function, &AliasGroups::of(&function)),
+            &Divergence::new(&function, &AliasGroups::new(&function)),
             false,
         )
     }
@@ -330,7 +330,7 @@ fn divergence_propagates_from_cell_to_cell() {
         .extend([store(cell_count, varying), store(cell_count + 1, same)]);
     builder.function.body.push(Node::Loop { id: LoopId(0), body });
     let function = builder.output([0, cell_count + 1]);
-    let divergence = Divergence::of(&function, &AliasGroups::of(&function));
+    let divergence = Divergence::new(&function, &AliasGroups::new(&function));
     assert!((0..=cell_count).all(|cell| divergence.cell(Cell(cell))));
     assert!(!divergence.cell(Cell(cell_count + 1)));
 }
@@ -364,7 +364,7 @@ fn cells_are_shared_if_other_pixels_read_them() {
         },
     ]);
     let function = builder.output([0, 2]);
-    let divergence = Divergence::of(&function, &AliasGroups::of(&function));
+    let divergence = Divergence::new(&function, &AliasGroups::new(&function));
     let shared = [0, 1, 2, 3, 4].map(|cell| divergence.is_shared(Cell(cell)));
     assert_eq!(shared, [true, false, true, false, true]);
     assert!(divergence.scope(Scope(0)));

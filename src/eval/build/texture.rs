@@ -9,7 +9,7 @@ use crate::ir::{Fault, Kind, NONE, Operation, Predicate, Value, ValueDef};
 
 /// A lookup at normalized coordinates.
 #[derive(Debug, Clone, Copy)]
-struct Filtered {
+struct FilteredLookup {
     channel: u8,
     sampling: Sampling,
     /// In texels, −8 to 7.
@@ -101,7 +101,7 @@ impl Builder<'_> {
                 }
             }
         }
-        let filtered = Filtered {
+        let filtered = FilteredLookup {
             channel,
             sampling,
             offset,
@@ -124,7 +124,7 @@ impl Builder<'_> {
     }
 
     /// A lookup at normalized coordinates between two levels of the mipmaps.
-    fn between_levels(&self, lookup: Filtered, at: [Value; 2], level: Value) -> [Value; 4] {
+    fn between_levels(&self, lookup: FilteredLookup, at: [Value; 2], level: Value) -> [Value; 4] {
         use Operation as O;
         let sizes = [0, 1].map(|axis| self.side(lookup.channel, axis));
         // Often the whole texture is sampled explicitly.
@@ -156,7 +156,13 @@ impl Builder<'_> {
 
     /// A lookup at normalized coordinates in one level, which has these sides. The steps are those of the
     /// text in `toyproof_translate`.
-    fn filtered(&self, lookup: Filtered, at: [Value; 2], sizes: [Value; 2], level: Value) -> [Value; 4] {
+    fn filtered(
+        &self,
+        lookup: FilteredLookup,
+        at: [Value; 2],
+        sizes: [Value; 2],
+        level: Value,
+    ) -> [Value; 4] {
         use Operation as O;
         let Sampling { filter, wrap } = lookup.sampling;
         let is_nearest = filter == Filter::Nearest;

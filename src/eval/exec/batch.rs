@@ -1,6 +1,7 @@
 //! The execution state of a batch of pixels: rows of components, scalars, and masks.
 
 use std::cell::{Cell, RefCell};
+use std::iter::repeat_with;
 
 use toyproof_image::Texture;
 
@@ -8,6 +9,7 @@ use crate::exec::lanes::{Chunk, LANES, Lanes, any};
 use crate::exec::number::Arithmetic;
 use crate::exec::observe::Notes;
 use crate::exec::recorder::Recorder;
+use crate::exec::settings::Settings;
 
 /// Summary of a mask: a bit for each chunk of [`LANES`] pixels that has an active pixel, and whether all
 /// pixels are active.
@@ -67,7 +69,37 @@ pub(crate) trait Cancellation: Sync {
 /// The number of loop iterations between two checks of the limits.
 pub(crate) const FUEL_ITERATIONS: u32 = 1 << 12;
 
-impl<N: Arithmetic> Batch<'_, N> {
+impl<'a, N: Arithmetic> Batch<'a, N> {
+    /// Creates a batch with these numbers of rows of floats and of words and these scalars, without masks.
+    pub(crate) fn new(
+        width: usize,
+        [float_rows, word_rows]: [usize; 2],
+        (floats, words): (&[N], &[u32]),
+        settings: &Settings<'_, N>,
+        textures: &'a [Option<Texture>; 4],
+        cancellation: &'a dyn Cancellation,
+    ) -> Self {
+        Self {
+            width,
+            floats: chunks([N::default(); LANES], float_rows * width),
+            words: chunks([0; LANES], word_rows * width),
+            float_scalars: floats.iter().copied().map(Cell::new).collect(),
+            word_scalars: words.iter().copied().map(Cell::new).collect(),
+            masks: Vec::new(),
+            active: Vec::new(),
+            noise: settings.noise,
+            textures,
+            fuel: Cell::new(FUEL_ITERATIONS),
+            stopped: Cell::new(None),
+            cancellation,
+            iteration_limit: settings.max_iterations,
+            iterations: Cell::new(0),
+            own_iterations: chunks([0; LANES], width),
+            notes: RefCell::default(),
+            recorder: None,
+        }
+    }
+
     /// Returns a row of floats.
     #[inline(always)]
     pub(crate) fn float_row(&self, first: u32) -> &[Chunk<N>] {
@@ -108,4 +140,9 @@ impl<N: Arithmetic> Batch<'_, N> {
             all: false,
         });
     }
+}
+
+/// Returns chunks with the same lanes.
+pub(crate) fn chunks<T: Copy>(lanes: Lanes<T>, count: usize) -> Vec<Chunk<T>> {
+    repeat_with(|| Chunk::new(lanes)).take(count).collect()
 }

@@ -18,12 +18,39 @@ use crate::exec::settings::Settings;
 use crate::exec::tile::FrameJob;
 use crate::lower::LoweredCode;
 
-/// A number type that a shader can be evaluated in. The code for it is instantiated in this crate once, not
-/// in each crate that uses it.
-pub trait Number: Arithmetic {
+/// Where a part of a frame is rendered to.
+pub enum Pixels<'a, N> {
+    /// Colors as in the GPU's render target, rounded to f32.
+    Rounded(&'a mut [[f32; 4]]),
+    /// Colors in the number type.
+    Own(&'a mut [[N; 4]]),
+}
+
+/// Declares [`Number`], and implements it for each type: default methods would be instantiated in each crate that
+/// uses them, not once in this one.
+macro_rules! numbers {
+    (
+        $($number:ty),*;
+        $($(#[$attribute:meta])* fn $name:ident($($argument:ident: $ty:ty),*) -> $result:ty $body:block)*
+    ) => {
+        /// A number type that a shader can be evaluated in.
+        pub trait Number: Arithmetic {
+            $($(#[$attribute])* fn $name($($argument: $ty),*) -> $result;)*
+        }
+        numbers!(@ $($number)*; {$(fn $name($($argument: $ty),*) -> $result $body)*});
+    };
+    (@ $($number:ty)*; $methods:tt) => {
+        $(impl Number for $number $methods)*
+    };
+}
+numbers! {
+    f32, f64, RandomRounding;
+
     /// Selects the instructions for a frame.
     #[doc(hidden)]
-    fn select(lowered: &LoweredCode, frame: &Frame) -> FrameCode<Self>;
+    fn select(lowered: &LoweredCode, frame: &Frame) -> FrameCode<Self> {
+        FrameCode::select(lowered, frame)
+    }
 
     /// Renders a part of a frame.
     #[doc(hidden)]
@@ -33,8 +60,15 @@ pub trait Number: Arithmetic {
         part: Part<'_>,
         settings: &Settings<'_, Self>,
         pixels: Pixels<'_, Self>,
-        flags: &mut [u8],
-    ) -> Result<Observations, Failure>;
+        flags: &mut [u8]
+    ) -> Result<Observations, Failure> {
+        match pixels {
+            Pixels::Rounded(pixels) => {
+                fill(executable, frame, part, settings, (pixels, flags), target_color)
+            }
+            Pixels::Own(pixels) => fill(executable, frame, part, settings, (pixels, flags), |color, _| color),
+        }
+    }
 
     /// Records the trace of a pixel.
     #[doc(hidden)]
@@ -44,60 +78,14 @@ pub trait Number: Arithmetic {
         frame: &Frame,
         settings: &Settings<'_, Self>,
         pixel: [u32; 2],
-        prefix: Option<ForcedPrefix<'_>>,
-    ) -> Result<ExecutionTrace, Failure>;
+        prefix: Option<ForcedPrefix<'_>>
+    ) -> Result<ExecutionTrace, Failure> {
+        let limits = Limits::new(settings);
+        let job = FrameJob::new(lowered, code, &frame.channels, &limits, settings, frame.size);
+        job.trace(pixel, prefix)
+            .map_err(|end| end.failure(lowered, &limits, settings.max_iterations))
+    }
 }
-
-/// Where a part of a frame is rendered to.
-pub enum Pixels<'a, N> {
-    /// Colors as in the GPU's render target, rounded to f32.
-    Rounded(&'a mut [[f32; 4]]),
-    /// Colors in the number type.
-    Own(&'a mut [[N; 4]]),
-}
-
-macro_rules! numbers {
-    ($($number:ty),*) => {$(
-        impl Number for $number {
-            fn select(lowered: &LoweredCode, frame: &Frame) -> FrameCode<Self> {
-                FrameCode::select(lowered, frame)
-            }
-
-            fn fill(
-                executable: &Executable,
-                frame: &Frame,
-                part: Part<'_>,
-                settings: &Settings<'_, Self>,
-                pixels: Pixels<'_, Self>,
-                flags: &mut [u8],
-            ) -> Result<Observations, Failure> {
-                match pixels {
-                    Pixels::Rounded(pixels) => {
-                        fill(executable, frame, part, settings, (pixels, flags), target_color)
-                    }
-                    Pixels::Own(pixels) => {
-                        fill(executable, frame, part, settings, (pixels, flags), |color, _| color)
-                    }
-                }
-            }
-
-            fn trace(
-                lowered: &LoweredCode,
-                code: &FrameCode<Self>,
-                frame: &Frame,
-                settings: &Settings<'_, Self>,
-                pixel: [u32; 2],
-                prefix: Option<ForcedPrefix<'_>>,
-            ) -> Result<ExecutionTrace, Failure> {
-                let limits = Limits::of(settings);
-                let job = FrameJob::new(lowered, code, &frame.channels, &limits, settings, frame.size);
-                job.trace(pixel, prefix)
-                    .map_err(|end| end.failure(lowered, &limits, settings.max_iterations))
-            }
-        }
-    )*};
-}
-numbers!(f32, f64, RandomRounding);
 
 /// Renders a part; `keep` converts the color and flags of each pixel to its stored value.
 fn fill<N: Number, P: Send>(
@@ -110,7 +98,7 @@ fn fill<N: Number, P: Send>(
 ) -> Result<Observations, Failure> {
     let lowered = &executable.lowered;
     let code = N::select(lowered, frame);
-    let limits = Limits::of(settings);
+    let limits = Limits::new(settings);
     let (size, start, places) = match part {
         Part::Rows(rows) => ([frame.size[0], rows.end], rows.start, None),
         Part::Places(places) => (places.size(), 0, Some(places)),

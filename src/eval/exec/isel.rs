@@ -270,7 +270,11 @@ impl<N: Arithmetic> Writer<'_, N> {
                 ..
             } => {
                 let (condition, _) = self.value(condition);
-                let run = ops::split(self.level, when, yes != no);
+                let run = if yes == no {
+                    ops::choose(self.level, when)
+                } else {
+                    ops::split(self.level, when)
+                };
                 self.push(run, 0, [condition, yes.0.into(), no.0.into()], 0);
             }
             Step::Copy { to } => {

@@ -49,7 +49,7 @@ pub(crate) struct Limits<'a> {
 }
 
 impl<'a> Limits<'a> {
-    pub(crate) fn of<N: Arithmetic>(settings: &Settings<'a, N>) -> Self {
+    pub(crate) fn new<N: Arithmetic>(settings: &Settings<'a, N>) -> Self {
         Self {
             deadline: settings.deadline,
             interrupt: settings.interrupt,

@@ -1,6 +1,7 @@
 //! The number types that a shader is evaluated in.
 
 use std::fmt::Debug;
+use std::ops::Neg;
 
 use toyproof_image::{Image, Texture};
 use toyproof_math::double;
@@ -29,7 +30,11 @@ pub enum FloatFormat {
 }
 
 macro_rules! define_number {
-    ($($method:ident: $double:path, $single:path;)*) => {
+    (
+        $($exact:ident: $exact_double:path, $exact_single:path, $doc:literal;)*
+        ---
+        $($method:ident: $double:path, $single:path;)*
+    ) => {
         /// The operations of a number type: f32 with denormals flushed and the expanded functions of
         /// [`toyproof_math`], as in strict shaders; f64 with functions as accurate as libm's; or f64 with
         /// random rounding.
@@ -76,24 +81,11 @@ macro_rules! define_number {
             /// √self
             #[must_use]
             fn sqrt(self, noise: Self::Noise) -> Self;
-            /// Returns the absolute value.
-            #[must_use]
-            fn abs(self) -> Self;
-            /// `−self`
-            #[must_use]
-            fn neg(self) -> Self;
-            /// Rounds down.
-            #[must_use]
-            fn floor(self) -> Self;
-            /// Rounds up.
-            #[must_use]
-            fn ceil(self) -> Self;
-            /// Rounds toward zero.
-            #[must_use]
-            fn trunc(self) -> Self;
-            /// Rounds to the nearest integer, ties to even.
-            #[must_use]
-            fn round_even(self) -> Self;
+            $(
+                #[doc = $doc]
+                #[must_use]
+                fn $exact(self) -> Self;
+            )*
             $(
                 #[doc = concat!("`", stringify!($method), "` of each number")]
                 #[must_use]
@@ -156,7 +148,13 @@ macro_rules! define_number {
             fn sqrt(self, (): ()) -> Self {
                 f32::sqrt(self)
             }
-            exact!(f32, i32);
+            bits!(f32, i32);
+            $(
+                #[inline(always)]
+                fn $exact(self) -> Self {
+                    $exact_single(self)
+                }
+            )*
             $(
                 #[inline(always)]
                 fn $method<const L: usize>(x: [Self; L], (): ()) -> [Self; L] {
@@ -224,7 +222,13 @@ macro_rules! define_number {
             fn sqrt(self, (): ()) -> Self {
                 f64::sqrt(self)
             }
-            exact!(f64, i64);
+            bits!(f64, i64);
+            $(
+                #[inline(always)]
+                fn $exact(self) -> Self {
+                    $exact_double(self)
+                }
+            )*
             $(
                 #[inline(always)]
                 fn $method<const L: usize>(x: [Self; L], (): ()) -> [Self; L] {
@@ -304,30 +308,12 @@ macro_rules! define_number {
                 let root = self.0.sqrt();
                 seed.round_randomly_unless(root, root.mul_add(root, -self.0) == 0.0)
             }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                Self(self.0.abs())
-            }
-            #[inline(always)]
-            fn neg(self) -> Self {
-                Self(-self.0)
-            }
-            #[inline(always)]
-            fn floor(self) -> Self {
-                Self(self.0.floor())
-            }
-            #[inline(always)]
-            fn ceil(self) -> Self {
-                Self(self.0.ceil())
-            }
-            #[inline(always)]
-            fn trunc(self) -> Self {
-                Self(self.0.trunc())
-            }
-            #[inline(always)]
-            fn round_even(self) -> Self {
-                Self(self.0.round_ties_even())
-            }
+            $(
+                #[inline(always)]
+                fn $exact(self) -> Self {
+                    Self($exact_double(self.0))
+                }
+            )*
             $(
                 #[inline(always)]
                 fn $method<const L: usize>(x: [Self; L], seed: Seed) -> [Self; L] {
@@ -347,7 +333,7 @@ macro_rules! define_number {
     };
 }
 
-macro_rules! exact {
+macro_rules! bits {
     ($float:ident, $signed:ident) => {
         #[inline(always)]
         fn blend(mask: u32, yes: Self, no: Self) -> Self {
@@ -357,30 +343,6 @@ macro_rules! exact {
         #[inline(always)]
         fn is_nan(self) -> bool {
             $float::is_nan(self)
-        }
-        #[inline(always)]
-        fn abs(self) -> Self {
-            $float::abs(self)
-        }
-        #[inline(always)]
-        fn neg(self) -> Self {
-            -self
-        }
-        #[inline(always)]
-        fn floor(self) -> Self {
-            $float::floor(self)
-        }
-        #[inline(always)]
-        fn ceil(self) -> Self {
-            $float::ceil(self)
-        }
-        #[inline(always)]
-        fn trunc(self) -> Self {
-            $float::trunc(self)
-        }
-        #[inline(always)]
-        fn round_even(self) -> Self {
-            $float::round_ties_even(self)
         }
     };
 }
@@ -399,6 +361,13 @@ mod libm_lanes {
 }
 
 define_number! {
+    abs: f64::abs, f32::abs, "Returns the absolute value.";
+    neg: Neg::neg, Neg::neg, "`−self`";
+    floor: f64::floor, f32::floor, "Rounds down.";
+    ceil: f64::ceil, f32::ceil, "Rounds up.";
+    trunc: f64::trunc, f32::trunc, "Rounds toward zero.";
+    round_even: f64::round_ties_even, f32::round_ties_even, "Rounds to the nearest integer, ties to even.";
+    ---
     sin: double::sin, native::sin;
     cos: double::cos, native::cos;
     tan: libm_lanes::tan, native::tan;

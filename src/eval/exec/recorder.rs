@@ -89,17 +89,14 @@ impl<'a> Recorder<'a> {
         component: u32,
         value: TraceValue,
     ) -> Option<TraceValue> {
-        let mut trace = self.trace.borrow_mut();
-        self.recorded.set(self.recorded.get() + 1);
-        if self.recorded.get() > MAX_TRACE_COMPONENTS {
-            trace.is_cut = true;
-            return None;
-        }
         if component == 0 {
-            trace.events.push(TraceEvent {
-                event: EventId(event),
-                values: Vec::new(),
-            });
+            self.record_event(event);
+        } else {
+            self.count();
+        }
+        let mut trace = self.trace.borrow_mut();
+        if trace.is_cut {
+            return None;
         }
         let at = trace.events.len().checked_sub(1)?;
         let forced = self
@@ -111,18 +108,22 @@ impl<'a> Recorder<'a> {
         forced
     }
 
-    /// Records an event without a value.
+    /// Records an event, still without a value.
     pub(crate) fn record_event(&self, event: u32) {
-        let mut trace = self.trace.borrow_mut();
-        self.recorded.set(self.recorded.get() + 1);
-        if self.recorded.get() > MAX_TRACE_COMPONENTS {
-            trace.is_cut = true;
-            return;
+        if self.count() {
+            self.trace.borrow_mut().events.push(TraceEvent {
+                event: EventId(event),
+                values: Vec::new(),
+            });
         }
-        trace.events.push(TraceEvent {
-            event: EventId(event),
-            values: Vec::new(),
-        });
+    }
+
+    /// Counts a component or an event; returns whether it is recorded.
+    fn count(&self) -> bool {
+        self.recorded.set(self.recorded.get() + 1);
+        let is_cut = self.recorded.get() > MAX_TRACE_COMPONENTS;
+        self.trace.borrow_mut().is_cut |= is_cut;
+        !is_cut
     }
 
     pub(crate) fn finish(self) -> ExecutionTrace {

@@ -41,6 +41,17 @@ pub enum Engine {
     Avx2,
 }
 
+impl<N: Arithmetic> Settings<'_, N> {
+    /// The default settings, but without records of undefined operations.
+    #[must_use]
+    pub fn plain() -> Self {
+        Self {
+            undefined: UndefinedPolicy::Plain,
+            ..Self::default()
+        }
+    }
+}
+
 impl<N: Arithmetic> Default for Settings<'_, N> {
     /// Records undefined operations, has no time limit, and allows more iterations than any reasonable shader
     /// runs.

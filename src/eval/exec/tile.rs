@@ -1,17 +1,16 @@
 //! Renders tiles. A *band* is a row of tiles; the pixels of a tile are one *batch*, which is stored in
 //! *chunks* of [`LANES`] pixels.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::iter::repeat_with;
 use std::ops::Range;
 
 use toyproof_image::Texture;
 
-use crate::exec::batch::{Active, Batch, Cancellation, FUEL_ITERATIONS};
+use crate::exec::batch::{Active, Batch, Cancellation, chunks};
 use crate::exec::frame::{DISCARDED, UNDEFINED};
 use crate::exec::isel::FrameCode;
-use crate::exec::lanes::{Chunk, LANES, Lanes, TILE_COLUMNS, lane_at, lane_position};
+use crate::exec::lanes::{LANES, Lanes, TILE_COLUMNS, lane_at, lane_position};
 use crate::exec::limits::{BandError, Limits};
 use crate::exec::native::{BatchTables, NativeBatch, NativeFrame, NativeInput, NativeProgram};
 use crate::exec::number::Arithmetic;
@@ -116,23 +115,16 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
             chunk.set([u32::MAX; LANES]);
         }
         Batch {
-            width,
-            floats: chunks([N::default(); LANES], code.float_rows * width),
-            words: chunks([0; LANES], code.word_rows * width),
-            float_scalars: self.floats.iter().copied().map(Cell::new).collect(),
-            word_scalars: self.words.iter().copied().map(Cell::new).collect(),
             masks,
             active: active.into_iter().map(Cell::new).collect(),
-            noise: self.settings.noise,
-            textures: self.textures,
-            fuel: Cell::new(FUEL_ITERATIONS),
-            stopped: Cell::new(None),
-            cancellation: self.limits,
-            iteration_limit: self.settings.max_iterations,
-            iterations: Cell::new(0),
-            own_iterations: chunks([0; LANES], width),
-            notes: RefCell::default(),
-            recorder: None,
+            ..Batch::new(
+                width,
+                [code.float_rows, code.word_rows],
+                (&self.floats, &self.words),
+                self.settings,
+                self.textures,
+                self.limits,
+            )
         }
     }
 
@@ -382,11 +374,6 @@ fn store_row<N: Arithmetic, P>(
     }
 }
 
-/// Returns chunks with the same lanes.
-fn chunks<T: Copy>(lanes: Lanes<T>, count: usize) -> Vec<Chunk<T>> {
-    repeat_with(|| Chunk::new(lanes)).take(count).collect()
-}
-
 /// Computes the initial scalars of all batches.
 fn prologue<N: Arithmetic>(
     code: &FrameCode<N>,
@@ -394,25 +381,7 @@ fn prologue<N: Arithmetic>(
     textures: &[Option<Texture>; 4],
     limits: &Limits<'_>,
 ) -> (Vec<N>, Vec<u32>) {
-    let batch = Batch {
-        width: 0,
-        floats: Vec::new(),
-        words: Vec::new(),
-        float_scalars: code.floats.iter().copied().map(Cell::new).collect(),
-        word_scalars: code.words.iter().copied().map(Cell::new).collect(),
-        masks: Vec::new(),
-        active: Vec::new(),
-        noise: settings.noise,
-        textures,
-        fuel: Cell::new(FUEL_ITERATIONS),
-        stopped: Cell::new(None),
-        cancellation: limits,
-        iteration_limit: settings.max_iterations,
-        iterations: Cell::new(0),
-        own_iterations: Vec::new(),
-        notes: RefCell::default(),
-        recorder: None,
-    };
+    let batch = Batch::new(0, [0; 2], (&code.floats, &code.words), settings, textures, limits);
     run(&batch, &code.prologue);
     let floats = batch.float_scalars.iter().map(Cell::get).collect();
     let words = batch.word_scalars.iter().map(Cell::get).collect();

@@ -11,7 +11,7 @@ pub(crate) struct AliasGroups {
 }
 
 impl AliasGroups {
-    pub(crate) fn of(function: &Function) -> Self {
+    pub(crate) fn new(function: &Function) -> Self {
         let mut ranges = Vec::new();
         collect(&function.body, function, &mut ranges);
         ranges.sort_by_key(|cells| cells.first);

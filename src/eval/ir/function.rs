@@ -215,6 +215,30 @@ impl ValueDef {
     }
 }
 
+macro_rules! for_each_value {
+    ($(#[$doc:meta])* $name:ident($self:ident: $($receiver:tt)+) $iter:ident $value:ty) => {
+        $(#[$doc])*
+        pub(crate) fn $name($($receiver)+, mut visit: impl FnMut($value)) {
+            match $self {
+                Self::Store { value, .. } => visit(value),
+                Self::StoreAt { index, value, .. } => {
+                    visit(index);
+                    visit(value);
+                }
+                Self::If { condition, .. } | Self::BreakIf { condition, .. } => visit(condition),
+                Self::Check { values, .. } => values.$iter().filter(|value| **value != NONE).for_each(visit),
+                Self::Trace { value, .. } if *value != NONE => visit(value),
+                Self::Trace { .. }
+                | Self::Let(_)
+                | Self::Scope { .. }
+                | Self::Loop { .. }
+                | Self::LoopHeader(_)
+                | Self::Break(_) => {}
+            }
+        }
+    };
+}
+
 impl Node {
     /// Calls `visit` with each direct child block.
     pub(crate) fn for_each_block<'a>(&'a self, mut visit: impl FnMut(&'a Block)) {
@@ -240,47 +264,13 @@ impl Node {
         }
     }
 
-    /// Calls `visit` with each value that the node itself uses; the value that a [`Node::Let`] defines is not
-    /// a use.
-    pub(crate) fn for_each_value(&self, mut visit: impl FnMut(Value)) {
-        match self {
-            Self::Store { value, .. } => visit(*value),
-            Self::StoreAt { index, value, .. } => {
-                visit(*index);
-                visit(*value);
-            }
-            Self::If { condition, .. } | Self::BreakIf { condition, .. } => visit(*condition),
-            Self::Check { values, .. } => values
-                .iter()
-                .filter(|&&value| value != NONE)
-                .for_each(|&value| visit(value)),
-            Self::Trace { value, .. } if *value != NONE => visit(*value),
-            Self::Trace { .. }
-            | Self::Let(_)
-            | Self::Scope { .. }
-            | Self::Loop { .. }
-            | Self::LoopHeader(_)
-            | Self::Break(_) => {}
-        }
-    }
-
-    /// Calls `visit` with each value that the node itself uses, mutably.
-    pub(crate) fn for_each_value_mut(&mut self, mut visit: impl FnMut(&mut Value)) {
-        match self {
-            Self::Store { value, .. } => visit(value),
-            Self::StoreAt { index, value, .. } => {
-                visit(index);
-                visit(value);
-            }
-            Self::If { condition, .. } | Self::BreakIf { condition, .. } => visit(condition),
-            Self::Check { values, .. } => values.iter_mut().filter(|value| **value != NONE).for_each(visit),
-            Self::Trace { value, .. } if *value != NONE => visit(value),
-            Self::Trace { .. }
-            | Self::Let(_)
-            | Self::Scope { .. }
-            | Self::Loop { .. }
-            | Self::LoopHeader(_)
-            | Self::Break(_) => {}
-        }
-    }
+    for_each_value!(
+        /// Calls `visit` with each value that the node itself uses; the value that a [`Node::Let`] defines is
+        /// not a use.
+        for_each_value(self: &self) iter &Value
+    );
+    for_each_value!(
+        /// Calls `visit` with each value that the node itself uses, mutably.
+        for_each_value_mut(self: &mut self) iter_mut &mut Value
+    );
 }

@@ -311,25 +311,16 @@ impl Linearizer<'_> {
     /// Emits an `if` with a uniform condition.
     fn uniform_if(&mut self, condition: Value, yes: &Block, no: &Block) {
         let (otherwise, end) = (self.label(), self.label());
-        if yes.is_empty() {
-            self.push(Step::JumpIf {
-                condition,
-                when: true,
-                to: end,
-            });
-            self.bind(otherwise);
-        } else {
-            self.push(Step::JumpIf {
-                condition,
-                when: false,
-                to: otherwise,
-            });
-            self.block(yes);
-            if !no.is_empty() {
-                self.push(Step::Jump(end));
-            }
-            self.bind(otherwise);
+        self.push(Step::JumpIf {
+            condition,
+            when: yes.is_empty(),
+            to: if yes.is_empty() { end } else { otherwise },
+        });
+        self.block(yes);
+        if !yes.is_empty() && !no.is_empty() {
+            self.push(Step::Jump(end));
         }
+        self.bind(otherwise);
         self.block(no);
         self.bind(end);
     }

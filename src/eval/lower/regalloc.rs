@@ -44,7 +44,7 @@ pub(crate) struct PerKind {
 }
 
 impl PerKind {
-    fn of(&mut self, kind: Kind) -> &mut u32 {
+    fn get_mut(&mut self, kind: Kind) -> &mut u32 {
         match kind {
             Kind::Float => &mut self.floats,
             Kind::Word => &mut self.words,
@@ -403,7 +403,7 @@ fn assign_kind(
         } else if start != NEVER && divergence.value(value) {
             intervals.push((start, end, IntervalOwner::Value(value.0)));
         } else if uses.counts[at] > 0 || start != NEVER {
-            let next = locations.scalars.of(kind);
+            let next = locations.scalars.get_mut(kind);
             locations.values[at] = Some(Location::Scalar(*next));
             *next += 1;
         }
@@ -416,7 +416,7 @@ fn assign_kind(
         if divergence.cell(cell) {
             intervals.push((start, end, IntervalOwner::Cell(cell.0)));
         } else {
-            let next = locations.scalars.of(kind);
+            let next = locations.scalars.get_mut(kind);
             locations.cells[at] = Some(Location::Scalar(*next));
             *next += 1;
         }
@@ -435,7 +435,7 @@ fn assign_kind(
         let row = if let Some(Reverse(row)) = free.pop() {
             row
         } else {
-            let next = locations.rows.of(kind);
+            let next = locations.rows.get_mut(kind);
             *next += 1;
             *next - 1
         };

@@ -13,7 +13,7 @@ pub(crate) fn eliminate_dead_code(function: &mut Function) {
 }
 
 fn once(function: &mut Function) {
-    let groups = AliasGroups::of(function);
+    let groups = AliasGroups::new(function);
     let body = std::mem::take(&mut function.body);
     let mut pass = DeadCodeElimination {
         values: vec![false; function.defs.len()],
@@ -81,7 +81,7 @@ impl DeadCodeElimination<'_> {
                 }
                 _ if self.never_fires(node) => {}
                 _ => {
-                    node.for_each_value(|value| self.pending.push(value));
+                    node.for_each_value(|value| self.pending.push(*value));
                     self.require(branch);
                 }
             }

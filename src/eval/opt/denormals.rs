@@ -7,7 +7,7 @@ use crate::ir::{AliasGroups, Block, Cell, Function, NONE, Node, Operation, Value
 
 /// Flushes the operands that may be denormal.
 pub(crate) fn flush_operands(function: &mut Function) {
-    let mut denormal = MayBeDenormal::of(function);
+    let mut denormal = MayBeDenormal::new(function);
     if !denormal.values.contains(&true) {
         return;
     }
@@ -36,7 +36,7 @@ struct MayBeDenormal {
 
 impl MayBeDenormal {
     /// Only constants and bit patterns at first.
-    fn of(function: &Function) -> Self {
+    fn new(function: &Function) -> Self {
         let is_source = |def: &ValueDef| match *def {
             ValueDef::Float(bits) => (f64::from_bits(bits) as f32).is_subnormal(),
             ValueDef::Operation(operation, _) => operation == Operation::FromBits,
@@ -45,7 +45,7 @@ impl MayBeDenormal {
         Self {
             values: function.defs.iter().map(is_source).collect(),
             cells: vec![false; function.cells.len()],
-            groups: AliasGroups::of(function),
+            groups: AliasGroups::new(function),
         }
     }
 

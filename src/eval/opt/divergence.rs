@@ -21,7 +21,7 @@ pub(crate) struct Divergence {
 
 impl Divergence {
     /// Analyzes a function.
-    pub(crate) fn of(function: &Function, groups: &AliasGroups) -> Self {
+    pub(crate) fn new(function: &Function, groups: &AliasGroups) -> Self {
         let mut map = CodeMap::new(function, groups);
         map.block(&function.body, 0);
         map.close();

@@ -43,7 +43,7 @@ impl Fuse<'_> {
             if let Node::Let(value) = node {
                 self.function.def(*value).for_each_operand(&mut count);
             }
-            node.for_each_value(count);
+            node.for_each_value(|value| count(*value));
             node.for_each_block(|block| self.count(block));
         }
     }

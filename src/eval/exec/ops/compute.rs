@@ -187,48 +187,16 @@ pub(crate) fn compute_scalar<N: Arithmetic>() -> Handler<N> {
 
 /// Returns the handler of an operation into a row; `rows` is which operands are rows, as at least one is.
 pub(crate) fn compute<N: Arithmetic>(level: Level, operation: Operation, rows: [bool; 3]) -> Handler<N> {
-    // The operands of the operations in `frequent_mixed` are all rows here.
-    macro_rules! source {
-        (Add) => {
-            Row
-        };
-        (Sub) => {
-            Row
-        };
-        (Mul) => {
-            Row
-        };
-        (Div) => {
-            Row
-        };
-        (Min) => {
-            Row
-        };
-        (Max) => {
-            Row
-        };
-        (Less) => {
-            Row
-        };
-        (LessEqual) => {
-            Row
-        };
-        (MulAdd) => {
-            Row
-        };
-        (MulSub) => {
-            Row
-        };
-        (SubMul) => {
-            Row
-        };
-        (Select) => {
-            Row
-        };
-        ($name:ident) => {
-            Any
+    macro_rules! sources {
+        ($d:tt $($name:ident)+) => {
+            macro_rules! source {
+                $(($name) => { Row };)+
+                ($d name:ident) => { Any };
+            }
         };
     }
+    // The operands of the operations in `frequent_mixed` are all rows here.
+    sources!($ Add Sub Mul Div Min Max Less LessEqual MulAdd MulSub SubMul Select);
     macro_rules! rows {
         (DFdx(F) F) => {
             Difference<1>

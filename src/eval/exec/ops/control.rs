@@ -41,11 +41,7 @@ impl<N: Arithmetic, const WHEN: bool> Run<N> for Split<WHEN> {
         };
         batch.active[no as usize].set(no_active);
         batch.active[yes as usize].set(yes_active);
-        if yes_active.chunks == 0 {
-            instruction.to as usize
-        } else {
-            at + 1
-        }
+        instruction.jump_if(yes_active.chunks == 0, at)
     }
 }
 
@@ -71,22 +67,25 @@ impl<N: Arithmetic, const WHEN: bool> Run<N> for Choose<WHEN> {
         });
         let all = batch.active[instruction.mask as usize].get().all && every == [u32::MAX; LANES];
         batch.active[to as usize].set(Active { chunks, all });
-        if chunks == 0 {
-            instruction.to as usize
-        } else {
-            at + 1
-        }
+        instruction.jump_if(chunks == 0, at)
     }
 }
 
-/// Returns the handler that splits a mask; `when` is the condition of the first mask, `both` whether there
-/// are two.
-pub(crate) fn split<N: Arithmetic>(level: Level, when: bool, both: bool) -> Handler<N> {
-    match (when, both) {
-        (true, true) => handler::<N, Split<true>>(level),
-        (false, true) => handler::<N, Split<false>>(level),
-        (true, false) => handler::<N, Choose<true>>(level),
-        (false, false) => handler::<N, Choose<false>>(level),
+/// Returns the handler that splits a mask into two; `when` is the condition of the first.
+pub(crate) fn split<N: Arithmetic>(level: Level, when: bool) -> Handler<N> {
+    if when {
+        handler::<N, Split<true>>(level)
+    } else {
+        handler::<N, Split<false>>(level)
+    }
+}
+
+/// Returns the handler that copies the part of a mask whose condition is `when`.
+pub(crate) fn choose<N: Arithmetic>(level: Level, when: bool) -> Handler<N> {
+    if when {
+        handler::<N, Choose<true>>(level)
+    } else {
+        handler::<N, Choose<false>>(level)
     }
 }
 
@@ -140,11 +139,7 @@ impl<N: Arithmetic, const WHICH: u8> Run<N> for Remove<WHICH> {
                 }
             }
         });
-        if batch.active[instruction.mask as usize].get().chunks == 0 {
-            instruction.to as usize
-        } else {
-            at + 1
-        }
+        instruction.jump_if(batch.active[instruction.mask as usize].get().chunks == 0, at)
     }
 }
 
@@ -162,11 +157,7 @@ struct JumpIfEmpty;
 impl<N: Arithmetic> Run<N> for JumpIfEmpty {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        if batch.active[instruction.mask as usize].get().chunks == 0 {
-            instruction.to as usize
-        } else {
-            at + 1
-        }
+        instruction.jump_if(batch.active[instruction.mask as usize].get().chunks == 0, at)
     }
 }
 
@@ -194,11 +185,7 @@ impl<N: Arithmetic, const WHEN: bool> Run<N> for JumpIf<WHEN> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let condition = batch.word_scalars[instruction.operands[0] as usize].get();
-        if (condition != 0) == WHEN {
-            instruction.to as usize
-        } else {
-            at + 1
-        }
+        instruction.jump_if((condition != 0) == WHEN, at)
     }
 }
 

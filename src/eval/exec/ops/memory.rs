@@ -111,10 +111,10 @@ impl<N: Arithmetic, T: Component<N>> Run<N> for LoadRow<T> {
     }
 }
 
-/// Loads from rows, each pixel by its own index.
-struct GatherRows<T>(PhantomData<T>);
+/// Loads from rows or scalars, each pixel by its own index.
+struct Gather<T, const FROM_ROWS: bool>(PhantomData<T>);
 
-impl<N: Arithmetic, T: Component<N>> Run<N> for GatherRows<T> {
+impl<N: Arithmetic, T: Component<N>, const FROM_ROWS: bool> Run<N> for Gather<T, FROM_ROWS> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let index = batch.word_row(instruction.operands[0]);
@@ -123,28 +123,12 @@ impl<N: Arithmetic, T: Component<N>> Run<N> for GatherRows<T> {
             let index = index[chunk].get();
             let mut result = [T::default(); LANES];
             for lane in 0..LANES {
-                let row = T::row(batch, (indexed_location(instruction, index[lane]) * batch.width) as u32);
-                result[lane] = row[chunk].lanes()[lane].get();
-            }
-            out[chunk].set(result);
-        });
-        at + 1
-    }
-}
-
-/// Loads from scalars, each pixel by its own index.
-struct GatherScalars<T>(PhantomData<T>);
-
-impl<N: Arithmetic, T: Component<N>> Run<N> for GatherScalars<T> {
-    #[inline(always)]
-    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let index = batch.word_row(instruction.operands[0]);
-        let out = T::row(batch, instruction.out);
-        for_each_chunk!(batch, instruction.mask, chunk => {
-            let index = index[chunk].get();
-            let mut result = [T::default(); LANES];
-            for lane in 0..LANES {
-                result[lane] = T::scalar(batch, indexed_location(instruction, index[lane]) as u32).get();
+                let location = indexed_location(instruction, index[lane]);
+                result[lane] = if FROM_ROWS {
+                    T::row(batch, (location * batch.width) as u32)[chunk].lanes()[lane].get()
+                } else {
+                    T::scalar(batch, location as u32).get()
+                };
             }
             out[chunk].set(result);
         });
@@ -175,12 +159,12 @@ pub(crate) fn load_at<N: Arithmetic>(
 ) -> Handler<N> {
     match (kind, cells_are_rows, index_is_row) {
         (Kind::Float, true, false) => handler::<N, LoadRow<N>>(level),
-        (Kind::Float, true, true) => handler::<N, GatherRows<N>>(level),
-        (Kind::Float, false, true) => handler::<N, GatherScalars<N>>(level),
+        (Kind::Float, true, true) => handler::<N, Gather<N, true>>(level),
+        (Kind::Float, false, true) => handler::<N, Gather<N, false>>(level),
         (Kind::Float, false, false) => handler::<N, LoadScalar<N>>(Level::Base),
         (Kind::Word, true, false) => handler::<N, LoadRow<u32>>(level),
-        (Kind::Word, true, true) => handler::<N, GatherRows<u32>>(level),
-        (Kind::Word, false, true) => handler::<N, GatherScalars<u32>>(level),
+        (Kind::Word, true, true) => handler::<N, Gather<u32, true>>(level),
+        (Kind::Word, false, true) => handler::<N, Gather<u32, false>>(level),
         (Kind::Word, false, false) => handler::<N, LoadScalar<u32>>(Level::Base),
     }
 }
@@ -235,9 +219,9 @@ pub(crate) fn store_at<N: Arithmetic>(level: Level, kind: Kind, cells_are_rows: 
 
 /// A lookup of single texels. Operands 0 and 1 are rows of texel coordinates, operand 2 of levels; `to` is
 /// 4 · channel + component.
-struct Fetched;
+struct Fetch;
 
-impl<N: Arithmetic> Run<N> for Fetched {
+impl<N: Arithmetic> Run<N> for Fetch {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let [channel, component] = [instruction.to / 4 % 4, instruction.to % 4].map(|part| part as usize);
@@ -275,5 +259,5 @@ fn fetch_lanes<N: Arithmetic>(
 
 /// Returns the handler of a lookup with coordinates in rows.
 pub(crate) fn texel<N: Arithmetic>() -> Handler<N> {
-    handler::<N, Fetched>(Level::Base)
+    handler::<N, Fetch>(Level::Base)
 }

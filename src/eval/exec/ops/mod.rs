@@ -15,7 +15,7 @@ use std::slice;
 
 pub(crate) use apply::fold;
 pub(crate) use compute::{compute, compute_scalar, sine_and_cosine};
-pub(crate) use control::{copy_mask, iterate, jump, jump_if, jump_if_empty, refuel, remove, split};
+pub(crate) use control::{choose, copy_mask, iterate, jump, jump_if, jump_if_empty, refuel, remove, split};
 pub(crate) use memory::{copy, load_at, store, store_at, texel};
 pub(crate) use record::{check, record, record_event};
 
@@ -34,6 +34,14 @@ pub(crate) struct Instruction<N: Arithmetic> {
     pub(crate) mask: u32,
     /// The target of a jump; further operands of other instructions.
     pub(crate) to: u32,
+}
+
+impl<N: Arithmetic> Instruction<N> {
+    /// Returns the index of the next instruction, which is the target if it jumps.
+    #[inline(always)]
+    fn jump_if(&self, jumps: bool, at: usize) -> usize {
+        if jumps { self.to as usize } else { at + 1 }
+    }
 }
 
 /// Executes an instruction and returns the index of the next. Compiled for a level that [`Level::detect`]

@@ -23,7 +23,7 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    pub(super) fn of(body: &Block, scopes: u32, loops: usize) -> Self {
+    pub(super) fn new(body: &Block, scopes: u32, loops: usize) -> Self {
         let mut changes = Self {
             list: Vec::new(),
             loops: vec![0..0; loops],

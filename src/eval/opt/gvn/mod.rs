@@ -24,7 +24,7 @@ pub(crate) type Fold = fn(Operation, [u32; 3]) -> Option<u32>;
 /// Rewrites a function; `fold` has the semantics of operations. A traced run may replace values, so that
 /// common subexpressions are not merged then.
 pub(crate) fn number_values(function: &mut Function, fold: Fold, traced: bool) {
-    let groups = AliasGroups::of(function);
+    let groups = AliasGroups::new(function);
     let body = std::mem::take(&mut function.body);
     let templates = std::mem::take(&mut function.defs);
     let scopes = std::mem::take(&mut function.scopes);
@@ -33,7 +33,7 @@ pub(crate) fn number_values(function: &mut Function, fold: Fold, traced: bool) {
         groups,
         replacements: vec![NONE; templates.len()],
         templates,
-        changes: Changes::of(&body, scopes, function.loops.len()),
+        changes: Changes::new(&body, scopes, function.loops.len()),
         is_constant: Vec::new(),
         constants: RollbackMap::default(),
         function,
