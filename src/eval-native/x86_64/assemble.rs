@@ -121,8 +121,16 @@ pub(super) struct Assembler {
     labels: Vec<u32>,
     /// The positions of relative addresses of labels.
     jumps: Vec<(u32, Label)>,
-    /// The positions of relative addresses of constants, and the number of bytes of the instruction after it.
-    constants: Vec<(u32, u32, u8)>,
+    constants: Vec<ConstantAddress>,
+}
+
+/// The relative address of a constant.
+#[derive(Debug)]
+struct ConstantAddress {
+    position: u32,
+    constant: u32,
+    /// The number of bytes of the instruction after the address.
+    after: u8,
 }
 
 const UNBOUND: u32 = u32::MAX;
@@ -166,9 +174,10 @@ impl Assembler {
         self.code
             .resize(self.code.len().next_multiple_of(CONSTANT_BYTES), 0);
         let pool_start = self.code.len() as u32;
-        for (at, constant, after) in self.constants {
-            let relative = pool_start + CONSTANT_BYTES as u32 * constant - (at + 4 + u32::from(after));
-            self.code[at as usize..][..4].copy_from_slice(&relative.to_le_bytes());
+        for address in self.constants {
+            let start = pool_start + CONSTANT_BYTES as u32 * address.constant;
+            let relative = start - (address.position + 4 + u32::from(address.after));
+            self.code[address.position as usize..][..4].copy_from_slice(&relative.to_le_bytes());
         }
         self.code.extend(pool.iter().flatten());
         self.code
@@ -192,7 +201,11 @@ impl Assembler {
             Source::Register(other) => self.bytes(&[0xC0 | register | other & 7]),
             Source::Memory(Memory::Constant(constant)) => {
                 self.bytes(&[register | 5]);
-                self.constants.push((self.code.len() as u32, constant, after));
+                self.constants.push(ConstantAddress {
+                    position: self.code.len() as u32,
+                    constant,
+                    after,
+                });
                 self.bytes(&[0; 4]);
             }
             Source::Memory(Memory::At {

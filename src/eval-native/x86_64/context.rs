@@ -3,20 +3,12 @@
 use std::ffi::c_void;
 use std::mem::offset_of;
 
-use toyproof_eval::native::{Active, LANES};
+use toyproof_eval::native::{Active, BatchTables, LANES};
 
 /// What the code accesses in memory.
 #[repr(C)]
 pub(super) struct Context {
-    pub(super) floats: *const u8,
-    pub(super) words: *const u8,
-    pub(super) masks: *const u8,
-    pub(super) float_scalars: *const u8,
-    pub(super) word_scalars: *const u8,
-    pub(super) own_iterations: *const u8,
-    pub(super) active: *const u8,
-    pub(super) fuel: *const u8,
-    pub(super) iterations: *const u8,
+    pub(super) tables: BatchTables,
     /// The address of a `&dyn NativeBatch`, for the functions below.
     pub(super) batch: *const c_void,
     pub(super) call: *const u8,
@@ -35,8 +27,8 @@ pub(super) struct Context {
 
 /// The offset of a field.
 macro_rules! offset {
-    ($field:ident) => {
-        std::mem::offset_of!(crate::x86_64::context::Context, $field) as i32
+    ($($field:ident).+) => {
+        std::mem::offset_of!(crate::x86_64::context::Context, $($field).+) as i32
     };
 }
 pub(super) use offset;

@@ -33,17 +33,8 @@ impl Executable {
 
     /// Runs the code for a batch. Returns whether a result was denormal before the processor flushed it.
     pub(super) fn run(&self, batch: &dyn NativeBatch) -> bool {
-        let tables = batch.tables();
         let mut context = Context {
-            floats: tables.floats,
-            words: tables.words,
-            masks: tables.masks,
-            float_scalars: tables.float_scalars,
-            word_scalars: tables.word_scalars,
-            own_iterations: tables.own_iterations,
-            active: tables.active,
-            fuel: tables.fuel,
-            iterations: tables.iterations,
+            tables: batch.tables(),
             batch: ptr::from_ref(&batch).cast(),
             call: call as *const u8,
             refuel: refuel as *const u8,

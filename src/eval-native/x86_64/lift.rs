@@ -136,26 +136,17 @@ impl<'a> Lifter<'a> {
             Table::Float => Content::Float(node),
             _ => Content::Word(WordNode::Narrow(node)),
         };
-        self.rows.set(
-            row,
-            Some(Held {
-                content,
-                end: ALWAYS,
-                dirty: false,
-            }),
-        );
+        self.hold(row, content, ALWAYS, false);
         content
     }
 
     fn write(&mut self, row: TableRow, content: Content, end: u32) {
-        self.rows.set(
-            row,
-            Some(Held {
-                content,
-                end,
-                dirty: true,
-            }),
-        );
+        self.hold(row, content, end, true);
+    }
+
+    fn hold(&mut self, row: TableRow, content: Content, end: u32, dirty: bool) {
+        let held = Held { content, end, dirty };
+        self.rows.set(row, Some(held));
     }
 
     fn scalar(&mut self, kind: Kind, scalar: u32) -> NodeId {
@@ -238,12 +229,12 @@ impl<'a> Lifter<'a> {
 
     /// Returns the row or scalar of a location, as a row.
     fn row(kind: Kind, location: Option<Location>) -> Option<TableRow> {
-        let bank = match kind {
+        let table = match kind {
             Kind::Float => Table::Float,
             Kind::Word => Table::Word,
         };
         match location? {
-            Location::Row(row) | Location::Scalar(row) => Some((bank, row)),
+            Location::Row(row) | Location::Scalar(row) => Some((table, row)),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use toyproof_eval::native::{Kind, Map};
 
-use super::assemble::{CONSTANT_BYTES, Constant};
+use super::assemble::Constant;
 use super::op::Opcode;
 
 /// The arithmetic of the code.
@@ -175,18 +175,10 @@ impl Pool {
 
 /// Returns a constant with a word in all lanes.
 pub(super) fn words(word: u32) -> Constant {
-    let mut constant = [0; CONSTANT_BYTES];
-    for lane in constant.chunks_exact_mut(4) {
-        lane.copy_from_slice(&word.to_le_bytes());
-    }
-    constant
+    std::array::from_fn(|at| word.to_le_bytes()[at % 4])
 }
 
 /// Returns a constant with a word of 64 bits in all lanes.
 pub(super) fn long_words(word: u64) -> Constant {
-    let mut constant = [0; CONSTANT_BYTES];
-    for lane in constant.chunks_exact_mut(8) {
-        lane.copy_from_slice(&word.to_le_bytes());
-    }
-    constant
+    std::array::from_fn(|at| word.to_le_bytes()[at % 8])
 }

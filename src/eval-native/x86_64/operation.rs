@@ -43,12 +43,12 @@ impl Lifter<'_> {
     }
 
     fn float1(&mut self, opcodes: [Opcode; 2], a: NodeId) -> NodeId {
-        let opcode = opcodes[usize::from(self.precision.is_double())];
+        let opcode = self.by_precision(opcodes);
         self.node(Action::Unary(opcode), [a, NO_NODE, NO_NODE], true)
     }
 
     fn float2(&mut self, opcodes: [Opcode; 2], a: NodeId, b: NodeId) -> NodeId {
-        let opcode = opcodes[usize::from(self.precision.is_double())];
+        let opcode = self.by_precision(opcodes);
         self.node(Action::Binary(opcode), [a, b, NO_NODE], true)
     }
 
@@ -64,7 +64,7 @@ impl Lifter<'_> {
 
     /// A comparison of floats, in lanes as wide as theirs.
     fn compare_lanes(&mut self, predicate: u8, a: NodeId, b: NodeId) -> NodeId {
-        let opcode = [op::VCMPPS, op::VCMPPD][usize::from(self.precision.is_double())];
+        let opcode = self.by_precision([op::VCMPPS, op::VCMPPD]);
         self.node(Action::BinaryImmediate(opcode, predicate), [a, b, NO_NODE], true)
     }
 
@@ -75,15 +75,11 @@ impl Lifter<'_> {
 
     /// A word of lanes as wide as those of floats.
     fn lanes(&self, node: NodeId) -> WordNode {
-        if self.precision.is_double() {
-            WordNode::Wide(node)
-        } else {
-            WordNode::Narrow(node)
-        }
+        self.by_precision([WordNode::Narrow(node), WordNode::Wide(node)])
     }
 
     pub(super) fn blend(&mut self, mask: NodeId, yes: NodeId, no: NodeId) -> NodeId {
-        let opcode = [op::VBLENDVPS, op::VBLENDVPD][usize::from(self.precision.is_double())];
+        let opcode = self.by_precision([op::VBLENDVPS, op::VBLENDVPD]);
         self.node(Action::Blend(opcode), [no, yes, mask], true)
     }
 
@@ -121,32 +117,31 @@ impl Lifter<'_> {
     }
 
     fn sign(&mut self) -> NodeId {
-        let constant = if self.precision.is_double() {
-            long_words(1 << 63)
-        } else {
-            words(1 << 31)
-        };
-        self.constant(constant)
+        self.bits(1 << 31, 1 << 63)
     }
 
     fn absolute(&mut self, a: NodeId) -> NodeId {
-        let constant = if self.precision.is_double() {
-            long_words(!(1 << 63))
-        } else {
-            words(!(1 << 31))
-        };
-        let magnitude = self.constant(constant);
+        let magnitude = self.bits(!(1 << 31), !(1 << 63));
         self.bits2(op::VPAND, a, magnitude)
     }
 
     /// A constant float in all lanes.
     pub(super) fn float(&mut self, value: f64) -> NodeId {
-        let constant = if self.precision.is_double() {
-            long_words(value.to_bits())
+        self.bits((value as f32).to_bits(), value.to_bits())
+    }
+
+    /// The bits of a float in all lanes.
+    fn bits(&mut self, single: u32, double: u64) -> NodeId {
+        self.constant(self.by_precision([words(single), long_words(double)]))
+    }
+
+    /// Selects what is for 32 bits or for 64.
+    fn by_precision<T: Copy>(&self, [single, double]: [T; 2]) -> T {
+        if self.precision.is_double() {
+            double
         } else {
-            words((value as f32).to_bits())
-        };
-        self.constant(constant)
+            single
+        }
     }
 
     // Words in both forms.
@@ -467,13 +462,13 @@ impl Lifter<'_> {
     }
 
     fn round(&mut self, a: NodeId, how: u8) -> NodeId {
-        let opcode = [op::VROUNDPS, op::VROUNDPD][usize::from(self.precision.is_double())];
+        let opcode = self.by_precision([op::VROUNDPS, op::VROUNDPD]);
         self.node(Action::UnaryImmediate(opcode, how), [a, NO_NODE, NO_NODE], true)
     }
 
     /// Differences of the lanes that two permutations of a quad select.
     fn derivative(&mut self, a: NodeId, lanes: [u8; 2]) -> NodeId {
-        let opcode = [op::VPERMILPS, op::VPERMPD][usize::from(self.precision.is_double())];
+        let opcode = self.by_precision([op::VPERMILPS, op::VPERMPD]);
         let [to, from] =
             lanes.map(|lanes| self.node(Action::UnaryImmediate(opcode, lanes), [a, NO_NODE, NO_NODE], true));
         self.difference(to, from)
@@ -484,7 +479,7 @@ impl Lifter<'_> {
         let limit = self.float(2_147_483_648.0);
         let fits = self.compare(LESS, a, limit);
         let fits = self.narrow(fits);
-        let opcode = [op::VCVTTPS2DQ, op::VCVTTPD2DQ][usize::from(self.precision.is_double())];
+        let opcode = self.by_precision([op::VCVTTPS2DQ, op::VCVTTPD2DQ]);
         let converted = self.node(Action::Unary(opcode), [a, NO_NODE, NO_NODE], true);
         let largest = self.constant(words(2_147_483_520));
         WordNode::Narrow(self.blend_words(fits, converted, largest))
@@ -517,7 +512,7 @@ impl Lifter<'_> {
         let part = self.blend(is_large, less, a);
         let zero = self.float(0.0);
         let part = self.float2([op::VMAXPS, op::VMAXPD], part, zero);
-        let opcode = [op::VCVTTPS2DQ, op::VCVTTPD2DQ][usize::from(self.precision.is_double())];
+        let opcode = self.by_precision([op::VCVTTPS2DQ, op::VCVTTPD2DQ]);
         let converted = self.node(Action::Unary(opcode), [part, NO_NODE, NO_NODE], true);
         let is_large = self.lanes(is_large);
         let is_large = self.narrow(is_large);

@@ -47,7 +47,7 @@ pub(super) struct Plan {
 const MAX_HEIGHT: u32 = 16;
 
 /// A jump whose target lies ahead.
-struct Open {
+struct OpenJump {
     at: usize,
     target: usize,
     /// Whether a step on the way ends a region.
@@ -74,7 +74,7 @@ pub(super) fn plan(lowered: &LoweredCode) -> Option<Plan> {
             stored[value.0 as usize] |= is_elided;
         }
     }
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenJump> = Vec::new();
     for at in 0..=steps.len() {
         while let Some(last) = open.pop_if(|last| last.target <= at) {
             plan.close(&last, open.last_mut(), lowered);
@@ -91,7 +91,7 @@ pub(super) fn plan(lowered: &LoweredCode) -> Option<Plan> {
                 if open.last().is_some_and(|last| last.target < target) {
                     return None;
                 }
-                open.push(Open {
+                open.push(OpenJump {
                     at,
                     target,
                     is_split: false,
@@ -112,7 +112,7 @@ pub(super) fn plan(lowered: &LoweredCode) -> Option<Plan> {
 
 impl Plan {
     /// Decides on a jump, all of whose way is planned.
-    fn close(&mut self, jump: &Open, around: Option<&mut Open>, lowered: &LoweredCode) {
+    fn close(&mut self, jump: &OpenJump, around: Option<&mut OpenJump>, lowered: &LoweredCode) {
         let is_split_step = matches!(lowered.linear.steps[jump.at].0, Step::Split { .. });
         let too_high = jump.height >= MAX_HEIGHT;
         let is_branch = jump.is_split || (too_high && is_split_step);

@@ -81,9 +81,9 @@ pub(super) fn place_at(base: Gpr, scale: u8, displacement: i32) -> Memory {
 }
 
 /// The place of a vector in a row.
-pub(super) fn place(frame: &Frame, (bank, row): TableRow) -> Memory {
+pub(super) fn place(frame: &Frame, (table, row): TableRow) -> Memory {
     let row = row as i32 * CHUNK_BYTES * frame.width as i32;
-    match bank {
+    match table {
         Table::Float if frame.precision.is_double() => place_at(FLOATS, 1, 2 * row),
         Table::Float => place_at(FLOATS, 0, row),
         Table::Word => place_at(WORDS, 0, row),

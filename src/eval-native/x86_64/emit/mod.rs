@@ -28,12 +28,12 @@ pub(super) fn emit_region(code: &mut Assembler, frame: &mut Frame, region: &Regi
     }
     let uses_iterations = |item: &Item| matches!(item, Item::Store((Table::Iterations, _), ..));
     if region.items.iter().any(uses_iterations) {
-        code.load64(ITERATIONS, Memory::at(CONTEXT, offset!(own_iterations)));
+        code.load64(ITERATIONS, Memory::at(CONTEXT, offset!(tables.own_iterations)));
     }
     if base == 0 {
         code.immediate32(CHUNKS, u32::MAX >> (32 - frame.width));
     } else {
-        code.load64(RAX, Memory::at(CONTEXT, offset!(active)));
+        code.load64(RAX, Memory::at(CONTEXT, offset!(tables.active)));
         code.load32(CHUNKS, Memory::at(RAX, 8 * base as i32));
         code.arithmetic32(Arithmetic::Or, CHUNKS, Source::Register(CHUNKS.0));
         code.jump_if(Condition::Zero, done);
@@ -86,7 +86,7 @@ pub(super) fn emit_region(code: &mut Assembler, frame: &mut Frame, region: &Regi
     code.jump_if(Condition::NotZero, next_chunk);
     code.bind(done);
     if !region.masks.is_empty() {
-        code.load64(RDX, Memory::at(CONTEXT, offset!(active)));
+        code.load64(RDX, Memory::at(CONTEXT, offset!(tables.active)));
         if base == 0 {
             code.immediate32(R9, u32::MAX >> (32 - frame.width));
         } else {

@@ -259,11 +259,11 @@ impl<'a> Registers<'a> {
                 self.code.unary(op::VMOVAPS, wide, register, from);
             }
             Action::Scalar(kind, scalar) => {
-                let bank = match kind {
+                let table = match kind {
                     Kind::Float => Table::Float,
                     Kind::Word => Table::Word,
                 };
-                let (memory, is_long) = self.scalar_place((bank, scalar));
+                let (memory, is_long) = self.scalar_place((table, scalar));
                 let opcode = if is_long {
                     op::VBROADCASTSD
                 } else {
@@ -280,9 +280,9 @@ impl<'a> Registers<'a> {
     }
 
     /// The place of a scalar, and whether it has 64 bits.
-    pub(super) fn scalar_place(&self, (bank, scalar): TableRow) -> (Memory, bool) {
-        let is_long = bank == Table::Float && self.frame.precision.is_double();
-        let base = if bank == Table::Float {
+    pub(super) fn scalar_place(&self, (table, scalar): TableRow) -> (Memory, bool) {
+        let is_long = table == Table::Float && self.frame.precision.is_double();
+        let base = if table == Table::Float {
             FLOAT_SCALARS
         } else {
             WORD_SCALARS

@@ -1,6 +1,6 @@
 //! The entry of a program, its exit, and the calls of functions.
 
-use super::Writer;
+use super::{Refuel, Writer};
 use crate::x86_64::assemble::{
     Arithmetic, CONSTANT_BYTES, Condition, Gpr, Label, Memory, R8, R12, R13, R14, R15, RAX, RBP, RBX, RCX,
     RDI, RDX, RSI, RSP, Source,
@@ -32,11 +32,11 @@ impl Writer<'_> {
         code.arithmetic_immediate64(Arithmetic::And, RSP, -(CONSTANT_BYTES as i32));
         code.store64(Memory::at(RSP, SAVED_STACK), RAX);
         for (register, offset) in [
-            (FLOATS, offset!(floats)),
-            (WORDS, offset!(words)),
-            (MASKS, offset!(masks)),
-            (FLOAT_SCALARS, offset!(float_scalars)),
-            (WORD_SCALARS, offset!(word_scalars)),
+            (FLOATS, offset!(tables.floats)),
+            (WORDS, offset!(tables.words)),
+            (MASKS, offset!(tables.masks)),
+            (FLOAT_SCALARS, offset!(tables.float_scalars)),
+            (WORD_SCALARS, offset!(tables.word_scalars)),
         ] {
             code.load64(register, Memory::at(CONTEXT, offset));
         }
@@ -95,7 +95,12 @@ impl Writer<'_> {
             self.code.arithmetic_immediate64(Arithmetic::Add, RSP, 8);
             self.code.ret();
         }
-        for (entry, back, instruction) in std::mem::take(&mut self.refuels) {
+        for Refuel {
+            entry,
+            back,
+            instruction,
+        } in std::mem::take(&mut self.refuels)
+        {
             self.code.bind(entry);
             self.code.immediate32(RSI, instruction);
             self.code.call(self.refuel);

@@ -64,8 +64,15 @@ struct Writer<'a> {
     exit: Label,
     call: Label,
     refuel: Label,
-    /// The places where the limits are checked, those after it, and the instruction.
-    refuels: Vec<(Label, Label, u32)>,
+    refuels: Vec<Refuel>,
+}
+
+/// A check of the limits, out of the way of the steps.
+struct Refuel {
+    entry: Label,
+    /// The place after it.
+    back: Label,
+    instruction: u32,
 }
 
 impl Writer<'_> {

@@ -2,7 +2,7 @@
 
 use toyproof_eval::native::{LoweredCode, Step};
 
-use super::Writer;
+use super::{Refuel, Writer};
 use crate::x86_64::assemble::{Arithmetic, Condition, Memory, RAX, Source};
 use crate::x86_64::context::offset;
 use crate::x86_64::emit::{self, CONTEXT};
@@ -17,14 +17,19 @@ impl Writer<'_> {
     fn iterate(&mut self, at: u32) {
         let (entry, back) = (self.code.label(), self.code.label());
         let instruction = self.positions[at as usize];
-        self.refuels.push((entry, back, instruction));
-        self.code.load64(RAX, Memory::at(CONTEXT, offset!(fuel)));
+        self.refuels.push(Refuel {
+            entry,
+            back,
+            instruction,
+        });
+        self.code.load64(RAX, Memory::at(CONTEXT, offset!(tables.fuel)));
         let fuel = Source::Memory(Memory::at(RAX, 0));
         self.code.arithmetic_immediate32(Arithmetic::Sub, fuel, 1);
         self.code.jump_if(Condition::Below, entry);
         self.code.bind(back);
         if self.mask(at) == Some(0) {
-            self.code.load64(RAX, Memory::at(CONTEXT, offset!(iterations)));
+            self.code
+                .load64(RAX, Memory::at(CONTEXT, offset!(tables.iterations)));
             let iterations = Source::Memory(Memory::at(RAX, 0));
             self.code.arithmetic_immediate32(Arithmetic::Add, iterations, 1);
         }
@@ -86,7 +91,7 @@ impl Writer<'_> {
         self.hoisted(&hoisted)?;
         emit::emit_region(&mut self.code, &mut self.frame, &region, base)?;
         if let Some((mask, to)) = jump {
-            self.code.load64(RAX, Memory::at(CONTEXT, offset!(active)));
+            self.code.load64(RAX, Memory::at(CONTEXT, offset!(tables.active)));
             let chunks = Source::Memory(Memory::at(RAX, 8 * mask as i32));
             self.code.arithmetic_immediate32(Arithmetic::Compare, chunks, 0);
             self.code.jump_if(Condition::Zero, self.label(to));
