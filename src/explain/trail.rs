@@ -148,8 +148,8 @@ fn source_of(target: Target) -> Option<Source> {
 /// Renders all frames, and keeps the last ones.
 fn render(frames: &Frames) -> Result<VecDeque<Rendered>, Failure> {
     let (shader, timeout) = (frames.shader, frames.long_timeout());
-    let mut single = CpuPlayback::<f32>::new(shader, frames.programs, None, timeout, None);
-    let mut double = CpuPlayback::<f64>::new(shader, frames.programs, None, timeout, None);
+    let mut single = frames.start::<f32>((), timeout);
+    let mut double = frames.start::<f64>((), timeout);
     let passes = shader.graph.passes();
     let pixels: usize = frames
         .clock

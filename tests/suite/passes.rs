@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use toyproof::diagnostic::{File, Files};
-use toyproof::eval::Number;
+use toyproof::eval::{Number, Settings};
 use toyproof::glsl::{self, Checked, Filter, Stage, Wrap};
 use toyproof::gpu::Worker;
 use toyproof::image::{Frame, Texture};
@@ -248,7 +248,7 @@ fn differs(case: &Case, worker: &mut Worker) -> Option<String> {
     let (rendering, clock) = (case.rendering(), case.clock());
     let shader = case.shader(&rendering);
     let programs = shader.programs(TIMEOUT).unwrap();
-    let mut single = CpuPlayback::<f32>::new(&shader, &programs, None, TIMEOUT, None);
+    let mut single = CpuPlayback::<f32>::new(&shader, &programs, None, TIMEOUT, Settings::plain());
     let mut device = DevicePlayback::open(worker, &shader, None, FloatMode::Strict, TIMEOUT).unwrap();
     for frame in 0..=case.last_frame().min(12) {
         let inputs = clock.frame(frame);
@@ -288,7 +288,7 @@ fn a_state_goes_on_where_it_was_saved() {
     let (rendering, clock) = (case.rendering(), case.clock());
     let shader = case.shader(&rendering);
     let programs = shader.programs(TIMEOUT).unwrap();
-    let mut whole = CpuPlayback::<f32>::new(&shader, &programs, None, TIMEOUT, None);
+    let mut whole = CpuPlayback::<f32>::new(&shader, &programs, None, TIMEOUT, Settings::plain());
     let mut saved = None;
     for frame in 0..7 {
         whole.render(&clock.frame(frame)).unwrap();
@@ -296,7 +296,7 @@ fn a_state_goes_on_where_it_was_saved() {
             saved = Some(whole.state(frame));
         }
     }
-    let mut resumed = CpuPlayback::<f32>::new(&shader, &programs, saved.as_ref(), TIMEOUT, None);
+    let mut resumed = CpuPlayback::<f32>::new(&shader, &programs, saved.as_ref(), TIMEOUT, Settings::plain());
     for frame in 4..7 {
         resumed.render(&clock.frame(frame)).unwrap();
     }

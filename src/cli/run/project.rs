@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name};
-use toyproof_eval::{self as eval, PassFailure};
+use toyproof_eval::{self as eval, PassFailure, Settings};
 use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Filter};
 use toyproof_gpu::{Failure, Worker};
@@ -282,10 +282,18 @@ impl Runner<'_> {
                 programs = compiled;
                 match self.args.precision {
                     Precision::F32 => {
-                        Playback::Single(CpuPlayback::new(&scheduled, &programs, state, limit, interrupt))
+                        let settings = Settings {
+                            interrupt,
+                            ..Settings::plain()
+                        };
+                        Playback::Single(CpuPlayback::new(&scheduled, &programs, state, limit, settings))
                     }
                     Precision::F64 => {
-                        Playback::Double(CpuPlayback::new(&scheduled, &programs, state, limit, interrupt))
+                        let settings = Settings {
+                            interrupt,
+                            ..Settings::plain()
+                        };
+                        Playback::Double(CpuPlayback::new(&scheduled, &programs, state, limit, settings))
                     }
                 }
             }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval as eval;
+use toyproof_eval::{self as eval, Settings};
 use toyproof_eval_native::Program;
 use toyproof_glsl::Filter;
 use toyproof_image::{FRAME_RATE, Frame, Image, Texture};
@@ -149,7 +149,7 @@ pub fn bind(
 /// Why the buffers cannot be rendered.
 pub fn bind_reference(shader: &PassShader, frame: &mut Frame, timeout: Duration) -> Result<(), Failure> {
     let programs = programs(shader, timeout, None)?;
-    let mut playback = CpuPlayback::<f64>::new(shader, &programs, None, timeout, None);
+    let mut playback = CpuPlayback::<f64>::new(shader, &programs, None, timeout, Settings::plain());
     if has_history(shader) {
         let clock = clock(frame);
         for number in 0..=frame.frame {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use rayon::ThreadPool;
-use toyproof_eval::{Number, Settings, UndefinedPolicy};
+use toyproof_eval::{Number, Settings};
 use toyproof_eval_native::Program;
 use toyproof_player::Clock;
 
@@ -29,13 +29,13 @@ pub struct Frames<'a> {
 
 impl<'a> Frames<'a> {
     /// Playback from the first frame on.
-    pub(crate) fn start<N: Number>(&self, noise: N::Noise, timeout: Duration) -> CpuPlayback<'a, N> {
+    #[must_use]
+    pub fn start<N: Number>(&self, noise: N::Noise, timeout: Duration) -> CpuPlayback<'a, N> {
         let settings = Settings {
-            undefined: UndefinedPolicy::Plain,
             noise,
-            ..Settings::default()
+            ..Settings::plain()
         };
-        CpuPlayback::with_settings(self.shader, self.programs, None, timeout, settings)
+        CpuPlayback::new(self.shader, self.programs, None, timeout, settings)
     }
 
     /// The time limit of a frame in double precision, which is slower: that is not the shader's fault.

@@ -6,7 +6,7 @@
 
 use toyproof_diagnostic::Code;
 use toyproof_diagnostic::{Diagnostic, grouped, plural};
-use toyproof_eval::{Number, PassFailure, RandomRounding, Seed};
+use toyproof_eval::{Number, PassFailure, RandomRounding, Seed, Settings};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{BUFFERS, Target};
 
@@ -227,7 +227,13 @@ fn find_step(frames: &Frames, until: i32) -> Result<Option<(GrowthCause, Option<
     for number in 0..=until {
         let before = (number > 0).then(|| single.state(number - 1));
         let (shader, timeout) = (frames.shader, frames.long_timeout());
-        let mut step = CpuPlayback::<f64>::new(shader, frames.programs, before.as_ref(), timeout, None);
+        let mut step = CpuPlayback::<f64>::new(
+            shader,
+            frames.programs,
+            before.as_ref(),
+            timeout,
+            Settings::plain(),
+        );
         let inputs = frames.clock.frame(number);
         single.render(&inputs).map_err(failure)?;
         step.render(&inputs).map_err(failure)?;

@@ -1,7 +1,6 @@
 //! The frames of a shader with several passes, one after the other: on the evaluator, and by a driver.
 
 use std::ops::Deref;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Deadline, Overdue};
@@ -64,26 +63,10 @@ pub struct CpuPlayback<'a, N: Number> {
 }
 
 impl<'a, N: Number> CpuPlayback<'a, N> {
-    /// Starts before the first frame, or after the frame of a state. `timeout` is the time limit of a frame.
+    /// Starts before the first frame, or after the frame of a state. `timeout` is the time limit of a frame, by
+    /// which the deadline is set for each.
     #[must_use]
     pub fn new(
-        shader: &PassShader<'a>,
-        programs: &'a [Program],
-        state: Option<&State>,
-        timeout: Duration,
-        interrupt: Option<&'a AtomicBool>,
-    ) -> Self {
-        let settings = Settings {
-            undefined: UndefinedPolicy::Plain,
-            interrupt,
-            ..Settings::default()
-        };
-        Self::with_settings(shader, programs, state, timeout, settings)
-    }
-
-    /// Like [`Self::new`], with all settings; the deadline is set for each frame.
-    #[must_use]
-    pub fn with_settings(
         shader: &PassShader<'a>,
         programs: &'a [Program],
         state: Option<&State>,
