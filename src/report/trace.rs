@@ -204,7 +204,7 @@ impl TraceStep {
             },
             f32: single,
             f64: double,
-            worst: step.worst().map(|(at, ..)| at),
+            worst: step.worst().map(|worst| worst.index),
             ulp: step.ulps().filter(|ulps| ulps.is_finite()),
         }
     }

@@ -127,17 +127,20 @@ impl Step {
         both.map(|(&single, &double)| (single, double))
     }
 
-    /// The component that differs most: its index, and its values in f32 and in f64; `None` if the event
-    /// occurred in one trace only.
+    /// The component that differs most; `None` if the event occurred in one trace only.
     #[must_use]
-    pub fn worst(&self) -> Option<(usize, TraceValue, TraceValue)> {
+    pub fn worst(&self) -> Option<Component> {
         let distance = |pair: (TraceValue, TraceValue)| match pair {
             (TraceValue::Float(single), TraceValue::Float(double)) => distance(single, double),
             (single, double) => f64::from(u8::from(single != double)),
         };
         let pairs = self.pairs().enumerate();
         let worst = pairs.reduce(|a, b| if distance(b.1) > distance(a.1) { b } else { a });
-        worst.map(|(at, (single, double))| (at, single, double))
+        worst.map(|(index, (single, double))| Component {
+            index,
+            single,
+            double,
+        })
     }
 
     /// The largest distance of a float from its f64, in units in the last place of f32; `None` without floats
@@ -150,6 +153,17 @@ impl Step {
         });
         distances.reduce(|a, b| if a >= b { a } else { b })
     }
+}
+
+/// A component of a step that occurred in both traces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Component {
+    /// Its number.
+    pub index: usize,
+    /// Its value in f32.
+    pub single: TraceValue,
+    /// Its value in f64.
+    pub double: TraceValue,
 }
 
 /// The distance of two numbers; infinite if exactly one is NaN or infinite.

@@ -102,8 +102,9 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
     let step = &explanation.steps[explanation.cause?];
     let event = explanation.schema.event(step.event);
     let at = format!("at ({x}, {y})");
-    let message = match step.worst() {
-        Some((_, single, double)) if event.kind == EventKind::Branch => {
+    let worst = step.worst().map(|worst| (worst.single, worst.double));
+    let message = match worst {
+        Some((single, double)) if event.kind == EventKind::Branch => {
             let branch = |value| matches!(value, TraceValue::Word(word) if word != 0);
             format!(
                 "float32 takes another branch here: {at} the condition is {}, but {} in double precision",
@@ -111,7 +112,7 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
                 branch(double)
             )
         }
-        Some((_, TraceValue::Float(single), TraceValue::Float(double)))
+        Some((TraceValue::Float(single), TraceValue::Float(double)))
             if digits(single, true) != digits(double, false) =>
         {
             format!(
