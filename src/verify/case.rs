@@ -59,34 +59,10 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// Sets how far the driver may rearrange arithmetic.
-    #[must_use]
-    pub fn with_float(self, float: FloatMode) -> Self {
-        Self { float, ..self }
-    }
-
     /// Sets the time limit of an image.
     #[must_use]
     pub fn with_timeout(self, timeout: Duration) -> Self {
         Self { timeout, ..self }
-    }
-
-    /// Sets what earlier frames contribute.
-    #[must_use]
-    pub fn with_from_start(self, from_start: FromStart<'a>) -> Self {
-        Self {
-            from_start: Some(from_start),
-            ..self
-        }
-    }
-
-    /// Runs the evaluator and the tracer in a thread pool.
-    #[must_use]
-    pub fn with_pool(self, pool: &'a ThreadPool) -> Self {
-        Self {
-            pool: Some(pool),
-            ..self
-        }
     }
 }
 

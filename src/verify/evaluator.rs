@@ -16,9 +16,8 @@ use toyproof_image::{Frame, Image};
 /// does not depend on the load of the machine: iterations are counted, and there is no deadline.
 pub fn evaluate_at(program: &Program, frame: &Frame, places: &Places, max_iterations: u32) -> Option<Image> {
     let settings = Settings::<f64> {
-        undefined: UndefinedPolicy::Plain,
         max_iterations,
-        ..Settings::default()
+        ..Settings::plain()
     };
     program.at(frame, places, &settings).ok()
 }
@@ -205,12 +204,11 @@ impl<'a> Evaluator<'a> {
         let extra = self.double_time.get() * PERTURBED_TIME_FACTOR;
         self.perturbed.spend(extra, |deadline| {
             let settings = Settings::<RandomRounding> {
-                undefined: UndefinedPolicy::Plain,
                 max_iterations: self.max_iterations,
                 noise: seed,
                 deadline: Some(deadline),
                 wanted: Some(wanted),
-                ..Settings::default()
+                ..Settings::plain()
             };
             let frame = self.double_frame.unwrap_or(self.frame);
             let rendered = self.program.render_rows(frame, rows.clone(), &settings);

@@ -21,7 +21,7 @@ pub(super) struct Spool {
 
 #[derive(Debug, Default)]
 struct Queue {
-    bands: VecDeque<Spooled>,
+    bands: VecDeque<SpooledBand>,
     in_memory: usize,
     file: Option<File>,
     /// Bytes of the file.
@@ -31,7 +31,7 @@ struct Queue {
 
 /// A band, and its size and place if it is in the file.
 #[derive(Debug)]
-enum Spooled {
+enum SpooledBand {
     InMemory(Image),
     InFile { size: [u32; 2], at: u64 },
 }
@@ -68,27 +68,27 @@ impl Spool {
             return Ok(None);
         };
         match band {
-            Spooled::InMemory(band) => {
+            SpooledBand::InMemory(band) => {
                 queue.in_memory -= 1;
                 Ok(Some(band))
             }
-            Spooled::InFile { size, at } => queue.read(size, at).map(Some),
+            SpooledBand::InFile { size, at } => queue.read(size, at).map(Some),
         }
     }
 }
 
 impl Queue {
-    fn spool(&mut self, band: Image) -> Spooled {
+    fn spool(&mut self, band: Image) -> SpooledBand {
         if self.in_memory >= MAX_BANDS_IN_MEMORY
             && let Ok(at) = self.write(&band)
         {
-            return Spooled::InFile {
+            return SpooledBand::InFile {
                 size: band.size(),
                 at,
             };
         }
         self.in_memory += 1;
-        Spooled::InMemory(band)
+        SpooledBand::InMemory(band)
     }
 
     /// Writes a band at the end of the file, and returns its place.

@@ -136,6 +136,18 @@ pub struct Literal {
     pub value: Value,
 }
 
+impl From<Value> for Literal {
+    fn from(value: Value) -> Self {
+        let text = match value {
+            Value::Bool(value) => value.to_string(),
+            Value::Int(value) => value.to_string(),
+            Value::Uint(value) => format!("{value}u"),
+            Value::Float(value) => format!("{value:?}"),
+        };
+        Self::new(text, value)
+    }
+}
+
 impl Literal {
     /// A literal as it is written, with its value.
     pub fn new(text: impl Into<Box<str>>, value: Value) -> Self {

@@ -75,7 +75,7 @@ pub struct EpsilonSearch {
     budget: f64,
     /// The number of pixels that may be compared with all ray epsilons one by one.
     single_pixel_budget: f64,
-    fitted: Option<FittedEpsilons>,
+    fitted: Option<RayEpsilons>,
 }
 
 impl EpsilonSearch {
@@ -92,7 +92,7 @@ impl EpsilonSearch {
     /// The ray epsilons of the shader, if they were found.
     #[must_use]
     pub fn epsilons(&self) -> Option<RayEpsilons> {
-        self.fitted.map(|fitted| fitted.epsilons)
+        self.fitted
     }
 }
 
@@ -259,8 +259,8 @@ pub fn accept_epsilons(band: &mut Band, colors: &dyn EpsilonColors, mixed: &mut 
     let left = band.differing();
     if !left.is_empty() {
         mixed.fitted = fit_epsilons(colors, &left, mixed.fitted);
-        if let Some(fitted) = mixed.fitted {
-            band.accept(|pixel| matches_epsilons(colors, pixel, &fitted.epsilons));
+        if let Some(epsilons) = mixed.fitted {
+            band.accept(|pixel| matches_epsilons(colors, pixel, &epsilons));
         }
     }
     let count = differing(band.statuses);
@@ -290,19 +290,13 @@ const MIN_EXPLAINED_SHARE: f64 = 0.1;
 /// How often the epsilons of light rays and of other rays are fitted alternately.
 const FIT_ITERATIONS: u32 = 2;
 
-/// Ray epsilons that were fitted to a shader.
-#[derive(Debug, Clone, Copy)]
-struct FittedEpsilons {
-    epsilons: RayEpsilons,
-}
-
 /// Returns the ray epsilons that explain most of some pixels, if any explain some; `before` are those that
 /// explained earlier ones.
 fn fit_epsilons(
     reference: &dyn EpsilonColors,
     differing: &[Pixel],
-    before: Option<FittedEpsilons>,
-) -> Option<FittedEpsilons> {
+    before: Option<RayEpsilons>,
+) -> Option<RayEpsilons> {
     let most = (MAX_FITTED_PIXELS / reference.samples() as usize).max(MIN_FITTED_PIXELS);
     let count = differing.len().min(most);
     let pixel = |at| differing[(2 * at + 1) * differing.len() / (2 * count)];
@@ -311,7 +305,7 @@ fn fit_epsilons(
         let is_explained = |pixel: &&Pixel| matches_epsilons(reference, pixel, epsilons);
         sample.iter().filter(is_explained).count()
     };
-    let mut best = before.map(|before| (explained(&before.epsilons), before.epsilons));
+    let mut best = before.map(|before| (explained(&before), before));
     if best.is_some_and(|(most, _)| most == count) {
         return before;
     }
@@ -346,7 +340,7 @@ fn fit_epsilons(
         }
     }
     let (most, epsilons) = best?;
-    (most as f64 >= MIN_EXPLAINED_SHARE * count as f64).then_some(FittedEpsilons { epsilons })
+    (most as f64 >= MIN_EXPLAINED_SHARE * count as f64).then_some(epsilons)
 }
 
 /// Whether a pixel has the reference's color for these ray epsilons.

@@ -39,7 +39,7 @@ pub struct MarchDependence {
 impl AcceptedColors {
     /// The colors of a reference for the usual ray epsilons and for other marches; `None` for a large image,
     /// and where no color depends on them.
-    pub(super) fn of(reference: &ShaderReference) -> Option<Self> {
+    pub(super) fn new(reference: &ShaderReference) -> Option<Self> {
         if !is_cached(reference.frame.size) {
             return None;
         }
@@ -51,12 +51,16 @@ impl AcceptedColors {
         let bands = reference.frame.bands().map(|rows| reference.rows(&rows));
         let bands = bands.map(|band| band.ok().map(|band| band.image.clone()));
         let own = Image::of_bands(bands.collect::<Option<_>>()?);
-        let mut ranges: Vec<ColorRange> = own.pixels().iter().map(|&color| point(color)).collect();
+        let mut ranges: Vec<ColorRange> = own
+            .pixels()
+            .iter()
+            .map(|&[r, g, b, _]| point([r, g, b].map(f64::from)))
+            .collect();
         let mut is_varied = false;
         let mut marched = vec![false; ranges.len()];
         let mut limits: Vec<Span> = Vec::new();
         for variation in &variations {
-            let Some(image) = evaluated(reference, &variation.of(checked)) else {
+            let Some(image) = evaluated(reference, &variation.apply(checked)) else {
                 continue;
             };
             let differs = |at: usize| Pixel::at(at, &own, &image).difference() > reference.tolerance();
@@ -97,8 +101,8 @@ impl AcceptedColors {
     }
 }
 
-fn point([r, g, b, _]: [f32; 4]) -> ColorRange {
-    let color = [r, g, b].map(f64::from);
+/// The range of one color.
+pub(super) fn point(color: [f64; 3]) -> ColorRange {
     ColorRange {
         low: color,
         high: color,
@@ -116,9 +120,8 @@ fn extend(range: &mut ColorRange, color: [f32; 4]) {
 /// The image of a variant of the reference; none if a pixel runs too many loop iterations.
 fn evaluated(reference: &ShaderReference, varied: &Checked) -> Option<Image> {
     let settings = Settings::<f64> {
-        undefined: UndefinedPolicy::Plain,
         max_iterations: MAX_ITERATIONS,
-        ..Settings::default()
+        ..Settings::plain()
     };
     let program = Program::prepared(varied, UndefinedPolicy::Plain).ok()?;
     let frame = &reference.frame;

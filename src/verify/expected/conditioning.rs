@@ -116,7 +116,7 @@ fn of_scene(reference: &SceneReference) -> Option<Conditioning> {
 
 /// Small edits of a scene, each with its description: a moved eye or light, or a pattern of another size.
 fn edits(scene: &Scene) -> Vec<(String, Scene)> {
-    let step = Step::of(scene);
+    let step = Step::new(scene);
     let mut edits = Vec::new();
     let mut edit = |text: String, change: &dyn Fn(&mut Scene)| {
         let mut edited = scene.clone();
@@ -157,7 +157,7 @@ struct Step {
 }
 
 impl Step {
-    fn of(scene: &Scene) -> Self {
+    fn new(scene: &Scene) -> Self {
         let magnitude = scene.size().max(f64::MIN_POSITIVE).log10().floor();
         Self {
             length: 1.3 * 10f64.powf(magnitude - 3.0),

@@ -114,7 +114,7 @@ fn march(tree: &Tree, function: FunctionId, statement: &Statement) -> Option<Mar
     };
     let mut roots = walk::own_expressions(tree, statement);
     roots.extend(walk::roots(tree, body));
-    let writes = Writes::of(tree, &roots, body);
+    let writes = Writes::new(tree, &roots, body);
     let marched = writes.marched(tree)?;
     let mut limits = Vec::new();
     let mut add = |condition: ExprId, is_end: bool| {
@@ -165,7 +165,7 @@ struct Writes {
 }
 
 impl Writes {
-    fn of(tree: &Tree, roots: &[ExprId], body: &Block) -> Self {
+    fn new(tree: &Tree, roots: &[ExprId], body: &Block) -> Self {
         let mut writes = Self {
             values: Vec::new(),
             sums: Vec::new(),
@@ -219,7 +219,7 @@ impl Writes {
 
     /// The variable by which the loop marches: it determines a place, and its increment depends on the result
     /// of a function of this place.
-    fn marched(&self, tree: &Tree) -> Option<Marched> {
+    fn marched(&self, tree: &Tree) -> Option<Travel> {
         self.sums.iter().find_map(|&(variable, _)| {
             let placed = self.dependent(tree, |value| walk::mentions(tree, value, variable));
             let is_place = |id: ExprId| {
@@ -254,7 +254,7 @@ impl Writes {
             let advances = own
                 .into_iter()
                 .chain(beside.into_iter().map(|(_, summand)| summand));
-            Some(Marched {
+            Some(Travel {
                 travelled,
                 advances: advances.collect(),
             })
@@ -334,12 +334,12 @@ fn is_plain(tree: &Tree, expr: ExprId, variables: &HashSet<VariableId>) -> bool 
 }
 
 /// The variables by which a loop marches.
-struct Marched {
+struct Travel {
     travelled: HashSet<VariableId>,
     advances: Vec<ExprId>,
 }
 
-impl Marched {
+impl Travel {
     /// Whether an expression is the distance that the loop has marched: `t`, `length(p - origin)`.
     fn measures(&self, tree: &Tree, expr: ExprId) -> bool {
         tree[expr].ty == Type::FLOAT && mentions_any(tree, expr, &self.travelled)
@@ -347,14 +347,14 @@ impl Marched {
 }
 
 /// A comparison of a number with its upper limit.
-struct Compared {
+struct Comparison {
     number: ExprId,
     limit: ExprId,
 }
 
 /// The comparisons of a condition that end a loop when a number exceeds a limit. `is_end` is whether the
 /// condition ends the loop, rather than continues it.
-fn comparisons(tree: &Tree, condition: ExprId, is_end: bool) -> Vec<Compared> {
+fn comparisons(tree: &Tree, condition: ExprId, is_end: bool) -> Vec<Comparison> {
     let nodes = tree.postorder(condition).into_iter();
     nodes
         .filter_map(|id| {
@@ -363,11 +363,11 @@ fn comparisons(tree: &Tree, condition: ExprId, is_end: bool) -> Vec<Compared> {
             };
             let op = if is_end { op } else { op.mirrored() };
             match op {
-                BinaryOp::Greater | BinaryOp::GreaterEqual => Some(Compared {
+                BinaryOp::Greater | BinaryOp::GreaterEqual => Some(Comparison {
                     number: left,
                     limit: right,
                 }),
-                BinaryOp::Less | BinaryOp::LessEqual => Some(Compared {
+                BinaryOp::Less | BinaryOp::LessEqual => Some(Comparison {
                     number: right,
                     limit: left,
                 }),

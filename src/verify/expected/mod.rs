@@ -23,6 +23,7 @@ use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::{ColorRange, EpsilonSet, Tracer};
 
 pub use self::accepted::MarchDependence;
+use self::accepted::point;
 pub use self::bands::ReferenceBand;
 pub use self::conditioning::Conditioning;
 pub use self::image::{ImageReference, Quantization};
@@ -237,16 +238,7 @@ impl Expected {
         match self {
             Self::Scene(scene) => scene.color_range(x, y, EpsilonSet::Alike),
             Self::Shader(shader) => widened(shader.color_range(x, y), shader.tolerance()),
-            Self::Image(image) => {
-                let color = image.pixel(x, y);
-                widened(
-                    ColorRange {
-                        low: color,
-                        high: color,
-                    },
-                    image.tolerance(),
-                )
-            }
+            Self::Image(image) => widened(point(image.pixel(x, y)), image.tolerance()),
         }
     }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval::{self as eval, Observations, Places, RandomRounding, Seed, Settings, UndefinedPolicy};
+use toyproof_eval::{self as eval, Observations, Places, RandomRounding, Seed, Settings};
 use toyproof_eval_native::Program;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::Input;
@@ -14,7 +14,7 @@ use toyproof_image::{Frame, Image};
 use toyproof_lint::Lints;
 use toyproof_tracer::ColorRange;
 
-use super::accepted::AcceptedColors;
+use super::accepted::{AcceptedColors, point};
 use super::bands::{Bands, ReferenceBand};
 use super::number_type::NumberType;
 use crate::bounds::{EVALUATOR_TIME_FACTOR, EXPLANATION_TIMEOUT, explanation_deadline};
@@ -70,28 +70,17 @@ impl ShaderReference {
         timeout: Duration,
     ) -> Result<(Self, ReferenceFindings), eval::Failure> {
         let program = Arc::new(Program::within(checked, timeout * EVALUATOR_TIME_FACTOR)?);
-        Self::evaluated(program, lints, frame, tolerance, timeout)
+        let reference = Self::unevaluated(program, frame, tolerance, timeout);
+        let findings = reference.evaluate(lints)?;
+        Ok((reference, findings))
     }
 
     /// The same shader in another frame; none if it cannot be evaluated there.
     pub(crate) fn in_frame(&self, frame: &Frame) -> Option<Self> {
-        let program = Arc::clone(&self.program);
-        let lints = Lints::default();
         // It explains images, so that it must not depend on the load of the machine.
-        let evaluated = Self::evaluated(program, &lints, frame, self.tolerance, EXPLANATION_TIMEOUT);
-        evaluated.ok().map(|(reference, _)| reference)
-    }
-
-    fn evaluated(
-        program: Arc<Program>,
-        lints: &Lints,
-        frame: &Frame,
-        tolerance: f64,
-        timeout: Duration,
-    ) -> Result<(Self, ReferenceFindings), eval::Failure> {
-        let reference = Self::unevaluated(program, frame, tolerance, timeout);
-        let findings = reference.evaluate(lints)?;
-        Ok((reference, findings))
+        let reference = Self::unevaluated(self.program.clone(), frame, self.tolerance, EXPLANATION_TIMEOUT);
+        reference.evaluate(&Lints::default()).ok()?;
+        Some(reference)
     }
 
     pub(crate) fn unevaluated(
@@ -186,11 +175,7 @@ impl ShaderReference {
             columns: along(x),
             rows: along(y),
         };
-        let settings = Settings::<f64> {
-            undefined: UndefinedPolicy::Plain,
-            ..Settings::default()
-        };
-        let evaluated = self.program.at(&self.frame, &quad, &settings);
+        let evaluated = self.program.at(&self.frame, &quad, &Settings::<f64>::plain());
         evaluated.map_or([f64::NAN; 3], |image| {
             let [r, g, b, _] = image.get(x % 2, y % 2);
             [r, g, b].map(f64::from)
@@ -199,7 +184,7 @@ impl ShaderReference {
 
     /// The colors for other ray epsilons and marches.
     pub(super) fn accepted(&self) -> Option<&AcceptedColors> {
-        self.accepted.get_or_init(|| AcceptedColors::of(self)).as_ref()
+        self.accepted.get_or_init(|| AcceptedColors::new(self)).as_ref()
     }
 
     /// Those colors, if they have been computed.
@@ -212,11 +197,7 @@ impl ShaderReference {
         if let Some(accepted) = self.accepted() {
             return *accepted.range((y * self.frame.size[0] + x) as usize);
         }
-        let color = self.pixel(x, y);
-        ColorRange {
-            low: color,
-            high: color,
-        }
+        point(self.pixel(x, y))
     }
 
     /// Accepts the colors that the shader has for other ray epsilons and marches, where few pixels differ;
@@ -277,9 +258,8 @@ impl ShaderReference {
     pub(super) fn ill_conditioned_at(&self, places: &Places) -> u64 {
         let deadline = Some(Instant::now() + self.timeout * EVALUATOR_TIME_FACTOR);
         let settings = Settings::<f64> {
-            undefined: UndefinedPolicy::Plain,
             deadline,
-            ..Settings::default()
+            ..Settings::plain()
         };
         let Ok(image) = self.program.at(&self.frame, places, &settings) else {
             return 0;
@@ -290,11 +270,10 @@ impl ShaderReference {
         let left: Vec<bool> = moved.iter().map(|moved| !moved).collect();
         let rounded = changed_by_rounding(&image, &left, self.tolerance, |seed, wanted| {
             let settings = Settings::<RandomRounding> {
-                undefined: UndefinedPolicy::Plain,
                 noise: Seed::double(seed),
                 deadline,
                 wanted: Some(wanted),
-                ..Settings::default()
+                ..Settings::plain()
             };
             self.program.at(&self.frame, places, &settings).ok()
         });
@@ -317,10 +296,9 @@ impl ShaderReference {
         tolerance: f64,
     ) -> Vec<bool> {
         let settings = Settings::<f64> {
-            undefined: UndefinedPolicy::Plain,
             deadline: Some(Instant::now() + self.timeout * EVALUATOR_TIME_FACTOR),
             wanted: Some(wanted),
-            ..Settings::default()
+            ..Settings::plain()
         };
         let mut changed = vec![false; wanted.len()];
         for [dx, dy] in [[step, step], [-step, -step], [step, -step], [-step, step]] {

@@ -2,7 +2,7 @@
 
 use toyproof_diagnostic::Span;
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{BinaryOp, Expr, ExprId, ExprKind, Literal, Type, Value, VariableKind};
+use toyproof_glsl::tree::{BinaryOp, Expr, ExprId, ExprKind, Type, Value, VariableKind};
 
 /// A reference with other numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,16 +31,16 @@ pub(super) enum Edit {
 
 impl Variation {
     /// The shader with this variation.
-    pub(super) fn of(&self, checked: &Checked) -> Checked {
+    pub(super) fn apply(&self, checked: &Checked) -> Checked {
         let mut checked = checked.clone();
         let tree = &mut checked.tree;
         for edit in &self.edits {
             match *edit {
-                Edit::Number(id, value) => tree[id].kind = ExprKind::Literal(literal(value)),
+                Edit::Number(id, value) => tree[id].kind = ExprKind::Literal(value.into()),
                 Edit::Scale(id, factor) => {
                     let whole = tree[id].clone();
                     let right = tree.exprs.push(Expr {
-                        kind: ExprKind::Literal(literal(Value::Float(factor))),
+                        kind: ExprKind::Literal(Value::Float(factor).into()),
                         ty: Type::FLOAT,
                         constant: true,
                         at: whole.at,
@@ -66,18 +66,5 @@ impl Variation {
             }
         }
         checked
-    }
-}
-
-fn literal(value: Value) -> Literal {
-    let text = match value {
-        Value::Bool(value) => value.to_string(),
-        Value::Int(value) => value.to_string(),
-        Value::Uint(value) => format!("{value}u"),
-        Value::Float(value) => format!("{value:?}"),
-    };
-    Literal {
-        text: text.into(),
-        value,
     }
 }
