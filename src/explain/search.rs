@@ -9,8 +9,8 @@ use toyproof_verify::compare::CheckResult;
 use toyproof_verify::contain::{Panic, Part, contain};
 use toyproof_verify::random::Reseeding;
 use toyproof_verify::{
-    CheckEvidence, Checks, MAX_UNSTABLE, Reason, Ruling, Share, Subject, Verdict, Verified, cause, unbound,
-    within,
+    Basis, CheckEvidence, Checks, MAX_UNSTABLE, Reason, Ruling, Settlement, Share, Subject, Verdict,
+    Verified, cause, decide, unbound, within,
 };
 
 use crate::departure::{self, Departure};
@@ -31,7 +31,7 @@ const NOISY_SIDE: u32 = 24;
 #[must_use]
 pub fn explain(verified: &Verified, options: &Options) -> Explanation {
     let Some(subject) = verified.subject() else {
-        return Explanation::without_search(verified.evidence().into());
+        return Explanation::without_search(decide(verified.evidence()));
     };
     within(subject.case.pool, || Search::new(subject, options).run())
 }
@@ -63,15 +63,6 @@ struct Search<'a> {
     panics: Vec<Panic>,
 }
 
-/// The verdict after the search for mistakes, and what led to it.
-struct Settled {
-    ruling: Ruling,
-    mistake: Option<Diagnosis>,
-    /// How the shader's random numbers were changed to compare its means.
-    reseeding: Option<Reseeding>,
-    compares_means: bool,
-}
-
 impl<'a> Search<'a> {
     fn new(subject: Subject<'a>, options: &'a Options<'a>) -> Self {
         Self {
@@ -83,16 +74,15 @@ impl<'a> Search<'a> {
     }
 
     fn run(mut self) -> Explanation {
-        let evidence = self.subject.evidence();
-        if let Some(permitted) = self.permitted(&evidence) {
+        if let Some(permitted) = self.permitted() {
             return permitted;
         }
-        let Settled {
+        let Settlement {
             ruling,
             mistake,
             reseeding,
             compares_means,
-        } = self.settle(evidence);
+        } = self.settle();
         // From here on, the verdict is final.
         let tolerated_mistake = if compares_means {
             None
@@ -123,10 +113,10 @@ impl<'a> Search<'a> {
     }
 
     /// The explanation of a shader that is right but for a permitted difference.
-    fn permitted(&mut self, evidence: &CheckEvidence) -> Option<Explanation> {
+    fn permitted(&mut self) -> Option<Explanation> {
         let permitted = self.options.alternatives?.permitted;
-        let ruling = Ruling::from(evidence.clone());
-        if ruling.verdict != Verdict::Wrong || permitted.is_empty() {
+        let evidence = self.subject.evidence();
+        if permitted.is_empty() || decide(evidence.clone()).verdict != Verdict::Wrong {
             return None;
         }
         let (difference, found) = self.in_submission(&evidence.checks, |submission| {
@@ -134,12 +124,12 @@ impl<'a> Search<'a> {
         })?;
         let algorithm = found.algorithm;
         let differing = Share::differing(&algorithm);
-        let mut ruling = Ruling::from(CheckEvidence {
+        let mut ruling = decide(CheckEvidence {
             checks: Checks {
                 algorithm: Some(algorithm.clone()),
-                ..evidence.checks.clone()
+                ..evidence.checks
             },
-            ..evidence.clone()
+            ..evidence
         });
         if ruling.verdict == Verdict::Correct {
             ruling.reason = Reason::Permitted {
@@ -155,48 +145,34 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Searches for a mistake, and decides what no mistake explains.
-    fn settle(&mut self, evidence: CheckEvidence) -> Settled {
-        let may_be_stochastic = self.subject.may_be_stochastic();
-        let ruling = Ruling::from(evidence.clone());
-        // A mistake that explains every pixel is reported whatever random numbers the shader uses. Pairs are
-        // searched for only if the comparison of random pixels reaches no verdict: with other random numbers,
-        // two mistakes do not render the image of the pair.
-        let mut mistake = self.of_scene(&ruling, Stage::Single);
-        mistake = self.of_whole_image(&ruling, &evidence.checks, mistake, whole_image::find);
-        mistake = mistake.or_else(|| self.of_scene(&ruling, Stage::Number));
+    /// Settles the verdict, and searches for a mistake.
+    fn settle(&mut self) -> Settlement<Diagnosis> {
+        let (subject, deadline) = (self.subject, self.deadline);
+        let mut settlement = subject.settle(deadline, |ruling, basis| match basis {
+            Basis::Checks(checks) => self.of_checks(ruling, checks),
+            Basis::Means(reseeding) => self.of_noisy_pixels(ruling, reseeding),
+            Basis::SelfIntersection => Some(Diagnosis::single(known::self_intersection())),
+        });
+        // Pairs are searched for only if the comparison of random pixels reaches no verdict: with other random
+        // numbers, two mistakes do not render the image of the pair.
+        if subject.may_be_stochastic() && !settlement.compares_means && settlement.mistake.is_none() {
+            settlement.mistake = self.of_scene(&settlement.ruling, Stage::Pair(MAX_PAIRS));
+        }
+        settlement
+    }
+
+    /// Searches for a mistake that explains every pixel, which is reported whatever random numbers the shader
+    /// uses.
+    fn of_checks(&mut self, ruling: &Ruling, checks: &Checks) -> Option<Diagnosis> {
+        let mut mistake = self.of_scene(ruling, Stage::Single);
+        mistake = self.of_whole_image(ruling, checks, mistake, whole_image::find);
+        mistake = mistake.or_else(|| self.of_scene(ruling, Stage::Number));
         // A wrong number, such as a light's intensity, says more than the curve that it amounts to.
-        mistake = self.of_whole_image(&ruling, &evidence.checks, mistake, whole_image::find_curve);
-        if !may_be_stochastic {
-            mistake = mistake.or_else(|| self.of_scene(&ruling, Stage::Pair(MAX_PAIRS)));
+        mistake = self.of_whole_image(ruling, checks, mistake, whole_image::find_curve);
+        if !self.subject.may_be_stochastic() {
+            mistake = mistake.or_else(|| self.of_scene(ruling, Stage::Pair(MAX_PAIRS)));
         }
-        let mut settled = Settled {
-            ruling,
-            mistake,
-            reseeding: None,
-            compares_means: false,
-        };
-        let mut evidence = evidence;
-        if settled.is_unexplained()
-            && let Some(means) = self.subject.compare_means(&evidence, self.deadline)
-        {
-            evidence = means.evidence;
-            settled.ruling = evidence.clone().into();
-            settled.mistake = self.of_noisy_pixels(&settled.ruling, means.reseeding);
-            settled.reseeding = means.reseeding;
-            settled.compares_means = true;
-        }
-        if settled.is_unexplained() {
-            evidence.self_intersection = self.subject.self_intersection();
-            settled.ruling = evidence.into();
-            if matches!(settled.ruling.reason, Reason::SelfIntersection(_)) {
-                settled.mistake = Some(Diagnosis::single(known::self_intersection()));
-            }
-        }
-        if may_be_stochastic && !settled.compares_means && settled.mistake.is_none() {
-            settled.mistake = self.of_scene(&settled.ruling, Stage::Pair(MAX_PAIRS));
-        }
-        settled
+        mistake
     }
 
     /// Searches for the mistake that explains a wrong image, or for two.
@@ -349,11 +325,4 @@ fn is_preferred(mistake: &Diagnosis, search: Option<&SearchResult>) -> bool {
     let first = search.and_then(|search| search.repairs.first());
     let is_repaired = first.is_some_and(|repair| repair.is_complete() && repair.is_single());
     mistake.mistakes.len() == 1 || !is_repaired
-}
-
-impl Settled {
-    /// Whether there is a fault, and no mistake is known that explains it.
-    fn is_unexplained(&self) -> bool {
-        self.ruling.is_fault() && self.mistake.is_none()
-    }
 }

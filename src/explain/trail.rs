@@ -11,7 +11,7 @@ use toyproof_player::{Source, Target};
 use toyproof_verify::Failure;
 use toyproof_verify::project::bind::{clock, programs};
 use toyproof_verify::project::frames::Frames;
-use toyproof_verify::project::playback::{CpuPlayback, PassShader};
+use toyproof_verify::project::playback::PassShader;
 
 /// A pixel of a pass on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]

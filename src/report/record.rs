@@ -12,7 +12,7 @@ use toyproof_explain::known::{Diagnosis, KnownMistake};
 use toyproof_explain::repair::SearchResult;
 use toyproof_explain::unused::Unused;
 use toyproof_verify::compare::{CheckSummary, Comparison};
-use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Verdict, decide};
+use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Ruling, Verdict, decide};
 
 use super::departure::Departure;
 use super::reason::{Statement, state, state_reason};
@@ -283,9 +283,9 @@ impl Record {
     /// States that media are missing, if the shader is compared with nothing: a successful rendering then
     /// means little.
     fn set_missing_media(&mut self, missing: String) {
-        if self.verdict == Verdict::Ok {
-            self.verdict = Verdict::Inconclusive;
-            self.reason = missing;
+        let verdict = self.verdict.with_missing_media();
+        if verdict != self.verdict {
+            (self.verdict, self.reason) = (verdict, missing);
         }
     }
 
@@ -330,15 +330,15 @@ impl Record {
         if matches!(failure, Failure::Gpu(failure) if failure.is_without_driver()) {
             self.help = Some("toyproof doctor".to_owned());
         }
-        let (verdict, because) = decide(Evidence::NoImage(failure.clone()));
+        let Ruling { verdict, reason } = decide(Evidence::NoImage(failure.clone()));
         self.verdict = verdict;
         if let Reason::NoImage(Failure::Cpu(
             eval::Failure::TooOften { at, .. } | eval::Failure::Timeout { at },
-        )) = &because
+        )) = &reason
         {
             self.cause = Some(files.position(at.span).into());
         }
-        self.set_statement(state_reason(&because, files));
+        self.set_statement(state_reason(&reason, files));
     }
 
     /// The name of the scene or of the reference that it was compared with.

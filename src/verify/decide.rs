@@ -17,7 +17,7 @@ use crate::limits::{
 };
 use crate::project::growth::{GrowthCause, VisibleGrowth};
 use crate::random::mean_test::MeanTest;
-use crate::random::replicate_test::{RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest};
+use crate::random::replicate_test::{Bias, RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest};
 
 /// The verdict on a shader, in the order of precedence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -50,6 +50,16 @@ impl Verdict {
     #[must_use]
     pub fn is_compiled(self) -> bool {
         !matches!(self, Self::Missing | Self::Invalid)
+    }
+
+    /// The verdict on a shader some of whose media are missing: where it is compared with nothing, that it
+    /// renders means little.
+    #[must_use]
+    pub fn with_missing_media(self) -> Self {
+        match self {
+            Self::Ok => Self::Inconclusive,
+            verdict => verdict,
+        }
     }
 
     /// Whether the shader has no fault.
@@ -201,10 +211,27 @@ pub enum Means {
     },
 }
 
+/// A verdict and its reason.
+#[derive(Debug, Clone)]
+pub struct Ruling {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why.
+    pub reason: Reason,
+}
+
+impl Ruling {
+    /// Whether the shader has a fault that a mistake may explain.
+    #[must_use]
+    pub fn is_fault(&self) -> bool {
+        matches!(self.verdict, Verdict::Wrong | Verdict::Unstable)
+    }
+}
+
 /// Returns the verdict on a shader, and its reason.
 #[must_use]
-pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
-    match evidence {
+pub fn decide(evidence: impl Into<Evidence>) -> Ruling {
+    let (verdict, reason) = match evidence.into() {
         Evidence::NoImage(failure) => (without_image(&failure), Reason::NoImage(failure)),
         Evidence::NotEvaluated {
             failure,
@@ -232,7 +259,8 @@ pub fn decide(evidence: Evidence) -> (Verdict, Reason) {
                 _ => (verdict, reason),
             }
         }
-    }
+    };
+    Ruling { verdict, reason }
 }
 
 /// The verdict on a shader without an image.
@@ -289,15 +317,15 @@ fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>, is_reference_shader
         let regions = algorithm.regions;
         return (Verdict::Wrong, Reason::AlgorithmDiffers { differing, regions });
     }
-    let undefined = Share::of(algorithm, algorithm.undefined);
+    let undefined = Share::new(algorithm, algorithm.undefined);
     if undefined.ratio() > MAX_UNDEFINED {
         return (Verdict::Inconclusive, Reason::Undefined(undefined));
     }
-    let tied = Share::of(algorithm, algorithm.tied);
+    let tied = Share::new(algorithm, algorithm.tied);
     if tied.ratio() > MAX_UNDEFINED {
         return (Verdict::Inconclusive, Reason::ReferenceIllConditioned(tied));
     }
-    let ill_conditioned = Share::of(algorithm, algorithm.ill_conditioned - algorithm.tied);
+    let ill_conditioned = Share::new(algorithm, algorithm.ill_conditioned - algorithm.tied);
     if ill_conditioned.ratio() > MAX_UNSTABLE {
         return (Verdict::Unstable, Reason::IllConditioned(ill_conditioned));
     }
@@ -317,7 +345,7 @@ fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>, is_reference_shader
         .precision
         .as_ref()
         .map_or(Share { count: 0, of: 0 }, |precision| {
-            Share::of(precision, precision.tied)
+            Share::new(precision, precision.tied)
         });
     let is_imprecise = is_reference_shader && tied.ratio() > MAX_UNSTABLE;
     let reason = Reason::Agrees {
@@ -383,7 +411,7 @@ fn by_replicates(
     samples: Option<u32>,
 ) -> (Verdict, Means) {
     let &ReplicateTest {
-        bias: (deviations, at),
+        bias: Bias { deviations, at },
         within,
         variance,
         ..
@@ -445,7 +473,8 @@ mod tests {
     }
 
     fn decided(evidence: CheckEvidence) -> (Verdict, Reason) {
-        decide(evidence.into())
+        let Ruling { verdict, reason } = decide(evidence);
+        (verdict, reason)
     }
 
     fn verdict(checks: Checks) -> Verdict {
@@ -573,7 +602,10 @@ mod tests {
     }
 
     const UNBIASED: ReplicateTest = ReplicateTest {
-        bias: (1.0, [3, 4]),
+        bias: Bias {
+            deviations: 1.0,
+            at: [3, 4],
+        },
         is_biased: false,
         within: 0.001,
         is_correlated: false,
@@ -646,7 +678,7 @@ mod tests {
 
     #[test]
     fn without_an_image_the_failure_decides() {
-        let of = |failure| decide(Evidence::NoImage(failure)).0;
+        let of = |failure| decide(Evidence::NoImage(failure)).verdict;
         let error = |code| vec![Diagnostic::new(code, "x")];
         assert_eq!(of(Failure::Missing("no shader".to_owned())), Verdict::Missing);
         assert_eq!(of(Failure::Invalid(error(Code::Redeclared))), Verdict::Invalid);
@@ -675,7 +707,7 @@ mod tests {
                 failure,
                 has_reference,
             };
-            decide(evidence).0
+            decide(evidence).verdict
         };
         assert_eq!((of(true), of(false)), (Verdict::Inconclusive, Verdict::Ok));
     }

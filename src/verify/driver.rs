@@ -21,8 +21,8 @@ pub struct GpuRun {
     pub draw: Duration,
 }
 
-impl GpuRun {
-    pub(crate) fn of(drawn: DrawOutput) -> Self {
+impl From<DrawOutput> for GpuRun {
+    fn from(drawn: DrawOutput) -> Self {
         Self {
             device: drawn.device,
             translate: drawn.translate,

@@ -72,7 +72,7 @@ pub(super) fn check(
     }
     // Where the driver could not be watched in time, the evaluator has counted the iterations.
     match drawn.loop_truncated.unwrap_or(session.observed.beyond_cap) {
-        0 => Ok(Ok(GpuRun::of(drawn))),
+        0 => Ok(Ok(drawn.into())),
         pixels => Err(Failure::LoopTruncated(pixels)),
     }
 }

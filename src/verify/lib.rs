@@ -33,7 +33,8 @@
 //! - `expected`: what a shader is compared with: a scene, another shader or an image
 //! - [`random`]: shaders with other random numbers than their reference
 //! - [`project`]: shaders with several passes over frames
-//! - `decide`: the verdict and its reason, a pure function of the evidence
+//! - `decide`: the verdict and its reason, a pure function of the evidence; `settle`: the evidence that a fault
+//!   calls for, and all places where a verdict may change
 //! - [`debug`], `loss`, `notes`: one pixel in both precisions, and the diagnostics about a run
 //!
 //! `toyproof_explain` searches for the mistake that explains a wrong image, and for its repair;
@@ -87,6 +88,7 @@ pub mod project;
 pub mod random;
 mod self_intersection;
 mod session;
+mod settle;
 mod spool;
 mod verified;
 
@@ -100,7 +102,7 @@ use toyproof_eval_native::Program;
 pub use self::bounds::EVALUATOR_TIME_FACTOR;
 pub use self::case::{Case, FromStart};
 pub use self::compare::{CheckResult, Share};
-pub use self::decide::{Means, Reason, Verdict, decide};
+pub use self::decide::{Means, Reason, Ruling, Verdict, decide};
 pub use self::difference::{Difference, UnknownDifference};
 pub use self::driver::{Driver, GpuRun, is_replaceable};
 use self::evaluator::Evaluator;
@@ -116,10 +118,10 @@ pub use self::limits::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, is_different}
 pub use self::loss::cause;
 pub use self::notes::{driver_failure, unbound, unbound_channels};
 pub use self::pool::{join, within};
-use self::random::stochastic::Stochastic;
 pub use self::session::BandReference;
 use self::session::VerifySession;
-pub use self::verified::{CheckResults, MeansEvidence, Ruling, Subject, Verified};
+pub use self::settle::{Basis, Settlement};
+pub use self::verified::{CheckResults, Subject, Verified};
 
 /// Runs the three checks. Without a `driver`, or where it renders no image of a shader that has a reference,
 /// the evaluator renders the image, and there is no toolchain check.
@@ -158,8 +160,11 @@ pub fn verify<'a>(driver: Option<&mut Driver>, case: &'a Case<'a>) -> Result<Ver
             &stop,
         )?),
     };
-    let finished = within(case.pool, || session.finish(drawn, program.as_ref().ok()));
-    Ok(verified(case, finished, program.ok()))
+    let verified = within(case.pool, || session.finish(drawn, program.as_ref().ok()));
+    Ok(Verified {
+        program: program.ok(),
+        ..verified
+    })
 }
 
 /// Verifies an edit of a shader, or the like, with the evaluator. The result does not depend on the load of
@@ -181,24 +186,12 @@ pub fn verify_within<'a>(
         .with_max_iterations(max_iterations);
     let (counts, _) = mpsc::channel();
     let mut session = VerifySession::new(case, Ok(evaluator), counts);
-    let finished = within(case.pool, || {
+    let verified = within(case.pool, || {
         session.bands(None)?;
         Ok::<_, Failure>(session.finish(None, Some(&program)))
-    });
-    Ok(verified(case, finished?, Some(program)))
-}
-
-/// Adds the program, which the results no longer borrow.
-fn verified<'a>(
-    case: &'a Case<'a>,
-    (results, failure, stochastic): (CheckResults, Option<eval::Failure>, Option<Stochastic<'a>>),
-    program: Option<Program>,
-) -> Verified<'a> {
-    Verified {
-        results,
-        case,
-        program,
-        failure,
-        stochastic,
-    }
+    })?;
+    Ok(Verified {
+        program: Some(program),
+        ..verified
+    })
 }

@@ -40,33 +40,56 @@ pub(super) fn detect(
     // In f64, rounding decides the color where there is acne, and not where there is another mistake.
     let decided_by_rounding =
         |check: &&CheckResult| check.summary.ill_conditioned - check.summary.tied > check.summary.differing;
-    let algorithm = algorithm.into_iter().filter(decided_by_rounding);
-    let algorithm = algorithm.map(|check| (check, true, MAX_UNSTABLE, MIN_EXPLAINED_SHARE_IN_DOUBLE));
-    let precision = precision
-        .into_iter()
-        .map(|check| (check, false, MIN_SHARE_IN_SINGLE, MIN_EXPLAINED_SHARE));
-    algorithm
-        .chain(precision)
-        .find_map(|(check, in_double, least, most)| {
-            let summary = &check.summary;
-            let differing = Share::of(
-                summary,
-                summary.differing + summary.ill_conditioned - summary.tied,
-            );
-            if differing.ratio() <= least {
-                return None;
-            }
-            let pixels: Vec<DifferingPixel> = pixels_to_examine(check, size)
-                .into_par_iter()
-                .filter_map(|pixel| DifferingPixel::at(tracer, check, size, pixel))
-                .collect();
-            let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, &epsilons));
-            let is_explained = explained.count() as f64 >= most * pixels.len() as f64;
-            (is_explained && !pixels.is_empty()).then_some(SelfIntersection {
-                pixels: differing,
-                in_double,
-            })
+    let in_double = algorithm.filter(decided_by_rounding).map(|check| Candidate {
+        check,
+        in_double: true,
+        min_share: MAX_UNSTABLE,
+        min_explained: MIN_EXPLAINED_SHARE_IN_DOUBLE,
+    });
+    let in_single = precision.map(|check| Candidate {
+        check,
+        in_double: false,
+        min_share: MIN_SHARE_IN_SINGLE,
+        min_explained: MIN_EXPLAINED_SHARE,
+    });
+    let mut candidates = in_double.into_iter().chain(in_single);
+    candidates.find_map(|candidate| candidate.detect(tracer, size, &epsilons))
+}
+
+/// A check whose differences may be caused by self-intersection.
+struct Candidate<'a> {
+    check: &'a CheckResult,
+    in_double: bool,
+    /// The smallest share of differing pixels.
+    min_share: f64,
+    /// The smallest share of the examined pixels that it must explain.
+    min_explained: f64,
+}
+
+impl Candidate<'_> {
+    fn detect(
+        &self,
+        tracer: &Tracer<f64>,
+        size: [u32; 2],
+        epsilons: &[RayEpsilons],
+    ) -> Option<SelfIntersection> {
+        let summary = &self.check.summary;
+        let count = summary.differing + summary.ill_conditioned - summary.tied;
+        let differing = Share::new(summary, count);
+        if differing.ratio() <= self.min_share {
+            return None;
+        }
+        let pixels: Vec<DifferingPixel> = pixels_to_examine(self.check, size)
+            .into_par_iter()
+            .filter_map(|pixel| DifferingPixel::new(tracer, self.check, size, pixel))
+            .collect();
+        let explained = pixels.par_iter().filter(|pixel| pixel.is_acne(tracer, epsilons));
+        let is_explained = explained.count() as f64 >= self.min_explained * pixels.len() as f64;
+        (is_explained && !pixels.is_empty()).then_some(SelfIntersection {
+            pixels: differing,
+            in_double: self.in_double,
         })
+    }
 }
 
 /// Returns ill-conditioned pixels spread over the image, or else differing ones, among those
@@ -94,8 +117,8 @@ struct DifferingPixel {
 }
 
 impl DifferingPixel {
-    /// None if the pixel has the scene's color, or its own is not kept.
-    fn at(tracer: &Tracer<f64>, check: &CheckResult, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
+    /// `None` if the pixel has the scene's color, or its own is not kept.
+    fn new(tracer: &Tracer<f64>, check: &CheckResult, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
         let [x, y] = pixel;
         let own = check.actual.get(&(y as usize * size[0] as usize + x as usize))?;
         let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));

@@ -24,7 +24,7 @@ use crate::loss::NotFinite;
 use crate::notes;
 use crate::pool::{join, timed};
 use crate::random::stochastic::Stochastic;
-use crate::verified::CheckResults;
+use crate::verified::{CheckResults, Verified};
 
 /// The message after each band.
 #[derive(Debug, Clone, Copy)]
@@ -297,14 +297,13 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         self.precision.extend(precise, actual, &statuses, rows.start);
     }
 
-    /// Returns the results, why the evaluator failed if it did, and what is recorded to compare means.
-    /// `drawn` is the GPU that rendered the image, or the note about the driver's failure; `program` is the
-    /// evaluator's.
+    /// Returns the results, still without the program. `drawn` is the GPU that rendered the image, or the note
+    /// about the driver's failure; `program` is the evaluator's.
     pub(super) fn finish(
         self,
         drawn: Option<Result<GpuRun, Diagnostic>>,
         program: Option<&Program>,
-    ) -> (CheckResults, Option<eval::Failure>, Option<Stochastic<'a>>) {
+    ) -> Verified<'a> {
         let case = self.case;
         let (gpu_run, mut driver_note) = match drawn {
             Some(Ok(gpu_run)) => (Some(gpu_run), None),
@@ -354,7 +353,13 @@ impl<'a, 'e> VerifySession<'a, 'e> {
             eval: self.eval,
             trace: case.expected.map(|_| self.trace),
         };
-        (results, self.evaluator.err(), self.stochastic)
+        Verified {
+            results,
+            case,
+            program: None,
+            failure: self.evaluator.err(),
+            stochastic: self.stochastic,
+        }
     }
 }
 

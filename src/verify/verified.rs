@@ -1,5 +1,6 @@
 //! The results of the three checks, and the verdict that follows from them.
 
+use std::convert::Infallible;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::Diagnostic;
@@ -11,13 +12,13 @@ use crate::bounds::explanation_deadline;
 use crate::case::Case;
 use crate::compare::{CheckResult, Comparison, DiffLevel};
 use crate::contain::Panic;
-use crate::decide::{Reason, Verdict, decide};
+use crate::decide::{Ruling, decide};
 use crate::driver::GpuRun;
-use crate::evidence::{CheckEvidence, Checks, Evidence, SelfIntersection};
-use crate::expected::{Expected, ReferenceKind};
+use crate::evidence::{CheckEvidence, Checks, Evidence};
+use crate::expected::ReferenceKind;
+use crate::random::replicates::ReplicatedShader;
 use crate::random::stochastic::Stochastic;
 use crate::random::{NoisyPixel, Reseeding};
-use crate::self_intersection;
 
 /// The images of a shader and the results of its checks.
 #[derive(Debug)]
@@ -65,36 +66,6 @@ pub struct Verified<'a> {
     pub(crate) stochastic: Option<Stochastic<'a>>,
 }
 
-/// A verdict and its reason.
-#[derive(Debug, Clone)]
-pub struct Ruling {
-    /// The verdict.
-    pub verdict: Verdict,
-    /// Why.
-    pub reason: Reason,
-}
-
-impl From<Evidence> for Ruling {
-    fn from(evidence: Evidence) -> Self {
-        let (verdict, reason) = decide(evidence);
-        Self { verdict, reason }
-    }
-}
-
-impl From<CheckEvidence> for Ruling {
-    fn from(evidence: CheckEvidence) -> Self {
-        Evidence::from(evidence).into()
-    }
-}
-
-impl Ruling {
-    /// Whether the shader has a fault that a mistake may explain.
-    #[must_use]
-    pub fn is_fault(&self) -> bool {
-        matches!(self.verdict, Verdict::Wrong | Verdict::Unstable)
-    }
-}
-
 /// A shader that was evaluated in double precision, so that the cause of a difference can be searched for.
 #[derive(Debug, Clone, Copy)]
 pub struct Subject<'a> {
@@ -104,16 +75,7 @@ pub struct Subject<'a> {
     pub program: &'a Program,
     /// The results of the checks.
     pub results: &'a CheckResults,
-    stochastic: Option<&'a Stochastic<'a>>,
-}
-
-/// The comparison of means, and the evidence with it.
-#[derive(Debug)]
-pub struct MeansEvidence {
-    /// The evidence.
-    pub evidence: CheckEvidence,
-    /// How the shader's random numbers were changed; `None` if they were not.
-    pub reseeding: Option<Reseeding>,
+    pub(crate) stochastic: Option<&'a Stochastic<'a>>,
 }
 
 impl<'a> Verified<'a> {
@@ -155,8 +117,11 @@ impl<'a> Verified<'a> {
     #[must_use]
     pub fn ruling(&self) -> Ruling {
         match self.subject() {
-            Some(subject) => subject.settled(explanation_deadline(0.0)).into(),
-            None => self.evidence().into(),
+            Some(subject) => {
+                let settlement = subject.settle(explanation_deadline(0.0), |_, _| None::<Infallible>);
+                settlement.ruling
+            }
+            None => decide(self.evidence()),
         }
     }
 }
@@ -192,61 +157,26 @@ impl Subject<'_> {
         self.stochastic.is_some()
     }
 
-    fn settled(&self, deadline: Instant) -> CheckEvidence {
-        let is_fault = |evidence: &CheckEvidence| Ruling::from(evidence.clone()).is_fault();
-        let mut evidence = self.evidence();
-        if is_fault(&evidence)
-            && let Some(means) = self.compare_means(&evidence, deadline)
-        {
-            evidence = means.evidence;
-        }
-        if is_fault(&evidence) {
-            evidence.self_intersection = self.self_intersection();
-        }
-        evidence
-    }
-
-    /// Compares the means of a shader that differs only in pixels that depend on random numbers; `None` if it
-    /// differs in others, or if nothing is random.
-    #[must_use]
-    pub fn compare_means(&self, evidence: &CheckEvidence, deadline: Instant) -> Option<MeansEvidence> {
-        let (stochastic, algorithm) = (self.stochastic?, self.results.algorithm.as_ref()?);
-        let compared =
-            stochastic.compare_means(algorithm, &evidence.checks, self.program, self.case, deadline)?;
-        let mut random_numbers = compared.random_numbers;
-        let with = |random_numbers| CheckEvidence {
-            random_numbers: Some(random_numbers),
-            ..evidence.clone()
-        };
-        // The precision of the pixels that do not depend on random numbers costs samples of the scene, and
-        // counts only where everything else agrees.
-        if let Some(precision) = &self.results.precision
-            && Ruling::from(with(random_numbers.clone())).verdict == Verdict::Correct
-        {
-            random_numbers.other_pixels.precision =
-                Some(stochastic.precision_of_others(algorithm, precision));
-        }
-        Some(MeansEvidence {
-            evidence: with(random_numbers),
-            reseeding: compared.reseeding,
+    /// The shader, to be evaluated with other random numbers, if the reference may be stochastic.
+    pub(crate) fn replicated_shader(&self, deadline: Instant) -> Option<ReplicatedShader<'_>> {
+        Some(ReplicatedShader {
+            program: self.program,
+            case: self.case,
+            reference: self.stochastic?.reference(),
+            deadline,
         })
-    }
-
-    /// Returns the pixels that differ because rays hit the surfaces they start from, if enough do.
-    #[must_use]
-    pub fn self_intersection(&self) -> Option<SelfIntersection> {
-        let tracer = self.case.expected.and_then(Expected::tracer)?;
-        let [algorithm, precision] = [&self.results.algorithm, &self.results.precision].map(Option::as_ref);
-        self_intersection::detect(tracer, self.case.frame.size, algorithm, precision)
     }
 
     /// A reseeding that changes pixels of a shader that differs; `None` if the shader has no random numbers,
     /// or the reference has none.
     #[must_use]
     pub fn reseeding(&self, deadline: Instant) -> Option<Reseeding> {
+        let shader = self.replicated_shader(deadline)?;
         let algorithm = self.results.algorithm.as_ref()?;
-        self.stochastic?
-            .reseeding(self.program, self.case, algorithm, deadline)
+        shader
+            .reference
+            .is_stochastic()
+            .then(|| shader.effective_reseeding(algorithm, 0.0))?
     }
 
     /// Returns the means of the shader with other random numbers, and of the reference, at these places.
@@ -257,7 +187,6 @@ impl Subject<'_> {
         places: &Places,
         deadline: Instant,
     ) -> Option<Vec<NoisyPixel>> {
-        self.stochastic?
-            .noisy_pixels(self.program, self.case, reseeding, places, deadline)
+        self.replicated_shader(deadline)?.noisy_pixels(reseeding, places)
     }
 }

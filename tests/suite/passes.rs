@@ -153,7 +153,7 @@ impl Case {
     fn faults<N: Number>(&self, rendering: &Rendering, clock: &Clock) -> Vec<String> {
         let shader = self.shader(rendering);
         let programs = shader.programs(TIMEOUT).unwrap();
-        let mut playback = CpuPlayback::<N>::new(&shader, &programs, None, TIMEOUT, None);
+        let mut playback = CpuPlayback::<N>::new(&shader, &programs, None, TIMEOUT, Settings::plain());
         let mut faults = Vec::new();
         for frame in 0..=self.last_frame() {
             playback.render(&clock.frame(frame)).unwrap();

@@ -9,7 +9,7 @@ use toyproof::verify::compare::{
     Band, CheckSummary, EXACT_TOLERANCE, EpsilonColors, EpsilonSearch, PERTURBATIONS, Reference, Undefined,
     accept_epsilons, algorithm,
 };
-use toyproof::verify::{CheckEvidence, Checks, Evidence, Verdict, decide};
+use toyproof::verify::{CheckEvidence, Checks, Verdict, decide};
 use toyproof_testkit::{EXERCISES, Exercise, checked, frame, scene};
 
 /// The size of the course's images.
@@ -216,11 +216,11 @@ impl Subject {
             algorithm: Some(answer),
             ..Checks::default()
         };
-        let (verdict, _) = decide(Evidence::from(CheckEvidence {
+        let ruling = decide(CheckEvidence {
             checks,
             ..CheckEvidence::default()
-        }));
-        verdict == Verdict::Wrong
+        });
+        ruling.verdict == Verdict::Wrong
     }
 
     /// The smallest relative error that is found, by bisection, to a tenth of it; infinity if not even 100 %

@@ -11,10 +11,10 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::{Frame, Image, Rgb8Image};
 use toyproof_lint::Lints;
 use toyproof_verify::bounds::MIN_IMAGE_ITERATIONS;
-use toyproof_verify::compare::{self, CheckSummary, Mixed, PixelStatus, Undefined};
+use toyproof_verify::compare::{self, CheckSummary, EpsilonSearch, PixelStatus, Undefined};
 use toyproof_verify::{
     BandReference, Case, CheckEvidence, CheckResult, CheckResults, Checks, Expected, NumberType, Ruling,
-    Subject, Verdict, verify_within,
+    Subject, Verdict, decide, verify_within,
 };
 
 /// The second frame: another size and shape of the image, and another time if the scene moves.
@@ -171,7 +171,7 @@ impl<'a> Confirmer<'a> {
         render: impl Fn(&Places) -> Option<Image>,
     ) -> Option<CheckSummary> {
         let [width, height] = frame.size;
-        let mut mixed = Mixed::of(u64::from(width) * u64::from(height));
+        let mut mixed = EpsilonSearch::new(u64::from(width) * u64::from(height));
         let mut check = CheckResult::default();
         for rows in frame.bands() {
             let band = expected.rows(&rows).ok()?;
@@ -240,7 +240,7 @@ impl<'a> Confirmer<'a> {
             ..CheckEvidence::default()
         };
         let most = MAX_UNEXPLAINED_SHARE * self.before.summary.differing as f64;
-        (is_right(Ruling::from(evidence).verdict) && algorithm.differing as f64 <= most).then_some(algorithm)
+        (is_right(decide(evidence).verdict) && algorithm.differing as f64 <= most).then_some(algorithm)
     }
 }
 

@@ -219,7 +219,7 @@ pub struct Share {
 impl Share {
     /// Returns `count` pixels of those of a check.
     #[must_use]
-    pub fn of(check: &CheckSummary, count: u64) -> Self {
+    pub fn new(check: &CheckSummary, count: u64) -> Self {
         Self {
             count,
             of: check.pixels,
@@ -229,7 +229,7 @@ impl Share {
     /// Returns the pixels that differ in a check.
     #[must_use]
     pub fn differing(check: &CheckSummary) -> Self {
-        Self::of(check, check.differing)
+        Self::new(check, check.differing)
     }
 
     /// The share, from 0 to 1.

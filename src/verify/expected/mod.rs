@@ -33,7 +33,7 @@ pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};
 use crate::bounds::MAX_ITERATIONS;
 use crate::compare::{Band, EXACT_TOLERANCE, EpsilonSearch, SEEN, accept_epsilons};
 use crate::evaluator::evaluate_at;
-use crate::random::estimates::Resampled;
+use crate::random::estimates::StochasticReference;
 
 /// The reference of shaders in one frame. Results are computed on first use, from any thread: the
 /// reference of many shaders is rendered once, unless it is too large for the cache.

@@ -40,7 +40,7 @@ const MAX_PIXELS_OF_SHADERS: u32 = 1 << 14;
 
 /// A reference whose pixels may depend on random numbers. Colors are those of pixels; means are those of a
 /// pixel's samples, before the tone map, as far as it is known.
-pub(crate) trait Resampled: std::fmt::Debug + Sync {
+pub(crate) trait StochasticReference: std::fmt::Debug + Sync {
     /// Whether some pixels depend on random numbers, or may do so.
     fn is_stochastic(&self) -> bool;
     /// The sampler of a scene.
@@ -106,7 +106,7 @@ pub(crate) struct Estimate {
 
 impl Estimate {
     /// Estimates a pixel with the `own` color, of which `set_mean` is the mean of the samples of a set.
-    pub(crate) fn of(own: [f64; 3], set_mean: impl Fn(u32) -> [f64; 3]) -> Self {
+    pub(crate) fn new(own: [f64; 3], set_mean: impl Fn(u32) -> [f64; 3]) -> Self {
         let sets = |sets: Range<u32>| -> Vec<[f64; 3]> { sets.map(&set_mean).collect() };
         let halves = ESTIMATE_HALVES.map(sets);
         Self {
@@ -134,11 +134,16 @@ impl Estimate {
     }
 
     /// Whether the pixel's color depends on random numbers.
-    pub(crate) fn is_random(&self, reference: &dyn Resampled) -> bool {
+    pub(crate) fn is_random(&self, reference: &dyn StochasticReference) -> bool {
         let first = reference.tone_mapped(self.selection[0]);
         let mut others = self.selection.iter().chain(&self.halves);
         others.any(|&other| differ_by(first, reference.tone_mapped(other), reference.least_change()))
     }
+}
+
+/// The values of a pixel in all sets.
+pub(crate) fn of_pixel(sets: &[Vec<[f64; 3]>], at: usize) -> Vec<[f64; 3]> {
+    sets.iter().map(|set| set[at]).collect()
 }
 
 pub(crate) fn mean(all: &[[f64; 3]]) -> [f64; 3] {
@@ -164,7 +169,7 @@ pub(crate) fn differ_by(a: [f64; 3], b: [f64; 3], least: f64) -> bool {
     (0..3).any(|i| (a[i] - b[i]).abs() > least)
 }
 
-impl Resampled for Tracer<f64> {
+impl StochasticReference for Tracer<f64> {
     fn is_stochastic(&self) -> bool {
         self.sampler().is_some()
     }
@@ -189,7 +194,7 @@ impl Resampled for Tracer<f64> {
     fn estimates(&self, places: &Places) -> Option<Arc<Estimates>> {
         let estimate = |at: [u32; 2]| {
             let [x, y] = at;
-            Estimate::of(self.pixel(x, y), |set| self.resampled_mean(at, set))
+            Estimate::new(self.pixel(x, y), |set| self.resampled_mean(at, set))
         };
         Some(Arc::new(Estimates {
             pixels: pixels(places).into_par_iter().map(estimate).collect(),

@@ -12,21 +12,21 @@ use crate::limits::MAX_BIAS_BOUND;
 
 /// A pixel whose color depends on random numbers. Color components are in [0, 1].
 #[derive(Debug, Clone, Copy)]
-pub struct RandomPixel {
+pub(crate) struct RandomPixel {
     /// x and y, from the bottom left.
-    pub at: [u32; 2],
+    pub(crate) at: [u32; 2],
     /// The shader's color.
-    pub rendered: [f64; 3],
+    pub(crate) rendered: [f64; 3],
     /// The reference's color, with the scene's own random numbers.
-    pub reference: [f64; 3],
+    pub(crate) reference: [f64; 3],
     /// The tracer's mean over several sets of random numbers.
-    pub mean: [f64; 3],
+    pub(crate) mean: [f64; 3],
     /// The variance of the tracer's color with one set of random numbers, estimated from other sets: the
     /// weight of a pixel must be independent of the values that are compared.
-    pub variance: [f64; 3],
+    pub(crate) variance: [f64; 3],
     /// How much brighter the pixel is if the samples of all sets are averaged before the tone map: a
     /// nonlinear tone map changes the mean.
-    pub tone_map_bias: [f64; 3],
+    pub(crate) tone_map_bias: [f64; 3],
 }
 
 /// The result of comparing the means of two images.
@@ -76,23 +76,21 @@ const MIN_BLOCK_PIXELS: usize = 64;
 const MIN_PIXELS: usize = 4000;
 
 /// Whether the shader uses the scene's random numbers, so that its pixels must be the reference's.
-#[must_use]
-pub fn uses_scene_numbers(pairs: &[[RandomPixel; 2]]) -> bool {
+pub(crate) fn uses_scene_numbers(pairs: &[[RandomPixel; 2]]) -> bool {
     correlation(pairs) > MIN_SHARED_CORRELATION
 }
 
 /// Compares the means of a shader and of the tracer, given pairs of neighboring pixels of an image of that
 /// size.
-#[must_use]
-pub fn means(pairs: &[[RandomPixel; 2]], size: [u32; 2]) -> MeanTest {
+pub(crate) fn means(pairs: &[[RandomPixel; 2]], size: [u32; 2]) -> MeanTest {
     let blocks = (0..BLOCKS * BLOCKS).map(|block| {
         let of = |pixel: &&RandomPixel| {
             let [column, row] = [0, 1].map(|i| pixel.at[i] * BLOCKS / size[i]);
             row * BLOCKS + column == block
         };
-        WeightedSum::of(pairs.iter().flatten().filter(of))
+        WeightedSum::new(pairs.iter().flatten().filter(of))
     });
-    let whole = WeightedSum::of(pairs.iter().flatten());
+    let whole = WeightedSum::new(pairs.iter().flatten());
     let sums = blocks
         .filter(|block| block.pixels >= MIN_BLOCK_PIXELS)
         .chain([whole]);
@@ -223,7 +221,7 @@ struct WeightedSum {
 }
 
 impl WeightedSum {
-    fn of<'a>(pixels: impl Iterator<Item = &'a RandomPixel>) -> Self {
+    fn new<'a>(pixels: impl Iterator<Item = &'a RandomPixel>) -> Self {
         let mut sum = Self::default();
         for pixel in pixels {
             sum.pixels += 1;

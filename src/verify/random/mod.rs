@@ -12,14 +12,12 @@ pub(crate) mod mean_test;
 mod pixel_dependence;
 mod reference;
 pub(crate) mod replicate_test;
-mod replicates;
+pub(crate) mod replicates;
 pub(crate) mod reseed;
 mod sample_count;
 pub(crate) mod stochastic;
 
-pub use self::mean_test::{MeanTest, RandomPixel, means, uses_scene_numbers};
-pub use self::replicate_test::{
-    RARE_EVENT_VARIANCE_RATIO, REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates,
-};
+pub use self::mean_test::MeanTest;
+pub use self::replicate_test::{Bias, ReplicateTest};
 pub use self::replicates::{MEAN_SETS, NoisyPixel};
 pub use self::reseed::{Reseeding, reachable_expressions};

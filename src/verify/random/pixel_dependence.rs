@@ -18,7 +18,7 @@ pub(super) struct PixelDependence<'a> {
 }
 
 impl<'a> PixelDependence<'a> {
-    pub(super) fn of(checked: &'a Checked) -> Self {
+    pub(super) fn new(checked: &'a Checked) -> Self {
         let tree = &checked.tree;
         let position = VariableKind::BuiltIn(BuiltInVariable::FragCoord);
         let built_in = tree
@@ -146,7 +146,7 @@ mod tests {
         let file = files.add(File::new("s", text));
         let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
         let color = checked.tree[checked.main_image].parameters[0];
-        PixelDependence::of(&checked).variables.contains(&color)
+        PixelDependence::new(&checked).variables.contains(&color)
     }
 
     #[test]

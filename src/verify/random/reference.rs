@@ -9,9 +9,11 @@ use toyproof_glsl::Checked;
 use toyproof_image::{Frame, Image};
 
 use crate::bounds::{EXPLANATION_TIMEOUT, MAX_ITERATIONS};
+use crate::evaluator::evaluate_at;
 use crate::expected::{DEFAULT_TOLERANCE, ImageReference, ShaderReference};
 use crate::random::estimates::{
-    ESTIMATE_SETS, Estimate, Estimates, RESAMPLES, Resampled, differ_by, mean, pixels, variance,
+    ESTIMATE_SETS, Estimate, Estimates, RESAMPLES, StochasticReference, differ_by, mean, of_pixel, pixels,
+    variance,
 };
 use crate::random::replicate_test::{ReplicatedPixel, is_correlated, neighbor_correlations};
 use crate::random::replicates::{self, MAX_DISTANCE_RATIO, MIN_RANDOM_CHANGE, RANDOMNESS_GRID};
@@ -63,7 +65,7 @@ impl ShaderReference {
         let sets: Vec<Colors> = [Some(first)].into_iter().chain(others).collect::<Option<_>>()?;
         let (mut own_distance, mut distance) = (0.0, 0.0);
         for (at, own) in own.iter().enumerate() {
-            let colors: Colors = sets.iter().map(|set| set[at]).collect();
+            let colors = of_pixel(&sets, at);
             let mean = mean(&colors);
             own_distance += squared_distance(own, &mean);
             let distances = colors.iter().map(|color| squared_distance(color, &mean));
@@ -74,26 +76,16 @@ impl ShaderReference {
 
     /// The colors at these places with a set of random numbers; with the shader's own without a reseeding.
     fn set(&self, reseeding: Option<Reseeding>, set: u32, places: &Places) -> Option<Colors> {
-        let settings = Settings::<f64> {
-            undefined: UndefinedPolicy::Plain,
-            max_iterations: MAX_ITERATIONS,
-            ..Settings::default()
-        };
         let image = match reseeding {
-            None => self.program.at(&self.frame, places, &settings),
-            Some(reseeding) => {
-                let checked = reseeding.of(self.checked(), set);
-                let program = Program::prepared(&checked, UndefinedPolicy::Plain).ok()?;
-                let places = places.shifted(Reseeding::shift(set));
-                program.at(&self.frame, &places, &settings)
-            }
+            None => evaluate_at(&self.program, &self.frame, places, MAX_ITERATIONS),
+            Some(reseeding) => reseeding.evaluate(self.checked(), set, &self.frame, places, None),
         };
-        image.ok().map(|image| colors(&image))
+        image.map(|image| colors(&image))
     }
 
     /// The colors of some pixels with a set of random numbers.
     fn pixels(&self, reseeding: Reseeding, set: u32, pixels: &[[u32; 2]]) -> Option<Colors> {
-        let checked = reseeding.of(self.checked(), set);
+        let checked = reseeding.apply(self.checked(), set);
         let program =
             ParametricProgram::new(&checked, &[], &self.frame, MAX_VALUES, EXPLANATION_TIMEOUT).ok()?;
         let [dx, dy] = Reseeding::shift(set);
@@ -126,7 +118,7 @@ impl ShaderReference {
         let sets: Vec<Colors> = sets.collect::<Option<_>>()?;
         let estimates = own.iter().enumerate().map(|(at, own)| {
             let displayed = own.map(|part| part.clamp(0.0, 1.0));
-            Estimate::of(displayed, |set| sets[set as usize - 1][at])
+            Estimate::new(displayed, |set| sets[set as usize - 1][at])
         });
         let estimates: Vec<Estimate> = estimates.collect();
         let random = pixels(places)
@@ -184,7 +176,7 @@ fn squared_distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 /// Nothing is known about how the shader combines its samples.
-impl Resampled for ShaderReference {
+impl StochasticReference for ShaderReference {
     fn is_stochastic(&self) -> bool {
         let estimates = || self.estimates(&replicates::places(self.frame.size, self));
         self.reseeding().is_some() && estimates().is_none_or(|estimates| !self.is_content(&estimates))
@@ -239,7 +231,7 @@ impl Resampled for ShaderReference {
 }
 
 /// A single image says nothing about its noise.
-impl Resampled for ImageReference {
+impl StochasticReference for ImageReference {
     fn is_stochastic(&self) -> bool {
         true
     }

@@ -15,32 +15,31 @@ use super::mean_test::MEAN_TOLERANCE;
 
 /// The number of replicates of a shader that are compared, each with other random numbers; the first is the
 /// shader's own image.
-pub const REPLICATES: usize = 8;
+pub(crate) const REPLICATES: usize = 8;
 
 /// A pixel that is random in the scene or in the shader. Values are means of samples times the slope of the
 /// tone map, so that small differences are differences of colors.
 #[derive(Debug, Clone)]
-pub struct ReplicatedPixel {
+pub(crate) struct ReplicatedPixel {
     /// x and y, from the bottom left.
-    pub at: [u32; 2],
+    pub(crate) at: [u32; 2],
     /// The weight, from variances estimated without any of the values below.
-    pub weight: [f64; 3],
+    pub(crate) weight: [f64; 3],
     /// The tracer's mean over each half of its sets of random numbers.
-    pub reference: [[f64; 3]; 2],
+    pub(crate) reference: [[f64; 3]; 2],
     /// The variance of the mean of both halves.
-    pub reference_variance: [f64; 3],
+    pub(crate) reference_variance: [f64; 3],
     /// The variance of the tracer with one set of random numbers.
-    pub single_variance: [f64; 3],
+    pub(crate) single_variance: [f64; 3],
     /// The shader's values, one for each replicate.
-    pub own: [[f64; 3]; REPLICATES],
+    pub(crate) own: [[f64; 3]; REPLICATES],
 }
 
 /// The result of comparing the replicates of a shader with the tracer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReplicateTest {
-    /// The most significant difference of the means, in standard deviations, and the centroid of the pixels
-    /// of that block.
-    pub bias: (f64, [u32; 2]),
+    /// The most significant difference of the means.
+    pub bias: Bias,
     /// Whether the difference is significant.
     pub is_biased: bool,
     /// The upper bound of the difference of the means over the whole image.
@@ -51,6 +50,15 @@ pub struct ReplicateTest {
     pub variance: f64,
     /// Whether this ratio is the same in all parts of the image, as it is for a smaller number of samples.
     pub is_uniform: bool,
+}
+
+/// A difference of the means over a block of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bias {
+    /// The significance, in standard deviations.
+    pub deviations: f64,
+    /// The centroid of the block's pixels.
+    pub at: [u32; 2],
 }
 
 /// The significance threshold in standard deviations, for some hundred tests of sums.
@@ -82,7 +90,7 @@ const MAX_RATIO_DEVIATION: f64 = 0.15;
 /// The ratio of variances above which the noise may come from rare events: an event with the same mean that
 /// is k times rarer has k times the variance. Below it, the tracer's own variance accounts for events that
 /// did not occur in a pixel.
-pub const RARE_EVENT_VARIANCE_RATIO: f64 = 4.0;
+pub(crate) const RARE_EVENT_VARIANCE_RATIO: f64 = 4.0;
 
 impl ReplicatedPixel {
     fn mean(&self, i: usize, sets: std::ops::Range<usize>) -> f64 {
@@ -105,8 +113,7 @@ impl ReplicatedPixel {
 
 /// Compares the shader's replicates with the reference's means; `size` is the image's. If neighboring pixels
 /// of the reference are correlated, only a bias that exceeds the noise of single pixels is significant.
-#[must_use]
-pub fn compare_replicates(
+pub(crate) fn compare_replicates(
     pixels: &[ReplicatedPixel],
     size: [u32; 2],
     reference_is_correlated: bool,
@@ -118,7 +125,7 @@ pub fn compare_replicates(
     } else {
         [0.0; 3]
     };
-    let mut bias = (0.0, [0; 2]);
+    let mut bias = Bias::default();
     for blocks in BLOCKS {
         let mut parts = vec![Vec::new(); (blocks * blocks) as usize];
         for pixel in pixels {
@@ -127,16 +134,17 @@ pub fn compare_replicates(
         }
         for part in parts.into_iter().filter(|part| part.len() >= MIN_BLOCK_PIXELS) {
             let sums = sum_z_score(&part, is_correlated, events);
-            let most = if is_correlated {
+            let deviations = if is_correlated {
                 sums
             } else {
                 sums.max(squared_bias_z_score(&part, events))
             };
-            if most > bias.0 {
+            if deviations > bias.deviations {
                 let places = part.iter().fold([0u64; 2], |sum, pixel| {
                     [0, 1].map(|i| sum[i] + u64::from(pixel.at[i]))
                 });
-                bias = (most, places.map(|sum| (sum / part.len() as u64) as u32));
+                let at = places.map(|sum| (sum / part.len() as u64) as u32);
+                bias = Bias { deviations, at };
             }
         }
     }
@@ -147,7 +155,8 @@ pub fn compare_replicates(
     };
     ReplicateTest {
         bias,
-        is_biased: (bias.0 > limit && !reference_is_correlated) || (is_correlated && exceeds_noise(pixels)),
+        is_biased: (bias.deviations > limit && !reference_is_correlated)
+            || (is_correlated && exceeds_noise(pixels)),
         within: bias_bound(pixels, limit, events),
         is_correlated,
         variance,
@@ -179,7 +188,7 @@ impl DifferenceSum {
     /// Sums the pixels' variances, plus that of events of magnitude `event` that did not occur: if the mean
     /// of n replicates is too small by d, n·d/event of them are missing. Their number has a Poisson
     /// distribution, so the mean has the additional variance d·event/n.
-    fn of<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>, i: usize, event: f64) -> Self {
+    fn new<'a>(pixels: impl IntoIterator<Item = &'a ReplicatedPixel>, i: usize, event: f64) -> Self {
         let sets = REPLICATES as f64;
         let [mut sum, mut variance, mut shortfall, mut all] = [0.0; 4];
         for pixel in pixels {
@@ -207,7 +216,7 @@ fn bias_bound(pixels: &[ReplicatedPixel], limit: f64, events: [f64; 3]) -> f64 {
             differences,
             variance,
             weight,
-        } = DifferenceSum::of(pixels, i, events[i]);
+        } = DifferenceSum::new(pixels, i, events[i]);
         MEAN_TOLERANCE + differences.abs().max(limit * variance.sqrt()) / weight
     };
     let most = of(0).max(of(1)).max(of(2));
@@ -221,7 +230,7 @@ fn sum_z_score(pixels: &[&ReplicatedPixel], is_correlated: bool, events: [f64; 3
             differences,
             mut variance,
             weight,
-        } = DifferenceSum::of(pixels.iter().copied(), i, events[i]);
+        } = DifferenceSum::new(pixels.iter().copied(), i, events[i]);
         if is_correlated {
             let of_set = |set: usize| -> f64 {
                 pixels

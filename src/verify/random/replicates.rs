@@ -1,13 +1,16 @@
 //! Replicates of a shader: several evaluations with other random numbers, at pixels spread over a frame.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::{Places, Settings, UndefinedPolicy};
+use toyproof_eval::{Places, Settings};
 use toyproof_eval_native::Program;
 use toyproof_image::Image;
 
-use super::estimates::{Estimate, Estimates, Resampled, differs, mean, pixels, variance};
+use super::estimates::{
+    Estimate, Estimates, StochasticReference, differ_by, differs, mean, of_pixel, pixels, variance,
+};
 use super::mean_test::{MIN_SHARED_CORRELATION, MIN_STANDARD_DEVIATION};
 use super::replicate_test::{REPLICATES, ReplicateTest, ReplicatedPixel, compare_replicates};
 use super::reseed::{Reseeding, is_deterministic};
@@ -25,7 +28,7 @@ const MAX_SAMPLE_MEAN: f64 = 1e4;
 
 /// The share of the reference's random pixels that must change, or the reseeding had no effect. If a rare
 /// event decides, such as a direction that hits a lamp, most of them do not.
-const MIN_CHANGED_SHARE: f64 = 0.1;
+pub(crate) const MIN_CHANGED_SHARE: f64 = 0.1;
 
 /// The largest ratio of the squared distances from the reference of a shader with other random numbers and
 /// with its own.
@@ -60,128 +63,12 @@ pub(crate) enum Incomparable {
     NotReseeded,
 }
 
-/// Compares the replicates of a shader that differs from its reference with those of the reference.
-///
-/// # Errors
-/// Returns why the shader cannot be compared this way.
-pub(crate) fn compare_with(
-    program: &Program,
-    case: &Case,
-    reference: &dyn Resampled,
-    algorithm: &CheckResult,
-    deadline: Instant,
-) -> Result<ReferenceComparison, Incomparable> {
-    let shader = ReplicatedShader {
-        program,
-        case,
-        reference,
-        places: places(case.frame.size, reference),
-        deadline,
-    };
-    let unsalted = shader.unsalted().ok_or(Incomparable::NotReseeded)?;
-    let pixels = pixels(&shader.places);
-    let estimates = reference
-        .estimates(&shader.places)
-        .ok_or(Incomparable::UnknownNoise)?;
-    let is_random_in_reference: Vec<bool> = estimates
-        .pixels
-        .par_iter()
-        .map(|estimate| estimate.is_random(reference))
-        .collect();
-    if uses_reference_numbers(reference, &unsalted, &estimates.pixels) {
-        return Err(Incomparable::SameNumbers);
-    }
-    let compare = |(reseeding, sets)| {
-        shader.compare(
-            reseeding,
-            sets,
-            &pixels,
-            &estimates,
-            &is_random_in_reference,
-            algorithm,
-        )
-    };
-    let mut first = None;
-    // An added number may make a hash equal in neighboring pixels, where another reseeding does not.
-    for reseeding in Reseeding::all() {
-        let Some(sets) = shader.replicates(reseeding, &unsalted, &estimates.pixels, &is_random_in_reference)
-        else {
-            continue;
-        };
-        let comparison = compare((reseeding, sets));
-        if comparison
-            .as_ref()
-            .is_ok_and(|comparison| !comparison.test.is_correlated)
-        {
-            return comparison;
-        }
-        first.get_or_insert(comparison);
-    }
-    if first.is_none() && is_deterministic(case.checked) {
-        // The shader has no randomness: all replicates are the same.
-        let [.., untouched] = Reseeding::all();
-        first = Some(compare((
-            untouched,
-            vec![unsalted; REPLICATES + WEIGHT_REPLICATES],
-        )));
-    }
-    first.unwrap_or(Err(Incomparable::NotReseeded))
-}
-
 /// The number of columns and of rows of pixels that are sampled to detect whether a shader is random.
 pub(crate) const RANDOMNESS_GRID: u32 = 32;
 
 /// The smallest change of a random pixel with other random numbers; moving the pixel by a thousandth of its
 /// size changes it less.
 pub(crate) const MIN_RANDOM_CHANGE: f64 = 20.0 * EXACT_TOLERANCE;
-
-/// Whether enough of the differing pixels are random in the shader.
-pub(crate) fn is_random(
-    program: &Program,
-    case: &Case,
-    reference: &dyn Resampled,
-    algorithm: &CheckResult,
-    deadline: Instant,
-) -> bool {
-    effective_reseeding(program, case, reference, algorithm, MIN_CHANGED_SHARE, deadline).is_some()
-}
-
-/// The first reseeding that changes some of the differing pixels of a shader, at least this share of them.
-pub(crate) fn effective_reseeding(
-    program: &Program,
-    case: &Case,
-    reference: &dyn Resampled,
-    algorithm: &CheckResult,
-    least: f64,
-    deadline: Instant,
-) -> Option<Reseeding> {
-    let size = case.frame.size;
-    let shader = ReplicatedShader {
-        program,
-        case,
-        reference,
-        places: Places::spread(size, [RANDOMNESS_GRID; 2]),
-        deadline,
-    };
-    let unsalted = shader.unsalted()?;
-    let [columns, rows] = shader.places.pixels();
-    let differs = |at: usize| {
-        let [x, y] = [columns[at % columns.len()], rows[at / columns.len()]];
-        let status = algorithm.statuses[y as usize * size[0] as usize + x as usize];
-        matches!(status, PixelStatus::Differs | PixelStatus::IllConditioned)
-    };
-    let differing: Vec<usize> = (0..unsalted.len()).filter(|&at| differs(at)).collect();
-    Reseeding::all().into_iter().find(|&reseeding| {
-        shader.salted(reseeding, 1).is_some_and(|other| {
-            let changes = |&&at: &&usize| {
-                let [a, b] = [&unsalted, &other].map(|own| own[at].tone_mapped);
-                (0..3).any(|i| (a[i] - b[i]).abs() > MIN_RANDOM_CHANGE)
-            };
-            let changed = differing.iter().filter(changes).count();
-            changed > 0 && changed as f64 >= least * differing.len() as f64
-        })
-    })
-}
 
 /// The result of a comparison.
 pub(crate) struct ReferenceComparison {
@@ -195,106 +82,131 @@ pub(crate) struct ReferenceComparison {
 /// The number of sets of random numbers in which noisy pixels are sought.
 pub const MEAN_SETS: usize = 2 * REPLICATES;
 
-/// The means of a shader and of the reference at other places, each over [`MEAN_SETS`] sets of random
-/// numbers.
-pub(crate) fn noisy_pixels(
-    program: &Program,
-    case: &Case,
-    reference: &dyn Resampled,
-    reseeding: Reseeding,
-    places: &Places,
-    deadline: Instant,
-) -> Option<Vec<NoisyPixel>> {
-    let shader = ReplicatedShader {
-        program,
-        case,
-        reference,
-        places: places.clone(),
-        deadline,
-    };
-    let count = MEAN_SETS as u32;
-    let salted: Option<Vec<Vec<ShaderPixel>>> =
-        (1..=count).map(|salt| shader.salted(reseeding, salt)).collect();
-    let salted = salted?;
-    let expected = reference.sets(places, count)?;
-    let of_pixel =
-        |sets: &[Vec<[f64; 3]>], at: usize| -> Vec<[f64; 3]> { sets.iter().map(|set| set[at]).collect() };
-    let own: Vec<Vec<_>> = salted
-        .iter()
-        .map(|set| set.iter().map(|pixel| pixel.tone_mapped).collect())
-        .collect();
-    let pixels = (0..expected[0].len()).into_par_iter().map(|at| {
-        let (own, reference) = (of_pixel(&own, at), of_pixel(&expected, at));
-        let variances = [&own, &reference].map(|all| variance(all));
-        NoisyPixel {
-            own: mean(&own),
-            reference: mean(&reference),
-            variance: [0, 1, 2].map(|i| (variances[0][i] + variances[1][i]) / f64::from(count)),
-        }
-    });
-    Some(pixels.collect())
-}
-
-/// Whether a shader uses the reference's random numbers.
-fn uses_reference_numbers(reference: &dyn Resampled, own: &[ShaderPixel], estimates: &[Estimate]) -> bool {
-    let of_each = own.par_iter().zip(estimates).map(|(own, estimate)| {
-        let expected = reference.inverse_tone_mapped(estimate.own);
-        let (mean, selected) = (estimate.mean(), variance(&estimate.selection));
-        let mut sums = [0.0; 3];
-        for i in 0..3 {
-            let [a, b] = [own.mean[i] - mean[i], expected[i] - mean[i]];
-            let weight = 1.0 / (selected[i] + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION);
-            let terms = [a * a, a * b, b * b].map(|term| if term.is_finite() { weight * term } else { 0.0 });
-            (0..3).for_each(|at| sums[at] += terms[at]);
-        }
-        sums
-    });
-    let of_each: Vec<[f64; 3]> = of_each.collect();
-    let [own, covariance, reference] = of_each
-        .iter()
-        .fold([0.0; 3], |sum, each| [0, 1, 2].map(|at| sum[at] + each[at]));
-    covariance > MIN_SHARED_CORRELATION * (own * reference).sqrt()
-}
-
-/// Pixels spread over an image.
-pub(crate) fn places(size: [u32; 2], reference: &dyn Resampled) -> Places {
-    let max_pixels = f64::from(reference.max_pixels());
-    let all = f64::from(size[0]) * f64::from(size[1]);
-    let share = (max_pixels / all).sqrt().min(1.0);
-    Places::spread(size, size.map(|side| (f64::from(side) * share) as u32))
-}
-
-/// A pixel of the shader.
+/// A shader that is evaluated with other random numbers, and its reference.
 #[derive(Clone, Copy)]
-struct ShaderPixel {
-    /// The color as it is shown.
-    tone_mapped: [f64; 3],
-    /// The mean of its samples, by the inverse of the tone map.
-    mean: [f64; 3],
+pub(crate) struct ReplicatedShader<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) case: &'a Case<'a>,
+    pub(crate) reference: &'a dyn StochasticReference,
+    pub(crate) deadline: Instant,
 }
 
-/// A shader and the pixels at which it is evaluated.
-struct ReplicatedShader<'a> {
-    program: &'a Program,
-    case: &'a Case<'a>,
-    reference: &'a dyn Resampled,
+/// The reference at the pixels at which replicates are compared with it.
+struct ReferenceSample {
     places: Places,
-    deadline: Instant,
+    pixels: Vec<[u32; 2]>,
+    estimates: Arc<Estimates>,
+    /// Whether each pixel depends on random numbers.
+    is_random: Vec<bool>,
 }
 
 impl ReplicatedShader<'_> {
-    fn unsalted(&self) -> Option<Vec<ShaderPixel>> {
-        self.render(self.program, &self.places)
+    /// Compares the replicates of a shader that differs from its reference with those of the reference.
+    ///
+    /// # Errors
+    /// Returns why the shader cannot be compared this way.
+    pub(crate) fn compare_with_reference(
+        self,
+        algorithm: &CheckResult,
+    ) -> Result<ReferenceComparison, Incomparable> {
+        let reference = self.reference;
+        let places = places(self.case.frame.size, reference);
+        let unsalted = self.unsalted(&places).ok_or(Incomparable::NotReseeded)?;
+        let estimates = reference.estimates(&places).ok_or(Incomparable::UnknownNoise)?;
+        let sample = ReferenceSample {
+            pixels: pixels(&places),
+            is_random: estimates
+                .pixels
+                .par_iter()
+                .map(|estimate| estimate.is_random(reference))
+                .collect(),
+            places,
+            estimates,
+        };
+        if uses_reference_numbers(reference, &unsalted, &sample.estimates.pixels) {
+            return Err(Incomparable::SameNumbers);
+        }
+        let mut first = None;
+        // An added number may make a hash equal in neighboring pixels, where another reseeding does not.
+        for reseeding in Reseeding::all() {
+            let Some(sets) = self.replicates(&sample, reseeding, &unsalted) else {
+                continue;
+            };
+            let comparison = self.compare(&sample, reseeding, sets, algorithm);
+            if comparison
+                .as_ref()
+                .is_ok_and(|comparison| !comparison.test.is_correlated)
+            {
+                return comparison;
+            }
+            first.get_or_insert(comparison);
+        }
+        if first.is_none() && is_deterministic(self.case.checked) {
+            // The shader has no randomness: all replicates are the same.
+            let [.., untouched] = Reseeding::all();
+            let sets = vec![unsalted; REPLICATES + WEIGHT_REPLICATES];
+            first = Some(self.compare(&sample, untouched, sets, algorithm));
+        }
+        first.unwrap_or(Err(Incomparable::NotReseeded))
     }
 
-    fn render(&self, program: &Program, places: &Places) -> Option<Vec<ShaderPixel>> {
+    /// The first reseeding that changes some of the differing pixels of a shader, at least this share of them.
+    pub(crate) fn effective_reseeding(self, algorithm: &CheckResult, least: f64) -> Option<Reseeding> {
+        let size = self.case.frame.size;
+        let places = Places::spread(size, [RANDOMNESS_GRID; 2]);
+        let unsalted = self.unsalted(&places)?;
+        let differs = |&[x, y]: &[u32; 2]| {
+            let status = algorithm.statuses[y as usize * size[0] as usize + x as usize];
+            matches!(status, PixelStatus::Differs | PixelStatus::IllConditioned)
+        };
+        let pixels = pixels(&places);
+        let differing: Vec<usize> = (0..pixels.len()).filter(|&at| differs(&pixels[at])).collect();
+        Reseeding::all().into_iter().find(|&reseeding| {
+            self.salted(&places, reseeding, 1).is_some_and(|other| {
+                let changes = |&&at: &&usize| {
+                    let [a, b] = [&unsalted, &other].map(|own| own[at].tone_mapped);
+                    differ_by(a, b, MIN_RANDOM_CHANGE)
+                };
+                let changed = differing.iter().filter(changes).count();
+                changed > 0 && changed as f64 >= least * differing.len() as f64
+            })
+        })
+    }
+
+    /// The means of a shader and of the reference at other places, each over [`MEAN_SETS`] sets of random
+    /// numbers.
+    pub(crate) fn noisy_pixels(self, reseeding: Reseeding, places: &Places) -> Option<Vec<NoisyPixel>> {
+        let count = MEAN_SETS as u32;
+        let tone_mapped = |set: Vec<ShaderPixel>| set.iter().map(|pixel| pixel.tone_mapped).collect();
+        let own = (1..=count).map(|salt| self.salted(places, reseeding, salt).map(tone_mapped));
+        let own: Vec<Vec<[f64; 3]>> = own.collect::<Option<_>>()?;
+        let expected = self.reference.sets(places, count)?;
+        let pixels = (0..expected[0].len()).into_par_iter().map(|at| {
+            let (own, reference) = (of_pixel(&own, at), of_pixel(&expected, at));
+            let variances = [&own, &reference].map(|all| variance(all));
+            NoisyPixel {
+                own: mean(&own),
+                reference: mean(&reference),
+                variance: [0, 1, 2].map(|i| (variances[0][i] + variances[1][i]) / f64::from(count)),
+            }
+        });
+        Some(pixels.collect())
+    }
+
+    /// The shader's pixels with its own random numbers.
+    fn unsalted(&self, places: &Places) -> Option<Vec<ShaderPixel>> {
         let settings = Settings::<f64> {
-            undefined: UndefinedPolicy::Plain,
             max_iterations: MAX_ITERATIONS,
             deadline: Some(self.deadline),
-            ..Settings::default()
+            ..Settings::plain()
         };
-        let image = program.at(self.case.frame, places, &settings).ok()?;
+        let image = self.program.at(self.case.frame, places, &settings).ok()?;
+        Some(self.shader_pixels(&image))
+    }
+
+    fn salted(&self, places: &Places, reseeding: Reseeding, salt: u32) -> Option<Vec<ShaderPixel>> {
+        let Case { checked, frame, .. } = *self.case;
+        let image = reseeding.evaluate(checked, salt, frame, places, Some(self.deadline))?;
         Some(self.shader_pixels(&image))
     }
 
@@ -317,33 +229,25 @@ impl ReplicatedShader<'_> {
         image.pixels().iter().map(own).collect()
     }
 
-    fn salted(&self, reseeding: Reseeding, salt: u32) -> Option<Vec<ShaderPixel>> {
-        let checked = reseeding.of(self.case.checked, salt);
-        let program = Program::prepared(&checked, UndefinedPolicy::Plain).ok()?;
-        self.render(&program, &self.places.shifted(Reseeding::shift(salt)))
-    }
-
     /// Compares the replicates of one reseeding with the reference.
     fn compare(
         &self,
+        sample: &ReferenceSample,
         reseeding: Reseeding,
         mut sets: Vec<Vec<ShaderPixel>>,
-        pixels: &[[u32; 2]],
-        expected: &Estimates,
-        is_random_in_reference: &[bool],
         algorithm: &CheckResult,
     ) -> Result<ReferenceComparison, Incomparable> {
-        let estimates = &expected.pixels;
+        let (pixels, estimates) = (&sample.pixels, &sample.estimates.pixels);
         let weight_sets = sets.split_off(REPLICATES);
         let width = self.case.frame.size[0] as usize;
         let status = |[x, y]: [u32; 2]| algorithm.statuses[y as usize * width + x as usize];
         let is_random = |at: usize| {
-            is_random_in_reference[at]
+            sample.is_random[at]
                 || sets
                     .iter()
                     .any(|set| differs(set[at].tone_mapped, sets[0][at].tone_mapped))
         };
-        let smoothed = smoothed_variance(&weight_sets, self.places.pixels()[0].len());
+        let smoothed = smoothed_variance(&weight_sets, sample.places.columns.len());
         // A rare event: it occurs in the reference's own samples and in no other set, or sometimes in the
         // shader's neighboring pixels.
         let is_rare = |at: usize| {
@@ -393,7 +297,11 @@ impl ReplicatedShader<'_> {
             })
             .collect();
         Ok(ReferenceComparison {
-            test: compare_replicates(&replicated_pixels, self.case.frame.size, expected.are_correlated),
+            test: compare_replicates(
+                &replicated_pixels,
+                self.case.frame.size,
+                sample.estimates.are_correlated,
+            ),
             pixels: replicated_pixels.len(),
             reseeding,
         })
@@ -403,13 +311,12 @@ impl ReplicatedShader<'_> {
     /// alone.
     fn replicates(
         &self,
+        sample: &ReferenceSample,
         reseeding: Reseeding,
         unsalted: &[ShaderPixel],
-        estimates: &[Estimate],
-        is_random_in_reference: &[bool],
     ) -> Option<Vec<Vec<ShaderPixel>>> {
         let distance = |own: &[ShaderPixel]| {
-            let pixels = own.iter().zip(estimates).map(|(own, estimate)| {
+            let pixels = own.iter().zip(&sample.estimates.pixels).map(|(own, estimate)| {
                 let reference = self.reference.tone_mapped(estimate.mean());
                 (0..3)
                     .map(|i| (own.tone_mapped[i] - reference[i]).powi(2))
@@ -418,7 +325,7 @@ impl ReplicatedShader<'_> {
             pixels.sum::<f64>()
         };
         let is_changed = |other: &[ShaderPixel]| {
-            let random = (0..unsalted.len()).filter(|&at| is_random_in_reference[at]);
+            let random = (0..unsalted.len()).filter(|&at| sample.is_random[at]);
             let (mut all, mut changed) = (0, 0);
             for at in random {
                 all += 1;
@@ -431,16 +338,61 @@ impl ReplicatedShader<'_> {
             let other = distance(other);
             other <= MAX_DISTANCE_RATIO * own && own <= MAX_DISTANCE_RATIO * other
         };
-        let first = self.salted(reseeding, 1)?;
+        let first = self.salted(&sample.places, reseeding, 1)?;
         if !is_changed(&first) || !is_as_far(&first) {
             return None;
         }
         let mut all = vec![unsalted.to_vec(), first];
         for salt in 2..(REPLICATES + WEIGHT_REPLICATES) as u32 {
-            all.push(self.salted(reseeding, salt).filter(|other| is_as_far(other))?);
+            all.push(
+                self.salted(&sample.places, reseeding, salt)
+                    .filter(|other| is_as_far(other))?,
+            );
         }
         Some(all)
     }
+}
+
+/// Whether a shader uses the reference's random numbers.
+fn uses_reference_numbers(
+    reference: &dyn StochasticReference,
+    own: &[ShaderPixel],
+    estimates: &[Estimate],
+) -> bool {
+    let of_each = own.par_iter().zip(estimates).map(|(own, estimate)| {
+        let expected = reference.inverse_tone_mapped(estimate.own);
+        let (mean, selected) = (estimate.mean(), variance(&estimate.selection));
+        let mut sums = [0.0; 3];
+        for i in 0..3 {
+            let [a, b] = [own.mean[i] - mean[i], expected[i] - mean[i]];
+            let weight = 1.0 / (selected[i] + MIN_STANDARD_DEVIATION * MIN_STANDARD_DEVIATION);
+            let terms = [a * a, a * b, b * b].map(|term| if term.is_finite() { weight * term } else { 0.0 });
+            (0..3).for_each(|at| sums[at] += terms[at]);
+        }
+        sums
+    });
+    let of_each: Vec<[f64; 3]> = of_each.collect();
+    let [own, covariance, reference] = of_each
+        .iter()
+        .fold([0.0; 3], |sum, each| [0, 1, 2].map(|at| sum[at] + each[at]));
+    covariance > MIN_SHARED_CORRELATION * (own * reference).sqrt()
+}
+
+/// Pixels spread over an image.
+pub(crate) fn places(size: [u32; 2], reference: &dyn StochasticReference) -> Places {
+    let max_pixels = f64::from(reference.max_pixels());
+    let all = f64::from(size[0]) * f64::from(size[1]);
+    let share = (max_pixels / all).sqrt().min(1.0);
+    Places::spread(size, size.map(|side| (f64::from(side) * share) as u32))
+}
+
+/// A pixel of the shader.
+#[derive(Clone, Copy)]
+struct ShaderPixel {
+    /// The color as it is shown.
+    tone_mapped: [f64; 3],
+    /// The mean of its samples, by the inverse of the tone map.
+    mean: [f64; 3],
 }
 
 /// The number of columns and of rows of pixels over which variances are averaged.
@@ -475,7 +427,11 @@ fn smoothed_variance(sets: &[Vec<ShaderPixel>], width: usize) -> Vec<[f64; 3]> {
 }
 
 /// Whether the shader clamps its samples to white, which changes their mean.
-fn clamps_samples(reference: &dyn Resampled, sets: &[Vec<ShaderPixel>], estimates: &[Estimate]) -> bool {
+fn clamps_samples(
+    reference: &dyn StochasticReference,
+    sets: &[Vec<ShaderPixel>],
+    estimates: &[Estimate],
+) -> bool {
     let is_above = |color: &[f64; 3]| {
         let tone_mapped = reference.tone_mapped(*color);
         (0..3).any(|i| color[i] > 1.0 && tone_mapped[i] >= 1.0)
@@ -490,7 +446,7 @@ fn clamps_samples(reference: &dyn Resampled, sets: &[Vec<ShaderPixel>], estimate
 /// Whether a pixel is white on both sides, so that no difference is visible, or may be for a shader that
 /// clamps.
 fn is_white(
-    reference: &dyn Resampled,
+    reference: &dyn StochasticReference,
     mean: [f64; 3],
     own: &[[f64; 3]],
     estimate: &Estimate,

@@ -8,14 +8,18 @@
 //! that only the noise changes ([`Reseeding::all`] returns several alternatives).
 
 use std::collections::HashSet;
+use std::time::Instant;
 
+use toyproof_eval::{Places, Settings, UndefinedPolicy};
+use toyproof_eval_native::Program;
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltIn, Constructor, Expr, ExprId, ExprKind, FunctionId, Literal, Scalar, Tree, Type, Value,
-    walk,
+    BinaryOp, BuiltIn, Constructor, Expr, ExprId, ExprKind, FunctionId, Scalar, Tree, Type, Value, walk,
 };
+use toyproof_image::{Frame, Image};
 
 use super::pixel_dependence::PixelDependence;
+use crate::bounds::MAX_ITERATIONS;
 
 /// The smallest absolute value of an integer that is a constant of a hash.
 const MIN_HASH_INTEGER: u32 = 1 << 16;
@@ -57,7 +61,7 @@ impl Reseeding {
     }
 
     /// Returns the shader with other random numbers for each salt other than 0.
-    pub(crate) fn of(self, checked: &Checked, salt: u32) -> Checked {
+    pub(crate) fn apply(self, checked: &Checked, salt: u32) -> Checked {
         let mut checked = checked.clone();
         let tree = &mut checked.tree;
         let ids: Vec<ExprId> = tree.exprs.ids().collect();
@@ -66,6 +70,27 @@ impl Reseeding {
         }
         tree.clear_cached_values();
         checked
+    }
+
+    /// Evaluates the shader with other random numbers, at places that are shifted with it; `None` if a pixel
+    /// runs too many loop iterations, or after the deadline.
+    pub(crate) fn evaluate(
+        self,
+        checked: &Checked,
+        salt: u32,
+        frame: &Frame,
+        places: &Places,
+        deadline: Option<Instant>,
+    ) -> Option<Image> {
+        let program = Program::prepared(&self.apply(checked, salt), UndefinedPolicy::Plain).ok()?;
+        let settings = Settings::<f64> {
+            max_iterations: MAX_ITERATIONS,
+            deadline,
+            ..Settings::plain()
+        };
+        program
+            .at(frame, &places.shifted(Self::shift(salt)), &settings)
+            .ok()
     }
 
     /// Whether some of these operations compute with the position of the pixel, by the flow of data. A
@@ -79,7 +104,7 @@ impl Reseeding {
             salted.exprs.len() > before
         };
         let changed: Vec<ExprId> = checked.tree.exprs.ids().filter(|&id| is_changed(id)).collect();
-        let dependence = PixelDependence::of(checked);
+        let dependence = PixelDependence::new(checked);
         // Without such operations, only the shift of the pixel yields other numbers.
         changed.is_empty() || changed.into_iter().any(|id| dependence.reaches(id))
     }
@@ -177,18 +202,10 @@ fn add(tree: &mut Tree, id: ExprId, salt: u32) {
         Some(Scalar::Float) => Value::Float(17.31 * f64::from(salt)),
         _ => return,
     };
-    let text = match value {
-        Value::Uint(value) => format!("{value}u"),
-        Value::Int(value) => value.to_string(),
-        _ => format!("{:?}", 17.31 * f64::from(salt)),
-    };
     let own = tree[id].clone();
     let left = tree.exprs.push(own);
     let right = tree.exprs.push(Expr {
-        kind: ExprKind::Literal(Literal {
-            text: text.into(),
-            value,
-        }),
+        kind: ExprKind::Literal(value.into()),
         ty: value.ty(),
         constant: true,
         at,
@@ -305,10 +322,7 @@ fn has_components(tree: &Tree, id: ExprId, is_such: impl Fn(&Value) -> bool) -> 
 #[cfg(test)]
 mod tests {
     use toyproof_diagnostic::{File, Files};
-    use toyproof_eval::Settings;
-    use toyproof_eval_native::Program;
     use toyproof_glsl as glsl;
-    use toyproof_image::Frame;
 
     use super::*;
 
@@ -353,10 +367,10 @@ mod tests {
             let checked = checked(hash);
             let unsalted = render(&checked);
             for salt in 1..5 {
-                let salted = Reseeding::all()[0].of(&checked, salt);
+                let salted = Reseeding::all()[0].apply(&checked, salt);
                 let program = Program::new(&salted).unwrap();
                 let [x, y] = Reseeding::shift(salt);
-                let places = toyproof_eval::Places {
+                let places = Places {
                     columns: (0..32).map(|at| f64::from(at) + 0.5 + x).collect(),
                     rows: (0..32).map(|at| f64::from(at) + 0.5 + y).collect(),
                 };
@@ -409,7 +423,7 @@ mod tests {
         let checked = checked(
             "float random(vec2 p) { int i = int(p.x) * 3 + 7; return fract(p.x * 0.5) + float(i) * 0.001 + 100.0 * p.y; }",
         );
-        let salted = Reseeding::all()[0].of(&checked, 3);
+        let salted = Reseeding::all()[0].apply(&checked, 3);
         assert_eq!(render(&checked), render(&salted));
     }
 }

@@ -5,18 +5,17 @@
 //! random numbers, and the shader's over its replicates, or over many pixels of its one image.
 
 use std::ops::Range;
-use std::time::Instant;
 
 use rayon::prelude::*;
-use toyproof_eval::Places;
-use toyproof_eval_native::Program;
 use toyproof_image::Image;
 use toyproof_tracer::{RESAMPLED_ROWS, Tracer};
 
-use super::estimates::{ESTIMATE_SETS, Resampled, SELECTION_SETS, differs};
+use super::estimates::{
+    ESTIMATE_SETS, SELECTION_SETS, StochasticReference, differs, mean, of_pixel, variance,
+};
 use super::mean_test::{RandomPixel, means, uses_scene_numbers};
 use super::reference::draws_by_random_numbers;
-use super::replicates::{self, Incomparable, NoisyPixel};
+use super::replicates::{Incomparable, MIN_CHANGED_SHARE, ReplicatedShader};
 use super::reseed::Reseeding;
 use super::sample_count::fewer_samples;
 use crate::case::Case;
@@ -41,7 +40,7 @@ const MAX_PATHS: u32 = 1 << 18;
 /// A stochastic reference, with what is recorded to compare the means of a shader with it.
 #[derive(Debug)]
 pub(crate) struct Stochastic<'a> {
-    reference: &'a dyn Resampled,
+    reference: &'a dyn StochasticReference,
     size: [u32; 2],
     /// The rows of a scene.
     rows: Option<SampledRows<'a>>,
@@ -60,10 +59,10 @@ struct SampledRows<'a> {
     colors: Vec<[[f32; 3]; 2]>,
 }
 
-/// The comparison of the means of a shader and of its scene.
-pub(crate) struct ComparedMeans {
+/// The comparison of the means of a shader and of its reference.
+pub(crate) struct MeansEvidence {
     pub(crate) random_numbers: OtherRandomNumbers,
-    /// How the shader's random numbers were changed; none if they were not.
+    /// How the shader's random numbers were changed; `None` if they were not.
     pub(crate) reseeding: Option<Reseeding>,
 }
 
@@ -71,7 +70,7 @@ impl<'a> Stochastic<'a> {
     /// Selects what is recorded of an image of that size; none if the reference is a scene without random
     /// numbers.
     pub(crate) fn new(expected: &'a Expected, size: [u32; 2]) -> Option<Self> {
-        let of = |reference: &'a dyn Resampled, rows| Self {
+        let new = |reference: &'a dyn StochasticReference, rows| Self {
             reference,
             size,
             rows,
@@ -80,10 +79,10 @@ impl<'a> Stochastic<'a> {
         match expected {
             Expected::Scene(_) => {
                 let tracer = expected.tracer().filter(|tracer| tracer.sampler().is_some())?;
-                Some(of(tracer, Some(SampledRows::new(tracer, size))))
+                Some(new(tracer, Some(SampledRows::new(tracer, size))))
             }
-            Expected::Shader(shader) => Some(of(&**shader, None)),
-            Expected::Image(image) => Some(of(image, None)),
+            Expected::Shader(shader) => Some(new(&**shader, None)),
+            Expected::Image(image) => Some(new(image, None)),
         }
     }
 
@@ -94,35 +93,36 @@ impl<'a> Stochastic<'a> {
         }
     }
 
-    /// Compares the means of a shader that differs from its reference only in random pixels; none if it
+    pub(crate) fn reference(&self) -> &'a dyn StochasticReference {
+        self.reference
+    }
+
+    /// Compares the means of a shader that differs from its reference only in random pixels; `None` if it
     /// differs elsewhere too. The precision check of the other pixels is left out.
     pub(crate) fn compare_means(
         &self,
+        shader: ReplicatedShader<'_>,
         algorithm: &CheckResult,
         checks: &Checks,
-        program: &Program,
-        case: &Case,
-        deadline: Instant,
-    ) -> Option<ComparedMeans> {
+    ) -> Option<MeansEvidence> {
         let reference = self.reference;
         if !reference.is_stochastic() {
             return None;
         }
         let is_random = self.differs_randomly(algorithm);
-        if !is_random && !replicates::is_random(program, case, reference, algorithm, deadline) {
+        if !is_random && shader.effective_reseeding(algorithm, MIN_CHANGED_SHARE).is_none() {
             return None;
         }
         // An image of such a shader has no noise.
-        if self.is_image && draws_by_random_numbers(case.checked, case.frame) {
+        let Case { checked, frame, .. } = *shader.case;
+        if self.is_image && draws_by_random_numbers(checked, frame) {
             return None;
         }
-        let samples = reference.samples();
-        let compared = replicates::compare_with(program, case, reference, algorithm, deadline);
-        let (means, reseeding) = match compared {
+        let (means, reseeding) = match shader.compare_with_reference(algorithm) {
             Ok(compared) => {
                 let test = compared.test;
                 let is_noisier = test.variance > MAX_VARIANCE_RATIO && test.is_uniform;
-                let fewer_samples = || fewer_samples(&case.checked.tree, samples?, test.variance);
+                let fewer_samples = || fewer_samples(&checked.tree, reference.samples()?, test.variance);
                 let means = MeanComparison::Replicates {
                     test,
                     pixels: compared.pixels as u64,
@@ -149,16 +149,6 @@ impl<'a> Stochastic<'a> {
                 return None;
             }
         };
-        Some(self.compared(means, reseeding, algorithm, checks))
-    }
-
-    fn compared(
-        &self,
-        means: MeanComparison,
-        reseeding: Option<Reseeding>,
-        algorithm: &CheckResult,
-        checks: &Checks,
-    ) -> ComparedMeans {
         let without_differing = CheckSummary {
             differing: 0,
             ill_conditioned: 0,
@@ -167,8 +157,8 @@ impl<'a> Stochastic<'a> {
             ..algorithm.summary.clone()
         };
         let random_numbers = OtherRandomNumbers {
-            sampler: self.reference.sampler(),
-            samples: self.reference.samples(),
+            sampler: reference.sampler(),
+            samples: reference.samples(),
             means,
             other_pixels: Checks {
                 algorithm: Some(without_differing),
@@ -176,10 +166,10 @@ impl<'a> Stochastic<'a> {
                 toolchain: checks.toolchain.clone(),
             },
         };
-        ComparedMeans {
+        Some(MeansEvidence {
             random_numbers,
             reseeding,
-        }
+        })
     }
 
     /// Returns the precision check without the pixels that differ from the scene, and without random ones: in
@@ -203,33 +193,6 @@ impl<'a> Stochastic<'a> {
             differing: random.iter().filter(|&&random| !random).count() as u64,
             ..precision.summary.clone()
         }
-    }
-
-    /// A reseeding that changes pixels of a shader that differs; none if the shader has no random numbers, or
-    /// the reference has none.
-    pub(crate) fn reseeding(
-        &self,
-        program: &Program,
-        case: &Case,
-        algorithm: &CheckResult,
-        deadline: Instant,
-    ) -> Option<Reseeding> {
-        let reference = self.reference;
-        reference
-            .is_stochastic()
-            .then(|| replicates::effective_reseeding(program, case, reference, algorithm, 0.0, deadline))?
-    }
-
-    /// Returns the means of a shader with other random numbers, and of the scene, at these places.
-    pub(crate) fn noisy_pixels(
-        &self,
-        program: &Program,
-        case: &Case,
-        reseeding: Reseeding,
-        places: &Places,
-        deadline: Instant,
-    ) -> Option<Vec<NoisyPixel>> {
-        replicates::noisy_pixels(program, case, self.reference, reseeding, places, deadline)
     }
 
     /// Whether the differing pixels are random in the reference, and there are any.
@@ -292,8 +255,8 @@ impl<'a> SampledRows<'a> {
             .par_iter()
             .zip(self.colors.par_chunks(RESAMPLED_ROWS as usize * width));
         let pairs = recorded.flat_map_iter(|(&bottom, colors)| {
-            let selection = SampleSets::of(self.tracer, bottom, SELECTION_SETS);
-            let estimate = SampleSets::of(self.tracer, bottom, ESTIMATE_SETS);
+            let selection = SampleSets::new(self.tracer, bottom, SELECTION_SETS);
+            let estimate = SampleSets::new(self.tracer, bottom, ESTIMATE_SETS);
             let statuses = &algorithm.statuses[bottom as usize * width..];
             let rows = (0..colors.len() / width / 2).map(move |row| 2 * row * width);
             let squares = rows.flat_map(move |row| (0..width / 2).map(move |column| row + 2 * column));
@@ -336,7 +299,7 @@ struct SampleSets<'a> {
 }
 
 impl<'a> SampleSets<'a> {
-    fn of(tracer: &'a Tracer<f64>, bottom: u32, sets: Range<u32>) -> Self {
+    fn new(tracer: &'a Tracer<f64>, bottom: u32, sets: Range<u32>) -> Self {
         let means: Vec<_> = sets.map(|set| tracer.resampled_rows(bottom, set)).collect();
         let tone_mapped = |means: &Vec<_>| means.iter().map(|&mean| tracer.tone_mapped(mean)).collect();
         Self {
@@ -353,7 +316,7 @@ impl<'a> SampleSets<'a> {
     }
 
     fn mean(&self, at: usize) -> [f64; 3] {
-        mean(&self.colors, at)
+        mean(&of_pixel(&self.colors, at))
     }
 
     /// The difference of the means of two pixels, summed over components.
@@ -363,24 +326,13 @@ impl<'a> SampleSets<'a> {
     }
 
     fn variance(&self, at: usize) -> [f64; 3] {
-        let mean = self.mean(at);
-        let count = self.colors.len() as f64;
-        [0, 1, 2].map(|i| {
-            let squares = self.colors.iter().map(|colors| (colors[at][i] - mean[i]).powi(2));
-            squares.sum::<f64>() / (count - 1.0)
-        })
+        variance(&of_pixel(&self.colors, at))
     }
 
     /// How much brighter a pixel is if the samples of all sets are averaged before the tone map.
     fn tone_map_bias(&self, at: usize) -> [f64; 3] {
-        let together = self.tracer.tone_mapped(mean(&self.means, at));
+        let together = self.tracer.tone_mapped(mean(&of_pixel(&self.means, at)));
         let mean = self.mean(at);
         [0, 1, 2].map(|i| together[i] - mean[i])
     }
-}
-
-/// The mean of a pixel over all sets.
-fn mean(sets: &[Vec<[f64; 3]>], at: usize) -> [f64; 3] {
-    let count = sets.len() as f64;
-    [0, 1, 2].map(|i| sets.iter().map(|set| set[at][i]).sum::<f64>() / count)
 }
