@@ -13,7 +13,8 @@ use toyproof_report::{Late, Submitted};
 /// The name of the file.
 pub const FILE_NAME: &str = "submissions.json";
 
-/// The maximum size of the file, in bytes: a million students.
+/// The maximum size of the file, in bytes: a million students. A student may have a file of this name that is as
+/// large as the disk.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// The students of a folder of submissions.
@@ -77,12 +78,20 @@ impl Roster {
         if matches!(path.metadata(), Err(error) if error.kind() != io::ErrorKind::PermissionDenied) {
             return Ok(None);
         }
+        let name = path_name(&path);
+        let not_roster = |error: io::Error| format!("{name} is not a list of students: {error}");
+        let file = input::open(&path).map_err(not_roster)?;
+        let bytes = file.metadata().map_or(0, |metadata| metadata.len());
+        if bytes > MAX_BYTES {
+            return Err(format!(
+                "{name} is too large: a list of students has at most {} MiB",
+                MAX_BYTES >> 20
+            ));
+        }
         let mut text = Vec::new();
-        let read = input::open(&path).and_then(|file| file.take(MAX_BYTES).read_to_end(&mut text));
+        let read = file.take(MAX_BYTES).read_to_end(&mut text);
         let parsed = read.and_then(|_| Ok(serde_json::from_slice(&text)?));
-        parsed
-            .map(Some)
-            .map_err(|error| format!("{} is not a list of students: {error}", path_name(&path)))
+        parsed.map(Some).map_err(not_roster)
     }
 
     /// Writes the roster into a folder.
@@ -179,4 +188,27 @@ fn add_missing(folder: &Path, roster: &Roster, inputs: &mut Vec<Result<Input, Re
     }));
     own.sort_by_cached_key(input_path);
     inputs.splice(at..at, own);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use super::*;
+
+    #[test]
+    fn a_roster_above_the_limit_is_too_large_and_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = File::create(folder.path().join(FILE_NAME)).unwrap();
+        // The file has no blocks on the disk.
+        file.set_len(MAX_BYTES + 1).unwrap();
+        let error = Roster::read(folder.path()).unwrap_err();
+        assert!(
+            error.ends_with("submissions.json is too large: a list of students has at most 256 MiB"),
+            "{error}"
+        );
+        file.set_len(2).unwrap();
+        let error = Roster::read(folder.path()).unwrap_err();
+        assert!(error.contains("is not a list of students"), "{error}");
+    }
 }

@@ -129,11 +129,7 @@ pub fn search(folder: &Path) -> Search {
     let mut next = 0;
     while let Some(link) = walk.links.get(next).cloned() {
         next += 1;
-        if let Ok(target) = link.canonicalize()
-            && !walk.folders.contains(&target)
-        {
-            walk.visit(&link);
-        }
+        walk.visit(&link);
     }
     let mut found = walk.found;
     found.sort_by(|(a, _), (b, _)| a.cmp(b));
@@ -161,12 +157,12 @@ impl Walk<'_> {
     /// Searches a folder, which may be a link, and collects the links in it.
     fn visit(&mut self, folder: &Path) {
         let is_top = folder == self.folder;
-        let entries = WalkDir::new(folder)
+        let mut entries = WalkDir::new(folder)
             .follow_root_links(true)
             .sort_by_file_name()
             .into_iter()
             .filter_entry(|entry| is_top && entry.depth() == 0 || !is_hidden(entry.file_name()));
-        for entry in entries {
+        while let Some(entry) = entries.next() {
             self.entries += 1;
             if self.entries > MAX_ENTRIES {
                 let error = format!(
@@ -177,6 +173,8 @@ impl Walk<'_> {
                 return;
             }
             match entry {
+                // A link may lead to a folder of which another link has led to a part.
+                Ok(entry) if self.is_searched(&entry) => entries.skip_current_dir(),
                 Ok(entry) => self.enter(entry),
                 Err(error) => {
                     let path = error.path().unwrap_or(folder).to_owned();
@@ -186,12 +184,21 @@ impl Walk<'_> {
         }
     }
 
+    /// Whether an entry is a folder that has been searched before; adds other folders to the searched ones.
+    fn is_searched(&mut self, entry: &DirEntry) -> bool {
+        let is_folder = entry.depth() == 0 || entry.file_type().is_dir();
+        is_folder
+            && entry
+                .path()
+                .canonicalize()
+                .is_ok_and(|folder| !self.folders.insert(folder))
+    }
+
     fn enter(&mut self, entry: DirEntry) {
         let kind = entry.file_type();
         if entry.path_is_symlink() && entry.depth() > 0 {
             self.follow(entry.into_path());
         } else if kind.is_dir() || entry.depth() == 0 {
-            self.folders.extend(entry.path().canonicalize());
             if is_project(entry.path()) {
                 self.add(entry.into_path());
             }

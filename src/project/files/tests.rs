@@ -140,6 +140,16 @@ mod links {
     }
 
     #[test]
+    fn a_folder_is_searched_once_if_one_link_leads_to_it_and_another_to_its_parent() {
+        let (_outer, folder) = folder();
+        symlink(".kept/new", folder.join("latest")).unwrap();
+        symlink(".kept", folder.join("whole")).unwrap();
+        fs::write(folder.join(".kept/d.glsl"), "").unwrap();
+        let wanted = ["ann/a.glsl", "b.glsl", "latest/c.glsl", "whole/d.glsl"];
+        assert_eq!(relative(&search(&folder)), wanted.map(Path::new));
+    }
+
+    #[test]
     fn a_linked_folder_is_searched() {
         let (outer, folder) = folder();
         let link = outer.path().join("link");
