@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use toyproof_diagnostic::one_of;
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_player::Target;
 use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
 use toyproof_project::{CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
-use toyproof_toml::list_of;
 use toyproof_verify::Failure;
 use toyproof_verify::project::playback::PassShader;
 
@@ -146,7 +146,7 @@ pub(super) fn export(input: &Path, output: &Path, terminal: &Terminal) -> Result
         let names: Vec<_> = names.iter().map(String::as_str).collect();
         terminal.note(&format!(
             "without {PROJECT_FILE}, every pass is assumed to read {} in the channel of its letter",
-            list_of(&names).replace(" or ", " and ")
+            one_of(&names).replace(" or ", " and ")
         ));
     }
     let json = project.to_json(&files);

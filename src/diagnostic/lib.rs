@@ -37,8 +37,8 @@ pub use self::file::{File, FileId, Files, Place, Position, Span};
 pub use self::layout::{columns, display_width, wrap};
 pub use self::render::{Json, JsonFix, human, json, short};
 pub use self::text::{
-    color_difference, grouped, magnitude, nearest, path_name, plural, printable, printable_lines, similar,
-    spreadsheet_text, without_error_numbers,
+    all_of, color_difference, grouped, magnitude, nearest, one_of, path_name, plural, printable,
+    printable_lines, similar, spreadsheet_text, without_error_numbers,
 };
 
 /// The severity of a diagnostic.

@@ -152,6 +152,26 @@ pub fn plural<'a>(count: u64, one: &'a str, many: &'a str) -> &'a str {
     if count == 1 { one } else { many }
 }
 
+/// Lists items for a sentence: “a”, “a and b”, “a, b and c”.
+#[must_use]
+pub fn all_of(items: &[impl AsRef<str>]) -> String {
+    join(items, "and")
+}
+
+/// Lists alternatives for a sentence: “a”, “a or b”, “a, b or c”.
+#[must_use]
+pub fn one_of(items: &[impl AsRef<str>]) -> String {
+    join(items, "or")
+}
+
+fn join(items: &[impl AsRef<str>], conjunction: &str) -> String {
+    let items: Vec<&str> = items.iter().map(AsRef::as_ref).collect();
+    match &items[..] {
+        [first @ .., last] if !first.is_empty() => format!("{} {conjunction} {last}", first.join(", ")),
+        items => items.concat(),
+    }
+}
+
 /// Formats a count with separated thousands: 230,400.
 pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
@@ -201,6 +221,14 @@ mod tests {
     use super::*;
 
     const HOSTILE: &str = "a\n\r\u{1b}[2J\u{7f}\u{85}\u{9b}31m\u{61c}\u{200f}\u{2028}\u{202e}\u{2066}z";
+
+    #[test]
+    fn lists_have_a_conjunction_before_the_last_item() {
+        let names = ["a", "b", "c"];
+        let lists = [0, 1, 2, 3].map(|count| all_of(&names[..count]));
+        assert_eq!(lists, ["", "a", "a and b", "a, b and c"]);
+        assert_eq!(one_of(&names), "a, b or c");
+    }
 
     #[test]
     fn control_characters_in_names_are_escaped() {

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
+use toyproof_diagnostic::one_of;
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest};
 use toyproof_glsl::{Filter, Wrap};
-use toyproof_toml::list_of;
 
 use crate::format::{Format, Wrapper};
 use crate::json;
@@ -373,7 +373,7 @@ fn take_choice<T: Copy>(
         let known: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
         errors.push(
             node.error(format!("unknown `{key}`"))
-                .help(format!("expected {}", list_of(&known))),
+                .help(format!("expected {}", one_of(&known))),
         );
     }
     choice.map(|(_, choice)| *choice)
@@ -393,7 +393,7 @@ fn report_unknown(node: &Node, known: &[&'static str], errors: &mut Vec<Diagnost
                 format!("a tab has the table `[[pass]]` with `tab = \"{key}\"` and its `inputs`")
             }
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("expected {}", list_of(known)),
+            None => format!("expected {}", one_of(known)),
         };
         errors.push(node.error(format!("unknown key `{key}`")).help(help));
     }
@@ -449,7 +449,7 @@ fn expand_pass(pass: &mut Node, format: Format, completes: bool, errors: &mut Ve
     };
     let Some(at) = members.iter().position(|member| member.key == "tab") else {
         let names = Tab::ALL.map(Tab::name);
-        let help = format!("add `tab = \"image\"`, or {}", list_of(&names[..]));
+        let help = format!("add `tab = \"image\"`, or {}", one_of(&names[..]));
         let node = Node {
             value: Value::Null,
             span,
@@ -467,7 +467,7 @@ fn expand_pass(pass: &mut Node, format: Format, completes: bool, errors: &mut Ve
         let names = Tab::ALL.map(Tab::name);
         errors.push(
             node.error("`tab` must be the name of a tab")
-                .help(format!("expected {}", list_of(&names))),
+                .help(format!("expected {}", one_of(&names))),
         );
         return;
     };

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
+use toyproof_diagnostic::one_of;
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest};
 use toyproof_glsl::{Filter, Wrap};
-use toyproof_toml::list_of;
 
 use crate::format::{Format, Wrapper};
 use crate::json;
@@ -440,6 +440,6 @@ fn flag(node: &Node, key: &str) -> Result<Option<bool>, Box<Diagnostic>> {
 fn suggestion(name: &str, known: &[&'static str]) -> String {
     match nearest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => format!("expected {}", list_of(known)),
+        None => format!("expected {}", one_of(known)),
     }
 }

@@ -1,18 +1,14 @@
 //! The inputs and functions that the reference of a wrong shader uses, and the shader does not.
 
-use toyproof_diagnostic::Files;
+use toyproof_diagnostic::{Files, all_of};
 use toyproof_explain::unused::Unused;
 
 /// Sentences on the inputs and functions that only the reference uses, for the details of a wrong shader.
 /// `files` are the reference's.
 pub(super) fn sentences(unused: &Unused, files: &Files) -> Vec<String> {
     let names: Vec<_> = unused.inputs.iter().map(|name| format!("`{name}`")).collect();
-    let inputs = match &names[..] {
-        [] => None,
-        [only] => Some(only.clone()),
-        [head @ .., last] => Some(format!("{} and {last}", head.join(", "))),
-    };
-    let inputs = inputs.map(|names| format!("the reference reads {names}, the shader does not"));
+    let inputs =
+        (!names.is_empty()).then(|| format!("the reference reads {}, the shader does not", all_of(&names)));
     let functions = unused.functions.iter().map(|(name, call)| {
         let line = files.position(*call).line;
         format!("`{name}` is never called; the reference calls it at line {line}")

@@ -27,7 +27,9 @@ use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, plural};
+use toyproof_diagnostic::{
+    Code, Diagnostic, Diagnostics, FileId, Files, Span, grouped, nearest, one_of, plural,
+};
 use toyproof_image::{MAX_PIXELS, MAX_SIDE, check_size};
 
 pub use self::moment::Moment;
@@ -363,7 +365,7 @@ impl<'r, 't> Table<'r, 't> {
             let names: Vec<_> = choices.iter().map(|(name, _)| format!("`{name}`")).collect();
             let names: Vec<_> = names.iter().map(String::as_str).collect();
             let example = choices.first().map_or("", |(name, _)| name);
-            let help = format!("add `{key} = \"{example}\"`; the choices are {}", list_of(&names));
+            let help = format!("add `{key} = \"{example}\"`; the choices are {}", one_of(&names));
             self.report_missing(key, help);
         }
         self.choice(key, what, choices)
@@ -547,15 +549,6 @@ fn suggestion(name: &str, known: impl Iterator<Item = (&'static str, String)>) -
     if let Some((_, written)) = known.iter().find(|(known, _)| Some(*known) == near) {
         return format!("did you mean {written}?");
     }
-    let written: Vec<_> = known.iter().map(|(_, written)| written.as_str()).collect();
-    format!("expected {}", list_of(&written))
-}
-
-/// Joins alternatives: "a", "a or b", "a, b or c".
-pub fn list_of(names: &[&str]) -> String {
-    match names {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} or {last}", first.join(", ")),
-    }
+    let written: Vec<_> = known.iter().map(|(_, written)| written).collect();
+    format!("expected {}", one_of(&written))
 }

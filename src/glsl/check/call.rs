@@ -1,6 +1,6 @@
 //! Calls and constructors: overload resolution (§6.1, §5.4).
 
-use toyproof_diagnostic::{Code, Diagnostic, Fix, plural};
+use toyproof_diagnostic::{Code, Diagnostic, Fix, one_of, plural};
 
 use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
@@ -324,10 +324,7 @@ fn format_counts(counts: &[usize]) -> String {
     counts.sort_unstable();
     counts.dedup();
     let texts: Vec<_> = counts.iter().map(usize::to_string).collect();
-    match &texts[..] {
-        [head @ .., last] if !head.is_empty() => format!("{} or {last}", head.join(", ")),
-        texts => texts.concat(),
-    }
+    one_of(&texts)
 }
 
 fn counted(count: &str, noun: &str) -> String {

@@ -1,6 +1,6 @@
 //! Results of a study as CSV, JSON, a chart, and text.
 
-use toyproof_diagnostic::{columns, grouped, magnitude, plural, spreadsheet_text};
+use toyproof_diagnostic::{all_of, columns, grouped, magnitude, plural, spreadsheet_text};
 use toyproof_stress::formula::RECENTERED;
 
 use super::{Configuration, MethodResult, Report, median};
@@ -132,10 +132,7 @@ impl Report {
                 (0, []) => roles.push("fastest".to_owned()),
                 (0, [.., strictest]) => roles.push(format!("fastest, below {strictest}")),
                 (_, []) => {}
-                (_, [only]) => roles.push(format!("fastest below {only}")),
-                (_, [first @ .., last]) => {
-                    roles.push(format!("fastest below {} and {last}", first.join(", ")));
-                }
+                (_, limits) => roles.push(format!("fastest below {}", all_of(limits))),
             }
             if most_accurate == Some(index) {
                 roles.push("most accurate".to_owned());

@@ -1,8 +1,8 @@
 //! The tables of the scene file for surfaces (`[[sphere]]` and others), for their materials, and for motions.
 
 use glam::{DQuat, DVec3};
-use toyproof_diagnostic::{Span, grouped, nearest};
-use toyproof_toml::{Table, list_of};
+use toyproof_diagnostic::{Span, grouped, nearest, one_of};
+use toyproof_toml::Table;
 
 use super::super::shape::IDENTITY;
 use super::super::{
@@ -394,7 +394,7 @@ impl MotionNames {
             let help = match (near, known.as_slice()) {
                 (Some(near), _) => format!("did you mean `{near}`?"),
                 (None, []) => format!("define it above in a [[motion]] with `name = \"{}\"`", name.value),
-                (None, known) => format!("expected {}, or another [[motion]] above", list_of(known)),
+                (None, known) => format!("expected {}, or another [[motion]] above", one_of(known)),
             };
             table.reject(name.span, format!("unknown motion `{}`", name.value), &help);
         }
