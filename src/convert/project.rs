@@ -3,7 +3,7 @@
 use thiserror::Error;
 use toyproof_diagnostic::Files;
 use toyproof_gpu::Worker;
-use toyproof_project::{CompiledProject, NotRendered, PassKind};
+use toyproof_project::{CompiledProject, PassKind, UnsupportedPass};
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
 
@@ -68,7 +68,7 @@ pub enum ProjectError {
     Style(Style),
     /// A pass is needed that cannot be rendered.
     #[error("the project {0}")]
-    NotRendered(#[from] NotRendered),
+    NotRendered(#[from] UnsupportedPass),
     /// The script's package does not have something that the passes need.
     #[error("{0}")]
     Script(String),

@@ -18,7 +18,7 @@ const END_BYTES: u64 = 22;
 const END_64_LOCATOR_BYTES: u64 = 20;
 /// The longest comment of an archive.
 const MAX_COMMENT: u64 = 0xffff;
-/// The largest directory that is read: about a million files.
+/// The largest directory that is read: about a million files. It is held in memory.
 const MAX_DIRECTORY: u64 = 128 << 20;
 
 /// The field of sizes and offsets above 4 GiB.

@@ -37,7 +37,7 @@ const LINT_TIME_SHARE: u32 = 4;
 /// # Errors
 /// The diagnostics of all tabs, if one of them has an error; those about Common are reported once.
 pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<CheckedProject, Diagnostics> {
-    let mut reported = Reported::default();
+    let mut reported = UniqueDiagnostics::default();
     let mut is_valid = true;
     if let Some(common) = project.common {
         let options = Options {
@@ -103,11 +103,11 @@ fn in_origin(files: &Files, diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
     diagnostics.iter().map(|one| one.in_origin(files)).collect()
 }
 
-/// Diagnostics, each once.
+/// Diagnostics, each once for all passes.
 #[derive(Default)]
-struct Reported(Vec<Diagnostic>);
+struct UniqueDiagnostics(Vec<Diagnostic>);
 
-impl Reported {
+impl UniqueDiagnostics {
     fn add(&mut self, files: &Files, diagnostics: impl IntoIterator<Item = Diagnostic>) {
         for diagnostic in diagnostics {
             let diagnostic = diagnostic.in_origin(files);

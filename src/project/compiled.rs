@@ -9,7 +9,7 @@ use toyproof_lint::Lints;
 
 use crate::check::check;
 use crate::files::project_image;
-use crate::graph::{NotRendered, Rendering};
+use crate::graph::{Rendering, UnsupportedPass};
 use crate::pass::PassKind;
 use crate::project::Project;
 
@@ -58,7 +58,7 @@ impl CompiledProject {
     ///
     /// # Errors
     /// If a pass is needed that cannot be rendered.
-    pub fn rendering(&self, also: PassKind) -> Result<Rendering, NotRendered> {
+    pub fn rendering(&self, also: PassKind) -> Result<Rendering, UnsupportedPass> {
         self.project.rendering(&[also])
     }
 

@@ -5,8 +5,7 @@ use std::collections::HashMap;
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
-use toyproof_diagnostic::one_of;
-use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest, one_of};
 use toyproof_glsl::{Filter, Wrap};
 
 use crate::format::{Format, Wrapper};
@@ -116,11 +115,7 @@ fn shortened(input: &Node, format: Format) -> Node {
     };
     for name in media::names() {
         let named = format.members(&name);
-        let same = |window: &[Member]| {
-            let mut pairs = window.iter().zip(&named);
-            pairs.all(|(a, b)| a.key == b.key && a.node.is_same(&b.node))
-        };
-        if let Some(at) = members.windows(named.len()).position(same) {
+        if let Some(at) = members.windows(named.len()).position(|window| window == named) {
             let mut members = members.clone();
             members.splice(at..at + named.len(), [Member::new("source", name.source)]);
             return Value::Object(members).into();

@@ -19,7 +19,7 @@ impl Format {
         [("page", Self::Page), ("api", Self::Api), ("editor", Self::Editor)];
 
     /// The variant of a tree.
-    pub(crate) fn of(root: &Node, wrapper: Wrapper) -> Self {
+    pub(crate) fn detect(root: &Node, wrapper: Wrapper) -> Self {
         let passes = root
             .get("renderpass")
             .and_then(Node::as_array)

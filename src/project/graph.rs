@@ -20,12 +20,12 @@ pub struct Rendering {
     /// The textures that do not change.
     pub media: Vec<Texture>,
     /// The inputs whose media are replaced, or are black, without repetitions.
-    pub replaced: Vec<Replaced>,
+    pub replaced: Vec<MissingMedium>,
 }
 
 /// An input whose medium is not available.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Replaced {
+pub struct MissingMedium {
     /// The source that would be read.
     pub source: Source,
     /// Whether a texture with the same properties takes its place; otherwise the channel is black.
@@ -37,18 +37,18 @@ pub struct Replaced {
 /// Why the image of a project cannot be rendered: a part of a sentence, after the name of the image.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("reads {0}, which is not rendered yet")]
-pub struct NotRendered(pub PassKind);
+pub struct UnsupportedPass(pub PassKind);
 
 impl Project {
     /// The image and these passes, with all passes that they depend on, for the renderers.
     ///
     /// # Errors
     /// If a pass is needed that cannot be rendered.
-    pub fn rendering(&self, shown: &[PassKind]) -> Result<Rendering, NotRendered> {
+    pub fn rendering(&self, shown: &[PassKind]) -> Result<Rendering, UnsupportedPass> {
         let needed = self.needed_by(&[&[PassKind::Image], shown].concat());
         let unable = [PassKind::CubeA, PassKind::Sound];
         if let Some(&kind) = needed.iter().find(|kind| unable.contains(kind)) {
-            return Err(NotRendered(kind));
+            return Err(UnsupportedPass(kind));
         }
         let is_rendered = |kind: PassKind| needed.contains(&kind);
         let passes = (0..self.passes.len()).filter(|&at| is_rendered(self.passes[at].kind));
@@ -132,9 +132,17 @@ struct Media<'a> {
     /// The images of the project's folder.
     images: &'a HashMap<String, Image>,
     textures: Vec<Texture>,
-    /// The sources of the textures, and whether they have mipmaps and are flipped.
-    known: Vec<(Source, bool, bool)>,
-    replaced: Vec<Replaced>,
+    /// The properties of the textures, in their order.
+    known: Vec<TextureKey>,
+    replaced: Vec<MissingMedium>,
+}
+
+/// The properties by which textures that do not change differ.
+#[derive(PartialEq)]
+struct TextureKey {
+    source: Source,
+    has_mipmaps: bool,
+    is_flipped: bool,
 }
 
 impl Media<'_> {
@@ -146,13 +154,13 @@ impl Media<'_> {
             _ => {}
         }
         let images = self.images;
-        let own = input.source.file().and_then(|path| images.get(path));
+        let found = input.source.file().and_then(|path| images.get(path));
         let noise = noise(&input.source);
-        if own.is_none() {
+        if found.is_none() {
             let mut replaced = self.replaced.iter_mut();
             match replaced.find(|replaced| replaced.source == input.source) {
                 Some(replaced) => replaced.readers.push(reader),
-                None => self.replaced.push(Replaced {
+                None => self.replaced.push(MissingMedium {
                     source: input.source.clone(),
                     has_stand_in: noise.is_some(),
                     readers: vec![reader],
@@ -160,12 +168,16 @@ impl Media<'_> {
             }
         }
         let has_mipmaps = input.sampler.filter == Filter::Mipmap;
-        let key = (input.source.clone(), has_mipmaps, input.sampler.vflip);
+        let key = TextureKey {
+            source: input.source.clone(),
+            has_mipmaps,
+            is_flipped: input.sampler.vflip,
+        };
         if let Some(known) = self.known.iter().position(|known| *known == key) {
             return Some(player::Source::Medium(known));
         }
         // An image stands upright if it is flipped on its way to the texture.
-        let upright = own.cloned().or_else(|| noise.map(Noise::image));
+        let upright = found.cloned().or_else(|| noise.map(Noise::image));
         let image = upright.map(|image| {
             if input.sampler.vflip {
                 image

@@ -46,7 +46,7 @@ struct Parser<'t> {
     values: usize,
 }
 
-type Parsed<T> = Result<T, Box<Diagnostic>>;
+type ParseResult<T> = Result<T, Box<Diagnostic>>;
 
 impl Parser<'_> {
     fn peek(&self) -> Option<u8> {
@@ -84,7 +84,7 @@ impl Parser<'_> {
         })
     }
 
-    fn value(&mut self) -> Parsed<Node> {
+    fn value(&mut self) -> ParseResult<Node> {
         self.skip_blanks();
         if self.values == MAX_VALUES {
             let message = format!("more than {} values", grouped(MAX_VALUES as u64));
@@ -105,7 +105,7 @@ impl Parser<'_> {
         })
     }
 
-    fn nested(&mut self, read: impl FnOnce(&mut Self) -> Parsed<Value>) -> Parsed<Value> {
+    fn nested(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<Value>) -> ParseResult<Value> {
         if self.depth == MAX_NESTING {
             let message = format!("JSON nested more than {MAX_NESTING} levels deep");
             return Err(self.error(&message, "ShaderToy's JSON has seven levels"));
@@ -117,7 +117,7 @@ impl Parser<'_> {
         value
     }
 
-    fn object(&mut self) -> Parsed<Value> {
+    fn object(&mut self) -> ParseResult<Value> {
         let mut members: Vec<Member> = Vec::new();
         self.skip_blanks();
         if self.eat(b'}') {
@@ -132,9 +132,10 @@ impl Parser<'_> {
             let key = self.string()?;
             if members.iter().any(|member| member.key == key) {
                 let error = Diagnostic::new(Code::ProjectSyntax, format!("duplicate key `{key}`"));
-                return Err(Box::new(
-                    error.at(self.span_from(start)).help("remove one of the two"),
-                ));
+                return Err(error
+                    .at(self.span_from(start))
+                    .help("remove one of the two")
+                    .into());
             }
             if members.len() == MAX_KEYS {
                 let message = format!("an object with more than {MAX_KEYS} keys");
@@ -156,7 +157,7 @@ impl Parser<'_> {
         }
     }
 
-    fn array(&mut self) -> Parsed<Value> {
+    fn array(&mut self) -> ParseResult<Value> {
         let mut nodes = Vec::new();
         self.skip_blanks();
         if self.eat(b']') {
@@ -174,7 +175,7 @@ impl Parser<'_> {
         }
     }
 
-    fn word(&mut self) -> Parsed<Value> {
+    fn word(&mut self) -> ParseResult<Value> {
         for (word, value) in [
             ("null", Value::Null),
             ("true", Value::Bool(true)),
@@ -188,7 +189,7 @@ impl Parser<'_> {
         Err(self.error("expected a JSON value", ""))
     }
 
-    fn digits(&mut self) -> Parsed<()> {
+    fn digits(&mut self) -> ParseResult<()> {
         if !self.peek().is_some_and(|byte| byte.is_ascii_digit()) {
             return Err(self.error("expected a digit", ""));
         }
@@ -198,7 +199,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn number(&mut self) -> Parsed<String> {
+    fn number(&mut self) -> ParseResult<String> {
         let start = self.at;
         self.eat(b'-');
         if !self.eat(b'0') {
@@ -214,7 +215,7 @@ impl Parser<'_> {
         Ok(self.text[start..self.at].to_owned())
     }
 
-    fn string(&mut self) -> Parsed<String> {
+    fn string(&mut self) -> ParseResult<String> {
         self.at += 1;
         let mut text = String::new();
         loop {
@@ -239,7 +240,7 @@ impl Parser<'_> {
     }
 
     /// Reads an escape sequence; a surrogate pair is one character.
-    fn escape(&mut self) -> Parsed<char> {
+    fn escape(&mut self) -> ParseResult<char> {
         let start = self.at;
         self.at += 1;
         let byte = self.peek();
@@ -265,9 +266,9 @@ impl Parser<'_> {
                 let Some(Ok(c)) = char::decode_utf16(units).next() else {
                     let message = "an escape sequence that is not a character";
                     let error = Diagnostic::new(Code::ProjectSyntax, message).at(self.span_from(start));
-                    return Err(Box::new(
-                        error.help("write four hexadecimal digits, or the character itself"),
-                    ));
+                    return Err(error
+                        .help("write four hexadecimal digits, or the character itself")
+                        .into());
                 };
                 c
             }
@@ -392,7 +393,7 @@ mod tests {
             write_compact(&node),
             r#"{"b": 1.50, "a": [true, null, -0, 1e+300], "é": "😀\u0000\"\\/\n"}"#
         );
-        assert!(parsed(&write(&node)).unwrap().is_same(&node));
+        assert_eq!(parsed(&write(&node)).unwrap(), node);
         assert_eq!(
             write(&parsed("{\"a\":[1,{}]}").unwrap()),
             "{\n  \"a\": [\n    1,\n    {}\n  ]\n}\n"

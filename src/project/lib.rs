@@ -54,7 +54,7 @@ pub use toyproof_glsl::{Filter, Wrap};
 pub use self::check::{CheckedPass, CheckedProject, check};
 pub use self::compiled::CompiledProject;
 pub use self::folder::PROJECT_FILE;
-pub use self::graph::{NotRendered, Rendering, Replaced};
+pub use self::graph::{MissingMedium, Rendering, UnsupportedPass};
 pub use self::media::Medium;
 pub use self::pass::{Buffer, Input, MAX_TAB_BYTES, Pass, PassKind, Sampler, Source, SourceType, Tab};
 pub use self::project::Project;

@@ -104,41 +104,39 @@ pub(crate) struct Name {
     pub(crate) preview: String,
 }
 
-/// The fixed ids: name in `project.toml`, type, id, and path.
-const FIXED: [(&str, SourceType, &str, &str); 8] = [
-    (
-        "buffer-a",
-        SourceType::Buffer,
-        "4dXGR8",
-        "/media/previz/buffer00.png",
-    ),
-    (
-        "buffer-b",
-        SourceType::Buffer,
-        "XsXGR8",
-        "/media/previz/buffer01.png",
-    ),
-    (
-        "buffer-c",
-        SourceType::Buffer,
-        "4sXGR8",
-        "/media/previz/buffer02.png",
-    ),
-    (
-        "buffer-d",
-        SourceType::Buffer,
-        "XdfGR8",
-        "/media/previz/buffer03.png",
-    ),
-    (
-        "cube-a",
-        SourceType::Cubemap,
-        CUBE_A_ID,
-        "/media/a//media/previz/cubemap00.png",
-    ),
-    ("keyboard", SourceType::Keyboard, "4dXGRr", "/presets/tex00.jpg"),
-    ("webcam", SourceType::Webcam, "4sf3zn", "/presets/webcam.png"),
-    ("mic", SourceType::Mic, "XdXGRr", "/presets/mic.png"),
+/// A source that is not a medium: its name in `project.toml`, its type, its id and its path.
+struct FixedSource {
+    name: &'static str,
+    source_type: SourceType,
+    id: &'static str,
+    path: &'static str,
+}
+
+const fn fixed(
+    name: &'static str,
+    source_type: SourceType,
+    id: &'static str,
+    path: &'static str,
+) -> FixedSource {
+    FixedSource {
+        name,
+        source_type,
+        id,
+        path,
+    }
+}
+
+/// The sources that are not media, the buffers first.
+#[rustfmt::skip]
+const FIXED: [FixedSource; 8] = [
+    fixed("buffer-a", SourceType::Buffer, "4dXGR8", "/media/previz/buffer00.png"),
+    fixed("buffer-b", SourceType::Buffer, "XsXGR8", "/media/previz/buffer01.png"),
+    fixed("buffer-c", SourceType::Buffer, "4sXGR8", "/media/previz/buffer02.png"),
+    fixed("buffer-d", SourceType::Buffer, "XdfGR8", "/media/previz/buffer03.png"),
+    fixed("cube-a", SourceType::Cubemap, CUBE_A_ID, "/media/a//media/previz/cubemap00.png"),
+    fixed("keyboard", SourceType::Keyboard, "4dXGRr", "/presets/tex00.jpg"),
+    fixed("webcam", SourceType::Webcam, "4sf3zn", "/presets/webcam.png"),
+    fixed("mic", SourceType::Mic, "XdXGRr", "/presets/mic.png"),
 ];
 
 /// The id of Cube A.
@@ -149,12 +147,12 @@ pub(crate) const CUBE_A_FILE: &str = "cubemap00.png";
 
 /// Everything that has a name in `project.toml`.
 pub(crate) fn names() -> impl Iterator<Item = Name> {
-    let fixed = FIXED.into_iter().map(|(source, source_type, id, path)| Name {
-        source,
-        source_type,
-        id,
-        path: path.to_owned(),
-        preview: path.replace("/media/a/", "/media/ap/"),
+    let fixed = FIXED.into_iter().map(|fixed| Name {
+        source: fixed.name,
+        source_type: fixed.source_type,
+        id: fixed.id,
+        path: fixed.path.to_owned(),
+        preview: fixed.path.replace("/media/a/", "/media/ap/"),
     });
     let media = Medium::ALL.iter().map(|medium| Name {
         source: medium.name,
@@ -207,7 +205,7 @@ pub(crate) fn buffer(id: &str, path: &str) -> Option<Buffer> {
     // The numbers of the API: 257 to 260.
     let number = |index: usize| (257 + index).to_string() == id;
     let mut buffers = Buffer::ALL.into_iter().enumerate();
-    let named = buffers.find(|&(index, _)| FIXED[index].2 == id || number(index));
+    let named = buffers.find(|&(index, _)| FIXED[index].id == id || number(index));
     named.map(|(_, buffer)| buffer).or_else(|| {
         let file = path
             .rsplit('/')
@@ -220,7 +218,7 @@ pub(crate) fn buffer(id: &str, path: &str) -> Option<Buffer> {
 
 /// The id of a buffer.
 pub(crate) fn buffer_id(buffer: Buffer) -> &'static str {
-    FIXED[buffer as usize].2
+    FIXED[buffer as usize].id
 }
 
 impl Source {

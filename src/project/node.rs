@@ -12,7 +12,7 @@ pub(crate) struct Node {
 }
 
 /// A value.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Value {
     Null,
     Bool(bool),
@@ -24,10 +24,17 @@ pub(crate) enum Value {
 }
 
 /// A key and its value.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Member {
     pub(crate) key: String,
     pub(crate) node: Node,
+}
+
+impl PartialEq for Node {
+    /// Whether both have the same values in the same order, wherever they stand.
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
 }
 
 impl From<Value> for Node {
@@ -130,23 +137,6 @@ impl Node {
             Value::Array(nodes) => nodes.iter_mut().for_each(|node| node.set_span(span)),
             Value::Object(members) => members.iter_mut().for_each(|member| member.node.set_span(span)),
             _ => {}
-        }
-    }
-
-    /// Whether both have the same values in the same order, wherever they stand.
-    pub(crate) fn is_same(&self, other: &Self) -> bool {
-        match (&self.value, &other.value) {
-            (Value::Null, Value::Null) => true,
-            (Value::Bool(a), Value::Bool(b)) => a == b,
-            (Value::Number(a), Value::Number(b)) | (Value::String(a), Value::String(b)) => a == b,
-            (Value::Array(a), Value::Array(b)) => {
-                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.is_same(b))
-            }
-            (Value::Object(a), Value::Object(b)) => {
-                let same = |(a, b): (&Member, &Member)| a.key == b.key && a.node.is_same(&b.node);
-                a.len() == b.len() && a.iter().zip(b).all(same)
-            }
-            _ => false,
         }
     }
 

@@ -2,8 +2,7 @@
 
 use std::collections::HashMap;
 
-use toyproof_diagnostic::one_of;
-use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest};
+use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest, one_of};
 use toyproof_glsl::{Filter, Wrap};
 
 use crate::format::{Format, Wrapper};
@@ -13,7 +12,7 @@ use crate::node::{Node, Value};
 use crate::pass::{Buffer, Input, MAX_TAB_BYTES, Pass, PassKind, Sampler, Source, SourceType, Tab};
 use crate::project::{Document, Project};
 
-/// The maximum number of errors that are reported for one file.
+/// The maximum number of errors that are reported for one file: more scroll off the screen.
 const MAX_ERRORS: usize = 20;
 
 /// The version of the site's JSON, which its loader requires.
@@ -28,7 +27,7 @@ impl Project {
     pub fn from_json(files: &mut Files, file: FileId) -> Result<Self, Diagnostics> {
         let root = json::parse(files, file).map_err(|error| Diagnostics::new(vec![*error], files))?;
         let (mut root, wrapper) = unwrap(root).map_err(|error| Diagnostics::new(vec![*error], files))?;
-        let format = Format::of(&root, wrapper);
+        let format = Format::detect(&root, wrapper);
         let folder = files.get(file).name().to_owned();
         let mut errors = Vec::new();
         let result = read(&mut root, &mut errors, |tab, pass, errors| {
@@ -81,10 +80,11 @@ impl Project {
     }
 }
 
+/// Advice on another file than the site's JSON.
+const EXPECTED: &str = "expected ShaderToy's JSON: of its API, of its page data, or of the editor's export";
+
 /// Removes the structure around the JSON.
 fn unwrap(root: Node) -> Result<(Node, Wrapper), Box<Diagnostic>> {
-    let expected = "expected ShaderToy's JSON: of its API, of its page data, or of the editor's export";
-    let wrong = |node: &Node, message: String| Err(Box::new(node.error(message).help(expected)));
     match root.value {
         Value::Array(mut nodes) if nodes.len() == 1 && nodes[0].is_object() => {
             Ok((nodes.swap_remove(0), Wrapper::Array))
@@ -100,14 +100,14 @@ fn unwrap(root: Node) -> Result<(Node, Wrapper), Box<Diagnostic>> {
                 let message = format!("ShaderToy's API answered with an error instead of a shader: {text}");
                 let help =
                     "the API has only shaders that are published as `public + api`; use the editor's export";
-                Err(Box::new(error.error(message).help(help)))
+                Err(error.error(message).help(help).into())
             }
             None => Ok((root, Wrapper::None)),
         },
-        _ => wrong(
-            &root,
-            format!("a project must be an object, found {}", root.describe()),
-        ),
+        _ => {
+            let message = format!("a project must be an object, found {}", root.describe());
+            Err(root.error(message).help(EXPECTED).into())
+        }
     }
 }
 
@@ -115,21 +115,19 @@ fn unwrap(root: Node) -> Result<(Node, Wrapper), Box<Diagnostic>> {
 fn code(pass: &mut Node) -> Result<String, Box<Diagnostic>> {
     let missing = pass.error("missing key `code` in a pass");
     let Some(code) = pass.get_mut("code") else {
-        return Err(Box::new(
-            missing.help("add the code of the tab, which may be empty"),
-        ));
+        return Err(missing.help("add the code of the tab, which may be empty").into());
     };
     let Some(text) = code.as_str() else {
-        return Err(Box::new(
-            code.error(format!("`code` must be a string, found {}", code.describe())),
-        ));
+        return Err(code
+            .error(format!("`code` must be a string, found {}", code.describe()))
+            .into());
     };
     if text.len() > MAX_TAB_BYTES {
         let message = "the code of this tab is larger than 1 MiB";
-        return Err(Box::new(
-            code.error(message)
-                .help("ShaderToy's editor takes 65,536 characters"),
-        ));
+        return Err(code
+            .error(message)
+            .help("ShaderToy's editor takes 65,536 characters")
+            .into());
     }
     let text = text.to_owned();
     code.value = Value::String(String::new());
@@ -160,8 +158,7 @@ pub(crate) fn read(
     }
     let missing = root.error("missing key `renderpass`, the list of the passes");
     let Some(renderpass) = root.get_mut("renderpass") else {
-        let help = "expected ShaderToy's JSON: of its API, of its page data, or of the editor's export";
-        errors.push(missing.help(help));
+        errors.push(missing.help(EXPECTED));
         return None;
     };
     let wrong = renderpass.error(format!(
@@ -210,13 +207,13 @@ pub(crate) fn read(
 /// The tab that an element of `renderpass` describes.
 fn tab(pass: &Node) -> Result<Tab, Box<Diagnostic>> {
     if !pass.is_object() {
-        return Err(Box::new(
-            pass.error(format!("a pass must be an object, found {}", pass.describe())),
-        ));
+        return Err(pass
+            .error(format!("a pass must be an object, found {}", pass.describe()))
+            .into());
     }
     let Some(kind) = pass.get("type") else {
         let help = "add `\"type\": \"image\"`, or buffer, common, cubemap or sound";
-        return Err(Box::new(pass.error("missing key `type` in a pass").help(help)));
+        return Err(pass.error("missing key `type` in a pass").help(help).into());
     };
     match kind.as_str() {
         Some("image") => Ok(Tab::Pass(PassKind::Image)),
@@ -227,11 +224,11 @@ fn tab(pass: &Node) -> Result<Tab, Box<Diagnostic>> {
         Some(other) => {
             let known = ["image", "buffer", "common", "cubemap", "sound"];
             let message = format!("unknown type `{other}` of a pass");
-            Err(Box::new(kind.error(message).help(suggestion(other, &known))))
+            Err(kind.error(message).help(suggestion(other, &known)).into())
         }
         None => {
             let message = format!("`type` must be a string, found {}", kind.describe());
-            Err(Box::new(kind.error(message)))
+            Err(kind.error(message).into())
         }
     }
 }
@@ -239,19 +236,27 @@ fn tab(pass: &Node) -> Result<Tab, Box<Diagnostic>> {
 /// The buffer that a pass writes: that of its output's id. Its name is for people only, and often another
 /// one.
 fn buffer(pass: &Node) -> Result<Buffer, Box<Diagnostic>> {
-    let help = "the id of Buffer A is \"4dXGR8\" or 257, of B \"XsXGR8\" or 258, of C \"4sXGR8\" or 259, of D \"XdfGR8\" or 260";
     let Some(outputs) = pass.get("outputs") else {
-        return Err(Box::new(
-            pass.error("missing key `outputs` of a buffer").help(help),
-        ));
+        return Err(pass
+            .error("missing key `outputs` of a buffer")
+            .help(BUFFER_IDS)
+            .into());
     };
     let first = outputs.as_array().and_then(<[Node]>::first);
     let Some(id) = first.and_then(|output| output.get("id")) else {
         let message = "`outputs` of a buffer must be a list with an object that has an `id`";
-        return Err(Box::new(outputs.error(message).help(help)));
+        return Err(outputs.error(message).help(BUFFER_IDS).into());
     };
-    let buffer = text_of(id).and_then(|id| media::buffer(&id, ""));
-    buffer.ok_or_else(|| Box::new(id.error("this is not the id of a buffer").help(help)))
+    let text = text_of(id).unwrap_or_default();
+    media::buffer(&text, "").ok_or_else(|| not_buffer(id))
+}
+
+/// Advice on the id of a buffer.
+const BUFFER_IDS: &str = "the id of Buffer A is \"4dXGR8\" or 257, of B \"XsXGR8\" or 258, of C \"4sXGR8\" or 259, of D \
+                          \"XdfGR8\" or 260";
+
+fn not_buffer(id: &Node) -> Box<Diagnostic> {
+    Box::new(id.error("this is not the id of a buffer").help(BUFFER_IDS))
 }
 
 /// The text of an id, which may be a number.
@@ -287,9 +292,9 @@ fn inputs(pass: &Node, errors: &mut Vec<Diagnostic>) -> [Option<Input>; 4] {
 /// An input, and the number of its channel.
 fn input(node: &Node) -> Result<(usize, Input), Box<Diagnostic>> {
     if !node.is_object() {
-        return Err(Box::new(
-            node.error(format!("an input must be an object, found {}", node.describe())),
-        ));
+        return Err(node
+            .error(format!("an input must be an object, found {}", node.describe()))
+            .into());
     }
     let required = |key: &str| node.get(key).ok_or_else(|| missing(node, key));
     let channel = required("channel")?;
@@ -298,7 +303,7 @@ fn input(node: &Node) -> Result<(usize, Input), Box<Diagnostic>> {
         _ => None,
     };
     let Some(number) = number else {
-        return Err(Box::new(channel.error("`channel` must be 0, 1, 2 or 3")));
+        return Err(channel.error("`channel` must be 0, 1, 2 or 3").into());
     };
     let kind = node.get("ctype").or_else(|| node.get("type"));
     let kind = kind.ok_or_else(|| missing(node, "type"))?;
@@ -306,7 +311,7 @@ fn input(node: &Node) -> Result<(usize, Input), Box<Diagnostic>> {
     let Some(&(_, source_type)) = SourceType::NAMES.iter().find(|(known, _)| *known == name) else {
         let known = SourceType::NAMES.map(|(known, _)| known);
         let error = kind.error(format!("unknown type `{name}` of an input"));
-        return Err(Box::new(error.help(suggestion(name, &known))));
+        return Err(error.help(suggestion(name, &known)).into());
     };
     let id = required("id")?;
     let id_text = text_of(id).ok_or_else(|| {
@@ -321,11 +326,7 @@ fn input(node: &Node) -> Result<(usize, Input), Box<Diagnostic>> {
         .and_then(Node::as_str);
     let path = path.unwrap_or_default();
     let source = match source_type {
-        SourceType::Buffer => Source::Buffer(media::buffer(&id_text, path).ok_or_else(|| {
-            Box::new(id.error("this is not the id of a buffer").help(
-                "the id of Buffer A is \"4dXGR8\" or 257, of B \"XsXGR8\" or 258, of C \"4sXGR8\" or 259, of D \"XdfGR8\" or 260",
-            ))
-        })?),
+        SourceType::Buffer => Source::Buffer(media::buffer(&id_text, path).ok_or_else(|| not_buffer(id))?),
         SourceType::Cubemap if id_text == CUBE_A_ID || path.ends_with(CUBE_A_FILE) => Source::CubeA,
         SourceType::Keyboard => Source::Keyboard,
         SourceType::Webcam => Source::Webcam,
@@ -390,10 +391,9 @@ const WRAPS: [(&str, Wrap); 4] = [
 
 fn sampler(node: &Node, source_type: SourceType) -> Result<Sampler, Box<Diagnostic>> {
     if !node.is_object() {
-        return Err(Box::new(node.error(format!(
-            "`sampler` must be an object, found {}",
-            node.describe()
-        ))));
+        return Err(node
+            .error(format!("`sampler` must be an object, found {}", node.describe()))
+            .into());
     }
     let default = default_sampler(source_type);
     Ok(Sampler {
@@ -418,7 +418,7 @@ fn choice<T: Copy>(
     }
     let known: Vec<_> = choices.iter().map(|(known, _)| *known).collect();
     let error = value.error(format!("unknown `{key}` of a sampler"));
-    Err(Box::new(error.help(suggestion(name, &known))))
+    Err(error.help(suggestion(name, &known)).into())
 }
 
 /// A Boolean, which the site writes as a string.
@@ -430,9 +430,9 @@ fn flag(node: &Node, key: &str) -> Result<Option<bool>, Box<Diagnostic>> {
         Value::Bool(value) => Ok(Some(*value)),
         Value::String(text) if text == "true" => Ok(Some(true)),
         Value::String(text) if text == "false" => Ok(Some(false)),
-        _ => Err(Box::new(
-            value.error(format!("`{key}` must be \"true\" or \"false\"")),
-        )),
+        _ => Err(value
+            .error(format!("`{key}` must be \"true\" or \"false\""))
+            .into()),
     }
 }
 

@@ -10,7 +10,7 @@ static FORMAT: Format = Format {
     aliases: &[],
 };
 
-/// The largest number of events of a file.
+/// The largest number of events of a file: one in each frame of half an hour.
 const MAX_EVENTS: usize = 100_000;
 
 /// The names of keys, with the browser's codes.

@@ -15,7 +15,7 @@ use toyproof_image::input;
 
 pub use self::error::{NOT_UTF8, ReadError, TOO_LARGE, content_diagnostic};
 pub use self::read::{project_image, read, read_bytes, read_named, read_text};
-pub use self::search::{Search, Skipped, find, search};
+pub use self::search::{OutsideLink, Search, find, search};
 use crate::archive::Archive;
 use crate::pass::{PassKind, Tab};
 use crate::project::Project;
@@ -144,6 +144,7 @@ fn is_project_json(path: &Path) -> bool {
 /// Returns whether a text or an archive, which is not searched, has a shader.
 #[must_use]
 pub fn has_shader(path: &Path) -> bool {
+    // As many as `collect` reads.
     const MAX_ENTRIES: usize = 10_000;
     if !has_extension(path, "zip") {
         return read_text(path).is_ok_and(|file| file.text().contains("mainImage"));

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::{Diagnostics, File, Files, path_name};
 use toyproof_image::input;
 
-use super::search::Skipped;
+use super::search::OutsideLink;
 use super::{Input, InputSource, MAX_BYTES, MAX_JSON_BYTES, ProjectTexts, ReadError, Texts, is_json};
 use crate::folder::PROJECT_FILE;
 use crate::pass::Tab;
@@ -40,7 +40,7 @@ fn read_folder(folder: &Path) -> Result<ProjectTexts, ReadError> {
         if !path.is_file() {
             return None;
         }
-        Some(match Skipped::of(&path, folder) {
+        Some(match OutsideLink::find(&path, folder) {
             Some(skipped) => Err(ReadError::Unreadable {
                 name: path_name(&path),
                 error: io::Error::other(skipped.to_string()),
@@ -109,7 +109,7 @@ pub fn project_image(folder: &Path, name: &str) -> Result<PathBuf, String> {
         }
         Err(error) => return Err(format!("{shown} cannot be read: {error}")),
     }
-    match Skipped::of(&path, folder) {
+    match OutsideLink::find(&path, folder) {
         Some(skipped) => Err(skipped.to_string()),
         None => Ok(path),
     }

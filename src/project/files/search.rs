@@ -60,7 +60,7 @@ const MAX_ENTRIES: usize = 1_000_000;
 
 /// A link that is not followed, since it leads out of the searched folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Skipped {
+pub struct OutsideLink {
     /// The link.
     pub link: PathBuf,
     /// Its target.
@@ -69,7 +69,7 @@ pub struct Skipped {
     pub folder: PathBuf,
 }
 
-impl fmt::Display for Skipped {
+impl fmt::Display for OutsideLink {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -81,10 +81,10 @@ impl fmt::Display for Skipped {
     }
 }
 
-impl Skipped {
+impl OutsideLink {
     /// Returns the link if a path leads out of the folder that it lies in, through links of any kind.
     #[must_use]
-    pub fn of(path: &Path, folder: &Path) -> Option<Self> {
+    pub fn find(path: &Path, folder: &Path) -> Option<Self> {
         let here = if folder == Path::new("") {
             Path::new(".")
         } else {
@@ -106,7 +106,7 @@ pub struct Search {
     /// The shaders, sorted by name.
     pub inputs: Vec<Result<Input, ReadError>>,
     /// The links that were not followed.
-    pub skipped: Vec<Skipped>,
+    pub skipped: Vec<OutsideLink>,
     /// The archives and plain texts, in which `collect` finds shaders.
     pub unread: Vec<PathBuf>,
 }
@@ -144,7 +144,7 @@ struct Walk<'a> {
     folder: &'a Path,
     /// The inputs, each with its path.
     found: Vec<(PathBuf, Result<Input, ReadError>)>,
-    skipped: Vec<Skipped>,
+    skipped: Vec<OutsideLink>,
     unread: Vec<PathBuf>,
     /// The canonical paths of the searched folders.
     folders: HashSet<PathBuf>,
@@ -219,7 +219,7 @@ impl Walk<'_> {
             Err(error) => return self.fail(link, error),
         };
         let matters = metadata.is_dir() || metadata.is_file() && is_input(&link);
-        match Skipped::of(&link, self.folder) {
+        match OutsideLink::find(&link, self.folder) {
             _ if !matters => {}
             Some(skipped) => self.skipped.push(skipped),
             None if metadata.is_dir() => self.links.push(link),
