@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toyproof_classroom::assignment::{self, Assignment, FILE_NAME};
 use toyproof_diagnostic::path_name;
 use toyproof_image::{Frame, FrameInputs};
-use toyproof_project::files::Skipped;
+use toyproof_project::files::OutsideLink;
 use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
@@ -119,7 +119,7 @@ fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, CliError> {
             without = Some(shader);
             continue;
         }
-        if let Some(skipped) = Skipped::of(&path, folder) {
+        if let Some(skipped) = OutsideLink::find(&path, folder) {
             return Err(CliError::new(format_args!(
                 "the assignment cannot be used: {skipped}"
             )));

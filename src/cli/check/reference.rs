@@ -9,7 +9,7 @@ use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_explain::known::Hypotheses;
 use toyproof_explain::whole_image::OtherScenes;
 use toyproof_image::Frame;
-use toyproof_project::files::{self, Input, InputSource, ReadError, Skipped};
+use toyproof_project::files::{self, Input, InputSource, ReadError, OutsideLink};
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
 
@@ -255,9 +255,9 @@ pub(super) fn unused_scene(shader: &Path) -> Option<PathBuf> {
 
 /// Checks whether the scene next to a shader is a link that leads out of the searched folder, or else of the
 /// shader's own folder.
-fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<Skipped> {
+fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<OutsideLink> {
     let folder = found.folder.as_deref().or(shader.parent())?;
-    Skipped::of(beside, folder)
+    OutsideLink::find(beside, folder)
 }
 
 // The scenes that shaders have been compared with, shared by all threads.
