@@ -116,6 +116,17 @@ impl ErrorOf {
 }
 
 impl Search {
+    /// A search that has ended at these numbers.
+    fn at_zero(fit: usize, candidate: usize, numbers: Numbers) -> Self {
+        Self {
+            fit,
+            candidate,
+            errors: vec![ErrorOf::Mean],
+            at: [numbers; 2],
+            values: [[0.0; 3]; 2],
+        }
+    }
+
     fn run(&self, numbers: Numbers, probes: &Probes) -> Run {
         Run {
             candidate: Some(self.candidate),
@@ -256,6 +267,10 @@ fn starts(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]) -> Vec<
             continue;
         };
         let (candidate, fit) = fits[number];
+        if let Fit::Multiple(_) = fit {
+            // One of the multiples may be the number: nothing is missing there from which to search.
+            searches.push(Search::at_zero(number, candidate, *base));
+        }
         let mut search = |errors: Vec<(usize, usize)>| {
             let error = |(probe, component)| ErrorOf::Component { probe, component };
             let mut search = Search {

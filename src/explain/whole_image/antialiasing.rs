@@ -170,8 +170,8 @@ fn pixels(rows: &Rows) -> impl Iterator<Item = [u32; 2]> + '_ {
     rows.flat_map(|(y, columns)| columns.iter().map(move |&x| [x, *y]))
 }
 
-/// Those of some pixels that are the means of their samples; `None` if there are too many, or the reference has no
-/// color within pixels.
+/// Those of some pixels that are the means of their samples; `None` if there are too many, or the reference
+/// has no color within pixels.
 fn means(submission: &Submission, rows: &Rows, offsets: &[f64]) -> Option<Vec<[u32; 2]>> {
     let samples = samples(submission.expected(), rows, offsets)?;
     let is_mean = |&([x, y], samples): &([u32; 2], &Vec<[f64; 3]>)| {
