@@ -125,10 +125,8 @@ impl<'a> Evaluation<'a> {
             probe_work: 0.0,
         };
         let program = evaluation.compile(&[]).ok()?;
-        evaluation
-            .budget
-            .charge(COMPILE_FACTOR * program.instructions() as f64);
-        let mut colors = |probes: &Probes| {
+        // Not charged: `BEFORE_SHARE` limits this work.
+        let colors = |probes: &Probes| {
             let (colors, iterations, work) = evaluation.evaluate(&program, 0, |field| {
                 let run = Run {
                     candidate: None,
@@ -137,7 +135,6 @@ impl<'a> Evaluation<'a> {
                 };
                 (field.run(probes, run), field.iterations(), field.work())
             });
-            evaluation.budget.charge(work);
             Some((colors?, iterations, work))
         };
         // Fewer probes of a shader whose pixels take long.
