@@ -21,7 +21,7 @@ use super::check::Scenes;
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
 use super::project::{pass_shader, rendering, target};
 use super::reference::{GivenReference, ReferenceArgs};
-use super::run::{not_evaluated, parse_pass};
+use super::run::{evaluation_error, parse_pass};
 use super::shader::{Shader, find_one};
 use super::{CliError, Exit, Terminal};
 
@@ -110,7 +110,7 @@ fn print_pass(
     });
     spinner.finish_and_clear();
     let trail = trail.map_err(|failure| match failure {
-        verify::Failure::Cpu(failure) => not_evaluated(&failure, shader),
+        verify::Failure::Cpu(failure) => evaluation_error(&failure, shader),
         other => CliError::new(format_args!("{}: {other}", shader.name)),
     })?;
     let scene = scene.filter(|_| kind == PassKind::Image).map(|mut scene| {
@@ -227,7 +227,7 @@ fn traced(
         Err(failure) => Err(failure.clone()),
     };
     spinner.finish_and_clear();
-    let traced = traced.map_err(|failure| not_evaluated(&failure, shader))?;
+    let traced = traced.map_err(|failure| evaluation_error(&failure, shader))?;
     let subject = report::TracedPixel {
         shader: &shader.name,
         files: &shader.files,

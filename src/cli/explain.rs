@@ -81,7 +81,7 @@ fn unknown(code: &str) -> CliError {
     }
 }
 
-/// The maximum number of explanations that a search finds.
+/// The maximum number of explanations that a search finds: a word that is in more is too common to help.
 const MAX_FOUND: usize = 10;
 
 /// The explanations in whose code, title or text a word occurs: those of codes and titles first.

@@ -1,5 +1,7 @@
 //! Arguments that several commands share: the frame, the driver, the deadline.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
@@ -418,6 +420,16 @@ pub(super) fn shell_word(text: &str) -> String {
     } else {
         format!("'{}'", text.replace('\'', "'\\''"))
     }
+}
+
+/// Parses a number in a range; `expected` is the message on any other text.
+pub(super) fn parse_number(
+    text: &str,
+    range: RangeInclusive<f64>,
+    expected: impl Display,
+) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("expected {expected}"))
 }
 
 /// Parses the time of a frame, in seconds.

@@ -3,8 +3,9 @@
 //!
 //! # Parts
 //!
-//! - `check`: `args` gives `options`, `work` reads what one command checks, `batch` runs it, `sharding`
-//!   distributes a batch over shards, and `merge` repeats the command of the shards with their results.
+//! - `check`: `args` gives `options`, `work` reads what one command checks, `batch` runs it,
+//!   `submission_check` and `shader_check` check one shader, `sharding` distributes a batch over shards, and
+//!   `merge` repeats the command of the shards with their results.
 //! - `shader`: finds and reads the shaders that arguments name.
 //! - `terminal`: all output to the terminal.
 //! - `error`: the error that ends a command, which is printed here.

@@ -25,7 +25,7 @@ pub(super) struct Names {
 struct Key(String);
 
 impl Key {
-    fn of(path: &Path) -> Self {
+    fn new(path: &Path) -> Self {
         Self(path.to_string_lossy().to_lowercase())
     }
 }
@@ -37,7 +37,7 @@ impl Names {
         Self {
             suffixes: suffixes.iter().copied().map(str::to_owned).collect(),
             taken: HashMap::new(),
-            files: reserved.iter().map(|name| Key::of(Path::new(name))).collect(),
+            files: reserved.iter().map(|name| Key::new(Path::new(name))).collect(),
             folders: HashSet::new(),
         }
     }
@@ -51,7 +51,7 @@ impl Names {
         let stem = &shortened(found.relative.file_stem().unwrap_or_default());
         let is_beside = self
             .taken
-            .get(&Key::of(&folder.join(stem)))
+            .get(&Key::new(&folder.join(stem)))
             .is_none_or(|other| other.as_deref() == input_folder);
         let with_folder = || {
             input_folder?
@@ -74,11 +74,11 @@ impl Names {
         self.files.extend(
             self.suffixes
                 .iter()
-                .map(|suffix| Key::of(&with_suffix(&path, suffix))),
+                .map(|suffix| Key::new(&with_suffix(&path, suffix))),
         );
-        self.folders.extend(path.ancestors().skip(1).map(Key::of));
+        self.folders.extend(path.ancestors().skip(1).map(Key::new));
         self.taken
-            .insert(Key::of(&path), input_folder.map(Path::to_owned));
+            .insert(Key::new(&path), input_folder.map(Path::to_owned));
         path
     }
 
@@ -88,17 +88,17 @@ impl Names {
             std::iter::once(part.to_owned())
                 .chain(numbered(part))
                 .map(|name| folder.join(name))
-                .find(|folder| !self.files.contains(&Key::of(folder)))
+                .find(|folder| !self.files.contains(&Key::new(folder)))
                 .expect("one of endlessly many names is free")
         })
     }
 
     fn is_free(&self, path: &Path) -> bool {
         let is_free = |suffix: &String| {
-            let key = Key::of(&with_suffix(path, suffix));
+            let key = Key::new(&with_suffix(path, suffix));
             !self.files.contains(&key) && !self.folders.contains(&key)
         };
-        !self.taken.contains_key(&Key::of(path)) && self.suffixes.iter().all(is_free)
+        !self.taken.contains_key(&Key::new(path)) && self.suffixes.iter().all(is_free)
     }
 }
 

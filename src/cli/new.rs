@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use toyproof_classroom::assignment::{FILE_NAME, Model, Subject};
-use toyproof_diagnostic::{Files, path_name};
+use toyproof_diagnostic::path_name;
 use toyproof_image as image;
 use toyproof_project::files;
 use toyproof_scene as scene;
@@ -12,7 +12,7 @@ use toyproof_verify::Expected;
 
 use super::inputs::{LanguageArgs, parse_time_limit};
 use super::reference::{GivenReference, ReferenceArgs};
-use super::scenes::read_scene;
+use super::scenes::{parse_scene, read_scene};
 use super::{CliError, Exit, Terminal, project};
 
 /// Create a new file from a template
@@ -263,9 +263,7 @@ fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, C
 fn from_scene(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, CliError> {
     let text = read_scene(&args.from)?;
     let content = text.text().as_bytes().to_vec();
-    let mut parsed = Files::default();
-    let file = parsed.add(text);
-    let scene = scene::parse(&parsed, file).map_err(|errors| CliError::diagnostics(errors, &parsed))?;
+    let scene = parse_scene(text)?;
     let mut files = vec![(SCENE.to_owned(), content)];
     match scene::export::shader(&scene) {
         Ok(solution) => files.push((SOLUTION.to_owned(), solution.into_bytes())),

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_diagnostic::one_of;
-use toyproof_diagnostic::{Files, path_name};
+use toyproof_diagnostic::{Files, all_of, path_name};
 use toyproof_player::Target;
 use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
 use toyproof_project::{CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
@@ -143,10 +142,9 @@ pub(super) fn export(input: &Path, output: &Path, terminal: &Terminal) -> Result
             .iter()
             .map(ToString::to_string)
             .collect();
-        let names: Vec<_> = names.iter().map(String::as_str).collect();
         terminal.note(&format!(
             "without {PROJECT_FILE}, every pass is assumed to read {} in the channel of its letter",
-            one_of(&names).replace(" or ", " and ")
+            all_of(&names)
         ));
     }
     let json = project.to_json(&files);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sha2::{Digest, Sha256};
-use toyproof_diagnostic::{Deadline, Diagnostic, grouped, path_name, plural};
+use toyproof_diagnostic::{Deadline, Diagnostic, all_of, grouped, path_name, plural};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image, input};
 use toyproof_project::PassKind;
@@ -18,7 +18,7 @@ use toyproof_verify::{
     ShaderReference, Share, unbound,
 };
 
-use super::inputs::{LanguageArgs, shell_word};
+use super::inputs::{LanguageArgs, parse_number, shell_word};
 use super::project::{pass_shader, rendering};
 use super::shader::{Shader, Unusable};
 use super::{CliError, Terminal};
@@ -41,10 +41,11 @@ pub(super) struct ReferenceArgs {
 }
 
 fn parse_tolerance(text: &str) -> Result<f64, String> {
-    let tolerance = text.parse().ok();
-    tolerance
-        .filter(|tolerance| (0.0..=255.0).contains(tolerance))
-        .ok_or_else(|| "expected a number of 8-bit levels from 0 to 255, such as 0.5".to_owned())
+    parse_number(
+        text,
+        0.0..=255.0,
+        "a number of 8-bit levels from 0 to 255, such as 0.5",
+    )
 }
 
 /// The default tolerance of images of 8 bits: one level, since a color between two levels may be rounded to
@@ -207,21 +208,14 @@ impl GivenReference {
             .collect();
         let mut seen = HashSet::new();
         limits.retain(|limit| seen.insert(*limit));
-        let limits: Vec<String> = limits.iter().map(|limit| format!("`{limit}`")).collect();
-        let (on, help) = match &limits[..] {
-            [] => (
-                "the length of the steps".to_owned(),
-                "give students the length of the steps",
-            ),
-            [limit] => (
-                format!("{limit} and the length of the steps"),
-                "give students this number",
-            ),
-            [limits @ .., last] => (
-                format!("{}, {last} and the length of the steps", limits.join(", ")),
-                "give students these numbers",
-            ),
+        let help = match limits[..] {
+            [] => "give students the length of the steps",
+            [_] => "give students this number",
+            _ => "give students these numbers",
         };
+        let quoted = limits.iter().map(|limit| format!("`{limit}`"));
+        let on: Vec<String> = quoted.chain(["the length of the steps".to_owned()]).collect();
+        let on = all_of(&on);
         let Share { count, of } = dependence.pixels;
         Some(format!(
             "the march along the rays of {} decides the color of {} of {} {}: they depend on {on}; colors for other \

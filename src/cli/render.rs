@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
-use toyproof_diagnostic::{Files, grouped, magnitude, path_name, plural};
+use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
 use toyproof_image::{FRAME_RATE, Frame, Image};
 use toyproof_project::files;
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
@@ -16,7 +16,7 @@ use toyproof_verify::Expected;
 use super::inputs::check_output;
 use super::reference::ill_conditioned;
 use super::run::{Precision, check_image_extension, default_image, encode};
-use super::scenes::read_scene;
+use super::scenes::{parse_scene, read_scene};
 use super::sequence::{self, FrameEnd, Frames, Sequence};
 use super::terminal::file_size;
 use super::{CliError, Exit, Terminal, inputs, project};
@@ -88,10 +88,7 @@ impl From<SamplerName> for Sampler {
 }
 
 fn parse_max_error(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(error) if error > 0.0 && error <= 1.0 => Ok(error),
-        _ => Err("expected a number above 0 and at most 1".to_owned()),
-    }
+    inputs::parse_number(text, f64::MIN_POSITIVE..=1.0, "a number above 0 and at most 1")
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
@@ -211,9 +208,7 @@ pub(super) fn load_scene(path: &Path) -> Result<Scene, CliError> {
         let error = CliError::new(format_args!("{path} is a shader, but a scene is expected here"));
         return Err(error.with_help(format_args!("to run a shader: toyproof run {path} -o IMAGE")));
     }
-    let mut files = Files::default();
-    let file = files.add(read_scene(path)?);
-    scene::parse(&files, file).map_err(|errors| CliError::diagnostics(errors, &files))
+    parse_scene(read_scene(path)?)
 }
 
 /// Traces the scene, with a progress bar over its rows.

@@ -26,8 +26,8 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let Some(folder) = &args.write else {
-        for (stem, text) in course_scenes() {
-            terminal.result(&format!("{stem:<24} {}", title(stem, text)));
+        for (name, scene) in builtin_scenes() {
+            terminal.result(&format!("{name:<24} {}", scene.title));
         }
         terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Ok(Exit::Success);
@@ -53,23 +53,19 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     Ok(Exit::Success)
 }
 
-fn title(name: &str, text: &str) -> String {
-    let mut files = Files::default();
-    let file = files.add(File::new(name, text));
-    scene::parse(&files, file)
-        .map(|scene| scene.title)
-        .unwrap_or_default()
-}
-
 // Scenes by file or by name.
 
 /// The built-in scenes by their names.
 pub(super) fn builtin_scenes() -> impl Iterator<Item = (String, Scene)> {
-    course_scenes().filter_map(|(stem, text)| {
-        let mut files = Files::default();
-        let file = files.add(File::new(stem, text));
-        Some((stem.to_owned(), scene::parse(&files, file).ok()?))
-    })
+    course_scenes()
+        .filter_map(|(stem, text)| Some((stem.to_owned(), parse_scene(File::new(stem, text)).ok()?)))
+}
+
+/// Parses the text of a scene.
+pub(super) fn parse_scene(text: File) -> Result<Scene, CliError> {
+    let mut files = Files::default();
+    let file = files.add(text);
+    scene::parse(&files, file).map_err(|errors| CliError::diagnostics(errors, &files))
 }
 
 /// Reads the text of a scene: that of the file, else that of the built-in scene of this name, with or without

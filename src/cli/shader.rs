@@ -303,18 +303,18 @@ fn add_unread(folder: &Path, search: &mut Search) {
             .strip_prefix(folder)
             .map(|inside| inside.iter().collect::<Vec<_>>());
         if let Ok(parts @ [first, _, ..]) = parts.as_deref()
-            && let own = folder.join(first)
+            && let student = folder.join(first)
             && !search
                 .inputs
                 .iter()
                 .filter_map(path)
-                .any(|path| path.starts_with(&own))
-            && !folders.contains_key(&own)
+                .any(|path| path.starts_with(&student))
+            && !folders.contains_key(&student)
             && files::has_shader(unread)
         {
             let inside: PathBuf = parts[1..].iter().collect();
             let instead = format!(" ({}: `toyproof collect` finds its shader)", path_name(&inside));
-            folders.insert(own, instead);
+            folders.insert(student, instead);
         }
     }
     if folders.is_empty() {
@@ -324,7 +324,7 @@ fn add_unread(folder: &Path, search: &mut Search) {
         .inputs
         .retain(|input| !matches!(input, Err(ReadError::NoShader(_))));
     let missing = folders.into_iter();
-    let missing = missing.map(|(own, instead)| Err(ReadError::NotSubmitted(own, instead)));
+    let missing = missing.map(|(student, instead)| Err(ReadError::NotSubmitted(student, instead)));
     search.inputs.extend(missing);
     search.inputs.sort_by_cached_key(path);
 }

@@ -98,7 +98,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Exit {
     Exit::Success
 }
 
-/// The names of a few shaders, after a colon.
+/// The names of a few shaders, after a colon; more would not fit on a line.
 fn names(shaders: &[Subject]) -> String {
     const MAX_NAMES: usize = 5;
     if shaders.is_empty() || shaders.len() > MAX_NAMES {

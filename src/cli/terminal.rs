@@ -21,7 +21,7 @@ use toyproof_verify::contain;
 
 use super::error::{CliError, Exit};
 
-/// The number of warnings of one code that are shown for one shader.
+/// The number of warnings of one code that are shown for one shader: the others are fixed in the same way.
 const WARNINGS_SHOWN: usize = 3;
 
 /// The widest line of wrapped text, in columns: longer lines are hard to read.

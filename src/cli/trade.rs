@@ -15,7 +15,8 @@ use toyproof_scene::{Scene, export};
 
 use super::check::Scenes;
 use super::inputs::{
-    FrameArgs, LOADS_DRIVERS, LanguageArgs, STATIC_PROGRAM, parse_adapter, parse_time_limit, worker,
+    FrameArgs, LOADS_DRIVERS, LanguageArgs, STATIC_PROGRAM, parse_adapter, parse_number, parse_time_limit,
+    worker,
 };
 use super::render::load_scene;
 use super::shader::{Content, Shader, Unusable, find_one};
@@ -58,10 +59,7 @@ pub(super) struct Args {
 }
 
 fn parse_max_error(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(error) if (0.0..=1.0).contains(&error) => Ok(error),
-        _ => Err("expected a number from 0 to 1".to_owned()),
-    }
+    parse_number(text, 0.0..=1.0, "a number from 0 to 1")
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use toyproof_diagnostic::spreadsheet_text;
 
 use super::csv::table;
-use super::{Record, Records, Rubrics, Submitted};
+use super::{Record, Rubrics, StudentSubmission};
 
 /// The result of a student in one assignment.
 #[derive(Debug, Clone)]
@@ -18,7 +18,7 @@ struct Cell {
     late: String,
 }
 
-/// The table of a class; its size depends on the number of students, not on the records of their shaders.
+/// The table of a class.
 #[derive(Debug, Default)]
 pub struct ClassTable {
     /// The assignments, in the order in which they appeared.
@@ -29,21 +29,19 @@ pub struct ClassTable {
 
 impl ClassTable {
     /// Creates the table of all submissions of assignments.
-    ///
-    /// # Errors
-    /// The system's error: a record cannot be read.
-    pub fn of(records: &Records, rubrics: &Rubrics) -> io::Result<Self> {
+    #[must_use]
+    pub fn new(records: &[Record], rubrics: &Rubrics) -> Self {
         let mut table = Self::default();
-        for record in records.iter() {
-            table.add(&*record?, rubrics);
+        for record in records {
+            table.add(record, rubrics);
         }
-        Ok(table)
+        table
     }
 
     /// Adds a shader, if it is a submission of an assignment. If a student has several shaders, the one with
     /// the fewest points counts, and else the one with the worst verdict.
     fn add(&mut self, record: &Record, rubrics: &Rubrics) {
-        let Some(Submitted {
+        let Some(StudentSubmission {
             assignment: Some(assignment),
             student,
             id,
@@ -71,12 +69,6 @@ impl ClassTable {
         if counts {
             cells.insert(place, cell);
         }
-    }
-
-    /// Whether it has no student.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.students.is_empty()
     }
 
     /// Writes the table; its first row names the columns. An assignment without a rubric has the verdict
@@ -134,7 +126,7 @@ mod tests {
 
     fn submitted(record: Record, assignment: &str, student: &str, late: Option<u64>) -> Record {
         Record {
-            submitted: Some(Submitted {
+            submitted: Some(StudentSubmission {
                 assignment: Some(assignment.to_owned()),
                 student: student.to_owned(),
                 id: Some("7".to_owned()),
@@ -149,7 +141,7 @@ mod tests {
     #[test]
     fn each_student_has_a_row_and_each_assignment_a_column() {
         let mut rubrics = Rubrics::default();
-        rubrics.add("one".to_owned(), Rubric::of(2.0, 6.0, 2.0));
+        rubrics.add("one".to_owned(), Rubric::with_points(2.0, 6.0, 2.0));
         let records = vec![
             submitted(correct(), "one", "=Anna", Some(60)),
             submitted(correct(), "one", "Bo", None),
@@ -158,7 +150,7 @@ mod tests {
             submitted(record(Verdict::Wrong), "two, three", "Bo", None),
             correct(),
         ];
-        let table = ClassTable::of(&records.into(), &rubrics).unwrap();
+        let table = ClassTable::new(&records, &rubrics);
         assert_eq!(
             written(|out| table.csv(out)),
             "student,id,one,\"two, three\",total,one verdict,one late,\"two, three verdict\",\"two, three late\"\r\n\

@@ -6,7 +6,7 @@ use ::csv::{Terminator, Writer, WriterBuilder};
 use toyproof_diagnostic::{Severity, spreadsheet_text};
 use toyproof_verify::compare::CheckSummary;
 
-use super::{Record, Records, Repair, Rubrics};
+use super::{Record, Repair, Rubrics};
 
 const COLUMNS: [&str; 28] = [
     "shader",
@@ -43,12 +43,12 @@ const COLUMNS: [&str; 28] = [
 /// a rubric. `fix_line` is the line of the first edit.
 ///
 /// # Errors
-/// The system's error: a record cannot be read, or the table cannot be written.
-pub fn csv(records: &Records, rubrics: &Rubrics, out: &mut dyn Write) -> io::Result<()> {
+/// The table cannot be written.
+pub fn csv(records: &[Record], rubrics: &Rubrics, out: &mut dyn Write) -> io::Result<()> {
     let mut table = table(out);
     table.write_record(COLUMNS)?;
-    for record in records.iter() {
-        table.write_record(row(&*record?, rubrics))?;
+    for record in records {
+        table.write_record(row(record, rubrics))?;
     }
     table.flush()
 }
@@ -121,7 +121,7 @@ mod tests {
     use crate::{Rubric, written};
 
     fn table(records: Vec<Record>, rubrics: &Rubrics) -> String {
-        written(|out| csv(&records.into(), rubrics, out))
+        written(|out| csv(&records, rubrics, out))
     }
 
     #[test]
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_rubric_adds_points() {
-        let text = table(vec![correct()], &Some(Rubric::of(1.0, 8.0, 1.0)).into());
+        let text = table(vec![correct()], &Some(Rubric::with_points(1.0, 8.0, 1.0)).into());
         assert!(text.contains(",10,10,1000,"), "{text}");
     }
 }

@@ -55,7 +55,7 @@ impl Departure {
     /// Creates the record; `reference` are the files of the reference.
     pub(super) fn new(departure: &departure::Departure, files: &Files, reference: &Files) -> Self {
         let unknown = departure.unknown.as_ref().map(|unknown| UnknownValue {
-            range: SourceRange::of(unknown.span, files),
+            range: SourceRange::new(unknown.span, files),
             text: excerpt(files.text(unknown.span)),
             called_at: unknown.call.map(|call| files.position(call).line),
             value: finite(&unknown.value),

@@ -137,7 +137,7 @@ pub(super) const TERMS: [(&str, &str, &str); 22] = [
 
 /// Returns all explanations: of codes in numerical order, of mistakes by topic, then of terms.
 pub fn explanations() -> impl Iterator<Item = Explanation> {
-    let codes = Code::ALL.iter().map(|&code| of_code(code));
+    let codes = Code::ALL.iter().map(|&code| explain_code(code));
     codes.chain(mistakes()).chain(terms())
 }
 
@@ -145,13 +145,13 @@ pub fn explanations() -> impl Iterator<Item = Explanation> {
 #[must_use]
 pub fn explain(code: &str) -> Option<Explanation> {
     if let Some(code) = Code::parse(code) {
-        return Some(of_code(code));
+        return Some(explain_code(code));
     }
     let mut others = mistakes().chain(terms());
     others.find(|explanation| explanation.code.eq_ignore_ascii_case(code))
 }
 
-fn of_code(code: Code) -> Explanation {
+fn explain_code(code: Code) -> Explanation {
     Explanation {
         code: code.as_str(),
         title: code.title(),

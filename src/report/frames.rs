@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::{grouped, path_name, plural};
+use toyproof_diagnostic::{all_of, grouped, path_name, plural};
 use toyproof_image::{Channel, FrameInputs};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison};
 
 use super::Record;
 
-/// The largest number of frames that a record's details name.
+/// The largest number of frames that a record's details name, so that they stay short sentences.
 const MAX_NAMED: usize = 5;
 
 /// The result in one frame. Checks that did not run are null.
@@ -131,7 +131,7 @@ impl Record {
     /// least one. The first frame with the worst verdict, by the order of precedence, gives the verdict and
     /// everything that explains it.
     #[must_use]
-    pub fn of_frames(mut checked: Vec<CheckedFrame>, planned: usize) -> Self {
+    pub fn from_frames(mut checked: Vec<CheckedFrame>, planned: usize) -> Self {
         let frames: Vec<_> = checked
             .iter()
             .map(|CheckedFrame { inputs, size, record }| FrameRecord::new(inputs, *size, record))
@@ -219,15 +219,11 @@ impl Record {
                 [(number, frame)] => format!("frame {} ({})", grouped(*number), frame.label()),
                 several => {
                     let numbers = several.iter().map(|(number, _)| grouped(*number));
-                    let (mut numbers, more): (Vec<_>, _) = (
-                        numbers.take(MAX_NAMED).collect(),
-                        several.len().saturating_sub(MAX_NAMED),
-                    );
-                    let last = match more {
-                        0 => numbers.pop().unwrap_or_default(),
-                        more => format!("{} more", grouped(more as u64)),
-                    };
-                    format!("frames {} and {last}", numbers.join(", "))
+                    let mut numbers: Vec<_> = numbers.take(MAX_NAMED).collect();
+                    if let more @ 1.. = several.len() - numbers.len() {
+                        numbers.push(format!("{} more", grouped(more as u64)));
+                    }
+                    format!("frames {}", all_of(&numbers))
                 }
             };
             self.details.push(format!(
@@ -277,7 +273,7 @@ pub(super) mod samples {
                 ..record(verdict)
             },
         });
-        Record::of_frames(frames.collect(), N)
+        Record::from_frames(frames.collect(), N)
     }
 }
 

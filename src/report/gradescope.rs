@@ -8,16 +8,15 @@ use std::io::{self, Write};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use serde::ser::{Error, SerializeSeq};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::html::Text;
-use super::{Hints, Mark, Record, Records, Rubric, plain};
+use super::{Hints, Mark, Record, Rubric, Tally, plain};
 use crate::rubric::Visibility;
 
 /// The output format: <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>
 #[derive(Serialize)]
-struct Results<'a> {
+struct Results {
     output: String,
     output_format: Format,
     visibility: Visibility,
@@ -27,7 +26,7 @@ struct Results<'a> {
     /// Replaces the sum of the tests' scores.
     #[serde(skip_serializing_if = "Option::is_none")]
     score: Option<f64>,
-    tests: Tests<'a>,
+    tests: Vec<Test>,
 }
 
 #[derive(Serialize)]
@@ -105,32 +104,29 @@ impl Thumbnails {
 /// starts with the shader's, and the one with the fewest points gives the score.
 ///
 /// # Errors
-/// The system's error: a record cannot be read, or the file cannot be written.
+/// The file cannot be written.
 pub fn gradescope(
-    records: &Records,
+    records: &[Record],
     rubric: &Rubric,
     hints: Hints,
     thumbnails: &Thumbnails,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    let mut seconds = 0.0;
-    let mut score: Option<f64> = None;
-    for record in records.iter() {
-        let record = record?;
-        seconds += record.seconds.total();
-        let points = rubric.marks(&record).iter().map(|mark| mark.points).sum();
-        score = Some(score.map_or(points, |score| score.min(points)));
-    }
-    let text = match records.len() {
-        1 => {
-            let record = records.get(0)?;
-            format!("{}: {}", record.verdict, record.reason)
-        }
+    let seconds = records.iter().map(|record| record.seconds.total()).sum::<f64>();
+    let points = |record| rubric.marks(record).iter().map(|mark| mark.points).sum::<f64>();
+    let score = records.iter().map(points).reduce(f64::min);
+    let text = match records {
+        [record] => format!("{}: {}", record.verdict, record.reason),
         _ => format!(
             "{}\nSeveral shaders were submitted; the one with the fewest points counts.",
-            plain(&records.tally().summary())
+            plain(&Tally::new(records).summary())
         ),
     };
+    let tests = records.iter().flat_map(|record| {
+        let record = record.clone().redacted(hints);
+        let marks = rubric.marks(&record).into_iter();
+        marks.map(move |mark| Test::new(mark, (records.len() > 1).then_some(&record.shader)))
+    });
     let images = thumbnails.html();
     let (output, output_format) = if images.is_empty() {
         (text, Format::Text)
@@ -145,43 +141,18 @@ pub fn gradescope(
         stdout_visibility: Visibility::Hidden,
         execution_time: seconds.ceil() as u64,
         score: score.filter(|_| records.len() > 1),
-        tests: Tests {
-            records,
-            rubric,
-            hints,
-        },
+        tests: tests.collect(),
     };
     serde_json::to_writer_pretty(&mut *out, &results)?;
     out.write_all(b"\n")
 }
 
-/// The tests of all records, which are read and written one at a time.
-struct Tests<'a> {
-    records: &'a Records,
-    rubric: &'a Rubric,
-    hints: Hints,
-}
-
-impl Serialize for Tests<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut sequence = serializer.serialize_seq(None)?;
-        for record in self.records.redacted(self.hints) {
-            let record = record.map_err(S::Error::custom)?;
-            for mark in self.rubric.marks(&record) {
-                let prefix = (self.records.len() > 1).then_some(&record);
-                sequence.serialize_element(&Test::of(mark, prefix))?;
-            }
-        }
-        sequence.end()
-    }
-}
-
 impl Test {
     /// The test of a mark, named after its shader if there are several.
-    fn of(mark: Mark, shader: Option<&Record>) -> Self {
+    fn new(mark: Mark, shader: Option<&String>) -> Self {
         Self {
             name: match shader {
-                Some(record) => format!("{}: {}", record.shader, mark.name),
+                Some(shader) => format!("{shader}: {}", mark.name),
                 None => mark.name.into_owned(),
             },
             name_format: Format::Text,
@@ -251,7 +222,7 @@ mod tests {
     }
 
     fn with_images(records: Vec<Record>, images: &Thumbnails) -> Value {
-        let (records, rubric) = (records.into(), Rubric::of(2.0, 6.0, 2.0));
+        let (records, rubric) = (records, Rubric::with_points(2.0, 6.0, 2.0));
         let text = written(|out| gradescope(&records, &rubric, Hints::Fix, images, out));
         serde_json::from_str(&text).unwrap()
     }

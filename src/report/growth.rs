@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toyproof_verify::project::growth::{Growth, GrowthCause};
 
-/// The largest number of frames that are listed, besides the last.
+/// The largest number of frames that are listed, besides the last: enough for a curve.
 const MAX_LISTED: usize = 100;
 
 /// How far float32 is from double precision, both from the first frame on.

@@ -52,7 +52,7 @@ mod tests {
 
     /// Every text format of a record with these hints.
     fn formats(record: Record, hints: Hints) -> Vec<String> {
-        let rubric = Rubric::of(1.0, 8.0, 1.0);
+        let rubric = Rubric::with_points(1.0, 8.0, 1.0);
         let report = Report::new(None, vec![record.redacted(hints)]);
         let records = report.shaders();
         vec![

@@ -6,29 +6,25 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 use toyproof_verify::Verdict;
 
-use super::{Hints, Record, Records, details};
+use super::{Hints, Record, details};
 
 /// Writes the file, as far as the hints permit. A fault of the shader, or a violated requirement of an
 /// assignment, is a failure; an error that prevented its verdict is an error; an inconclusive verdict is
-/// skipped. Characters that XML
-/// 1.0 forbids are removed.
+/// skipped. Characters that XML 1.0 forbids are removed.
 ///
 /// # Errors
-/// The system's error: a record cannot be read, or the file cannot be written.
-pub fn junit(records: &Records, hints: Hints, out: &mut dyn Write) -> io::Result<()> {
+/// The file cannot be written.
+pub fn junit(records: &[Record], hints: Hints, out: &mut dyn Write) -> io::Result<()> {
     // The totals precede the test cases.
-    let mut totals = Totals::default();
-    for record in records.iter() {
-        totals.add(&*record?);
-    }
-    let Totals {
-        failures,
-        errors,
-        skipped,
-        seconds,
-    } = totals;
-    let [tests, failures, errors, skipped] =
-        [records.len() as u64, failures, errors, skipped].map(|count| count.to_string());
+    let count = |status| {
+        let statuses = records.iter().map(Status::new);
+        statuses.filter(|found| *found == status).count().to_string()
+    };
+    let [failures, errors, skipped] = [Status::Failure, Status::Error, Status::Skipped].map(count);
+    let tests = records.len().to_string();
+    let seconds = records
+        .iter()
+        .fold(0.0, |sum, record| sum + record.seconds.total());
     let time = format!("{seconds:.3}");
     let counts = [
         ("tests", tests.as_str()),
@@ -50,35 +46,14 @@ pub fn junit(records: &Records, hints: Hints, out: &mut dyn Write) -> io::Result
             .with_attributes(counts)
             .with_attribute(("skipped", skipped.as_str()));
         suite.write_inner_content(|writer| {
-            for record in records.redacted(hints) {
-                write_test_case(&record?, writer)?;
+            for record in records {
+                write_test_case(&record.clone().redacted(hints), writer)?;
             }
             Ok(())
         })?;
         Ok(())
     })?;
     writer.into_inner().write_all(b"\n")
-}
-
-/// The numbers of test cases of each kind, and the time of all in seconds.
-#[derive(Debug, Default)]
-struct Totals {
-    failures: u64,
-    errors: u64,
-    skipped: u64,
-    seconds: f64,
-}
-
-impl Totals {
-    fn add(&mut self, record: &Record) {
-        self.seconds += record.seconds.total();
-        match Status::of(record) {
-            Status::Passed => {}
-            Status::Failure => self.failures += 1,
-            Status::Error => self.errors += 1,
-            Status::Skipped => self.skipped += 1,
-        }
-    }
 }
 
 /// The status of a test case.
@@ -91,15 +66,17 @@ enum Status {
 }
 
 impl Status {
-    fn of(record: &Record) -> Self {
-        match Self::of_verdict(record.verdict) {
+    fn new(record: &Record) -> Self {
+        match Self::from(record.verdict) {
             Self::Passed if !record.faults().is_empty() => Self::Failure,
             status => status,
         }
     }
+}
 
-    /// The status of a verdict. If nothing was compared, the test was skipped.
-    fn of_verdict(verdict: Verdict) -> Self {
+impl From<Verdict> for Status {
+    /// If nothing was compared, the test was skipped.
+    fn from(verdict: Verdict) -> Self {
         match verdict {
             Verdict::Correct => Self::Passed,
             Verdict::Missing | Verdict::Invalid | Verdict::Wrong | Verdict::Unstable => Self::Failure,
@@ -120,22 +97,19 @@ fn write_test_case(record: &Record, writer: &mut Writer<impl Write>) -> io::Resu
         ("time", &time),
     ]);
     case.write_inner_content(|writer| {
-        let element = match Status::of(record) {
+        let element = match Status::new(record) {
             Status::Passed => "system-out",
             Status::Failure => "failure",
             Status::Error => "error",
             Status::Skipped => "skipped",
         };
         let element = writer.create_element(element);
-        let (kind, message) = match (
-            Status::of_verdict(record.verdict),
-            record.faults().into_iter().next(),
-        ) {
+        let (kind, message) = match (Status::from(record.verdict), record.faults().into_iter().next()) {
             (Status::Passed, Some((kind, sentence))) => (kind.to_owned(), sentence),
             _ => (record.verdict.to_string(), record.reason_and_lateness()),
         };
         let message = xml_text(&message);
-        let element = match Status::of(record) {
+        let element = match Status::new(record) {
             Status::Passed => element,
             _ => element.with_attributes([("message", message.as_str()), ("type", &kind)]),
         };
@@ -165,7 +139,7 @@ mod tests {
     use crate::written;
 
     fn xml(records: Vec<Record>) -> String {
-        written(|out| junit(&records.into(), Hints::Fix, out))
+        written(|out| junit(&records, Hints::Fix, out))
     }
 
     /// The attributes and the children that each element may have in the schema that Jenkins publishes

@@ -2,7 +2,7 @@
 //!
 //! # Parts
 //!
-//! - `record`, `records`: the record of a check, and all records of a run, written one by one.
+//! - `record`: the record of a check, and the report of all records of a run.
 //! - `terminal`, `csv`, `junit`, `sarif`, `gradescope`, `html`: the formats; `verdict.schema.json` is that of
 //!   `verdict.json`. `html` is one page that needs no network.
 //! - `hints`: redacts the hints that a report gives to the author of a wrong shader.
@@ -24,7 +24,6 @@ mod html;
 mod junit;
 mod reason;
 mod record;
-mod records;
 mod repair;
 mod rubric;
 mod rubrics;
@@ -45,18 +44,17 @@ pub use gradescope::{Thumbnails, gradescope};
 pub use growth::{CauseName, GrowthFrame, GrowthRecord};
 pub use hints::Hints;
 pub use html::{
-    Exhibit, Gallery, LargeReport, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS,
-    PagePart, html, part_name, subsample,
+    Exhibit, Gallery, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, PARTS, html, html_index, html_part, part_name,
+    subsample,
 };
 pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{Alternative, FrameResult, Mistake, Position, Record, Report, SCHEMA, Seconds};
-pub use records::Records;
 pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
 pub use rubric::{Mark, Rubric, StudentImages, Visibility, optional_points};
 pub use rubrics::Rubrics;
 pub use sarif::sarif;
-pub use submitted::{Late, Submitted};
+pub use submitted::{Late, StudentSubmission};
 pub use terminal::{Detail, Layout, Tally, lines, place};
 use terminal::{details, plain};
 pub use trace::{PixelTrace, TracedPixel};

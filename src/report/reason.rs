@@ -47,7 +47,7 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
     if let (Reason::NoReference, Some(imprecise)) = (&findings.reason, imprecise(findings)) {
         statement.reason = format!(
             "the shader renders, but {} visibly between float32 and double precision {}; there is no reference",
-            of_all(imprecise, ["differs", "differ"]),
+            count_with_verb(imprecise, ["differs", "differ"]),
             percentage(imprecise)
         );
     }
@@ -232,7 +232,7 @@ fn agrees(
         }
         _ => format!(
             "{} from the reference, within the tolerance of {} %",
-            of_all(differing, ["differs", "differ"]),
+            count_with_verb(differing, ["differs", "differ"]),
             100.0 * MAX_DIFFERING
         ),
     };
@@ -264,7 +264,7 @@ fn agrees(
 fn permitted(difference: Difference, text: &str, differing: Share) -> Statement {
     let others = match differing.count {
         0 => String::new(),
-        _ => format!("; besides, {}", of_all(differing, ["differs", "differ"])),
+        _ => format!("; besides, {}", count_with_verb(differing, ["differs", "differ"])),
     };
     Statement::new(format!(
         "agrees with the reference but for `{difference}`, which is permitted{others}"
@@ -280,7 +280,7 @@ fn by_means(pixels: Share, sampler: Option<Sampler>, means: Means) -> Statement 
     let own_name = sampler.map_or_else(String::new, |sampler| format!(", `{}`", sampler.name()));
     let own_numbers = format!(
         "{}: the shader's random numbers, or what it computes from them, are not those of the {whose}{own_name}",
-        of_all(pixels, ["differs", "differ"]),
+        count_with_verb(pixels, ["differs", "differ"]),
     );
     let other_numbers = format!("{own_numbers}; means were compared instead");
     let noise = |variance: f64| format!("its noise has {variance:.1} times the variance of the {whose}");
@@ -437,7 +437,6 @@ pub fn failure_position(failure: &eval::Failure, files: &Files) -> String {
     }
 }
 
-/// States how many pixels differ from the reference.
 /// Why few differing pixels are a mistake.
 fn compact_region(region: Region) -> String {
     let [x, y] = region.middle();
@@ -448,20 +447,21 @@ fn compact_region(region: Region) -> String {
     )
 }
 
+/// States how many pixels differ from the reference.
 fn differing(share: Share) -> String {
     if share.count == share.of {
         format!("all {} pixels differ from the reference", grouped(share.of))
     } else {
         format!(
             "{} from the reference {}",
-            of_all(share, ["differs", "differ"]),
+            count_with_verb(share, ["differs", "differ"]),
             percentage(share)
         )
     }
 }
 
 /// Formats a subject and its verb: “1 of 230,400 pixels differs”.
-fn of_all(share: Share, [one, many]: [&str; 2]) -> String {
+fn count_with_verb(share: Share, [one, many]: [&str; 2]) -> String {
     format!("{} {}", pixels(share), plural(share.count, one, many))
 }
 

@@ -3,8 +3,7 @@
 use std::io::{self, Write};
 use std::ops::AddAssign;
 
-use serde::ser::{Error, SerializeSeq};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
 use toyproof_explain::Findings;
@@ -17,7 +16,7 @@ use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Ruling, Verdict, d
 use super::departure::Departure;
 use super::reason::{Statement, state, state_reason};
 use super::unused::sentences;
-use super::{FrameRecord, FunctionRecord, GrowthRecord, Records, Repair, RulesRecord, Submitted, Suspect};
+use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, StudentSubmission, Suspect};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
@@ -32,17 +31,7 @@ pub struct Report {
     tool: String,
     /// The adapter and its driver; null if nothing ran on any.
     device: Option<String>,
-    #[serde(serialize_with = "serialize")]
-    shaders: Records,
-}
-
-/// Serializes the records as a sequence, one at a time.
-fn serialize<S: Serializer>(records: &Records, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut sequence = serializer.serialize_seq(Some(records.len()))?;
-    for record in records.iter() {
-        sequence.serialize_element(&*record.map_err(S::Error::custom)?)?;
-    }
-    sequence.end()
+    shaders: Vec<Record>,
 }
 
 impl Report {
@@ -51,12 +40,12 @@ impl Report {
 
     /// Creates a report of these shaders, in this order.
     #[must_use]
-    pub fn new(device: Option<String>, shaders: impl Into<Records>) -> Self {
+    pub fn new(device: Option<String>, shaders: Vec<Record>) -> Self {
         Self {
             version: Self::VERSION,
             tool: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
             device,
-            shaders: shaders.into(),
+            shaders,
         }
     }
 
@@ -73,14 +62,14 @@ impl Report {
 
     /// The shaders' records.
     #[must_use]
-    pub fn shaders(&self) -> &Records {
+    pub fn shaders(&self) -> &[Record] {
         &self.shaders
     }
 
     /// Writes the report as `verdict.json`. Floats that are not finite are null.
     ///
     /// # Errors
-    /// The system's error: a record cannot be read, or the report cannot be written.
+    /// The report cannot be written.
     pub fn json(&self, out: &mut dyn Write) -> io::Result<()> {
         serde_json::to_writer_pretty(&mut *out, self)?;
         out.write_all(b"\n")
@@ -157,7 +146,7 @@ pub struct Record {
     pub functions: Vec<FunctionRecord>,
     /// The student and the assignment; null if no class is checked.
     #[serde(default)]
-    pub submitted: Option<Submitted>,
+    pub submitted: Option<StudentSubmission>,
     /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// The time of each stage.
@@ -313,7 +302,7 @@ impl Record {
         if let Some(repair) = search.repairs.first()
             && self.mistake.as_ref().is_none_or(Mistake::is_ambiguous)
         {
-            self.mistake = Some(Mistake::of(&repair.mistake));
+            self.mistake = Some(Mistake::from(&repair.mistake));
         }
     }
 
@@ -431,9 +420,11 @@ impl Mistake {
             "likely mistake"
         }
     }
+}
 
+impl From<&KnownMistake> for Mistake {
     /// A single mistake without alternatives.
-    fn of(mistake: &KnownMistake) -> Self {
+    fn from(mistake: &KnownMistake) -> Self {
         Self {
             id: mistake.id.to_owned(),
             text: mistake.description.to_string(),
@@ -571,7 +562,7 @@ pub(super) mod samples {
 
     impl Rubric {
         /// A rubric without partial points for `compiles`, `algorithm` and `precision`.
-        pub(crate) fn of(compiles: f64, algorithm: f64, precision: f64) -> Self {
+        pub(crate) fn with_points(compiles: f64, algorithm: f64, precision: f64) -> Self {
             let text = format!(
                 "compiles.points = {compiles:?}\nalgorithm.points = {algorithm:?}\nprecision.points = {precision:?}"
             );

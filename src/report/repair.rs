@@ -1,7 +1,7 @@
 //! The repairs of a wrong shader and its suspect lines, as parts of a record.
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::{Edit, Files, Span, grouped};
+use toyproof_diagnostic::{Edit, Files, Span, all_of, grouped};
 use toyproof_explain::repair;
 
 use super::reason::excerpt;
@@ -20,7 +20,7 @@ pub struct SourceRange {
 }
 
 impl SourceRange {
-    pub(super) fn of(span: Span, files: &Files) -> Self {
+    pub(super) fn new(span: Span, files: &Files) -> Self {
         let (start, end) = (files.position(span), files.end_position(span));
         Self {
             line: start.line,
@@ -80,7 +80,7 @@ impl RepairEdit {
             (old, new) => format!("replace {} with {}", excerpt(old), excerpt(new)),
         };
         Self {
-            range: SourceRange::of(edit.span, files),
+            range: SourceRange::new(edit.span, files),
             replacement: Some(edit.replacement.clone()),
             text: Some(text),
         }
@@ -112,7 +112,7 @@ impl Repair {
         Some(Self {
             id: repair.mistake.id.to_owned(),
             file: files.name(main.span).to_owned(),
-            range: SourceRange::of(main.span, files),
+            range: SourceRange::new(main.span, files),
             replacement: Some(main.replacement.clone()),
             text: Some(repair.fix.message.clone()),
             agreeing: repair.agreeing,
@@ -134,10 +134,10 @@ impl Repair {
     }
 
     /// The lines of the edits, in their order, without duplicates.
-    fn lines(&self) -> Vec<usize> {
+    fn lines(&self) -> Vec<String> {
         let mut lines: Vec<_> = self.edits.iter().map(|edit| edit.range.line).collect();
         lines.dedup();
-        lines
+        lines.iter().map(usize::to_string).collect()
     }
 
     /// States the edits with their lines: ``line 23: replace `b + c` with `b - c` ``. If they are hidden,
@@ -149,10 +149,10 @@ impl Repair {
             return match (&lines[..], self.edits.len()) {
                 ([line], 1) => format!("an edit of line {line}"),
                 ([line], _) => format!("edits of line {line}"),
-                (lines, _) => format!("edits of lines {}", listed(lines)),
+                (lines, _) => format!("edits of lines {}", all_of(lines)),
             };
         };
-        if let [line] = lines[..] {
+        if let [line] = &lines[..] {
             return format!("line {line}: {text}");
         }
         let edits = self.edits.iter().map(|edit| {
@@ -182,15 +182,6 @@ impl Repair {
     }
 }
 
-/// Lists numbers: “23, 30 and 41”.
-fn listed(numbers: &[usize]) -> String {
-    let numbers: Vec<_> = numbers.iter().map(usize::to_string).collect();
-    match numbers.split_last() {
-        Some((last, rest @ [_, ..])) => format!("{} and {last}", rest.join(", ")),
-        _ => numbers.concat(),
-    }
-}
-
 /// A statement on which the wrong pixels depend more than the others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suspect {
@@ -206,7 +197,7 @@ pub struct Suspect {
 impl Suspect {
     pub(super) fn new(suspect: &repair::Suspect, files: &Files) -> Self {
         Self {
-            range: SourceRange::of(suspect.span, files),
+            range: SourceRange::new(suspect.span, files),
             score: suspect.score,
             text: excerpt(files.text(suspect.span)),
         }

@@ -11,7 +11,7 @@ use toyproof_verify::{MAX_UNDEFINED, MAX_UNSTABLE, Verdict, is_different};
 use super::frames::FrameChecks;
 use super::{Late, Record, details, terminal};
 
-/// The maximum points of a check.
+/// The maximum points of a check: a larger number is a typing error.
 const MAX_POINTS: u32 = 1_000_000;
 
 /// Rubrics.
@@ -361,7 +361,7 @@ mod tests {
     use toyproof_diagnostic::{Diagnostic, File};
 
     use super::*;
-    use crate::Submitted;
+    use crate::StudentSubmission;
     use crate::record::samples::{check_summary, correct, invalid, record};
 
     /// The rubric, or its errors: `line:column code message; help: …`.
@@ -523,7 +523,7 @@ mod tests {
     fn late_submissions_lose_a_share_of_all_points_but_not_more_than_they_earned() {
         let rubric = format!("{RUBRIC}\n[late]\npercent_per_day = 10\nmax_percent = 25");
         let late = |record: Record, seconds| Record {
-            submitted: Some(Submitted {
+            submitted: Some(StudentSubmission {
                 assignment: None,
                 student: "Anna".to_owned(),
                 id: None,

@@ -27,9 +27,9 @@ impl Rubrics {
         self.by_assignment.insert(assignment, rubric);
     }
 
-    /// The rubric of all shaders, if there is one.
+    /// The rubric of all shaders that no other rubric covers, if there is one.
     #[must_use]
-    pub fn of_all(&self) -> Option<&Rubric> {
+    pub fn common(&self) -> Option<&Rubric> {
         self.all.as_ref()
     }
 
@@ -41,7 +41,7 @@ impl Rubrics {
 
     /// The rubric of a shader, if it has one.
     #[must_use]
-    pub fn of(&self, record: &Record) -> Option<&Rubric> {
+    pub fn find(&self, record: &Record) -> Option<&Rubric> {
         let assignment = record.submitted.as_ref().and_then(|one| one.assignment.as_ref());
         let of_assignment = assignment.and_then(|name| self.by_assignment.get(name));
         of_assignment.or(self.all.as_ref())
@@ -50,7 +50,7 @@ impl Rubrics {
     /// The points of a shader and the maximum, rounded to hundredths; `None` without a rubric.
     #[must_use]
     pub fn total(&self, record: &Record) -> Option<[f64; 2]> {
-        let marks = self.of(record)?.marks(record);
+        let marks = self.find(record)?.marks(record);
         let sum = |of: fn(&Mark) -> f64| (100.0 * marks.iter().map(of).sum::<f64>()).round() / 100.0;
         // The sum of no marks is −0.
         Some([sum(|mark| mark.points) + 0.0, sum(|mark| mark.of) + 0.0])

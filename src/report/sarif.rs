@@ -1,18 +1,16 @@
 //! `report.sarif`: the diagnostics, for editors and code hosts (SARIF 2.1.0).
 
 use std::borrow::Cow;
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::iter;
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
-use serde::ser::{Error, SerializeSeq};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use toyproof_diagnostic::{self as diagnostic, Severity};
 use toyproof_verify::Verdict;
 
-use super::{Late, Record, Records, Repair, SourceRange, terminal};
+use super::{Late, Record, Repair, SourceRange, terminal};
 
 /// The characters that are not percent-encoded in a path: letters, digits, the other unreserved characters of
 /// RFC 3986, and `/`.
@@ -48,82 +46,43 @@ const VERDICTS: [(Verdict, &str, &str); 3] = [
 /// verdict is a notification.
 ///
 /// # Errors
-/// The system's error: a record cannot be read, or the file cannot be written.
-pub fn sarif(records: &Records, out: &mut dyn Write) -> io::Result<()> {
-    let rules = RefCell::default();
+/// The file cannot be written.
+pub fn sarif(records: &[Record], out: &mut dyn Write) -> io::Result<()> {
+    let mut rules = Rules::default();
+    let mut results = Vec::new();
+    for record in records {
+        let diagnostics = record.diagnostics.iter();
+        results.extend(diagnostics.map(|message| diagnostic_result(record, message, &mut rules)));
+        if let Some((_, title, help)) = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict) {
+            results.push(verdict_result(record, title, help, &mut rules));
+        }
+        if let Some(late) = record.late() {
+            results.push(late_result(record, late, &mut rules));
+        }
+    }
+    let errors = records.iter().filter(|record| record.verdict == Verdict::Error);
+    let notifications: Vec<_> = errors.map(Notification::new).collect();
     let log = Log {
         schema: "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json",
         version: "2.1.0",
         runs: [Run {
             column_kind: "unicodeCodePoints",
-            results: Results {
-                records,
-                rules: &rules,
-            },
+            results,
             invocations: [Invocation {
-                execution_successful: records.tally().count(Verdict::Error) == 0,
-                tool_execution_notifications: Notifications { records },
+                execution_successful: notifications.is_empty(),
+                tool_execution_notifications: notifications,
             }],
             tool: Tool {
                 driver: Driver {
                     name: "toyproof",
                     version: env!("CARGO_PKG_VERSION"),
-                    rules: &rules,
+                    rules: rules.rules,
                 },
             },
         }],
     };
     serde_json::to_writer_pretty(&mut *out, &log)?;
     out.write_all(b"\n")
-}
-
-/// The results of all records, which are read and written one at a time.
-struct Results<'a> {
-    records: &'a Records,
-    /// The rules of the results that were written.
-    rules: &'a RefCell<Rules>,
-}
-
-impl Serialize for Results<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut sequence = serializer.serialize_seq(None)?;
-        for record in self.records.iter() {
-            let record = &*record.map_err(S::Error::custom)?;
-            let rules = &mut *self.rules.borrow_mut();
-            for message in &record.diagnostics {
-                sequence.serialize_element(&diagnostic_result(record, message, rules))?;
-            }
-            if let Some((_, title, help)) = VERDICTS.iter().find(|(verdict, ..)| *verdict == record.verdict) {
-                sequence.serialize_element(&verdict_result(record, title, help, rules))?;
-            }
-            if let Some(late) = record.late() {
-                sequence.serialize_element(&late_result(record, late, rules))?;
-            }
-        }
-        sequence.end()
-    }
-}
-
-/// The errors that prevented the verdicts of records.
-struct Notifications<'a> {
-    records: &'a Records,
-}
-
-impl Serialize for Notifications<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut sequence = serializer.serialize_seq(None)?;
-        for (index, verdict) in self.records.verdicts().enumerate() {
-            if verdict == Verdict::Error {
-                let record = self.records.get(index).map_err(S::Error::custom)?;
-                sequence.serialize_element(&Notification {
-                    level: Severity::Error,
-                    message: Message::new(record.reason.clone()),
-                    locations: [Location::new(&record.shader, None)],
-                })?;
-            }
-        }
-        sequence.end()
-    }
 }
 
 /// The rules that results refer to, without duplicates.
@@ -162,7 +121,7 @@ fn diagnostic_result(record: &Record, message: &diagnostic::Json, rules: &mut Ru
         rule_index: rules.index_of(&message.code, about),
         level: message.severity,
         message: Message::new(lines.join("\n")),
-        locations: [Location::new(file, Region::of(message))],
+        locations: [Location::new(file, Region::new(message))],
         fixes: message.fix.iter().map(|fix| Fix::new(file, fix)).collect(),
     }
 }
@@ -199,7 +158,7 @@ fn verdict_result(
         level: Severity::Error,
         message: Message::new(lines.join("\n")),
         locations: [mistake_location(record)],
-        fixes: repairs.filter_map(Fix::of_repair).collect(),
+        fixes: repairs.filter_map(Fix::from_repair).collect(),
     }
 }
 
@@ -234,38 +193,32 @@ fn mistake_location(record: &Record) -> Location {
 // The objects of the SARIF 2.1.0 schema, with the properties that are used here.
 
 #[derive(Serialize)]
-struct Log<'a> {
+struct Log {
     #[serde(rename = "$schema")]
     schema: &'static str,
     version: &'static str,
-    runs: [Run<'a>; 1],
+    runs: [Run; 1],
 }
 
-/// The results come before the rules, which are known once all results are written.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Run<'a> {
+struct Run {
     column_kind: &'static str,
-    results: Results<'a>,
-    invocations: [Invocation<'a>; 1],
-    tool: Tool<'a>,
+    results: Vec<SarifResult>,
+    invocations: [Invocation; 1],
+    tool: Tool,
 }
 
 #[derive(Serialize)]
-struct Tool<'a> {
-    driver: Driver<'a>,
+struct Tool {
+    driver: Driver,
 }
 
 #[derive(Serialize)]
-struct Driver<'a> {
+struct Driver {
     name: &'static str,
     version: &'static str,
-    #[serde(serialize_with = "serialize_rules")]
-    rules: &'a RefCell<Rules>,
-}
-
-fn serialize_rules<S: Serializer>(rules: &RefCell<Rules>, serializer: S) -> Result<S::Ok, S::Error> {
-    rules.borrow().rules.serialize(serializer)
+    rules: Vec<Rule>,
 }
 
 #[derive(Serialize)]
@@ -286,9 +239,9 @@ struct Help {
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Invocation<'a> {
+struct Invocation {
     execution_successful: bool,
-    tool_execution_notifications: Notifications<'a>,
+    tool_execution_notifications: Vec<Notification>,
 }
 
 #[derive(Serialize)]
@@ -296,6 +249,17 @@ struct Notification {
     level: Severity,
     message: Message,
     locations: [Location; 1],
+}
+
+impl Notification {
+    /// The error that prevented the verdict on a shader.
+    fn new(record: &Record) -> Self {
+        Self {
+            level: Severity::Error,
+            message: Message::new(record.reason.clone()),
+            locations: [Location::new(&record.shader, None)],
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -343,11 +307,11 @@ impl Fix {
             deleted_region,
             inserted_content: Message::new(fix.replacement.clone()),
         };
-        Self::of_replacements(file, fix.message.clone(), vec![replacement])
+        Self::from_replacements(file, fix.message.clone(), vec![replacement])
     }
 
     /// All edits of a repair; `None` if they are hidden.
-    fn of_repair(repair: &Repair) -> Option<Self> {
+    fn from_repair(repair: &Repair) -> Option<Self> {
         let replacements = repair.edits.iter().map(|edit| {
             Some(Replacement {
                 deleted_region: edit.range.into(),
@@ -355,14 +319,14 @@ impl Fix {
             })
         });
         let replacements = replacements.collect::<Option<_>>()?;
-        Some(Self::of_replacements(
+        Some(Self::from_replacements(
             &repair.file,
             repair.sentence(),
             replacements,
         ))
     }
 
-    fn of_replacements(file: &str, description: String, replacements: Vec<Replacement>) -> Self {
+    fn from_replacements(file: &str, description: String, replacements: Vec<Replacement>) -> Self {
         Self {
             description: Message::new(description),
             artifact_changes: [ArtifactChange {
@@ -416,7 +380,8 @@ struct Region {
 }
 
 impl Region {
-    fn of(message: &diagnostic::Json) -> Option<Self> {
+    /// The place of a message; `None` if it has none.
+    fn new(message: &diagnostic::Json) -> Option<Self> {
         Some(Self {
             start_line: message.line?,
             start_column: message.column?,
@@ -471,7 +436,7 @@ mod tests {
     use crate::written;
 
     fn file(records: Vec<Record>) -> String {
-        written(|out| sarif(&records.into(), out))
+        written(|out| sarif(&records, out))
     }
 
     /// The part of the SARIF 2.1.0 schema that is used here, without additional properties.

@@ -9,7 +9,7 @@ use super::Record;
 
 /// A shader as a submission of a class.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Submitted {
+pub struct StudentSubmission {
     /// The name of the assignment; null if the class has only one.
     pub assignment: Option<String>,
     /// The student's name.

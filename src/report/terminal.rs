@@ -47,20 +47,15 @@ const MIN_SENTENCE: usize = 40;
 const VERDICT_COLUMN: usize = 13;
 
 impl Layout {
-    /// The layout for shaders of these names.
+    /// The layout for shaders of these names, without a list of their diagnostics.
     #[must_use]
-    pub fn new<'a>(
-        names: impl IntoIterator<Item = &'a str>,
-        width: Option<usize>,
-        detail: Detail,
-        lists_diagnostics: bool,
-    ) -> Self {
+    pub fn new<'a>(names: impl IntoIterator<Item = &'a str>, width: Option<usize>, detail: Detail) -> Self {
         let names = names.into_iter().map(display_width).max().unwrap_or(0);
         Self {
             detail,
             names: names.min(MAX_NAME_COLUMN),
             width,
-            lists_diagnostics,
+            lists_diagnostics: false,
         }
     }
 
@@ -156,7 +151,7 @@ fn diagnostics(record: &Record, severity: Severity) -> Vec<&Json> {
         .collect()
 }
 
-/// The largest number of diagnostics of one shader that are listed.
+/// The largest number of diagnostics of one shader that are listed: the first ones cause most of the others.
 const MAX_LISTED: usize = 5;
 
 /// A line for each diagnostic: position, message and code.
@@ -363,7 +358,7 @@ fn describe_check(check: &CheckSummary, from: &str) -> String {
 /// Formats everything that is reported on a shader, without colors and unwrapped: all lines, and each
 /// diagnostic with its notes.
 pub(super) fn details(record: &Record) -> String {
-    let layout = Layout::new([record.shader.as_str()], None, Detail::Full, false);
+    let layout = Layout::new([record.shader.as_str()], None, Detail::Full);
     let mut lines = vec![plain(&lines(record, &layout))];
     for diagnostic in &record.diagnostics {
         lines.push(diagnostic.to_string());
@@ -381,17 +376,17 @@ pub(super) fn plain(text: &str) -> String {
 #[derive(Debug, Clone, Default)]
 pub struct Tally(BTreeMap<Reverse<Verdict>, u64>);
 
-impl FromIterator<Verdict> for Tally {
-    fn from_iter<T: IntoIterator<Item = Verdict>>(verdicts: T) -> Self {
+impl Tally {
+    /// Counts the shaders of records.
+    #[must_use]
+    pub fn new(records: &[Record]) -> Self {
         let mut tally = Self::default();
-        for verdict in verdicts {
-            tally.add(verdict);
+        for record in records {
+            tally.add(record.verdict);
         }
         tally
     }
-}
 
-impl Tally {
     /// Counts one more shader.
     pub fn add(&mut self, verdict: Verdict) {
         *self.0.entry(Reverse(verdict)).or_default() += 1;
@@ -448,7 +443,10 @@ mod tests {
     use crate::repair::samples::{repaired, suspected};
 
     fn text(record: &Record, detail: Detail, width: Option<usize>) -> String {
-        let layout = Layout::new([record.shader.as_str()], width, detail, true);
+        let layout = Layout {
+            lists_diagnostics: true,
+            ..Layout::new([record.shader.as_str()], width, detail)
+        };
         plain(&lines(record, &layout))
     }
 

@@ -226,7 +226,7 @@ fn calls(subject: &TracedPixel<'_>, schema: &TraceSchema, event: &Event) -> (Str
     (function.to_owned(), lines)
 }
 
-/// The most pixels of a trail that are shown, half of them at each end.
+/// The most pixels of a trail that are shown, half of them at each end: those between repeat their neighbors.
 const MAX_TRAIL: usize = 12;
 
 /// Formats the origin of a difference: the pixels that pass it on, the last frame first. Empty if the
@@ -374,7 +374,8 @@ fn components(tree: &Tree, ty: Type) -> Vec<String> {
 
 // The trace as text for a terminal.
 
-/// The number of steps of a long trace that are shown around each marked step, at the start and at the end.
+/// The number of steps of a long trace that are shown around each marked step, at the start and at the end:
+/// about a screen.
 const CONTEXT_STEPS: usize = 40;
 
 /// The column widths of names and of numbers, in characters.
@@ -494,7 +495,7 @@ impl PixelTrace {
 
 impl TraceStep {
     /// Whether a component has the same value in f32 and f64.
-    fn is_same(&self, at: usize) -> bool {
+    fn agrees(&self, at: usize) -> bool {
         let component =
             |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
         match (component(&self.f32), component(&self.f64)) {
@@ -563,7 +564,7 @@ impl Writer {
             "subexpression" => &line.text,
             _ => line.name.as_deref().unwrap_or_default(),
         };
-        let shown: Vec<usize> = (0..count).filter(|&at| self.whole || !line.is_same(at)).collect();
+        let shown: Vec<usize> = (0..count).filter(|&at| self.whole || !line.agrees(at)).collect();
         if shown.is_empty() && only.is_empty() {
             self.write_equal(&indent, name, line, mark);
             return;

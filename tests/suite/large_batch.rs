@@ -1,4 +1,4 @@
-//! Batches of so many shaders that their records are not held in memory.
+//! Batches of so many shaders that their report has several pages.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::program::{Run, toyproof};
 
-/// More than the 500 records that are held in memory, and more than one page.
+/// More than the 500 shaders of one page.
 const SHADERS: usize = 620;
 
 /// Shaders that take no time: nearly all do not compile.
@@ -92,10 +92,7 @@ fn every_report_has_every_shader_also_after_a_resumed_and_a_merged_run() {
         SHADERS
     );
     let index = fs::read_to_string(folder.join("one/report.html")).unwrap();
-    assert_eq!(
-        index.matches("\"0.glsl\"").count() + index.matches("\"619.glsl\"").count(),
-        1
-    );
+    assert_eq!(index.matches("<tr data-verdict=").count(), SHADERS);
     let last = fs::read_to_string(folder.join("one/report/0002.html")).unwrap();
     assert_eq!(last.matches("<article id=").count(), SHADERS - 500);
 

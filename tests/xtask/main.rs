@@ -57,15 +57,6 @@ enum Task {
     },
     /// Build the files of a release: archives, and packages for Debian and Python, with their checksums
     Dist(dist::Arguments),
-    /// Write the table of a report with many shaders: those of a report, repeated under other names
-    LargeTable {
-        /// The verdict.json
-        report: PathBuf,
-        /// The number of shaders
-        count: usize,
-        /// The file to write
-        page: PathBuf,
-    },
     /// Measure how long Chromium takes to open a report
     Page {
         /// The report.html
@@ -145,7 +136,6 @@ fn main() -> ExitCode {
                 return ExitCode::FAILURE;
             }
         }
-        Task::LargeTable { report, count, page } => page::write_large_table(&report, count, &page),
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
         Task::Player(arguments) => player::play(&arguments),
         Task::Projects {

@@ -1,31 +1,10 @@
-//! The time that Chromium takes to open a report, and large reports for that.
+//! The time that Chromium takes to open a report.
 
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::fs;
 use std::path::Path;
-use std::time::SystemTime;
 
-use serde_json::{Value, json};
-use toyproof::report::{LargeReport, Record, Records, Report, Rubrics};
+use serde_json::json;
 use toyproof_testkit::devtools::Page;
-
-/// Writes the table of a report with `count` shaders: those of a report, repeated under other names.
-pub(super) fn write_large_table(report: &Path, count: usize, page: &Path) {
-    let text = fs::read_to_string(report).expect("the report exists");
-    let report: Value = serde_json::from_str(&text).expect("it is a verdict.json");
-    let records: Vec<Record> = serde_json::from_value(report["shaders"].clone()).expect("it has records");
-    let records = records.iter().cycle().take(count).enumerate();
-    let records = records.map(|(index, record)| Record {
-        shader: format!("{index}/{}", record.shader),
-        ..record.clone()
-    });
-    let report = Report::new(None, records.collect::<Records>());
-    let mut file = File::create(page)
-        .map(BufWriter::new)
-        .expect("the folder is writable");
-    let written = LargeReport::new(&report).index(&Rubrics::default(), SystemTime::now(), &mut file);
-    written.and_then(|()| file.flush()).expect("the disk has space");
-}
 
 /// Reads the browser's own clock.
 const CLOCK: &str = "(async () => { \
@@ -42,20 +21,6 @@ fn thread_seconds(page: &mut Page) -> f64 {
         .expect("it is a number")
 }
 
-/// The milliseconds that a click on the head of a column of a large report takes, until its first rows are in
-/// the page.
-fn sort_times(page: &mut Page) -> [f64; 3] {
-    page.until("document.querySelector('#shown').textContent !== ''");
-    ["Shader", "Reason", "Verdict"].map(|column| {
-        let time = page.value(&format!(
-            "(() => {{ const start = performance.now(); \
-             [...document.querySelectorAll('th button')].find(one => one.textContent === '{column}').click(); \
-             return performance.now() - start }})()"
-        ));
-        time.as_f64().expect("it is a number")
-    })
-}
-
 /// Opens a report five times and prints the times; then writes screenshots of it.
 pub(super) fn measure(file: &Path, screenshots: Option<&Path>) {
     let chromium = toyproof::gpu::browser::find().expect("Chromium is installed");
@@ -67,14 +32,6 @@ pub(super) fn measure(file: &Path, screenshots: Option<&Path>) {
         page.open(&file);
         let opened = thread_seconds(&mut page);
         let [shown_at, loaded]: [f64; 2] = serde_json::from_value(page.value(CLOCK)).expect("two numbers");
-        if page.value("document.body.className === 'index'") == true {
-            let sorted = sort_times(&mut page);
-            println!(
-                "{shown_at:.0} ms until the first content, {loaded:.0} ms until all is loaded; {opened:.2} s of the thread \
-                 to open; sorted in {sorted:.0?} ms by name, reason, verdict"
-            );
-            continue;
-        }
         let before = thread_seconds(&mut page);
         page.value("document.querySelector('#shaders tr[data-verdict=ok] a').click()");
         page.until("document.querySelector('article.open dl dd') !== null");

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{path_name, printable};
 use toyproof_image::{input, output};
 use toyproof_project::files::{Input, ReadError};
-use toyproof_report::{Late, Submitted};
+use toyproof_report::{Late, StudentSubmission};
 
 /// The name of the file.
 pub const FILE_NAME: &str = "submissions.json";
 
-/// The maximum size of the file, in bytes: a million students. A student may have a file of this name that is as
-/// large as the disk.
+/// The maximum size of the file, in bytes: a million students. A student may have a file of this name, of
+/// any size.
 const MAX_BYTES: u64 = 256 << 20;
 
 /// The students of a folder of submissions.
@@ -108,7 +108,7 @@ impl Roster {
 /// The owners of inputs, by the folders of students.
 #[derive(Debug, Default)]
 pub struct Owners {
-    students: HashMap<PathBuf, Submitted>,
+    students: HashMap<PathBuf, StudentSubmission>,
 }
 
 impl Owners {
@@ -131,7 +131,7 @@ impl Owners {
             };
             add_missing(folder, &roster, inputs);
             let students = roster.students.into_iter().map(|student| {
-                let submitted = Submitted {
+                let submitted = StudentSubmission {
                     assignment: roster.assignment.clone(),
                     student: student.name,
                     id: student.id,
@@ -146,7 +146,7 @@ impl Owners {
 
     /// The student who submitted an input, if any.
     #[must_use]
-    pub fn find(&self, input: &Result<Input, ReadError>) -> Option<&Submitted> {
+    pub fn find(&self, input: &Result<Input, ReadError>) -> Option<&StudentSubmission> {
         let path = input_path(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))
     }

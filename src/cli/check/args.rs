@@ -9,7 +9,7 @@ use toyproof_verify::Difference;
 
 use super::options::{BatchOptions, CheckFormat, CheckOptions, Options, PlanOptions, TaskInputs};
 use super::shard::Shard;
-use crate::cli::inputs::{DriverArgs, FrameArgs, LanguageArgs};
+use crate::cli::inputs::{DriverArgs, FrameArgs, LanguageArgs, parse_number};
 use crate::cli::reference::ReferenceArgs;
 
 /// Check shaders against a reference, and give a verdict on each
@@ -181,10 +181,8 @@ impl Args {
 const MAX_SEARCH: f64 = 3600.0;
 
 fn parse_search(text: &str) -> Result<f64, String> {
-    let search = text.parse().ok();
-    search
-        .filter(|search| (0.0..=MAX_SEARCH).contains(search))
-        .ok_or_else(|| format!("expected a number from 0 to {MAX_SEARCH}, in seconds of one core"))
+    let expected = format_args!("a number from 0 to {MAX_SEARCH}, in seconds of one core");
+    parse_number(text, 0.0..=MAX_SEARCH, expected)
 }
 
 #[cfg(test)]

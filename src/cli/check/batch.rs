@@ -1,14 +1,13 @@
 //! A run over all shaders of one command: their results are reported in order, while the next are checked.
 
 use std::collections::HashSet;
-use std::io;
 use std::num::NonZero;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{Severity, grouped, path_name, plural};
 use toyproof_project::files::Input;
-use toyproof_report::{self as report, Detail, Earlier, Layout, Record, Records, Report, Rubrics};
+use toyproof_report::{self as report, Detail, Earlier, Layout, Record, Report, Rubrics, Tally};
 use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
@@ -23,7 +22,8 @@ use crate::cli::inputs::{DriverArgs, shell_word, short_device};
 use crate::cli::pool::{self, InOrder};
 use crate::cli::{Exit, Terminal};
 
-/// The largest number of shaders whose errors and warnings are shown with their source lines.
+/// The largest number of shaders whose errors and warnings are shown with their source lines: more would not
+/// fit on a screen.
 const MAX_WITH_SOURCE: usize = 3;
 
 /// The layout of the lines of all shaders.
@@ -34,17 +34,12 @@ fn layout(submissions: &[Submission], format: CheckFormat, terminal: &Terminal) 
         _ => Detail::Normal,
     };
     let names = submissions.iter().map(|submission| submission.name.as_str());
-    let lists_diagnostics = submissions.len() > MAX_WITH_SOURCE;
     // Each line of the short form is one diagnostic.
     let width = terminal.width().filter(|_| format == CheckFormat::Human);
-    Layout::new(names, width, detail, lists_diagnostics)
-}
-
-/// A result that waits for its turn.
-enum Waiting {
-    Checked(Box<Outcome>),
-    /// The result of an earlier run, which is read when it is its turn.
-    Known,
+    Layout {
+        lists_diagnostics: submissions.len() > MAX_WITH_SOURCE,
+        ..Layout::new(names, width, detail)
+    }
 }
 
 /// A run over all shaders of one command.
@@ -55,9 +50,10 @@ pub(super) struct Batch<'a> {
     results: Option<Results>,
     /// The report that is compared with.
     earlier: Option<Earlier>,
-    order: InOrder<(usize, Waiting)>,
+    /// The results that wait for their turn, each with the index of its submission.
+    order: InOrder<(usize, Outcome)>,
     /// The reported records, in order.
-    pub(super) records: Records,
+    pub(super) records: Vec<Record>,
     /// The index of each one's submission.
     pub(super) reported: Vec<usize>,
     device: Option<String>,
@@ -89,10 +85,7 @@ impl<'a> Batch<'a> {
             results,
             earlier,
             order: InOrder::default(),
-            records: options
-                .out
-                .clone()
-                .map_or_else(Records::default, Records::stored_in),
+            records: Vec::new(),
             reported: Vec::new(),
             device: None,
             failed: false,
@@ -113,14 +106,12 @@ impl<'a> Batch<'a> {
             [one] => self.terminal.spinner(&one.name),
             several => self.terminal.bar(several.len() as u64, "shaders"),
         };
-        let mut tally = report::Tally::default();
+        let mut tally = Tally::default();
         let mut todo = Vec::new();
         for (index, submission) in submissions.iter().enumerate() {
-            let key = submission.key.as_deref();
-            let results = self.results.as_ref().zip(key);
-            if results.is_some_and(|(results, key)| results.is_known(key)) {
+            if let Some(outcome) = self.known(submission) {
                 bar.inc(1);
-                self.take(submissions, index, Waiting::Known);
+                self.take(submissions, index, outcome);
             } else {
                 todo.push(index);
             }
@@ -151,7 +142,7 @@ impl<'a> Batch<'a> {
                 bar.inc(1);
                 bar.set_message(self.terminal.bar_text(&tally));
                 self.keep(&submissions[index], &outcome);
-                self.take(submissions, index, Waiting::Checked(Box::new(outcome)));
+                self.take(submissions, index, outcome);
                 if self.terminal.is_closed() {
                     // Nobody reads further results; the shaders in progress are finished.
                     stop.store(true, Ordering::Relaxed);
@@ -161,8 +152,8 @@ impl<'a> Batch<'a> {
         bar.finish_and_clear();
         let is_done = self.records.len() == submissions.len();
         if stop.load(Ordering::Relaxed) && !(self.terminal.is_closed() && is_done) {
-            for (index, waiting) in std::mem::take(&mut self.order).rest() {
-                self.report(submissions, index, waiting);
+            for (index, outcome) in std::mem::take(&mut self.order).rest() {
+                self.report(submissions, index, outcome);
             }
             let why = if self.terminal.is_closed() {
                 "standard output was closed"
@@ -195,50 +186,40 @@ impl<'a> Batch<'a> {
     fn keep(&mut self, submission: &Submission, outcome: &Outcome) {
         if let (Some(results), Some(key)) = (&mut self.results, &submission.key)
             && !outcome.log.lacks_image
-            && let Err(error) = results.add(key, &outcome.record, outcome.log.device.as_deref())
         {
-            self.terminal.error(format_args!("cannot write {error}"));
-            self.failed = true;
+            let line = Line {
+                key: key.clone(),
+                record: outcome.record.clone(),
+                device: outcome.log.device.clone(),
+            };
+            if let Err(error) = results.add(&line) {
+                self.terminal.error(format_args!("cannot write {error}"));
+                self.failed = true;
+            }
         }
     }
 
-    fn take(&mut self, submissions: &[Submission], index: usize, waiting: Waiting) {
-        for (index, waiting) in self.order.take(index, (index, waiting)) {
-            self.report(submissions, index, waiting);
+    /// Reports the results whose turn it is, once another one has arrived.
+    fn take(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
+        for (index, outcome) in self.order.take(index, (index, outcome)) {
+            self.report(submissions, index, outcome);
         }
     }
 
-    /// Reports a shader whose turn it is.
-    fn report(&mut self, submissions: &[Submission], index: usize, waiting: Waiting) {
-        let outcome = match waiting {
-            Waiting::Checked(outcome) => *outcome,
-            Waiting::Known => match self.known(&submissions[index]) {
-                Ok(outcome) => outcome,
-                Err(error) => {
-                    self.terminal
-                        .error(format_args!("cannot read {error}; run the command again"));
-                    self.failed = true;
-                    return;
-                }
+    /// The result of an earlier run, if there is one.
+    fn known(&self, submission: &Submission) -> Option<Outcome> {
+        let line = self.results.as_ref()?.known(submission.key.as_ref()?)?;
+        Some(Outcome {
+            record: line.record.clone(),
+            log: Log {
+                device: line.device.clone(),
+                ..Log::default()
             },
-        };
-        self.report_outcome(submissions, index, outcome);
-    }
-
-    /// Reads the result of an earlier run.
-    fn known(&mut self, submission: &Submission) -> io::Result<Outcome> {
-        let results = self.results.as_mut().zip(submission.key.as_deref());
-        let (results, key) = results.ok_or(io::ErrorKind::NotFound)?;
-        let Line { record, device, .. } = results.known(key)?;
-        let log = Log {
-            device,
-            ..Log::default()
-        };
-        Ok(Outcome { record, log })
+        })
     }
 
     /// Prints the messages and the result line of a shader.
-    fn report_outcome(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
+    fn report(&mut self, submissions: &[Submission], index: usize, outcome: Outcome) {
         let Outcome { record, log } = outcome;
         if record.verdict == Verdict::Wrong && record.fix.is_none() {
             self.unrepaired.insert(index);
@@ -311,7 +292,7 @@ impl<'a> Batch<'a> {
             CheckFormat::Human => {
                 print_summary(&report, hidden_warnings, start.elapsed(), terminal);
                 if let [one] = &reported[..]
-                    && report.shaders().tally().count(Verdict::Ok) == 1
+                    && report.shaders()[0].verdict == Verdict::Ok
                     && let Some(shader) = one.input.as_ref().ok().and_then(Input::path)
                     && let Some(scene) = unused_scene(shader)
                 {
@@ -329,7 +310,7 @@ impl<'a> Batch<'a> {
             CheckFormat::Json => failed |= terminal.stream(|stdout| report.json(stdout)).is_err(),
         }
         if let Some(earlier) = earlier {
-            failed |= !print_changes(&earlier, &report, options.format, terminal);
+            print_changes(&earlier, &report, options.format, terminal);
         }
         if let Some(out) = &options.out {
             // Before the reports are written, which would create the folder again.
@@ -360,9 +341,10 @@ impl<'a> Batch<'a> {
         if options.shard.is_some() {
             return if failed { Exit::Error } else { Exit::Success };
         }
-        if failed || report.shaders().tally().count(Verdict::Error) > 0 {
+        let mut records = report.shaders().iter();
+        if failed || records.clone().any(|record| record.verdict == Verdict::Error) {
             Exit::Error
-        } else if report.shaders().are_passed() {
+        } else if records.all(Record::is_passed) {
             Exit::Success
         } else {
             Exit::ShaderFault
@@ -373,7 +355,7 @@ impl<'a> Batch<'a> {
 /// Prints the tally of all shaders, and warns of shaders that were compared with nothing.
 fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, terminal: &Terminal) {
     let records = report.shaders();
-    let tally = records.tally();
+    let tally = Tally::new(records);
     let device = report
         .device()
         .map(|device| format!(", {}", short_device(device)));
@@ -404,15 +386,9 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
     }
 }
 
-/// Prints the verdicts that differ from those of an earlier report; returns false if a record cannot be read.
-fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, terminal: &Terminal) -> bool {
-    let changes = match earlier.changes(report) {
-        Ok(changes) => changes,
-        Err(error) => {
-            terminal.error(error);
-            return false;
-        }
-    };
+/// Prints the verdicts that differ from those of an earlier report.
+fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, terminal: &Terminal) {
+    let changes = earlier.changes(report);
     if format == CheckFormat::Human {
         terminal.note("");
         for change in &changes {
@@ -426,5 +402,4 @@ fn print_changes(earlier: &Earlier, report: &Report, format: CheckFormat, termin
         plural(count, "verdict differs", "verdicts differ"),
         earlier.name()
     ));
-    true
 }

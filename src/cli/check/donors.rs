@@ -2,7 +2,6 @@
 //! in its places.
 
 use std::collections::HashMap;
-use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use toyproof_diagnostic::{grouped, plural};
@@ -17,14 +16,25 @@ use super::outcome::Outcome;
 use super::submission::Submission;
 use crate::cli::pool;
 
-/// The largest number of correct shaders for one reference whose expressions are tried.
+/// The largest number of correct shaders for one reference whose expressions are tried: further solutions of
+/// the same exercise rarely have new expressions.
 const MAX_SHADERS: usize = 64;
 
-/// The task, and the names of the scene or of the other reference that a shader was compared with.
-type ReferenceNames = (usize, Option<String>, Option<String>);
+/// What a shader was compared with.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct ReferenceKey {
+    task: usize,
+    /// The name of the scene, or of the other reference.
+    name: Option<String>,
+}
 
-fn reference(submission: &Submission, record: &Record) -> ReferenceNames {
-    (submission.task, record.scene.clone(), record.reference.clone())
+impl ReferenceKey {
+    fn new(submission: &Submission, record: &Record) -> Self {
+        Self {
+            task: submission.task,
+            name: record.scene.clone().or_else(|| record.reference.clone()),
+        }
+    }
 }
 
 impl Batch<'_> {
@@ -40,14 +50,7 @@ impl Batch<'_> {
         if self.unrepaired.is_empty() {
             return;
         }
-        let (todo, donors) = match self.donors(submissions, checkers) {
-            Ok(found) => found,
-            Err(error) => {
-                self.terminal.error(error);
-                self.failed = true;
-                return;
-            }
-        };
+        let (todo, donors) = self.donors(submissions, checkers);
         if todo.is_empty() || stop.load(Ordering::Relaxed) {
             return;
         }
@@ -57,31 +60,22 @@ impl Batch<'_> {
         let mut found: Vec<(usize, Outcome)> = Vec::new();
         let threads = self.threads(todo.len());
         let (records, reported) = (&self.records, &self.reported);
-        let mut failure = None;
         pool::for_each(
             &todo,
             threads,
             stop,
             || WorkerContext::without_gpu(threads),
             |context, place| {
-                let record = records.get(place)?;
-                let submission = &submissions[reported[place]];
-                let donors = &donors[&reference(submission, &record)];
-                Ok(checkers[submission.task].search_again(context, submission, &record, donors))
+                let (record, submission) = (&records[place], &submissions[reported[place]]);
+                let donors = &donors[&ReferenceKey::new(submission, record)];
+                checkers[submission.task].search_again(context, submission, record, donors)
             },
-            |place, outcome: io::Result<_>| {
+            |place, outcome| {
                 bar.inc(1);
-                match outcome {
-                    Ok(outcome) => found.extend(outcome.map(|outcome| (place, outcome))),
-                    Err(error) => failure = Some(error),
-                }
+                found.extend(outcome.map(|outcome| (place, outcome)));
             },
         );
         bar.finish_and_clear();
-        if let Some(error) = failure {
-            self.terminal.error(error);
-            self.failed = true;
-        }
         found.sort_by_key(|&(place, _)| place);
         self.take_fixes(found);
     }
@@ -91,14 +85,14 @@ impl Batch<'_> {
         &self,
         submissions: &[Submission],
         checkers: &[Checker],
-    ) -> io::Result<(Vec<usize>, HashMap<ReferenceNames, Donors>)> {
-        let mut correct: HashMap<ReferenceNames, Vec<&Submission>> = HashMap::new();
+    ) -> (Vec<usize>, HashMap<ReferenceKey, Donors>) {
+        let mut correct: HashMap<ReferenceKey, Vec<&Submission>> = HashMap::new();
         let mut wrong = Vec::new();
-        for (place, (verdict, &index)) in self.records.verdicts().zip(&self.reported).enumerate() {
-            let is_donor = verdict == Verdict::Correct;
+        for (place, (record, &index)) in self.records.iter().zip(&self.reported).enumerate() {
+            let is_donor = record.verdict == Verdict::Correct;
             if is_donor || self.unrepaired.contains(&index) {
                 let submission = &submissions[index];
-                let reference = reference(submission, &*self.records.get(place)?);
+                let reference = ReferenceKey::new(submission, record);
                 if !is_donor {
                     wrong.push((place, reference));
                 } else if let donors = correct.entry(reference).or_default()
@@ -112,11 +106,11 @@ impl Batch<'_> {
         let mut donors = HashMap::new();
         for (_, reference) in &wrong {
             if !donors.contains_key(reference) {
-                let of_reference = checkers[reference.0].donors(correct[reference].iter().copied());
+                let of_reference = checkers[reference.task].donors(correct[reference].iter().copied());
                 donors.insert(reference.clone(), of_reference);
             }
         }
-        Ok((wrong.into_iter().map(|(place, _)| place).collect(), donors))
+        (wrong.into_iter().map(|(place, _)| place).collect(), donors)
     }
 
     /// Prints records with fixes, and puts each in the place of the record without.
@@ -139,7 +133,7 @@ impl Batch<'_> {
                 self.terminal.result(&report::lines(&record, &self.layout));
             }
             self.failed |= log.failed;
-            self.records.replace(place, record);
+            self.records[place] = record;
         }
     }
 }

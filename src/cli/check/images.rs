@@ -118,29 +118,15 @@ pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
     }
 }
 
-/// The gallery of a page without images.
-pub(super) fn gallery_of_sources(submissions: &[&Submission]) -> Gallery {
-    let mut gallery = Gallery::new(1);
-    for submission in submissions {
-        gallery.add_exhibit(exhibit_of_source(submission));
-    }
-    gallery
-}
-
-/// Unreadable files are not shown: the record holds the reason.
-fn exhibit_of_source(submission: &Submission) -> Exhibit {
+fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
     let mut exhibit = Exhibit::default();
+    // Unreadable files are not shown: the record holds the reason.
     if let Ok(found) = &submission.input
         && let Ok(texts) = files::read(found)
         && let [file] = texts.files()[..]
     {
         exhibit.source = Some(file.text().to_owned());
     }
-    exhibit
-}
-
-fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
-    let mut exhibit = exhibit_of_source(submission);
     let Some(stem) = &submission.output_stem else {
         return exhibit;
     };

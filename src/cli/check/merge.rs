@@ -12,7 +12,7 @@ use toyproof_image::{input, output};
 use super::args::Args;
 use super::earlier::earlier;
 use super::images::IMAGES;
-use super::results::{self, RESULTS_NAME, Results, Span};
+use super::results::{Line, RESULTS_NAME, Results, read_lines};
 use super::shard::Shard;
 use super::sharding::{self, MANIFEST_NAME, Manifest};
 use super::submission::Submission;
@@ -75,15 +75,16 @@ pub(in crate::cli) fn merge(args: &MergeArgs, terminal: &Terminal) -> Result<Exi
         .zip(&numbers)
         .map(|(submission, &number)| results.remove(&(number, submission.key.clone()?)))
         .collect();
-    drop(results);
     check_complete(&folders, &work.submissions, &numbers, &found)?;
-    for (submission, found) in work.submissions.iter().zip(&found) {
-        if let Some((folder, _)) = found {
-            copy_images(submission, folder, &args.out).map_err(|error| format!("cannot write {error}"))?;
+    let cannot_write = |error| format!("cannot write {error}");
+    let mut lines = Vec::new();
+    for (submission, found) in work.submissions.iter().zip(found) {
+        if let Some((folder, line)) = found {
+            copy_images(submission, folder, &args.out).map_err(cannot_write)?;
+            lines.push(line);
         }
     }
-    let results = Results::merged(&args.out, lines(&work.submissions, &found))
-        .map_err(|error| format!("cannot write {error}"))?;
+    let results = Results::create(&args.out, lines).map_err(cannot_write)?;
     terminal.note(&format!(
         "{} {} merged",
         grouped(shards.into()),
@@ -153,8 +154,8 @@ fn parse(arguments: &[String], out: &Path) -> Result<Args, CliError> {
     }
 }
 
-/// A result: the folder of its shard, and its place in the shard's results.
-type Found<'a> = (&'a Path, Span);
+/// The folder of a shard, and a result in it.
+type Found<'a> = (&'a Path, Line);
 
 /// Finds the results in all folders, by the numbers of their shards and their keys. Of several results of one
 /// shader, which differ in their times, one is taken that does not depend on the order of the folders.
@@ -163,30 +164,13 @@ fn find_results(folders: &[(PathBuf, Manifest)]) -> io::Result<HashMap<(u32, Str
     folders.sort_by(|(a, _), (b, _)| a.cmp(b));
     let mut results = HashMap::new();
     for (folder, manifest) in folders {
-        results::for_each_line(&folder.join(RESULTS_NAME), |span, _, line| {
-            if let Some(line) = line {
-                let key = (manifest.shard.number, line.key);
-                results.entry(key).or_insert((folder.as_path(), span));
-            }
-            Ok(())
-        })?;
+        let (lines, _) = read_lines(&folder.join(RESULTS_NAME))?;
+        for line in lines {
+            let key = (manifest.shard.number, line.key.clone());
+            results.entry(key).or_insert((folder.as_path(), line));
+        }
     }
     Ok(results)
-}
-
-/// Reads the lines of the results, each with its key.
-fn lines<'a>(
-    submissions: &'a [Submission],
-    found: &'a [Option<Found<'a>>],
-) -> impl Iterator<Item = io::Result<(Vec<u8>, String)>> + 'a {
-    submissions.iter().zip(found).filter_map(|(submission, found)| {
-        let ((folder, span), key) = found.zip(submission.key.clone())?;
-        let path = folder.join(RESULTS_NAME);
-        let line = input::open(&path).and_then(|mut file| results::read_span(&mut file, span));
-        let line =
-            line.map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path_name(&path))));
-        Some(line.map(|line| (line, key)))
-    })
 }
 
 /// Checks that there is a result of every shader that can be read; otherwise lists the shards that lack some.

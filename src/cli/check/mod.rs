@@ -11,11 +11,14 @@ mod options;
 mod outcome;
 mod plan;
 mod reference;
+mod reference_cache;
 mod reports;
 mod results;
+mod shader_check;
 mod shard;
 mod sharding;
 mod submission;
+mod submission_check;
 mod work;
 
 use toyproof_diagnostic::{grouped, plural};
@@ -25,7 +28,7 @@ use self::earlier::earlier;
 pub(super) use self::merge::{MergeArgs, merge};
 pub(super) use self::plan::read_assignment;
 pub(super) use self::reference::Scenes;
-use self::results::Results;
+use self::results::{RESULTS_NAME, Results, read_lines};
 use self::work::Work;
 use super::{CliError, Exit, Terminal};
 
@@ -45,9 +48,14 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         if let (Some(shard), Some(program)) = (options.batch.shard, build) {
             work.select(&options.task.shaders, shard, program, out)?;
         }
-        let opened =
-            Results::open(out, options.batch.resume).map_err(|error| format!("cannot write {error}"))?;
-        if let broken @ 1.. = opened.broken as u64 {
+        let cannot_write = |error| format!("cannot write {error}");
+        let (lines, broken) = if options.batch.resume {
+            read_lines(&out.join(RESULTS_NAME)).map_err(cannot_write)?
+        } else {
+            (Vec::new(), 0)
+        };
+        results = Some(Results::create(out, lines).map_err(cannot_write)?);
+        if broken > 0 {
             terminal.warn(format_args!(
                 "{} {} of results.jsonl cannot be read; {} checked again",
                 grouped(broken),
@@ -55,7 +63,6 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
                 plural(broken, "its shader is", "their shaders are"),
             ));
         }
-        results = Some(opened);
     }
     Ok(work.check(&options, results, earlier, terminal))
 }

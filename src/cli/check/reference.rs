@@ -1,22 +1,20 @@
-//! The reference of shaders, and the results that are computed once for it.
+//! The reference of shaders: the scene of each, or the shader or image that `--reference` names.
 
-use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, LazyLock};
 
 use toyproof_diagnostic::{File, Files, path_name};
-use toyproof_explain::known::Hypotheses;
 use toyproof_explain::whole_image::OtherScenes;
-use toyproof_image::Frame;
-use toyproof_project::files::{self, Input, InputSource, ReadError, OutsideLink};
+use toyproof_project::files::{self, Input, InputSource, OutsideLink, ReadError};
 use toyproof_scene::{self as scene, Scene};
-use toyproof_verify::{Conditioning, Expected, Failure, ReferenceKind};
+use toyproof_verify::{Expected, Failure};
 
 use super::options::CheckOptions;
 use super::plan::{Plan, PlannedFrame};
+use super::reference_cache::CachedReference;
 use crate::cli::reference::GivenReference;
-use crate::cli::scenes::{builtin_scenes, read_scene, with_builtin_hint};
+use crate::cli::scenes::{builtin_scenes, parse_scene, read_scene, with_builtin_hint};
 use crate::cli::shader::Shader;
 use crate::cli::{CliError, Terminal};
 
@@ -149,11 +147,7 @@ impl Scenes {
             let error = format!("{name} is a shader; `--scene` takes a scene file or the name of a scene");
             return Err(CliError::new(error).with_help("name a shader to compare with with --reference"));
         }
-        let mut files = Files::default();
-        let file = files.add(text.clone()?);
-        scene::parse(&files, file)
-            .map(drop)
-            .map_err(|errors| CliError::diagnostics(errors, &files))
+        parse_scene(text.clone()?).map(drop)
     }
 
     /// The path of a shader's scene, and its text or the error: the scene that `--scene` names, else the one
@@ -193,7 +187,8 @@ impl Scenes {
     }
 }
 
-/// The largest number of scene files in the folder of a given one that are read.
+/// The largest number of scene files in the folder of a given one that are read: a wrong shader is compared
+/// with each.
 const MAX_NEIGHBORS: usize = 32;
 
 /// The scenes that a shader may render instead of its own: the built-in ones, and those in the folder of the
@@ -218,10 +213,8 @@ pub(super) fn other_scenes(named: Option<&Path>) -> OtherScenes {
             .collect();
         paths.sort_unstable();
         let neighbors = paths.into_iter().take(MAX_NEIGHBORS).filter_map(|path| {
-            let mut files = Files::default();
-            let file = files.add(files::read_text(&path).ok()?);
-            let name = path.file_stem()?.to_string_lossy().into_owned();
-            Some((name, scene::parse(&files, file).ok()?))
+            let scene = parse_scene(files::read_text(&path).ok()?).ok()?;
+            Some((path.file_stem()?.to_string_lossy().into_owned(), scene))
         });
         let mut scenes: Vec<(String, Scene)> = neighbors.collect();
         scenes.extend(builtin_scenes());
@@ -239,13 +232,8 @@ pub(super) fn unused_scene(shader: &Path) -> Option<PathBuf> {
         .ok()?
         .filter_map(|entry| Some(entry.ok()?.path()));
     let is_scene = |path: &PathBuf| {
-        let mut files = Files::default();
         let is_toml = path.extension().is_some_and(|extension| extension == "toml");
-        is_toml
-            && files::read_text(path).is_ok_and(|text| {
-                let file = files.add(text);
-                scene::parse(&files, file).is_ok()
-            })
+        is_toml && files::read_text(path).is_ok_and(|text| parse_scene(text).is_ok())
     };
     let mut scenes = paths.filter(is_scene);
     let only = scenes.next()?;
@@ -258,112 +246,4 @@ pub(super) fn unused_scene(shader: &Path) -> Option<PathBuf> {
 fn leaving_link(found: &Input, shader: &Path, beside: &Path) -> Option<OutsideLink> {
     let folder = found.folder.as_deref().or(shader.parent())?;
     OutsideLink::find(beside, folder)
-}
-
-// The scenes that shaders have been compared with, shared by all threads.
-
-/// The cache holds at most this many scenes in each frame, the most recently used, and fewer if they exceed
-/// `MAX_CACHED_BYTES`.
-const MAX_CACHED_SCENES: usize = 8;
-const MAX_CACHED_BYTES: usize = 256 << 20;
-
-/// A reference with the results that are computed once and shared.
-#[derive(Debug)]
-pub(super) struct CachedReference {
-    pub(super) expected: Expected,
-    hypotheses: OnceLock<Option<Hypotheses>>,
-    is_tested: AtomicBool,
-}
-
-impl CachedReference {
-    fn new(expected: Expected) -> Self {
-        Self {
-            expected,
-            hypotheses: OnceLock::new(),
-            is_tested: AtomicBool::new(false),
-        }
-    }
-
-    /// How ill-conditioned a scene is, the first time that it is requested; `None` if it is not.
-    pub(super) fn conditioning(&self) -> Option<Conditioning> {
-        let is_first = self.expected.kind() == ReferenceKind::Scene && !self.is_tested.swap(true, Relaxed);
-        is_first.then(|| self.expected.conditioning())?
-    }
-
-    /// The hypotheses that a wrong image is compared with; `None` without a scene.
-    pub(super) fn hypotheses(&self, frame: &Frame) -> Option<&Hypotheses> {
-        let hypotheses = || Hypotheses::new(self.expected.scene()?, frame);
-        self.hypotheses.get_or_init(hypotheses).as_ref()
-    }
-}
-
-/// A cache of the most recently used scenes, the latest first, each with the index of its frame.
-#[derive(Debug, Default)]
-pub(super) struct SceneCache {
-    latest: Mutex<VecDeque<(usize, Arc<CachedReference>)>>,
-}
-
-impl SceneCache {
-    /// Returns the cached results of a scene in the frame with this index, creating them if needed.
-    pub(super) fn get(&self, scene: Scene, index: usize, frame: &Frame) -> Arc<CachedReference> {
-        let mut latest = self.latest.lock().unwrap_or_else(PoisonError::into_inner);
-        let before = latest
-            .iter()
-            .position(|(known_index, known)| *known_index == index && known.expected.scene() == Some(&scene));
-        let known = before.and_then(|at| latest.remove(at)).map_or_else(
-            || Arc::new(CachedReference::new(Expected::from_scene(scene, frame))),
-            |(_, known)| known,
-        );
-        latest.push_front((index, Arc::clone(&known)));
-        let bytes = |latest: &VecDeque<(usize, Arc<CachedReference>)>| {
-            let bytes = latest.iter().map(|(_, known)| known.expected.bytes());
-            bytes.sum::<usize>()
-        };
-        let in_frame =
-            |latest: &VecDeque<(usize, _)>| latest.iter().filter(|(known, _)| *known == index).count();
-        while in_frame(&latest) > MAX_CACHED_SCENES {
-            let oldest = latest.iter().rposition(|(known, _)| *known == index);
-            oldest.and_then(|at| latest.remove(at));
-        }
-        while latest.len() > 1 && bytes(&latest) > MAX_CACHED_BYTES {
-            latest.pop_back();
-        }
-        known
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use toyproof_diagnostic::{File, Files};
-    use toyproof_scene as scene;
-
-    use super::*;
-
-    fn scene(title: &str) -> Scene {
-        let mut files = Files::default();
-        let text = format!("title = \"{title}\"\n[film]\nsize = [64, 36]\n[background]\n");
-        let file = files.add(File::new("s", text));
-        scene::parse(&files, file).unwrap()
-    }
-
-    #[test]
-    fn recently_used_scenes_are_cached() {
-        let scenes = SceneCache::default();
-        let frame = Frame {
-            size: [64, 36],
-            ..Frame::default()
-        };
-        let known = |title: &str| scenes.get(scene(title), 0, &frame);
-        let first = known("0");
-        for at in 1..MAX_CACHED_SCENES {
-            known(&at.to_string());
-        }
-        assert!(Arc::ptr_eq(&first, &known("0")), "the last of eight");
-        for at in 0..MAX_CACHED_SCENES {
-            known(&format!("other {at}"));
-        }
-        assert!(!Arc::ptr_eq(&first, &known("0")));
-        let other_frame = scenes.get(scene("0"), 1, &frame);
-        assert!(!Arc::ptr_eq(&other_frame, &known("0")));
-    }
 }

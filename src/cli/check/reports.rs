@@ -7,12 +7,12 @@ use std::time::SystemTime;
 use toyproof_diagnostic::path_name;
 use toyproof_image::output;
 use toyproof_report::{
-    ClassTable, Hints, LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, Report, Rubrics, csv,
-    gradescope, html, junit, part_name, sarif,
+    ClassTable, Hints, MAX_PAGE_SHADERS, PARTS, Report, Rubrics, csv, gradescope, html, html_index,
+    html_part, junit, part_name, sarif,
 };
 use toyproof_verify::contain::{Part, contain};
 
-use super::images::{gallery, gallery_of_sources, thumbnails};
+use super::images::{gallery, thumbnails};
 use super::submission::Submission;
 use crate::cli::Terminal;
 
@@ -48,21 +48,21 @@ pub(super) fn write(
         is_complete: true,
     };
     folder.write_pages(page, report, submissions, rubrics, date);
-    folder.write(Path::new(table), |file| csv(records, rubrics, file));
+    folder.write(table, |file| csv(records, rubrics, file));
     if submissions.iter().any(|submission| submission.is_assigned()) {
-        folder.write(Path::new(class), |file| {
-            ClassTable::of(records, rubrics)?.csv(file)
-        });
+        folder.write(class, |file| ClassTable::new(records, rubrics).csv(file));
     }
-    folder.write(Path::new(tests), |file| junit(records, hints, file));
-    folder.write(Path::new(log), |file| sarif(records, file));
-    match rubrics.of_all() {
-        Some(rubric) if !are_of_several_students(submissions) => folder.write(Path::new(marks), |file| {
+    folder.write(tests, |file| junit(records, hints, file));
+    folder.write(log, |file| sarif(records, file));
+    match rubrics.common() {
+        Some(rubric) if !are_of_several_students(submissions) => folder.write(marks, |file| {
             gradescope(records, rubric, hints, &thumbnails(submissions, rubric), file)
         }),
-        _ => folder.remove(Path::new(marks)),
+        _ => {
+            folder.remove(marks);
+        }
     }
-    folder.write(Path::new(verdicts), |file| report.json(file));
+    folder.write(verdicts, |file| report.json(file));
     folder.is_complete
 }
 
@@ -86,7 +86,7 @@ struct Folder<'a> {
 
 impl Folder<'_> {
     /// Writes a file, given by its path in the folder. A failure costs only this file.
-    fn write(&mut self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
+    fn write(&mut self, path: impl AsRef<Path>, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
         let path = self.out.join(path);
         let written = contain(Part::Report, || output::stream_inside(self.out, &path, write));
         match written {
@@ -99,12 +99,14 @@ impl Folder<'_> {
         self.is_complete = false;
     }
 
-    /// Removes a file of an earlier run.
-    fn remove(&mut self, path: &Path) {
-        if let Err(error) = output::remove_inside(self.out, &self.out.join(path)) {
+    /// Removes a file of an earlier run; returns whether there is none now.
+    fn remove(&mut self, path: impl AsRef<Path>) -> bool {
+        let removed = output::remove_inside(self.out, &self.out.join(path));
+        if let Err(error) = &removed {
             self.terminal.error(format_args!("cannot remove {error}"));
             self.is_complete = false;
         }
+        removed.is_ok()
     }
 
     /// Writes the page, or the table and the pages of the parts of a large report, and removes those of an
@@ -118,31 +120,24 @@ impl Folder<'_> {
         date: SystemTime,
     ) {
         let mut parts = 0;
-        if report.shaders().len() <= MAX_PAGE_SHADERS {
-            self.write(Path::new(name), |file| {
-                file.write_all(html(report, rubrics, &gallery(submissions), date)?.as_bytes())
+        if submissions.len() <= MAX_PAGE_SHADERS {
+            self.write(name, |file| {
+                file.write_all(html(report, rubrics, &gallery(submissions), date).as_bytes())
             });
         } else {
-            let gallery = if submissions.len() > MAX_SHADERS_WITH_IMAGES {
-                gallery_of_sources
-            } else {
-                gallery
-            };
-            let large = LargeReport::new(report);
-            for part in large.parts() {
-                parts = part.number();
+            for submissions in submissions.chunks(MAX_PAGE_SHADERS) {
+                parts += 1;
                 self.write(&part_path(parts), |file| {
-                    let page = part.html(rubrics, &gallery(&submissions[part.places()]), date)?;
+                    let page = html_part(report, parts, rubrics, &gallery(submissions), date);
                     file.write_all(page.as_bytes())
                 });
             }
-            self.write(Path::new(name), |file| large.index(rubrics, date, file));
+            self.write(name, |file| {
+                file.write_all(html_index(report, rubrics, date).as_bytes())
+            });
         }
-        let stale = (parts + 1..).map(|number| self.out.join(part_path(number)));
-        for stale in stale.take_while(|path| path.exists()) {
-            if let Err(error) = output::remove_inside(self.out, &stale) {
-                self.terminal.error(format_args!("cannot remove {error}"));
-                self.is_complete = false;
+        for stale in (parts + 1..).map(part_path) {
+            if !self.out.join(&stale).exists() || !self.remove(&stale) {
                 return;
             }
         }

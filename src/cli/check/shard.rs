@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-/// The largest number of shards.
+/// The largest number of shards: schedulers limit arrays of jobs to about as many.
 const MAX_SHARDS: u32 = 10_000;
 
 /// A part of a batch: number `number` of `of`, counted from 1.

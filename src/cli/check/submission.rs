@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use sha2::{Digest, Sha256};
 use toyproof_image::{FrameInputs, input};
 use toyproof_project::files::{self, Input, ReadError};
-use toyproof_report::Submitted;
+use toyproof_report::StudentSubmission;
 
 use super::options::CheckOptions;
 use super::plan::Plan;
@@ -30,7 +30,7 @@ pub(super) struct Submission {
     /// The index of its task.
     pub(super) task: usize,
     /// The student and the assignment, for a class.
-    pub(super) submitted: Option<Submitted>,
+    pub(super) submitted: Option<StudentSubmission>,
 }
 
 impl Submission {

@@ -33,7 +33,7 @@ impl Writer<'_> {
     /// Writes the shaders of all students, and the roster, and prints what happened to them.
     pub(super) fn write(&self, collection: &Collection) -> Result<(), CliError> {
         let names = collection.students.iter().map(|own| own.name.as_str());
-        let layout = Layout::new(names, self.terminal.width(), Detail::Normal, false);
+        let layout = Layout::new(names, self.terminal.width(), Detail::Normal);
         let mut students = Vec::new();
         let mut unknown = 0;
         for own in &collection.students {

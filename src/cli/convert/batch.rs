@@ -165,12 +165,7 @@ impl<'a> Batch<'a> {
         Self {
             args,
             terminal,
-            layout: Layout::new(
-                names.iter().map(String::as_str),
-                terminal.width(),
-                Detail::Normal,
-                false,
-            ),
+            layout: Layout::new(names.iter().map(String::as_str), terminal.width(), Detail::Normal),
             output,
             several,
             threads: args

@@ -26,7 +26,7 @@ use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
 use crate::cli::inputs::{
-    DriverArgs, Format, FrameArgs, LanguageArgs, check_output, shell_word, short_device,
+    DriverArgs, Format, FrameArgs, LanguageArgs, check_output, parse_number, shell_word, short_device,
 };
 use crate::cli::names::{Names, with_suffix};
 use crate::cli::sequence::{self, FrameEnd, Frames, Sequence};
@@ -185,8 +185,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
 
 /// Parses a number of frames in a second.
 fn parse_rate(text: &str) -> Result<f64, String> {
-    let rate = text.parse().ok().filter(|rate| (0.001..=1e6).contains(rate));
-    rate.ok_or_else(|| "expected a number from 0.001 to 1000000".to_owned())
+    parse_number(text, 0.001..=1e6, "a number from 0.001 to 1000000")
 }
 
 /// Returns whether a path names a folder, which may not exist yet.
@@ -242,7 +241,7 @@ struct WrittenImage {
 }
 
 /// An image, and what rendered it.
-struct Rendered {
+struct RenderedImage {
     image: Image,
     device: String,
     seconds: f64,
@@ -263,13 +262,13 @@ struct Runner<'a> {
 }
 
 /// Why there is no image.
-enum NotRendered {
+enum ImageFailure {
     Failed(CliError),
     /// The user interrupted the rendering.
     Interrupted,
 }
 
-impl From<CliError> for NotRendered {
+impl From<CliError> for ImageFailure {
     fn from(error: CliError) -> Self {
         Self::Failed(error)
     }
@@ -298,9 +297,9 @@ impl Runner<'_> {
     /// Renders an image into its file.
     fn one_image(&mut self, shader: &Shader, path: &Path) -> Result<(), CliError> {
         match self.render(shader, None) {
-            Ok(rendered) => self.write(&rendered, &shader.name, path, true),
-            Err(NotRendered::Failed(error)) => Err(error),
-            Err(NotRendered::Interrupted) => Err(CliError::silent()),
+            Ok(rendered) => self.write_confirmed(&rendered, &shader.name, path),
+            Err(ImageFailure::Failed(error)) => Err(error),
+            Err(ImageFailure::Interrupted) => Err(CliError::silent()),
         }
     }
 
@@ -316,10 +315,10 @@ impl Runner<'_> {
         sequence.render(self.terminal, |one, interrupted| {
             self.frame = clock.frame(one.frame);
             match self.render(shader, Some(interrupted)) {
-                Ok(rendered) => self.write(&rendered, &shader.name, &one.path, false)?,
-                Err(NotRendered::Failed(error)) => return Err(error),
-                Err(NotRendered::Interrupted) => return Ok(FrameEnd::Interrupted),
-            }
+                Ok(rendered) => self.write(&rendered, &shader.name, &one.path)?,
+                Err(ImageFailure::Failed(error)) => return Err(error),
+                Err(ImageFailure::Interrupted) => return Ok(FrameEnd::Interrupted),
+            };
             Ok(FrameEnd::Written)
         })
     }
@@ -356,7 +355,11 @@ impl Runner<'_> {
 
     /// Renders the shader. The evaluator shows its progress, and ends early if the user interrupts it, unless
     /// the image is one of a sequence, whose flag is given.
-    fn render(&mut self, shader: &Shader, interrupted: Option<&AtomicBool>) -> Result<Rendered, NotRendered> {
+    fn render(
+        &mut self,
+        shader: &Shader,
+        interrupted: Option<&AtomicBool>,
+    ) -> Result<RenderedImage, ImageFailure> {
         let checked = shader.require_image()?;
         if self.prefers_evaluator {
             match self.evaluate::<f32>(checked, interrupted) {
@@ -366,7 +369,7 @@ impl Runner<'_> {
                         shader.name
                     ));
                 }
-                result => return result.map_err(|failure| not_rendered(&failure, shader)),
+                result => return result.map_err(|failure| image_failure(&failure, shader)),
             }
         }
         if let Some(worker) = &mut self.worker {
@@ -379,7 +382,7 @@ impl Runner<'_> {
             };
             let lowered = float
                 .lower_within(checked, &deadline)
-                .map_err(|overdue| shaders_fault(vec![glsl::overdue(overdue)], shader))?;
+                .map_err(|overdue| shader_error(vec![glsl::overdue(overdue)], shader))?;
             let drawn = worker.draw(lowered, self.frame.clone(), float);
             spinner.finish_and_clear();
             match drawn {
@@ -394,7 +397,7 @@ impl Runner<'_> {
             Precision::F32 => self.evaluate::<f32>(checked, interrupted),
             Precision::F64 => self.evaluate::<f64>(checked, interrupted),
         };
-        evaluated.map_err(|failure| not_rendered(&failure, shader))
+        evaluated.map_err(|failure| image_failure(&failure, shader))
     }
 
     /// Reports that the evaluator takes the place of a driver. Strict runs have the same bits on both.
@@ -413,7 +416,7 @@ impl Runner<'_> {
         &self,
         checked: &Checked,
         interrupted: Option<&AtomicBool>,
-    ) -> Result<Rendered, eval::Failure> {
+    ) -> Result<RenderedImage, eval::Failure> {
         let start = Instant::now();
         let limit = self.args.driver.explicit_timeout();
         let settings = Settings::<N> {
@@ -443,43 +446,44 @@ impl Runner<'_> {
         });
         let bands = bands.collect::<Result<Vec<_>, _>>();
         bar.finish_and_clear();
-        Ok(Rendered {
+        Ok(RenderedImage {
             image: Image::of_bands(bands?),
             device: "CPU".to_owned(),
             seconds: start.elapsed().as_secs_f64(),
         })
     }
 
-    /// Writes an image, and confirms it unless it is one of a sequence.
-    fn write(
+    /// Writes a single image, and confirms it.
+    fn write_confirmed(
         &mut self,
-        rendered: &Rendered,
+        rendered: &RenderedImage,
         shader: &str,
         path: &Path,
-        confirms: bool,
     ) -> Result<(), CliError> {
-        let bytes = encode(&rendered.image, path)?;
-        self.terminal.write_output(self.output, path, &bytes)?;
+        let size = file_size(self.write(rendered, shader, path)?);
         let [width, height] = rendered.image.size();
         let precision = self.args.precision.name();
-        let Rendered { device, seconds, .. } = rendered;
-        if confirms {
-            let size = file_size(bytes.len());
-            let device = short_device(device);
-            let facts = format!("{width}×{height}, {precision} on {device}, {size}, {seconds:.2} s");
-            self.terminal.confirm(path, &facts);
-        }
+        let (device, seconds) = (short_device(&rendered.device), rendered.seconds);
+        let facts = format!("{width}×{height}, {precision} on {device}, {size}, {seconds:.2} s");
+        self.terminal.confirm(path, &facts);
+        Ok(())
+    }
+
+    /// Writes an image; returns the size of the file in bytes.
+    fn write(&mut self, rendered: &RenderedImage, shader: &str, path: &Path) -> Result<usize, CliError> {
+        let bytes = encode(&rendered.image, path)?;
+        self.terminal.write_output(self.output, path, &bytes)?;
         self.images.push(WrittenImage {
             shader: shader.to_owned(),
             output: path_name(path),
-            size: [width, height],
+            size: rendered.image.size(),
             frame: self.frame.frame,
             time: self.frame.time,
-            precision,
-            device: device.clone(),
-            seconds: *seconds,
+            precision: self.args.precision.name(),
+            device: rendered.device.clone(),
+            seconds: rendered.seconds,
         });
-        Ok(())
+        Ok(bytes.len())
     }
 }
 
@@ -490,13 +494,13 @@ fn is_too_large(failure: &eval::Failure) -> bool {
 }
 
 /// The image that a driver rendered.
-fn draw_result(drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Rendered, CliError> {
-    let drawn = drawn.map_err(|failure| draw_failed(failure, shader))?;
+fn draw_result(drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<RenderedImage, CliError> {
+    let drawn = drawn.map_err(|failure| draw_error(failure, shader))?;
     if let Some(pixels @ 1..) = drawn.loop_truncated {
         let error = format!("{}: {}", shader.name, report::loop_truncated(pixels));
         return Err(CliError::new(error).with_exit(Exit::ShaderFault));
     }
-    Ok(Rendered {
+    Ok(RenderedImage {
         seconds: drawn.draw.as_secs_f64(),
         device: drawn.device.clone(),
         image: drawn.image(),
@@ -504,9 +508,9 @@ fn draw_result(drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Re
 }
 
 /// Why the driver rendered nothing.
-fn draw_failed(failure: Failure, shader: &Shader) -> CliError {
+fn draw_error(failure: Failure, shader: &Shader) -> CliError {
     match failure {
-        Failure::Invalid(diagnostics) => shaders_fault(diagnostics, shader),
+        Failure::Invalid(diagnostics) => shader_error(diagnostics, shader),
         Failure::Refused(diagnostics) => CliError::diagnostics(diagnostics, &shader.files),
         failure => {
             let mut error = CliError::new(format_args!("{}: {failure}", shader.name));
@@ -523,21 +527,21 @@ fn draw_failed(failure: Failure, shader: &Shader) -> CliError {
 }
 
 /// The errors of a shader.
-fn shaders_fault(diagnostics: Vec<Diagnostic>, shader: &Shader) -> CliError {
+fn shader_error(diagnostics: Vec<Diagnostic>, shader: &Shader) -> CliError {
     CliError::diagnostics(diagnostics, &shader.files).with_exit(Exit::ShaderFault)
 }
 
-fn not_rendered(failure: &eval::Failure, shader: &Shader) -> NotRendered {
+fn image_failure(failure: &eval::Failure, shader: &Shader) -> ImageFailure {
     match failure {
-        eval::Failure::Interrupted => NotRendered::Interrupted,
-        failure => NotRendered::Failed(not_evaluated(failure, shader)),
+        eval::Failure::Interrupted => ImageFailure::Interrupted,
+        failure => ImageFailure::Failed(evaluation_error(failure, shader)),
     }
 }
 
 /// Why the evaluator failed.
-pub(in crate::cli) fn not_evaluated(failure: &eval::Failure, shader: &Shader) -> CliError {
+pub(in crate::cli) fn evaluation_error(failure: &eval::Failure, shader: &Shader) -> CliError {
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
-        return shaders_fault(vec![glsl::overdue(*overdue)], shader);
+        return shader_error(vec![glsl::overdue(*overdue)], shader);
     }
     let position = report::failure_position(failure, &shader.files);
     let error = CliError::new(format_args!("{}: {failure}{position}", shader.name));

@@ -18,7 +18,7 @@ use toyproof_project::{CompiledProject, PassKind, Rendering, Tab};
 use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::state::{self, Owner};
-use super::{Precision, Rendered, Runner, draw_failed, is_too_large, not_evaluated, shaders_fault};
+use super::{Precision, RenderedImage, Runner, draw_error, evaluation_error, is_too_large, shader_error};
 use crate::cli::inputs::short_device;
 use crate::cli::project::{pass_shader, target};
 use crate::cli::sequence::{FrameEnd, Sequence};
@@ -58,7 +58,8 @@ fn report_replaced(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &s
     }
 }
 
-/// Progress is reported if at least this many frames must be rendered before the first one that is shown.
+/// The reason of the wait is reported if at least this many frames, a second of the animation, must be
+/// rendered before the first one that is shown.
 const MANY_FRAMES: u64 = 60;
 
 /// Frames in progress.
@@ -81,12 +82,14 @@ struct Backend<'w> {
     has_no_driver: bool,
 }
 
-/// Why a frame was not rendered.
-enum Stopped {
+/// Why there is no image of a frame.
+enum FrameFailure {
     /// The driver failed.
     Device(Failure),
     /// The evaluator failed.
     Evaluator(PassFailure),
+    /// The user interrupted the run before this frame.
+    Interrupted(i32),
 }
 
 impl Playback<'_> {
@@ -96,30 +99,30 @@ impl Playback<'_> {
         clock: &Clock,
         number: i32,
         wanted: Option<Target>,
-    ) -> Result<Option<Image>, Stopped> {
+    ) -> Result<Option<Image>, FrameFailure> {
         let frame = clock.frame(number);
         let shown = |texture: Option<&Texture>| Some((*texture?.to_single()[0]).clone());
         match self {
             Self::Device(playback) => {
                 let wanted = wanted.as_slice();
-                let mut images = playback.render(&frame, wanted).map_err(Stopped::Device)?;
+                let mut images = playback.render(&frame, wanted).map_err(FrameFailure::Device)?;
                 Ok(images.pop())
             }
             Self::Single(playback) => {
-                playback.render(&frame).map_err(Stopped::Evaluator)?;
+                playback.render(&frame).map_err(FrameFailure::Evaluator)?;
                 Ok(shown(wanted.and_then(|target| playback.texture(target))))
             }
             Self::Double(playback) => {
-                playback.render(&frame).map_err(Stopped::Evaluator)?;
+                playback.render(&frame).map_err(FrameFailure::Evaluator)?;
                 Ok(shown(wanted.and_then(|target| playback.texture(target))))
             }
         }
     }
 
     /// The state after a frame, which was rendered last.
-    fn state(&mut self, clock: &Clock, number: i32) -> Result<State, Stopped> {
+    fn state(&mut self, clock: &Clock, number: i32) -> Result<State, Failure> {
         match self {
-            Self::Device(playback) => playback.state(&clock.frame(number)).map_err(Stopped::Device),
+            Self::Device(playback) => playback.state(&clock.frame(number)),
             Self::Single(playback) => Ok(playback.state(number)),
             Self::Double(playback) => Ok(playback.state(number)),
         }
@@ -146,16 +149,9 @@ struct Run<'a> {
     terminal: &'a Terminal,
 }
 
-/// Why there is no image.
-enum Unshown {
-    Stopped(Stopped),
-    /// The user interrupted the run before this frame.
-    Interrupted(i32),
-}
-
 impl Run<'_> {
     /// Renders the frames up to this one, and returns the image of the shown pass in it.
-    fn show(&mut self, number: i32, interrupted: &AtomicBool) -> Result<Rendered, Unshown> {
+    fn show(&mut self, number: i32, interrupted: &AtomicBool) -> Result<RenderedImage, FrameFailure> {
         let start = Instant::now();
         if !self.has_history {
             self.next = number;
@@ -166,7 +162,7 @@ impl Run<'_> {
         let played = self.play_to(number, interrupted, &bar);
         bar.finish_and_clear();
         let image = played?;
-        Ok(Rendered {
+        Ok(RenderedImage {
             image: image.expect("the shown pass is rendered"),
             device: self.playback.device(),
             seconds: start.elapsed().as_secs_f64(),
@@ -178,19 +174,18 @@ impl Run<'_> {
         number: i32,
         interrupted: &AtomicBool,
         bar: &ProgressBar,
-    ) -> Result<Option<Image>, Unshown> {
+    ) -> Result<Option<Image>, FrameFailure> {
         loop {
             if interrupted.load(Ordering::Relaxed) {
-                return Err(Unshown::Interrupted(self.next));
+                return Err(FrameFailure::Interrupted(self.next));
             }
             let wanted = (self.next == number).then_some(self.target);
             let image = match self.playback.render(&self.clock, self.next, wanted) {
-                Ok(image) => image,
-                Err(Stopped::Evaluator(PassFailure {
+                Err(FrameFailure::Evaluator(PassFailure {
                     failure: eval::Failure::Interrupted,
                     ..
-                })) => return Err(Unshown::Interrupted(self.next)),
-                Err(stopped) => return Err(Unshown::Stopped(stopped)),
+                })) => return Err(FrameFailure::Interrupted(self.next)),
+                result => result?,
             };
             self.next += 1;
             bar.inc(1);
@@ -468,8 +463,8 @@ impl Runner<'_> {
                 self.report_no_driver(&failure);
                 Ok(None)
             }
-            Err(PlaybackFailure::Gpu(failure)) => Err(draw_failed(failure, named)),
-            Err(PlaybackFailure::Overdue(overdue)) => Err(shaders_fault(vec![glsl::overdue(overdue)], named)),
+            Err(PlaybackFailure::Gpu(failure)) => Err(draw_error(failure, named)),
+            Err(PlaybackFailure::Overdue(overdue)) => Err(shader_error(vec![glsl::overdue(overdue)], named)),
         }
     }
 
@@ -482,9 +477,9 @@ impl Runner<'_> {
         interrupted: &AtomicBool,
     ) -> Result<(), CliError> {
         let rendered = run.show(number, interrupted);
-        let rendered = rendered.map_err(|unshown| self.not_shown(unshown, number, shader))?;
+        let rendered = rendered.map_err(|failure| self.frame_error(failure, number, shader))?;
         self.frame = run.clock.frame(number);
-        self.write(&rendered, &shader.name, path, true)
+        self.write_confirmed(&rendered, &shader.name, path)
     }
 
     fn all_frames(&mut self, run: &mut Run<'_>, sequence: Sequence, shader: &Shader) -> Result<(), CliError> {
@@ -492,10 +487,10 @@ impl Runner<'_> {
             match run.show(one.frame, interrupted) {
                 Ok(rendered) => {
                     self.frame = run.clock.frame(one.frame);
-                    self.write(&rendered, &shader.name, &one.path, false)?;
+                    self.write(&rendered, &shader.name, &one.path)?;
                 }
-                Err(Unshown::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
-                Err(unshown) => return Err(self.not_shown(unshown, one.frame, shader)),
+                Err(FrameFailure::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
+                Err(failure) => return Err(self.frame_error(failure, one.frame, shader)),
             }
             Ok(FrameEnd::Written)
         })
@@ -517,12 +512,12 @@ impl Runner<'_> {
         self.fingerprint(hasher)
     }
 
-    /// Why a frame is not shown.
-    fn not_shown(&self, unshown: Unshown, number: i32, shader: &Shader) -> CliError {
-        match unshown {
-            Unshown::Stopped(Stopped::Device(failure)) => draw_failed(failure, shader),
-            Unshown::Stopped(Stopped::Evaluator(error)) => not_evaluated(&error.failure, shader),
-            Unshown::Interrupted(next) => {
+    /// The error of a frame that is not shown.
+    fn frame_error(&self, failure: FrameFailure, number: i32, shader: &Shader) -> CliError {
+        match failure {
+            FrameFailure::Device(failure) => draw_error(failure, shader),
+            FrameFailure::Evaluator(error) => evaluation_error(&error.failure, shader),
+            FrameFailure::Interrupted(next) => {
                 let error = format!("interrupted before frame {next}; frame {number} was to be shown");
                 CliError::new(error).with_help(match self.args.state {
                     Some(_) => "run the same command again to go on",
@@ -557,5 +552,5 @@ fn compiled_programs(
     result: Result<Vec<Program>, (usize, eval::Refusal)>,
     shader: &Shader,
 ) -> Result<Vec<Program>, CliError> {
-    result.map_err(|(_, refusal)| not_evaluated(&refusal.into(), shader))
+    result.map_err(|(_, refusal)| evaluation_error(&refusal.into(), shader))
 }

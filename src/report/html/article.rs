@@ -264,7 +264,7 @@ fn command(command: &str) -> String {
 
 /// The points, in total and of each check.
 fn points(rubrics: &Rubrics, record: &Record) -> String {
-    let (Some(rubric), Some([points, of])) = (rubrics.of(record), rubrics.total(record)) else {
+    let (Some(rubric), Some([points, of])) = (rubrics.find(record), rubrics.total(record)) else {
         return String::new();
     };
     let marks = rubric.marks(record).into_iter();
@@ -376,8 +376,8 @@ mod tests {
             name: &record.shader,
             exhibit: &Exhibit::default(),
             rubrics: &Rubrics::default(),
-            glossary: &Glossary::of(std::slice::from_ref(record)),
-            limit: SourceLimit::of([]),
+            glossary: &Glossary::new(std::slice::from_ref(record)),
+            limit: SourceLimit::new([]),
         };
         article.html(0)
     }
@@ -427,8 +427,8 @@ mod tests {
                 name: &record.shader,
                 exhibit: &exhibit,
                 rubrics: &Rubrics::default(),
-                glossary: &Glossary::of(std::slice::from_ref(record)),
-                limit: SourceLimit::of([SOURCE]),
+                glossary: &Glossary::new(std::slice::from_ref(record)),
+                limit: SourceLimit::new([SOURCE]),
             };
             article.html(0)
         };

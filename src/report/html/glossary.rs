@@ -11,7 +11,7 @@ use crate::{Explanation, Record, explanations};
 pub(super) struct Glossary(BTreeMap<&'static str, Explanation>);
 
 impl Glossary {
-    pub(super) fn of(records: &[Record]) -> Self {
+    pub(super) fn new(records: &[Record]) -> Self {
         let diagnostics = records.iter().flat_map(|record| &record.diagnostics);
         let mistakes = records.iter().filter_map(|record| record.mistake.as_ref());
         let mistakes = mistakes.flat_map(|mistake| {
@@ -129,13 +129,13 @@ mod tests {
                 text: String::new(),
             }],
         });
-        let glossary = Glossary::of(&[record]);
+        let glossary = Glossary::new(&[record]);
         let html = glossary.html();
         for code in ["E0301", "E0100", "E0200", "E0101"] {
             assert!(html.contains(&format!("id=\"x-{code}\"")), "{code}");
         }
         assert!(!html.contains("id=\"x-E0302\""));
-        let fixed = Glossary::of(&[repaired()]).html();
+        let fixed = Glossary::new(&[repaired()]).html();
         for id in ["wrong-operator", "wrong-number"] {
             assert!(fixed.contains(&format!("id=\"x-{id}\"")), "{id}");
         }

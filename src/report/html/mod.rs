@@ -1,7 +1,8 @@
 //! `report.html`: one self-contained page. A table of all shaders, which needs no script; for each shader its
 //! verdict, its images, one inspected pixel, its checks, and its source with the messages; and a glossary.
 //! Nothing is fetched: the page's content security policy forbids that, and any script but the page's own.
-//! A large report has such a page for each part, and a table of all shaders that leads to them.
+//! A large report has such a page for each part, and a page with the table of all shaders, which leads to
+//! them.
 
 mod article;
 mod gallery;
@@ -12,10 +13,7 @@ mod names;
 mod overview;
 mod source;
 
-use std::borrow::Cow;
 use std::fmt::{self, Display, Formatter, Write};
-use std::io;
-use std::ops::Range;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use base64::Engine;
@@ -28,9 +26,9 @@ use toyproof_verify::compare::{IN_BITS, Legend, SEEN_BY_EYE};
 use self::article::Article;
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
 use self::glossary::Glossary;
-pub use self::index::{LargeReport, MAX_PAGE_SHADERS, MAX_SHADERS_WITH_IMAGES, PARTS, PagePart, part_name};
+pub use self::index::{MAX_PAGE_SHADERS, PARTS, html_index, html_part, part_name};
 use self::names::Names;
-pub(super) use self::names::common_folder;
+use self::overview::Overview;
 use self::source::SourceLimit;
 use super::{Record, Report, Rubrics};
 
@@ -42,36 +40,37 @@ const HEAD_SCRIPT: &str = "document.documentElement.classList.add('script')";
 const VIEWER: &str = include_str!("viewer.html");
 
 /// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
-///
-/// # Errors
-/// The system's error: a record cannot be read.
-pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> io::Result<String> {
+#[must_use]
+pub fn html(report: &Report, rubrics: &Rubrics, gallery: &Gallery, date: SystemTime) -> String {
     let page = Page {
         report,
-        records: &records(report, 0..report.shaders().len())?,
-        names: &Names::new(report.shaders().folder()),
+        records: report.shaders(),
         rubrics,
         gallery,
         date,
+        kind: PageKind::Shaders,
     };
-    Ok(page.html(""))
+    page.html("")
 }
 
-/// Reads the records of a page.
-fn records(report: &Report, places: Range<usize>) -> io::Result<Vec<Record>> {
-    let records = report.shaders().range(places);
-    records.map(|record| record.map(Cow::into_owned)).collect()
-}
-
-/// A page with the articles of shaders.
+/// A page with a table of shaders.
 struct Page<'a> {
     report: &'a Report,
     /// The shaders of this page.
     records: &'a [Record],
-    names: &'a Names<'a>,
     rubrics: &'a Rubrics,
     gallery: &'a Gallery,
     date: SystemTime,
+    kind: PageKind,
+}
+
+/// What a page has of its shaders.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PageKind {
+    /// The table, and an article for each.
+    Shaders,
+    /// The table alone, which leads to the articles of other pages.
+    Index,
 }
 
 impl Page<'_> {
@@ -80,17 +79,18 @@ impl Page<'_> {
         let Self {
             report,
             records,
-            names,
             rubrics,
             gallery,
             date,
+            kind,
         } = *self;
-        let glossary = Glossary::of(records);
+        let names = &Names::new(report.shaders());
+        let glossary = Glossary::new(if kind == PageKind::Index { &[] } else { records });
         let sources = gallery
             .exhibits()
             .iter()
             .filter_map(|exhibit| exhibit.source.as_deref());
-        let limit = SourceLimit::of(sources);
+        let limit = SourceLimit::new(sources);
         let articles = records.iter().zip(gallery.exhibits()).enumerate();
         let articles: String = articles
             .map(|(index, (record, exhibit))| {
@@ -105,9 +105,16 @@ impl Page<'_> {
                 article.html(index)
             })
             .collect();
-        let heading = heading(names, records.len(), records.first());
+        let heading = heading(names, records);
+        let overview = Overview {
+            records,
+            names,
+            gallery,
+            rubrics,
+            kind,
+        };
         format!(
-            r##"{head}<body>
+            r##"{head}<body{class}>
 <a class="skip" href="#main">Skip to the content</a>
 <header class="page">
 <h1>{heading}</h1>
@@ -121,18 +128,22 @@ impl Page<'_> {
 </body>
 </html>
 "##,
-            head = head(&heading, SCRIPT),
+            head = head(&heading),
+            class = match kind {
+                PageKind::Shaders => "",
+                PageKind::Index => " class=\"index\"",
+            },
             facts = facts(report, records.len(), names, date),
             subsampling_note = subsampling_note(gallery.step()),
-            overview = overview::overview(records, names, gallery, rubrics),
+            overview = overview.html(),
             glossary = glossary.html(),
             images = images(gallery),
         )
     }
 }
 
-/// The start of a page, up to its body, which ends with a script.
-fn head(title: &str, script: &str) -> String {
+/// The start of a page, up to its body.
+fn head(title: &str) -> String {
     format!(
         r#"<!DOCTYPE html>
 <html lang="en">
@@ -146,16 +157,16 @@ fn head(title: &str, script: &str) -> String {
 <script>{HEAD_SCRIPT}</script>
 </head>
 "#,
-        policy = policy(script),
+        policy = policy(),
     )
 }
 
 /// The title of the page: the folder, else the only shader, else the number of shaders.
-fn heading(names: &Names, count: usize, first: Option<&Record>) -> String {
-    let subject = match (names.folder_name(), count, first) {
-        (_, 1, Some(only)) => names.short(only).to_owned(),
-        ("", ..) => shaders(count),
-        (folder, ..) => folder.to_owned(),
+fn heading(names: &Names, records: &[Record]) -> String {
+    let subject = match (names.folder_name(), records) {
+        (_, [only]) => names.short(only).to_owned(),
+        ("", _) => shaders(records.len()),
+        (folder, _) => folder.to_owned(),
     };
     format!("toyproof check: {}", Text(subject))
 }
@@ -195,13 +206,13 @@ fn utc(date: SystemTime) -> [String; 2] {
 }
 
 /// The content security policy: only the page's own style and scripts, and images embedded in the page.
-fn policy(script: &str) -> String {
+fn policy() -> String {
     let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));
     format!(
         "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; style-src {}; script-src {} {}",
         hash(STYLE),
         hash(HEAD_SCRIPT),
-        hash(script)
+        hash(SCRIPT)
     )
 }
 
@@ -265,13 +276,13 @@ pub(super) struct Text<T>(pub(super) T);
 
 impl<T: Display> Display for Text<T> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(Escaping(f), "{}", self.0)
+        write!(EscapeWriter(f), "{}", self.0)
     }
 }
 
-struct Escaping<'a, 'b>(&'a mut Formatter<'b>);
+struct EscapeWriter<'a, 'b>(&'a mut Formatter<'b>);
 
-impl Write for Escaping<'_, '_> {
+impl Write for EscapeWriter<'_, '_> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for character in text.chars() {
             match character {
@@ -297,7 +308,7 @@ mod tests {
 
     fn page(records: Vec<Record>, gallery: &Gallery) -> String {
         let report = Report::new(Some("<device>".to_owned()), records);
-        html(&report, &Rubrics::default(), gallery, UNIX_EPOCH).unwrap()
+        html(&report, &Rubrics::default(), gallery, UNIX_EPOCH)
     }
 
     #[test]
@@ -380,7 +391,7 @@ mod tests {
         }
         let report = Report::new(None, records);
         let time = UNIX_EPOCH + std::time::Duration::from_secs(951_827_640);
-        let page = html(&report, &Rubrics::default(), &Gallery::new(1), time).unwrap();
+        let page = html(&report, &Rubrics::default(), &Gallery::new(1), time);
         assert!(page.contains("<h1>toyproof check: hw&lt;3</h1>"));
         assert!(page.contains("Folder: class/hw&lt;3<"));
         assert!(page.contains("<time datetime=\"2000-02-29T12:34Z\">2000-02-29 12:34 UTC</time>"));

@@ -12,9 +12,13 @@ pub(super) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    /// The names in a folder, whose path ends with a separator unless it is empty.
-    pub(super) fn new(prefix: &'a str) -> Self {
-        Self { prefix }
+    /// The names of all shaders of a report.
+    pub(super) fn new(records: &'a [Record]) -> Self {
+        let mut names = records.iter().map(|record| record.shader.as_str());
+        let first = names.next().map_or("", parent);
+        Self {
+            prefix: names.fold(first, common_folder),
+        }
     }
 
     /// The path of the folder; empty if there is none.
@@ -40,22 +44,20 @@ fn parent(path: &str) -> &str {
     &path[..end]
 }
 
-/// The folder that is common to a folder and a path, each with its final separator; `None` is the folder of
-/// no path.
-pub(crate) fn common_folder(folder: Option<&str>, path: &str) -> String {
-    let mut common = folder.unwrap_or_else(|| parent(path));
+/// The folder that is common to a folder and a path, with its final separator.
+fn common_folder<'a>(folder: &'a str, path: &str) -> &'a str {
+    let mut common = folder;
     while !path.starts_with(common) {
         common = parent(common.trim_end_matches(is_separator));
     }
-    common.to_owned()
+    common
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Records;
 
-    fn records(names: &[&str]) -> Records {
+    fn records(names: &[&str]) -> Vec<Record> {
         names
             .iter()
             .map(|&name| Record::unchecked(name.to_owned()))
@@ -79,17 +81,13 @@ mod tests {
             (&[""], "", "", ""),
         ] {
             let records = records(names);
-            let found = Names::new(records.folder());
+            let found = Names::new(&records);
             assert_eq!(
-                (
-                    found.folder(),
-                    found.folder_name(),
-                    found.short(&records.get(0).unwrap())
-                ),
+                (found.folder(), found.folder_name(), found.short(&records[0])),
                 (folder, name, short),
                 "{names:?}"
             );
         }
-        assert_eq!(Names::new(Records::default().folder()).folder(), "");
+        assert_eq!(Names::new(&[]).folder(), "");
     }
 }

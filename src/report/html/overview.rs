@@ -4,35 +4,41 @@ use toyproof_diagnostic::{Severity, grouped, plural};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::CheckSummary;
 
+use super::index::address;
 use super::names::Names;
-use super::{Exhibit, Gallery, Text, sentence};
+use super::{Gallery, PageKind, Text, sentence};
 use crate::{Record, Rubrics, Tally};
 
-pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rubrics: &Rubrics) -> String {
-    let points = if rubrics.is_empty() {
-        ""
-    } else {
-        "<th scope=\"col\" rowspan=\"2\" class=\"number\" data-sort>Points</th>"
-    };
-    let tally: Tally = records.iter().map(|record| record.verdict).collect();
-    let rows = records.iter().zip(gallery.exhibits()).enumerate();
-    let rows: String = rows
-        .map(|(index, (record, exhibit))| row(index, record, names.short(record), exhibit, rubrics))
-        .collect();
-    let checks = [
-        ("t-algorithm", "Algorithm"),
-        ("t-precision", "Precision"),
-        ("t-toolchain", "Toolchain"),
-    ];
-    let checks: String = checks
-        .into_iter()
-        .map(|(term, name)| {
+/// The contents of the table.
+pub(super) struct Overview<'a> {
+    pub(super) records: &'a [Record],
+    pub(super) names: &'a Names<'a>,
+    pub(super) gallery: &'a Gallery,
+    pub(super) rubrics: &'a Rubrics,
+    /// The page, on which names lead to articles of this page or of others.
+    pub(super) kind: PageKind,
+}
+
+impl Overview<'_> {
+    pub(super) fn html(&self) -> String {
+        let points = if self.rubrics.is_empty() {
+            ""
+        } else {
+            "<th scope=\"col\" rowspan=\"2\" class=\"number\" data-sort>Points</th>"
+        };
+        let tally = Tally::new(self.records);
+        let rows = self.records.iter().enumerate();
+        let rows: String = rows.map(|(index, record)| self.row(index, record)).collect();
+        let checks = [
+            ("t-algorithm", "Algorithm"),
+            ("t-precision", "Precision"),
+            ("t-toolchain", "Toolchain"),
+        ];
+        let checks = checks.map(|(term, name)| {
             format!("<th scope=\"col\" class=\"number wide\" data-sort data-term=\"{term}\">{name}</th>")
-        })
-        .collect::<Vec<_>>()
-        .concat();
-    format!(
-        r#"<section id="overview" aria-label="All shaders">
+        });
+        format!(
+            r#"<section id="overview" aria-label="All shaders">
 {notice}{form}<table id="shaders">
 <caption>Shaders</caption>
 <thead>
@@ -44,13 +50,49 @@ pub(super) fn overview(records: &[Record], names: &Names, gallery: &Gallery, rub
 </table>
 </section>
 "#,
-        form = form(&tally),
-        notice = notice(&tally),
-    )
+            checks = checks.concat(),
+            form = form(&tally),
+            notice = notice(&tally),
+        )
+    }
+
+    /// Formats a row. Cells that are not sorted by their text have a number in `data-by`.
+    fn row(&self, index: usize, record: &Record) -> String {
+        let points = match self.rubrics.total(record) {
+            Some([points, of]) => format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>"),
+            None if self.rubrics.is_empty() => String::new(),
+            None => "<td class=\"number none\" data-by=\"-1\"></td>".to_owned(),
+        };
+        let verdict = record.verdict;
+        let exhibit = self.gallery.exhibits().get(index);
+        let image = match exhibit.and_then(|exhibit| exhibit.actual) {
+            Some(image) => format!(" data-image=\"{image}\""),
+            None => String::new(),
+        };
+        let article = match self.kind {
+            PageKind::Shaders => format!("#s{index}"),
+            PageKind::Index => address(index),
+        };
+        format!(
+            "<tr data-verdict=\"{verdict}\"><td class=\"thumbnail\"{image}></td>\
+             <th scope=\"row\"><a href=\"{article}\" title=\"{}\">{}</a>{}</th><td data-by=\"{}\">{}</td>{}\
+             <td class=\"why\">{}</td>{}{}{}</tr>\n",
+            Text(&record.shader),
+            breakable(self.names.short(record)),
+            student(record),
+            verdict as u8,
+            badge(verdict),
+            points,
+            why(record),
+            pixels_off(record.algorithm.as_ref()),
+            pixels_off(record.precision.as_ref()),
+            pixels_off(record.toolchain.as_ref()),
+        )
+    }
 }
 
 /// The form that filters the rows, which only a script shows.
-pub(super) fn form(tally: &Tally) -> String {
+fn form(tally: &Tally) -> String {
     format!(
         r#"<form id="filter" role="search" aria-label="Filter the shaders" hidden>
 <label class="search"><span>Search</span> <input type="search" name="words" autocomplete="off" placeholder="Name or reason"></label>
@@ -65,7 +107,7 @@ pub(super) fn form(tally: &Tally) -> String {
 }
 
 /// A notice of shaders that were compared with nothing.
-pub(super) fn notice(tally: &Tally) -> String {
+fn notice(tally: &Tally) -> String {
     match tally.count(Verdict::Ok) {
         0 => String::new(),
         count => format!(
@@ -89,37 +131,8 @@ fn chips(tally: &Tally) -> String {
     chips.collect()
 }
 
-pub(super) fn badge(verdict: Verdict) -> String {
+fn badge(verdict: Verdict) -> String {
     format!("<span class=\"verdict {verdict}\">{verdict}</span>")
-}
-
-/// Formats a row. Cells that are not sorted by their text have a number in `data-by`.
-fn row(index: usize, record: &Record, name: &str, exhibit: &Exhibit, rubrics: &Rubrics) -> String {
-    let points = match rubrics.total(record) {
-        Some([points, of]) => format!("<td class=\"number\" data-by=\"{points}\">{points} of {of}</td>"),
-        None if rubrics.is_empty() => String::new(),
-        None => "<td class=\"number none\" data-by=\"-1\"></td>".to_owned(),
-    };
-    let verdict = record.verdict;
-    let image = match exhibit.actual {
-        Some(image) => format!(" data-image=\"{image}\""),
-        None => String::new(),
-    };
-    format!(
-        "<tr data-verdict=\"{verdict}\"><td class=\"thumbnail\"{image}></td>\
-         <th scope=\"row\"><a href=\"#s{index}\" title=\"{}\">{}</a>{}</th><td data-by=\"{}\">{}</td>{}\
-         <td class=\"why\">{}</td>{}{}{}</tr>\n",
-        Text(&record.shader),
-        breakable(name),
-        student(record),
-        verdict as u8,
-        badge(verdict),
-        points,
-        why(record),
-        pixels_off(record.algorithm.as_ref()),
-        pixels_off(record.precision.as_ref()),
-        pixels_off(record.toolchain.as_ref()),
-    )
 }
 
 /// Formats the reason, and below it the likely mistake or the first error.
@@ -151,17 +164,14 @@ fn breakable(name: &str) -> String {
         .replace('_', "_<wbr>")
 }
 
-/// The owner of a submission, below the name of the shader.
-pub(super) fn student(record: &Record) -> String {
-    let student = owner(record).map(|owner| format!("<br><span class=\"more\">{}</span>", Text(owner)));
-    student.unwrap_or_default()
-}
-
-/// The owner of a submission, and its assignment.
-pub(super) fn owner(record: &Record) -> Option<String> {
-    let submitted = record.submitted.as_ref()?;
+/// The owner of a submission and its assignment, below the name of the shader.
+fn student(record: &Record) -> String {
+    let Some(submitted) = &record.submitted else {
+        return String::new();
+    };
     let assignment = submitted.assignment.iter().map(|name| format!(", {name}"));
-    Some(submitted.student.clone() + &assignment.collect::<String>())
+    let owner = submitted.student.clone() + &assignment.collect::<String>();
+    format!("<br><span class=\"more\">{}</span>", Text(owner))
 }
 
 /// Formats the number of pixels of a check that differ.

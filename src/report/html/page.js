@@ -106,7 +106,7 @@
       return typeof left === 'number' ? left - right : words.compare(left, right);
     };
     // The sort is stable: rows that are equal in this column keep their order.
-    const sorted = [...rows].sort((a, b) => (down ? -order(a, b) : order(a, b)) || rows.indexOf(a) - rows.indexOf(b));
+    const sorted = [...rows].sort((a, b) => (down ? -order(a, b) : order(a, b)));
     body.append(...sorted);
     updateMoves();
   };

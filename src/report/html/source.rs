@@ -10,7 +10,7 @@ use super::glossary::Glossary;
 use super::{Text, sentence};
 use crate::{Record, SourceRange};
 
-/// The maximum number of messages that are shown for one shader.
+/// The maximum number of messages that are shown for one shader: the first ones cause most of the others.
 const MAX_MESSAGES: usize = 50;
 /// The number of context lines before and after a marked one.
 const CONTEXT_LINES: usize = 3;
@@ -31,7 +31,7 @@ pub(super) struct SourceLimit(usize);
 
 impl SourceLimit {
     /// The limit for a page with these sources.
-    pub(super) fn of<'a>(sources: impl IntoIterator<Item = &'a str>) -> Self {
+    pub(super) fn new<'a>(sources: impl IntoIterator<Item = &'a str>) -> Self {
         // Escaping makes most characters of a shader no longer.
         let sizes: Vec<_> = sources.into_iter().map(str::len).collect();
         if sizes.iter().sum::<usize>() <= MAX_SOURCE_BYTES {
@@ -43,7 +43,7 @@ impl SourceLimit {
 }
 
 /// The marks of a line: the column and the length of the first, and the messages.
-struct Marked {
+struct LineMark {
     column: usize,
     /// In characters; `None` for the word that starts in the column.
     length: Option<usize>,
@@ -52,7 +52,7 @@ struct Marked {
     messages: Vec<String>,
 }
 
-impl Marked {
+impl LineMark {
     fn new(column: usize, length: Option<usize>, class: impl Into<String>) -> Self {
         Self {
             column,
@@ -64,7 +64,7 @@ impl Marked {
 }
 
 /// The marked lines of a shader, by their numbers.
-type Marks = BTreeMap<usize, Marked>;
+type Marks = BTreeMap<usize, LineMark>;
 
 /// Formats the source of a shader, and its messages.
 pub(super) fn source(
@@ -83,7 +83,7 @@ pub(super) fn source(
             {
                 let marked = marks
                     .entry(line)
-                    .or_insert_with(|| Marked::new(column, None, diagnostic.severity.to_string()));
+                    .or_insert_with(|| LineMark::new(column, None, diagnostic.severity.to_string()));
                 marked
                     .messages
                     .push(message(diagnostic, &format!("{line}:{column}"), glossary));
@@ -101,12 +101,12 @@ pub(super) fn source(
         .cause
         .filter(|cause| (1..=lines.len()).contains(&cause.line))
     {
-        marks.entry(cause.line).or_insert_with(|| Marked {
+        marks.entry(cause.line).or_insert_with(|| LineMark {
             messages: vec![format!(
                 "<div class=\"message cause\"><p><strong>likely cause</strong> <span class=\"place\">{}:{}</span></p></div>",
                 cause.line, cause.column
             )],
-            ..Marked::new(cause.column, None, "cause")
+            ..LineMark::new(cause.column, None, "cause")
         });
     }
     mark_fix(record, lines.len(), &mut marks);
@@ -151,7 +151,7 @@ fn mark_fix(record: &Record, line_count: usize, marks: &mut Marks) {
         };
         let marked = marks
             .entry(line)
-            .or_insert_with(|| Marked::new(column, Some(length), class));
+            .or_insert_with(|| LineMark::new(column, Some(length), class));
         marked.messages.push(format!(
             "<div class=\"message {class}\"><p>{text} <span class=\"place\">{line}:{column}</span></p></div>"
         ));
@@ -303,7 +303,7 @@ mod tests {
     fn html(diagnostics: Vec<Json>, text: &str) -> String {
         let mut record = record(Verdict::Invalid);
         record.diagnostics = diagnostics;
-        source(&record, Some(text), SourceLimit::of([text]), &Glossary::of(&[]))
+        source(&record, Some(text), SourceLimit::new([text]), &Glossary::new(&[]))
     }
 
     /// The text of the page without markup.
@@ -352,7 +352,7 @@ mod tests {
     fn the_likely_cause_is_marked() {
         let mut record = record(Verdict::Timeout);
         record.cause = Some(Position { line: 2, column: 1 });
-        let html = source(&record, Some("a\nb"), SourceLimit::of([]), &Glossary::of(&[]));
+        let html = source(&record, Some("a\nb"), SourceLimit::new([]), &Glossary::new(&[]));
         assert!(
             html.contains("<mark>b</mark>") && html.contains("likely cause"),
             "{html}"
@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn the_fix_or_the_suspect_lines_are_marked_with_their_whole_text() {
-        let shown = |record: &Record| source(record, Some(SOURCE), SourceLimit::of([]), &Glossary::of(&[]));
+        let shown = |record: &Record| source(record, Some(SOURCE), SourceLimit::new([]), &Glossary::new(&[]));
         let fixed = shown(&repaired());
         assert!(
             fixed.contains("<pre class=\"marked fix\"><code><span class=\"line\" data-line=\"2\">    return <mark>b + c</mark>;"),
