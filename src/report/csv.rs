@@ -120,15 +120,15 @@ mod tests {
     use crate::repair::samples::repaired;
     use crate::{Rubric, written};
 
-    fn table(records: Vec<Record>, rubrics: &Rubrics) -> String {
-        written(|out| csv(&records, rubrics, out))
+    fn table(records: &[Record], rubrics: &Rubrics) -> String {
+        written(|out| csv(records, rubrics, out))
     }
 
     #[test]
     fn texts_are_quoted_and_formulas_are_escaped() {
         let mut hostile = invalid();
         hostile.shader = "=cmd|'/c calc'!A1,\"x\"\n.glsl".to_owned();
-        let table = table(vec![correct(), hostile], &Rubrics::default());
+        let table = table(&[correct(), hostile], &Rubrics::default());
         let mut lines = table.split("\r\n");
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), COLUMNS);
         assert_eq!(
@@ -160,7 +160,7 @@ mod tests {
             record.reason = text.to_owned();
             record
         });
-        let text = table(records.to_vec(), &Rubrics::default());
+        let text = table(&records, &Rubrics::default());
         let rows: Vec<Vec<String>> = rfc4180(&text);
         assert_eq!(rows.len(), 1 + texts.len());
         for (row, text) in rows[1..].iter().zip(texts) {
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_fix_has_its_line_and_its_edits() {
-        let text = table(vec![repaired()], &Rubrics::default());
+        let text = table(&[repaired()], &Rubrics::default());
         assert!(
             text.contains(",wrong-operator,2,line 2: replace `b + c` with `b - c`,"),
             "{text}"
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_rubric_adds_points() {
-        let text = table(vec![correct()], &Some(Rubric::with_points(1.0, 8.0, 1.0)).into());
+        let text = table(&[correct()], &Some(Rubric::with_points(1.0, 8.0, 1.0)).into());
         assert!(text.contains(",10,10,1000,"), "{text}");
     }
 }

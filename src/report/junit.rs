@@ -138,8 +138,8 @@ mod tests {
     use crate::record::samples::{correct, every_verdict, invalid};
     use crate::written;
 
-    fn xml(records: Vec<Record>) -> String {
-        written(|out| junit(&records, Hints::Fix, out))
+    fn xml(records: &[Record]) -> String {
+        written(|out| junit(records, Hints::Fix, out))
     }
 
     /// The attributes and the children that each element may have in the schema that Jenkins publishes
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn verdicts_map_to_junit_elements() {
-        let text = xml(every_verdict());
+        let text = xml(&every_verdict());
         let document = Document::parse(&text).unwrap();
         follows(document.root_element());
         let told: Vec<_> = document
@@ -235,7 +235,7 @@ mod tests {
         let mut hostile = invalid();
         hostile.shader = "\"/><script>\u{0}\u{1b}[31m\u{ffff}&]]>.glsl".to_owned();
         hostile.reason = "<failure>".to_owned();
-        let text = xml(vec![correct(), hostile]);
+        let text = xml(&[correct(), hostile]);
         let document = Document::parse(&text).unwrap();
         follows(document.root_element());
         let cases = document

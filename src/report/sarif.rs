@@ -435,8 +435,8 @@ mod tests {
     use crate::repair::samples::{repaired, suspected};
     use crate::written;
 
-    fn file(records: Vec<Record>) -> String {
-        written(|out| sarif(&records, out))
+    fn file(records: &[Record]) -> String {
+        written(|out| sarif(records, out))
     }
 
     /// The part of the SARIF 2.1.0 schema that is used here, without additional properties.
@@ -548,7 +548,7 @@ mod tests {
         // One of its patterns has an extra bracket, which not every regex engine accepts.
         let text = std::fs::read_to_string(path).unwrap().replace("{2}]?$", "{2}$");
         let schema = serde_json::from_str(&text).unwrap();
-        let json = serde_json::from_str(&file(every_verdict())).unwrap();
+        let json = serde_json::from_str(&file(&every_verdict())).unwrap();
         let validator = jsonschema::validator_for(&schema).unwrap();
         let errors: Vec<_> = validator
             .iter_errors(&json)
@@ -565,7 +565,7 @@ mod tests {
         hostile.diagnostics[0].file = Some("/hw/a b.glsl".to_owned());
         let mut records = every_verdict();
         records.push(hostile);
-        let text = file(records.clone());
+        let text = file(&records);
         let mut json: Value = serde_json::from_str(&text).unwrap();
         let validator = jsonschema::validator_for(&schema()).unwrap();
         let errors: Vec<_> = validator
@@ -602,7 +602,7 @@ mod tests {
 
     #[test]
     fn a_wrong_shader_is_located_at_its_fix_or_its_first_suspect() {
-        let json: Value = serde_json::from_str(&file(vec![repaired(), suspected()])).unwrap();
+        let json: Value = serde_json::from_str(&file(&[repaired(), suspected()])).unwrap();
         let validator = jsonschema::validator_for(&schema()).unwrap();
         assert!(validator.is_valid(&json), "{json}");
         let results = &json["runs"][0]["results"];

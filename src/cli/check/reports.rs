@@ -127,7 +127,7 @@ impl Folder<'_> {
         } else {
             for submissions in submissions.chunks(MAX_PAGE_SHADERS) {
                 parts += 1;
-                self.write(&part_path(parts), |file| {
+                self.write(part_path(parts), |file| {
                     let page = html_part(report, parts, rubrics, &gallery(submissions), date);
                     file.write_all(page.as_bytes())
                 });
