@@ -4,8 +4,9 @@
 //! A wrong image is compared with those of classic mistakes ([`known`]) and with the expected image as a
 //! whole ([`whole_image`]); edits of the shader's text are tried until its image is the expected one
 //! ([`repair`]). All three are hypotheses of one search engine (`engine`): its probes, its tournament, its
-//! fit of numbers, its confirmation on whole images and its budget of work. An imprecise image is traced to
-//! the operation that loses the digits.
+//! fit of numbers, its confirmation on whole images and its budget of work. Of a project with a wrong image,
+//! the pass that is wrong is explained in this way ([`project`]). An imprecise image is traced to the
+//! operation that loses the digits.
 //!
 //! # Example
 //!
@@ -38,6 +39,7 @@
 pub mod departure;
 mod engine;
 pub mod known;
+pub mod project;
 pub mod repair;
 mod search;
 pub mod trail;
@@ -51,6 +53,7 @@ use toyproof_verify::{Case, CheckResults, Driver, Failure, Reason, Ruling, Verdi
 
 use crate::departure::Departure;
 use crate::known::{Diagnosis, Hypotheses};
+use crate::project::{PassDeparture, ProjectExplanation};
 use crate::repair::{SearchOptions, SearchResult};
 pub use crate::search::explain;
 use crate::whole_image::Alternatives;
@@ -110,6 +113,8 @@ pub struct Findings {
     pub departure: Option<Departure>,
     /// The repairs of a wrong shader and its suspect lines; `None` if they were not searched for.
     pub search: Option<SearchResult>,
+    /// The pass in which a project departs from the one that it is compared with.
+    pub pass_departure: Option<PassDeparture>,
     /// The known mistake that explains the few differing pixels of a correct image.
     pub tolerated_mistake: Option<Diagnosis>,
     /// Whether the explanation was cut by its time limit, which only a hang reaches.
@@ -140,11 +145,22 @@ impl Findings {
             mistake: explanation.mistake,
             departure: explanation.departure,
             search: explanation.search,
+            pass_departure: None,
             tolerated_mistake: explanation.tolerated_mistake,
             is_cut_by_time: explanation.is_cut_by_time,
             notes,
             panics,
         }
+    }
+
+    /// Adds the explanation of a project.
+    pub fn explain_with(&mut self, explanation: ProjectExplanation) {
+        self.pass_departure = Some(explanation.departure);
+        self.mistake = explanation.mistake;
+        self.departure = explanation.values;
+        self.search = explanation.search;
+        self.is_cut_by_time |= explanation.is_cut_by_time;
+        self.panics.extend(explanation.panics);
     }
 }
 

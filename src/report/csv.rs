@@ -6,7 +6,8 @@ use ::csv::{Terminator, Writer, WriterBuilder};
 use toyproof_diagnostic::{Severity, spreadsheet_text};
 use toyproof_verify::compare::CheckSummary;
 
-use super::{Record, Repair, Rubrics};
+use super::repair::in_tab;
+use super::{Record, Rubrics};
 
 const COLUMNS: [&str; 28] = [
     "shader",
@@ -85,7 +86,12 @@ fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
         spreadsheet_text(&record.reason),
         cell(record.mistake.as_ref().map(|mistake| &mistake.id)),
         cell(record.fix.as_ref().map(|fix| fix.range.line)),
-        spreadsheet_text(&cell(record.fix.as_ref().map(Repair::summary))),
+        spreadsheet_text(&cell(
+            record
+                .fix
+                .as_ref()
+                .map(|fix| in_tab(fix, &record.shader) + &fix.summary()),
+        )),
         cell(total.map(|[points, _]| points)),
         cell(total.map(|[_, of]| of)),
         cell(answers.into_iter().flatten().map(|answer| answer.pixels).next()),

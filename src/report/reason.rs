@@ -3,7 +3,8 @@
 use toyproof_diagnostic::{Diagnostic, Files, Severity, grouped, plural, printable};
 use toyproof_eval as eval;
 use toyproof_explain::Findings;
-use toyproof_player::DriverFailure;
+use toyproof_explain::project::PassDeparture;
+use toyproof_player::{DriverFailure, Target};
 use toyproof_scene::Sampler;
 use toyproof_verify::Difference;
 use toyproof_verify::compare::Region;
@@ -50,6 +51,14 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
             count_with_verb(imprecise, ["differs", "differ"]),
             percentage(imprecise)
         );
+    }
+    if let Some(PassDeparture { pass, frame }) = findings.pass_departure {
+        let pass = match pass {
+            Target::Buffer(_) => pass.to_string(),
+            Target::Image => "the image".to_owned(),
+        };
+        let departs = format!("{pass} departs from the reference in frame {frame}");
+        statement.details.insert(0, departs);
     }
     if let Some(mistake) = &findings.tolerated_mistake {
         statement.details.push(format!(

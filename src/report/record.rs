@@ -22,7 +22,8 @@ use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, Stud
 pub const SCHEMA: &str = include_str!("verdict.schema.json");
 
 /// The statement of a record if no fix was searched for.
-const UNSEARCHED: &str = "fixes are not searched for in shaders of several passes";
+const UNSEARCHED: &str =
+    "no fix was searched for: in a project of several passes, that takes a reference with the same passes";
 
 /// All shaders of one run.
 #[derive(Debug, Serialize)]
@@ -297,7 +298,9 @@ impl Record {
     fn set_search(&mut self, search: &SearchResult, files: &Files) {
         self.fix = Repair::first_of(&search.repairs, files);
         let suspects = search.suspects.iter();
-        self.suspects = suspects.map(|suspect| Suspect::new(suspect, files)).collect();
+        self.suspects = suspects
+            .map(|suspect| Suspect::new(suspect, files, &self.shader))
+            .collect();
         self.is_search_cut = search.is_cut;
         if let Some(repair) = search.repairs.first()
             && self.mistake.as_ref().is_none_or(Mistake::is_ambiguous)
@@ -307,7 +310,7 @@ impl Record {
     }
 
     /// Returns the record with the statement that no fix was searched for, because the image depends on other
-    /// passes.
+    /// passes, and no reference has passes that correspond to them.
     #[must_use]
     pub fn with_unsearched(mut self) -> Self {
         self.details.push(UNSEARCHED.to_owned());

@@ -182,12 +182,27 @@ impl Repair {
     }
 }
 
+/// The tab of a project that a file is, such as `buffer-a.glsl`; `None` for the file of a single shader.
+pub(super) fn tab<'a>(file: &'a str, shader: &str) -> Option<&'a str> {
+    file.strip_prefix(shader)?
+        .strip_prefix('/')
+        .filter(|tab| !tab.is_empty())
+}
+
+/// The file of a repair before its lines, if the shader has several: “in buffer-a.glsl, ”.
+pub(super) fn in_tab(repair: &Repair, shader: &str) -> String {
+    tab(&repair.file, shader).map_or_else(String::new, |tab| format!("in {tab}, "))
+}
+
 /// A statement on which the wrong pixels depend more than the others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Suspect {
     /// The statement.
     #[serde(flatten)]
     pub range: SourceRange,
+    /// The name of the file, if the shader has several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// The suspicion, from 0 to 1.
     pub score: f64,
     /// The statement's text on one line, shortened, in backticks.
@@ -195,18 +210,27 @@ pub struct Suspect {
 }
 
 impl Suspect {
-    pub(super) fn new(suspect: &repair::Suspect, files: &Files) -> Self {
+    pub(super) fn new(suspect: &repair::Suspect, files: &Files, shader: &str) -> Self {
+        let file = files.name(suspect.span);
         Self {
             range: SourceRange::new(suspect.span, files),
+            file: tab(file, shader).map(|_| file.to_owned()),
             score: suspect.score,
             text: excerpt(files.text(suspect.span)),
         }
+    }
+
+    /// Its line, after the tab of a project that it is in: `buffer-a.glsl:35`.
+    pub(super) fn place(&self) -> String {
+        let line = self.range.line;
+        let tab = self.file.as_deref().and_then(|file| file.rsplit('/').next());
+        tab.map_or_else(|| line.to_string(), |tab| format!("{tab}:{line}"))
     }
 }
 
 /// The label of the suspects, and their lines: `suspect lines`, `35, 33, 52`. `None` without suspects.
 pub(super) fn suspect_lines(suspects: &[Suspect]) -> Option<(&'static str, String)> {
-    let lines = suspects.iter().map(|suspect| suspect.range.line.to_string());
+    let lines = suspects.iter().map(Suspect::place);
     let label = match suspects {
         [] => return None,
         [_] => "suspect line",

@@ -185,7 +185,10 @@ fn late_result(record: &Record, late: Late, rules: &mut Rules) -> SarifResult {
 fn mistake_location(record: &Record) -> Location {
     match (&record.fix, record.suspects.first()) {
         (Some(fix), _) => Location::new(&fix.file, Some(fix.range.into())),
-        (None, Some(suspect)) => Location::new(&record.shader, Some(suspect.range.into())),
+        (None, Some(suspect)) => {
+            let file = suspect.file.as_ref().unwrap_or(&record.shader);
+            Location::new(file, Some(suspect.range.into()))
+        }
         (None, None) => Location::new(&record.shader, None),
     }
 }

@@ -9,8 +9,8 @@ use toyproof_diagnostic::{Json, Severity, color_difference, columns, display_wid
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison, Pixel};
 
-use super::repair::suspect_lines;
-use super::{Departure, Mistake, Record};
+use super::repair::{in_tab, suspect_lines};
+use super::{Departure, Mistake, Record, Repair};
 
 /// How much is printed of each shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -213,8 +213,10 @@ pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
         let departure = record.departure.iter().flat_map(Departure::sentences);
         return departure.chain(suspect_lines(&record.suspects)).collect();
     };
-    let alternatives = fix.alternatives.iter().map(|other| ("or", other.summary()));
-    [("fix", fix.sentence())]
+    let placed = |repair: &Repair, text: String| in_tab(repair, &record.shader) + &text;
+    let others = fix.alternatives.iter();
+    let alternatives = others.map(|other| ("or", placed(other, other.summary())));
+    [("fix", placed(fix, fix.sentence()))]
         .into_iter()
         .chain(alternatives)
         .collect()
@@ -223,7 +225,7 @@ pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
 /// The text of each suspect statement.
 fn suspect_texts(record: &Record, layout: &Layout) -> Vec<String> {
     let suspects = record.suspects.iter().map(|suspect| {
-        let label = format!("  {}:{}  ", suspect.range.line, suspect.range.column);
+        let label = format!("  {}:{}  ", suspect.place(), suspect.range.column);
         layout.below(&label, &suspect.text)
     });
     suspects.collect()

@@ -90,9 +90,12 @@ fn a_wrong_project_is_wrong_until_chaos_reaches_double_precision() {
     let wrong = LOGISTIC.replace("3.9", "3.8");
     let (shader, _) = check(&wrong, SHOWN, Some(LOGISTIC), "3");
     assert_eq!(shader["verdict"], "wrong");
-    let unsearched = "fixes are not searched for in shaders of several passes";
-    assert!(
-        shader["details"].as_array().unwrap().contains(&unsearched.into()),
+    let departs = "Buffer A departs from the reference in frame 0";
+    assert_eq!(shader["details"][0], departs, "{shader}");
+    let fix = &shader["fix"];
+    assert_eq!(
+        (&fix["file"], &fix["line"]),
+        (&"own/buffer-a.glsl".into(), &5.into()),
         "{shader}"
     );
     let verdict = |frame| check(&wrong, SHOWN, Some(LOGISTIC), frame).0["verdict"].clone();

@@ -312,6 +312,7 @@ fn search_options(source: &str, budget: f64) -> SearchOptions<'_> {
         lenient: false,
         budget,
         donors: None,
+        pass: None,
     }
 }
 

@@ -161,6 +161,7 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
         lenient: false,
         budget,
         donors: None,
+        pass: None,
     };
     let options = Options {
         hypotheses: hypotheses.as_ref(),

@@ -116,6 +116,7 @@ impl<'a> Checker<'a> {
             lenient: self.options.language.is_lenient(),
             budget: self.options.search,
             donors: None,
+            pass: None,
         }
     }
 

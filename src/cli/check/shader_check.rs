@@ -3,6 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use toyproof_diagnostic::{self as diagnostic, Diagnostic, Files, Span, plural};
+use toyproof_explain::project::{Project, ProjectCase};
 use toyproof_explain::unused::Unused;
 use toyproof_explain::whole_image::Alternatives;
 use toyproof_explain::{self as explain, Findings, Options};
@@ -13,7 +14,7 @@ use toyproof_project::{CompiledProject, PassKind};
 use toyproof_report::{CheckedFrame, FrameResult, GrowthRecord, Record};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, bind, default_frame};
-use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unbound_channels};
+use toyproof_verify::{Case, Driver, Expected, Failure, FromStart, Verdict, unbound, unbound_channels};
 
 use super::checker::{Checker, WorkerContext};
 use super::outcome::Log;
@@ -147,6 +148,7 @@ impl<'a> ShaderCheck<'a> {
         }
         let cached = reference.map(|reference| checker.cached(reference, (index, key), has_history, frame));
         let cached = cached.transpose()?;
+        let unbound = frame.clone();
         let from_start = match shader.project() {
             Some(passes) => self.bind(passes, frame)?,
             None => None,
@@ -208,6 +210,15 @@ impl<'a> ShaderCheck<'a> {
             findings = explain::check(None, &case, &explain_options);
         }
         let mut findings = findings?;
+        if let (Some(Reference::Given(given)), Some(cached)) = (reference, &cached)
+            && let Some(solution) = given.shader()
+            && explains
+            && options.search > 0.0
+            && has_history
+            && findings.verdict == Verdict::Wrong
+        {
+            self.explain_passes(solution, (&cached.expected, &unbound), &mut findings);
+        }
         if let (Some(Reference::Given(prepared)), Some(cached)) = (reference, &cached)
             && let Some(warning) = prepared.march_warning(&cached.expected)
         {
@@ -222,6 +233,54 @@ impl<'a> ShaderCheck<'a> {
             Ok(findings)
         } else {
             Err(Failure::Invalid(denied))
+        }
+    }
+
+    /// Finds the pass of a wrong project that departs from those of the reference, and searches it for
+    /// repairs. The frame has no channels of the image.
+    fn explain_passes(
+        &self,
+        solution: &Shader,
+        (expected, frame): (&Expected, &Frame),
+        findings: &mut Findings,
+    ) {
+        let (Some(passes), Some(reference)) = (self.shader.project(), solution.project()) else {
+            return;
+        };
+        let renderings = [passes, reference].map(|passes| rendering(passes, PassKind::Image));
+        let [Ok(rendering), Ok(of_reference)] = &renderings else {
+            return;
+        };
+        let [own, other] = [(passes, rendering), (reference, of_reference)]
+            .map(|(passes, rendering)| pass_shader(passes, rendering));
+        let [tabs, reference_tabs] =
+            [(passes, rendering), (reference, of_reference)].map(|(passes, rendering)| {
+                let tabs = rendering.passes.iter().map(|&at| passes.project.passes[at].file);
+                tabs.collect::<Vec<_>>()
+            });
+        let options = self.checker.options;
+        let case = ProjectCase {
+            project: Project {
+                shader: &own,
+                files: &self.shader.files,
+                tabs: &tabs,
+            },
+            reference: Project {
+                shader: &other,
+                files: &solution.files,
+                tabs: &reference_tabs,
+            },
+            expected,
+            frame,
+            lenient: options.language.is_lenient(),
+            budget: options.search,
+            pool: self.context.pool.as_ref(),
+        };
+        match contain(Part::Repair, || explain::project::explain(&case)) {
+            Ok(explanation) => explanation
+                .into_iter()
+                .for_each(|found| findings.explain_with(found)),
+            Err(panic) => findings.panics.push(panic),
         }
     }
 

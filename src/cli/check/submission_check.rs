@@ -53,7 +53,11 @@ impl Checker<'_> {
         let mut check = ShaderCheck::new(self, context, &shader, reference.as_ref());
         let (mut record, findings) = check.check_frames();
         let (mut log, is_late_on_gpu) = check.finish();
-        if record.verdict == Verdict::Wrong && self.options.search > 0.0 && shader.has_passes {
+        let is_explained = findings
+            .as_ref()
+            .is_some_and(|findings| findings.pass_departure.is_some());
+        if record.verdict == Verdict::Wrong && self.options.search > 0.0 && shader.has_passes && !is_explained
+        {
             record = record.with_unsearched();
         }
         if let Some((assignment, _)) = &self.plan.assignment {

@@ -73,6 +73,16 @@ pub struct MissingValue {
     pub pixel: [u32; 2],
 }
 
+impl Departure {
+    /// The places in the shader.
+    pub(crate) fn spans(&self) -> impl Iterator<Item = Span> {
+        let unknown = self.unknown.iter();
+        let unknown = unknown.flat_map(|unknown| [Some(unknown.span), unknown.call]);
+        let missing = self.missing.iter().map(|missing| missing.user);
+        unknown.chain(missing).flatten()
+    }
+}
+
 /// Finds the departure of a shader whose algorithm differs from its reference in this frame; `None` if the
 /// reference is no shader, or the place was not found before the deadline.
 pub(crate) fn find(

@@ -43,14 +43,16 @@ pub(crate) struct Confirmer<'a> {
 }
 
 /// The image of an edited shader that is right.
-pub(crate) struct Confirmation {
-    /// The number of pixels that agree with the reference, and of those that were compared.
-    pub(crate) agreeing: u64,
-    pub(crate) pixels: u64,
+#[derive(Debug)]
+pub struct Confirmation {
+    /// The number of pixels that agree with the reference.
+    pub agreeing: u64,
+    /// The number of pixels that were compared.
+    pub pixels: u64,
     /// Whether their means agree, because the shader has its own random numbers.
-    pub(crate) by_means: bool,
+    pub by_means: bool,
     /// The image, as displayed.
-    pub(crate) image: Rgb8Image,
+    pub image: Rgb8Image,
 }
 
 impl<'a> Confirmer<'a> {
@@ -84,6 +86,21 @@ impl<'a> Confirmer<'a> {
     /// Confirms an edited shader if it is right in both frames, and no pixel depends on undefined behavior
     /// that did not before. `iterations` bounds the loop iterations of most of its pixels.
     pub(crate) fn edited(&self, checked: &Checked, iterations: u32) -> Option<Confirmation> {
+        let confirmation = self.edited_in_frame(checked, iterations)?;
+        // Means are compared over many sets of random numbers; a second frame would add little evidence.
+        if !confirmation.by_means {
+            let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
+            let (frame, expected) = self.other.get_or_init(|| self.other_frame()).as_ref()?;
+            let (results, _) = self.right(checked, frame, expected, iterations)?;
+            if self.adds_fault(&results.faults, false) {
+                return None;
+            }
+        }
+        Some(confirmation)
+    }
+
+    /// Confirms an edited shader in the frame of the check alone.
+    pub(crate) fn edited_in_frame(&self, checked: &Checked, iterations: u32) -> Option<Confirmation> {
         let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
         let (results, ruling) = self.right(checked, self.case.frame, self.expected, iterations)?;
         let summary = &results.algorithm.as_ref()?.summary;
@@ -91,14 +108,6 @@ impl<'a> Confirmer<'a> {
             return None;
         }
         let by_means = ruling.reason.compares_means();
-        // Means are compared over many sets of random numbers; a second frame would add little evidence.
-        if !by_means {
-            let (frame, expected) = self.other.get_or_init(|| self.other_frame()).as_ref()?;
-            let (results, _) = self.right(checked, frame, expected, iterations)?;
-            if self.adds_fault(&results.faults, false) {
-                return None;
-            }
-        }
         let differing = if by_means { 0 } else { summary.differing };
         Some(Confirmation {
             agreeing: summary.pixels - differing,

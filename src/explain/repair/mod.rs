@@ -11,12 +11,15 @@ mod search;
 mod shader;
 mod term;
 
+use std::fmt;
+
 use toyproof_diagnostic::{Fix, Span};
 use toyproof_glsl::Checked;
 use toyproof_image::Rgb8Image;
 
 pub(crate) use self::edit::DOCUMENTED;
 pub(crate) use self::search::{NoisyImage, search};
+pub use crate::engine::confirm::Confirmation;
 use crate::known::KnownMistake;
 
 /// The mistakes that repairs are named after.
@@ -37,6 +40,17 @@ pub struct SearchOptions<'a> {
     pub budget: f64,
     /// Expressions of correct shaders; if given, only these are tried.
     pub donors: Option<&'a Donors>,
+    /// What an edit must do in the project of which the shader is a pass; `None` if it is no pass.
+    pub pass: Option<&'a dyn EditedPass>,
+}
+
+/// A pass of a project, in which edits are tried.
+pub trait EditedPass: fmt::Debug + Sync {
+    /// Checks the text of the pass after an edit, as the case's shader was checked; `None` if it is invalid.
+    fn check(&self, text: &str) -> Option<Checked>;
+
+    /// The image of the project after an edit of the pass, if it is the expected one.
+    fn confirm(&self, fix: &Fix) -> Option<Confirmation>;
 }
 
 /// Expressions of correct shaders for the same assignment. If no small edit repairs a shader, one of them

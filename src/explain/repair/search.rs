@@ -343,7 +343,15 @@ impl Search<'_> {
         self.confirmations += 1;
         let mistake = kind.mistake();
         let (_, checked) = self.edited(&fix)?;
-        let confirmation = self.confirmer.edited(&checked, evaluation.max_iterations)?;
+        let iterations = evaluation.max_iterations;
+        let confirmation = match self.options.pass {
+            None => self.confirmer.edited(&checked, iterations)?,
+            // All frames of the project say more than another frame of the pass.
+            Some(pass) => {
+                self.confirmer.edited_in_frame(&checked, iterations)?;
+                pass.confirm(&fix)?
+            }
+        };
         let repair = Repair {
             fix,
             mistake,
@@ -370,6 +378,10 @@ impl Search<'_> {
     /// The shader after an edit, if it is valid.
     fn edited(&self, fix: &Fix) -> Option<(String, glsl::Checked)> {
         let text = apply(self.options.source, fix)?;
+        if let Some(pass) = self.options.pass {
+            let checked = pass.check(&text)?;
+            return Some((text, checked));
+        }
         let options = glsl::Options {
             lenient: self.options.lenient,
             ..glsl::Options::default()

@@ -8,7 +8,7 @@ use toyproof_verify::compare::{CheckSummary, Pixel};
 use super::glossary::{Glossary, term};
 use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
-use crate::repair::suspect_lines;
+use crate::repair::{in_tab, suspect_lines};
 use crate::terminal::{CUT_BY_TIME, CUT_SEARCH};
 use crate::{Departure, Mistake, Record, Repair, Rubrics};
 
@@ -170,10 +170,10 @@ impl Article<'_> {
                     links.map(|links| format!(" <span class=\"explanation\">Explanation: {links}</span>"));
                 sentence(text) + &links.unwrap_or_default()
             };
-            let first = explained(fix, &fix.sentence());
+            let first = explained(fix, &(in_tab(fix, &self.record.shader) + &fix.sentence()));
             let _ = writeln!(html, "<p><strong>{}:</strong> {first}</p>", term("fix", "Fix"));
             for other in &fix.alternatives {
-                let other = explained(other, &other.summary());
+                let other = explained(other, &(in_tab(other, &self.record.shader) + &other.summary()));
                 let _ = writeln!(html, "<p><strong>Or:</strong> {other}</p>");
             }
         }
