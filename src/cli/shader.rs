@@ -34,7 +34,7 @@ pub(super) struct Shader {
 
 /// What compiles.
 pub(super) enum Content {
-    Shader(Checked),
+    Shader(Box<Checked>),
     Project(CompiledProject),
 }
 
@@ -128,7 +128,7 @@ impl Shader {
     /// The tree of the shader, or of the image of a project, which may read other passes.
     pub(super) fn image(&self) -> Result<&Checked, &Unusable> {
         self.content.as_ref().map(|content| match content {
-            Content::Shader(checked) => checked,
+            Content::Shader(checked) => checked.as_ref(),
             Content::Project(project) => project.image(),
         })
     }
@@ -171,7 +171,7 @@ impl Shader {
     /// The trees of all passes; empty for a shader that cannot be used.
     pub(super) fn trees(&self) -> Vec<&Checked> {
         match &self.content {
-            Ok(Content::Shader(checked)) => vec![checked],
+            Ok(Content::Shader(checked)) => vec![checked.as_ref()],
             Ok(Content::Project(project)) => project.checked.iter().collect(),
             Err(_) => Vec::new(),
         }
@@ -210,7 +210,7 @@ fn read(
             let checked = glsl::check(files, file, options)
                 .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, options)))?;
             *lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
-            Ok(Content::Shader(checked))
+            Ok(Content::Shader(Box::new(checked)))
         }
         Ok(Texts::Project(texts)) => {
             let invalid = |errors: Diagnostics| Unusable::Invalid(errors.into());

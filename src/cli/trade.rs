@@ -136,7 +136,7 @@ fn shader_for_scene(path: &Path, scene: &Scene, args: &Args, deadline: &Deadline
     Some(Shader {
         name: "<exported>".to_owned(),
         content: toyproof_glsl::check(&files, file, &args.language.options(deadline.clone()))
-            .map(Content::Shader)
+            .map(|checked| Content::Shader(Box::new(checked)))
             .map_err(|errors| Unusable::Invalid(errors.into())),
         files,
         lints: Lints::default(),

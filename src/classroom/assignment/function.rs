@@ -139,7 +139,7 @@ impl FunctionTest {
         let signature = Signature::recognize(subject.checked, &self.name, &RoleMap::new());
         let signature = signature.map_err(|why| why.to_string())?;
         let tested = test_typical(subject.text, &signature, &subject.options(), subject.timeout);
-        let tested = tested.map_err(not_run)?;
+        let tested = tested.map_err(|error| not_run(&error))?;
         let message = match tested.mistake {
             Some(mistake) => format!("it {}", mistake.description),
             None => "none of the known mistakes explains it".to_owned(),
@@ -365,7 +365,7 @@ impl Call {
         let text = with_main(subject.text, &main);
         let colors = ShaderRunner::new(&text, &subject.options(), Some(subject.timeout))
             .and_then(|runner| runner.colors::<f64>(&frame))
-            .map_err(not_run)?;
+            .map_err(|error| not_run(&error))?;
         let result = |x: usize| -> Vec<f64> {
             let component = |index: usize| colors[index / 3 * cases.len() + x][index % 3];
             (0..self.components).map(component).collect()
@@ -374,7 +374,7 @@ impl Call {
     }
 }
 
-fn not_run(error: RunError) -> String {
+fn not_run(error: &RunError) -> String {
     format!("the test cannot be run: {error}")
 }
 

@@ -189,7 +189,9 @@ impl NodeList<'_> {
                 self.add(&Kind::<()>::Loop, span);
                 let mut own = walk::own_expressions(self.tree, statement);
                 own.retain(|expression| Some(*expression) != *step);
-                own.into_iter().for_each(|condition| self.expression(condition));
+                for condition in own {
+                    self.expression(condition);
+                }
                 self.block(body);
                 if let Some(step) = step {
                     self.expression(*step);
