@@ -575,3 +575,99 @@ fn insertion(of: Span, at: u32, text: String) -> Edit {
         replacement: text,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Files};
+
+    use super::*;
+    use crate::engine::confirm::apply;
+
+    /// The texts after each edit that is valid.
+    fn edited(text: &str) -> Vec<String> {
+        let checked = |text: &str| {
+            let mut files = Files::default();
+            let file = files.add(File::new("a.glsl", text));
+            toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default())
+        };
+        let own = checked(text).unwrap();
+        let all = edits(&Shader::new(&own, text));
+        let texts = all.iter().map(|edit| apply(text, &edit.fix).unwrap());
+        texts.filter(|text| checked(text).is_ok()).collect()
+    }
+
+    /// Whether an edit of the body of `mainImage` results in another body, apart from blanks.
+    fn leads_to(before: &str, after: &str) -> bool {
+        let helpers = "float grid(vec2 p) { return p.x; }";
+        let whole = |body: &str| format!("{helpers} void mainImage(out vec4 c, in vec2 p) {{ {body} }}");
+        let words = |text: &str| text.split_whitespace().collect::<String>();
+        let wanted = words(&whole(after));
+        edited(&whole(before)).iter().any(|text| words(text) == wanted)
+    }
+
+    #[test]
+    fn statements_move_into_and_out_of_blocks() {
+        assert!(leads_to(
+            "float s; for (int i = 0; i < 3; i++) { s = 1.0; s *= 0.5; } c = vec4(s);",
+            "float s; s = 1.0; for (int i = 0; i < 3; i++) { s *= 0.5; } c = vec4(s);",
+        ));
+        assert!(leads_to(
+            "float s = 1.0; if (p.x > 2.0) { s = 0.5; } s *= 2.0; c = vec4(s);",
+            "float s = 1.0; if (p.x > 2.0) { s = 0.5; s *= 2.0; } c = vec4(s);",
+        ));
+    }
+
+    #[test]
+    fn jumps_and_else_are_inserted() {
+        assert!(leads_to(
+            "if (p.x > 2.0) { c = vec4(1.0); } c = vec4(0.0);",
+            "if (p.x > 2.0) { c = vec4(1.0); return; } c = vec4(0.0);",
+        ));
+        assert!(leads_to(
+            "if (p.x > 2.0) c = vec4(1.0); c = vec4(0.0);",
+            "if (p.x > 2.0) c = vec4(1.0); else c = vec4(0.0);",
+        ));
+    }
+
+    #[test]
+    fn variables_and_values_are_exchanged() {
+        assert!(leads_to(
+            "float a = p.x; float b = p.y; c = vec4(a - b * a);",
+            "float a = p.x; float b = p.y; c = vec4(b - a * b);",
+        ));
+        assert!(leads_to(
+            "float a = p.x; float b = p.y; c = vec4(a - b);",
+            "float a = p.y; float b = p.x; c = vec4(a - b);",
+        ));
+    }
+
+    #[test]
+    fn an_uncalled_function_is_called() {
+        assert!(leads_to("c = vec4(p.x);", "c = vec4((p.x * grid(p)));"));
+        // It is called already.
+        assert!(!leads_to(
+            "c = vec4(p.x) * grid(p);",
+            "c = vec4((p.x * grid(p))) * grid(p);",
+        ));
+    }
+
+    #[test]
+    fn coordinates_get_the_aspect_ratio() {
+        assert!(leads_to(
+            "vec2 q = p / iResolution.xy; c = vec4(q, 0.0, 1.0);",
+            "vec2 q = p / iResolution.xy; q.x *= iResolution.x / iResolution.y; c = vec4(q, 0.0, 1.0);",
+        ));
+        assert!(leads_to(
+            "vec2 q = p / iResolution.xy; c = vec4(q, 0.0, 1.0);",
+            "vec2 q = (p / iResolution.y); c = vec4(q, 0.0, 1.0);",
+        ));
+    }
+
+    #[test]
+    fn an_overwritten_value_is_kept() {
+        assert!(leads_to(
+            "float x = p.x; float y = p.y; x = x - y; y = x + y; c = vec4(x, y, 0.0, 1.0);",
+            "float x = p.x; float y = p.y; float old = x; x = x - y; y = old + y; c = vec4(x, y, 0.0, 1.0);",
+        ));
+    }
+}
