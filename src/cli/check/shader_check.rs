@@ -14,12 +14,13 @@ use toyproof_project::{CompiledProject, PassKind};
 use toyproof_report::{CheckedFrame, FrameResult, GrowthRecord, Record};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, bind, default_frame};
-use toyproof_verify::{Case, Driver, Expected, Failure, FromStart, Verdict, unbound, unbound_channels};
+use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unbound_channels};
 
 use super::checker::{Checker, WorkerContext};
 use super::outcome::Log;
 use super::plan::PlannedFrame;
 use super::reference::Reference;
+use super::reference_cache::CachedReference;
 use crate::cli::project::{pass_shader, rendering};
 use crate::cli::reference::ill_conditioned;
 use crate::cli::shader::{Shader, Unusable, denied};
@@ -210,14 +211,8 @@ impl<'a> ShaderCheck<'a> {
             findings = explain::check(None, &case, &explain_options);
         }
         let mut findings = findings?;
-        if let (Some(Reference::Given(given)), Some(cached)) = (reference, &cached)
-            && let Some(solution) = given.shader()
-            && explains
-            && options.search > 0.0
-            && has_history
-            && findings.verdict == Verdict::Wrong
-        {
-            self.explain_passes(solution, (&cached.expected, &unbound), &mut findings);
+        if explains && options.search > 0.0 && has_history {
+            self.explain_passes(cached.as_deref(), &unbound, &mut findings);
         }
         if let (Some(Reference::Given(prepared)), Some(cached)) = (reference, &cached)
             && let Some(warning) = prepared.march_warning(&cached.expected)
@@ -238,12 +233,13 @@ impl<'a> ShaderCheck<'a> {
 
     /// Finds the pass of a wrong project that departs from those of the reference, and searches it for
     /// repairs. The frame has no channels of the image.
-    fn explain_passes(
-        &self,
-        solution: &Shader,
-        (expected, frame): (&Expected, &Frame),
-        findings: &mut Findings,
-    ) {
+    fn explain_passes(&self, cached: Option<&CachedReference>, frame: &Frame, findings: &mut Findings) {
+        let (Some(Reference::Given(given)), Some(cached)) = (self.reference, cached) else {
+            return;
+        };
+        let Some(solution) = given.shader().filter(|_| findings.verdict == Verdict::Wrong) else {
+            return;
+        };
         let (Some(passes), Some(reference)) = (self.shader.project(), solution.project()) else {
             return;
         };
@@ -270,7 +266,7 @@ impl<'a> ShaderCheck<'a> {
                 files: &solution.files,
                 tabs: &reference_tabs,
             },
-            expected,
+            expected: &cached.expected,
             frame,
             lenient: options.language.is_lenient(),
             budget: options.search,

@@ -321,12 +321,11 @@ fn guards(tree: &Tree, controls: &HashMap<ExprId, Rc<[ExprId]>>) -> HashMap<Vari
         if let ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } = expr.kind
             && let (Some(variable), Some(controls)) = (root(tree, target), controls.get(&id))
         {
-            all.entry(variable).or_default().extend_from_slice(controls);
+            let conditions = all.entry(variable).or_default();
+            conditions.extend_from_slice(controls);
+            conditions.sort_unstable();
+            conditions.dedup();
         }
-    }
-    for conditions in all.values_mut() {
-        conditions.sort_unstable();
-        conditions.dedup();
     }
     all
 }
@@ -399,9 +398,10 @@ impl<'a> Execution<'a> {
         let flow = self.flow;
         let id = self.events[at].event;
         let call = flow.schema.event(id).call;
-        let expr = match flow.origins.get(&id) {
-            Some(&(Origin::Expression(expr) | Origin::Assignment { value: expr, .. })) => expr,
-            _ => return Vec::new(),
+        let Some(&(Origin::Expression(expr) | Origin::Assignment { value: expr, .. })) =
+            flow.origins.get(&id)
+        else {
+            return Vec::new();
         };
         let conditions = flow
             .controls

@@ -320,11 +320,12 @@ impl<'p> Side<'p> {
         }
         let mut in_right: HashMap<Span, usize> = HashMap::new();
         for (execution, known) in &self.right {
-            let events = execution.events.iter();
-            let unknown = events.filter(|event| self.familiarity(event, known) == Familiarity::Unknown);
-            let spans: HashSet<Span> = unknown.map(|event| execution.flow.span(event.event)).collect();
-            for span in spans {
-                *in_right.entry(span).or_default() += 1;
+            let mut seen = HashSet::new();
+            for event in execution.events {
+                let span = execution.flow.span(event.event);
+                if self.familiarity(event, known) == Familiarity::Unknown && seen.insert(span) {
+                    *in_right.entry(span).or_default() += 1;
+                }
             }
         }
         let score = |span: Span, count: &Count| {
@@ -339,7 +340,8 @@ impl<'p> Side<'p> {
         let all = counts
             .iter()
             .map(|(&span, count)| (score(span, count), count.first));
-        all.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.position.cmp(&a.1.position)))
+        let order = |first: &Event| (first.position, first.pixel);
+        all.max_by(|a, b| a.0.total_cmp(&b.0).then(order(&b.1).cmp(&order(&a.1))))
             .map(|(_, first)| first)
     }
 

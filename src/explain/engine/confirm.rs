@@ -72,13 +72,13 @@ impl<'a> Confirmer<'a> {
     // Edited texts.
 
     /// The shader with another text, if it is valid.
-    pub(crate) fn checked(&self, text: &str, options: glsl::Options) -> Option<Checked> {
+    pub(crate) fn checked(&self, text: &str, options: &glsl::Options) -> Option<Checked> {
         let mut files = Files::default();
         let file = files.add(File::new("<repair>", text));
         let options = glsl::Options {
             channels: self.case.checked.channels.map(Some),
             deadline: Deadline::after(self.deadline.saturating_duration_since(Instant::now())),
-            ..options
+            ..options.clone()
         };
         glsl::check(&files, file, &options).ok()
     }
@@ -357,7 +357,7 @@ mod tests {
         let file = checked.tree[checked.main_image].at.span.file;
         let fix = Fix::new("edit", Span::new(file, start, start + old.len() as u32), new);
         let edited = confirmer
-            .checked(&apply(shader, &fix).unwrap(), glsl::Options::default())
+            .checked(&apply(shader, &fix).unwrap(), &glsl::Options::default())
             .unwrap();
         confirmer.edited(&edited, 0).is_some()
     }

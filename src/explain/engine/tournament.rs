@@ -109,7 +109,7 @@ impl Tournament<'_> {
             }
         }
         for (attempt, colors) in self.screened(attempts) {
-            if let Some(outcome) = self.outcome(attempt, colors) {
+            if let Some(outcome) = self.outcome(attempt, &colors) {
                 self.record(attempt, outcome);
             }
         }
@@ -140,7 +140,7 @@ impl Tournament<'_> {
             if self.passes[attempt.candidate] {
                 continue;
             }
-            let Some(exact) = self.outcome(attempt, colors) else {
+            let Some(exact) = self.outcome(attempt, &colors) else {
                 continue;
             };
             // An author wrote the shortest number that passes.
@@ -148,7 +148,7 @@ impl Tournament<'_> {
             let shorter = shorter.map(|numbers| Attempt { numbers, ..attempt });
             let is_found = exact.passes
                 && shorter.into_iter().any(|shorter| {
-                    let outcome = self.outcome(shorter, Vec::new());
+                    let outcome = self.outcome(shorter, &[]);
                     outcome.is_some_and(|outcome| self.record(shorter, outcome))
                 });
             if !is_found {
@@ -177,10 +177,10 @@ impl Tournament<'_> {
     }
 
     /// Tests an attempt at all probes, or the first if it fails there. Some of its colors are known.
-    fn outcome(&mut self, attempt: Attempt, known: Colors) -> Option<Outcome> {
+    fn outcome(&mut self, attempt: Attempt, known: &[[f64; 3]]) -> Option<Outcome> {
         self.probes.test(|probes| {
             if probes.start == 0 && known.len() == probes.end {
-                return Some(known.clone());
+                return Some(known.to_vec());
             }
             self.field.run(self.probes, attempt.run(probes))
         })

@@ -297,29 +297,28 @@ impl Hypotheses {
                 .first()
                 .and_then(|mutant| confirmed(mutant, &[]))
         };
-        match stage {
-            Stage::Pair(most) => self.pairs(student, &observed, most, &explaining),
-            _ => {
-                let Self {
-                    scene,
-                    frame_time,
-                    shaders,
-                    small: view,
-                    ..
-                } = self;
-                let (frame_time, shader) = (*frame_time, shaders.first());
-                let fitted = numbers::Parameters {
-                    scene,
-                    frame_time,
-                    shader,
-                    view,
-                }
-                .fitted(&observed.probes);
-                if !matching(&observed, &fitted).is_empty() {
-                    return explaining(&fitted);
-                }
-                explaining(&self.near_misses(&observed))
+        if let Stage::Pair(most) = stage {
+            self.pairs(student, &observed, most, &explaining)
+        } else {
+            let Self {
+                scene,
+                frame_time,
+                shaders,
+                small: view,
+                ..
+            } = self;
+            let (frame_time, shader) = (*frame_time, shaders.first());
+            let fitted = numbers::Parameters {
+                scene,
+                frame_time,
+                shader,
+                view,
             }
+            .fitted(&observed.probes);
+            if !matching(&observed, &fitted).is_empty() {
+                return explaining(&fitted);
+            }
+            explaining(&self.near_misses(&observed))
         }
     }
 

@@ -143,7 +143,7 @@ impl<'a> Parameters<'a> {
         }
         all.push(
             self.of_scene("wrong-gamma", None, scene.film.gamma, |scene, gamma| {
-                scene.film.gamma = gamma
+                scene.film.gamma = gamma;
             }),
         );
         for (index, light) in scene.lights.iter().enumerate() {

@@ -43,19 +43,20 @@ impl Difference {
     pub(super) fn new(own: &Image, reference: &Image, ignored: [bool; 4], displayed: Option<f64>) -> Self {
         let ranges = std::array::from_fn(|channel| Range::of(reference, channel));
         let clamped = |value: f32| f64::from(value).clamp(0.0, 1.0);
-        let differs_as_color =
-            |own: f32, other: f32, tolerance: f64| !((clamped(own) - clamped(other)).abs() <= tolerance);
+        let differs_as_color = |own: f32, other: f32, tolerance: f64| {
+            let difference = (clamped(own) - clamped(other)).abs();
+            difference.is_nan() || difference > tolerance
+        };
         let differs = |channel: usize, own: f32, other: f32| {
             let Range { width, .. } = ranges[channel];
             let is_alike = own == other || own.is_nan() && other.is_nan();
             !ignored[channel]
                 && !is_alike
-                && match displayed {
-                    Some(tolerance) => differs_as_color(own, other, tolerance),
-                    None => {
-                        let difference = (f64::from(own) - f64::from(other)).abs();
-                        difference.is_nan() || difference > SHOWN_RANGE * EXACT_TOLERANCE * width
-                    }
+                && if let Some(tolerance) = displayed {
+                    differs_as_color(own, other, tolerance)
+                } else {
+                    let difference = (f64::from(own) - f64::from(other)).abs();
+                    difference.is_nan() || difference > SHOWN_RANGE * EXACT_TOLERANCE * width
                 }
         };
         let pixels = reference.pixels();

@@ -126,7 +126,9 @@ impl<'a> Players<'a> {
                 _ => Vec::new(),
             };
             if !unread.is_empty() {
-                unread.into_iter().for_each(|channel| ignored[at][channel] = true);
+                for channel in unread {
+                    ignored[at][channel] = true;
+                }
                 continue;
             }
             let corresponds = self.corresponds(at, &histories);
@@ -162,7 +164,7 @@ impl<'a> Players<'a> {
             reference.render(&inputs).ok()?;
             for ((pair, history), &ignored) in self.pairs.iter().zip(&mut histories).zip(ignored) {
                 let [rendered, expected] = [&own, &reference].map(|playback| playback.texture(pair.target));
-                let [rendered, expected] = [rendered?, expected?].map(|texture| texture.to_single());
+                let [rendered, expected] = [rendered?, expected?].map(toyproof_image::Texture::to_single);
                 let frame = || self.inputs(*pair, &own, &reference, &inputs);
                 let mut difference = self.difference(*pair, &rendered[0], &expected[0], ignored);
                 if is_apart {

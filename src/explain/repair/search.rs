@@ -189,7 +189,7 @@ impl Search<'_> {
             self.donors(&mut whole, DONORS_SHARE);
         }
         if self.found.is_empty() && !probes.are_means() {
-            self.pairs(whole, probes, partial);
+            self.pairs(&whole, probes, partial);
         }
     }
 
@@ -386,14 +386,14 @@ impl Search<'_> {
             lenient: self.options.lenient,
             ..glsl::Options::default()
         };
-        let checked = self.confirmer.checked(&text, options)?;
+        let checked = self.confirmer.checked(&text, &options)?;
         Some((text, checked))
     }
 
     /// Tries a second edit after each of the most promising first ones.
-    fn pairs(&mut self, whole: Evaluation, probes: &Probes, partial: Vec<TriedEdit>) {
+    fn pairs(&mut self, whole: &Evaluation, probes: &Probes, partial: Vec<TriedEdit>) {
         let mut budget = whole.budget;
-        let first_edits = first_edits(&whole, partial);
+        let first_edits = first_edits(whole, partial);
         let count = first_edits.len();
         for (at, first) in first_edits.iter().enumerate() {
             self.is_cut |= budget.is_spent(1.0);

@@ -96,12 +96,12 @@ pub(super) fn film(changes: &mut Changes) {
     for segments in (1..depth.min(MAX_SEGMENTS + 1)).rev() {
         let parts = [segments, depth].map(|depth| depth.to_string());
         changes.add("max-depth-too-small", &parts, |scene| {
-            scene.film.max_depth = segments
+            scene.film.max_depth = segments;
         });
     }
     if film.samples > 1 {
         changes.add("one-sample", &[film.samples.to_string()], |scene| {
-            scene.film.samples = 1
+            scene.film.samples = 1;
         });
     }
 }

@@ -74,11 +74,11 @@ pub(super) fn motions(changes: &mut Changes) {
             Period::Seconds(seconds) => (["frames", "seconds"], Period::Frames(seconds)),
         };
         add("frames-seconds-swapped", &units, &|motion| {
-            motion.period = swapped
+            motion.period = swapped;
         });
         for (factor, how) in [(0.5, "twice"), (2.0, "half")] {
             add("wrong-period", &[how], &|motion| {
-                motion.period = scaled(motion.period, factor)
+                motion.period = scaled(motion.period, factor);
             });
         }
         let reversed = format!("the {which} motion has the opposite direction");
@@ -87,7 +87,7 @@ pub(super) fn motions(changes: &mut Changes) {
         });
         let moved = format!("the {which} motion is about the world's origin instead of its pivot");
         changes.add_as("rotation-about-origin", moved, |scene| {
-            scene.motions[index].pivot = [0.0; 3]
+            scene.motions[index].pivot = [0.0; 3];
         });
         changes.add("motion-missing", &[which], |scene| stop(scene, index));
         for other in index + 1..motions {
@@ -168,14 +168,14 @@ pub(super) fn hierarchy(changes: &mut Changes) {
     });
     let deepest = nodes.iter().map(|node| node.level).max().unwrap_or(0);
     changes.add("smallest-missing", &[], |scene| {
-        keep(scene, &nodes, |node| node.level < deepest)
+        keep(scene, &nodes, |node| node.level < deepest);
     });
     let points_back = |node: &Node| {
         node.parent
             .is_some_and(|parent| (node.center - nodes[parent].center).min_element() < -1e-9)
     };
     changes.add("one-side-only", &[], |scene| {
-        keep(scene, &nodes, |node| !points_back(node))
+        keep(scene, &nodes, |node| !points_back(node));
     });
     let most = nodes.iter().map(|node| node.number + 1).max().unwrap_or(0);
     for (level, number) in (1..=deepest).flat_map(|level| (0..most).map(move |number| (level, number))) {

@@ -66,7 +66,7 @@ pub(super) fn no_objects(changes: &mut Changes) {
 
 pub(super) fn objects(changes: &mut Changes) {
     let objects = &changes.scene.objects;
-    let shapes: Vec<Shape> = objects.iter().map(|object| object.shape.clone()).collect();
+    let shapes: Vec<Shape> = objects.iter().map(|object| object.shape).collect();
     if (2..=MAX_MISSING).contains(&shapes.len()) {
         for (index, shape) in shapes.iter().enumerate() {
             let (kind, center) = match shape {
@@ -83,7 +83,7 @@ pub(super) fn objects(changes: &mut Changes) {
             };
             let parts = [kind.to_owned(), place(center)];
             changes.add("object-missing", &parts, |scene| {
-                scene.retain_objects(|at| at != index)
+                scene.retain_objects(|at| at != index);
             });
         }
     }
@@ -101,10 +101,10 @@ pub(super) fn objects(changes: &mut Changes) {
 
 fn materials(changes: &mut Changes) {
     changes.add("schlick-instead-of-fresnel", &[], |scene| {
-        each_fresnel(scene, Fresnel::Schlick)
+        each_fresnel(scene, Fresnel::Schlick);
     });
     changes.add("fresnel-instead-of-schlick", &[], |scene| {
-        each_fresnel(scene, Fresnel::Exact)
+        each_fresnel(scene, Fresnel::Exact);
     });
     let is_glass = |model: &Model| matches!(model, Model::Glass { .. });
     changes.add("glass-as-mirror", &[], |scene| {
@@ -177,7 +177,7 @@ pub(super) fn lights(changes: &mut Changes) {
                 scene.lights.remove(index);
             });
             changes.add("one-light-for-all", &position, |scene| {
-                scene.lights.fill(lights[index])
+                scene.lights.fill(lights[index]);
             });
         }
         let without_shadow = |scene: &mut Scene| scene.lights[index].shadow = false;
@@ -190,12 +190,12 @@ pub(super) fn lights(changes: &mut Changes) {
             _ => changes.add("light-without-shadow", &position, without_shadow),
         }
         changes.add("extra-shadow", &position, |scene| {
-            scene.lights[index].shadow = true
+            scene.lights[index].shadow = true;
         });
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let parts = [name.to_owned(), place(light.position)];
             changes.add("light-sign", &parts, |scene| {
-                scene.lights[index].position[axis] *= -1.0
+                scene.lights[index].position[axis] *= -1.0;
             });
         }
         let mut change = |id, edit: &dyn Fn(&mut Light)| {

@@ -118,9 +118,10 @@ impl Writer<'_> {
             self.replace(at, EditKind::MissingCall, CALL + used, call);
         }
         // Gamma, and other powers.
-        let exponent = match is_vector {
-            true => Term::construct(Constructor::Splat, vec![Term::fitted()], at.ty),
-            false => Term::fitted(),
+        let exponent = if is_vector {
+            Term::construct(Constructor::Splat, vec![Term::fitted()], at.ty)
+        } else {
+            Term::fitted()
         };
         let of_scene = self.constants.floats.iter().copied().filter(|&value| value > 1.0);
         let values = known(EXPONENTS.into_iter().chain(of_scene), None);

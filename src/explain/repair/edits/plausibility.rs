@@ -82,7 +82,7 @@ pub(super) fn adjust(shader: &Shader, constants: &Constants, candidates: &mut [C
                 }
                 candidate.cost = least.min(candidate.cost);
             }
-            _ => candidate.cost = adjusted(candidate.cost, shape + rating.numbers(*site, term)),
+            Values::Fixed => candidate.cost = adjusted(candidate.cost, shape + rating.numbers(*site, term)),
         }
     }
 }
@@ -244,7 +244,7 @@ fn shape(tree: &Tree, expr: ExprId, depth: u32, edit: Option<(ExprId, &Term)>) -
             let operands = operands
                 .iter()
                 .map(|&operand| shape(tree, operand, depth - 1, edit));
-            shape_of(op, operands.collect(), ty())
+            shape_of(op, &operands.collect::<Vec<_>>(), ty())
         }),
     }
 }
@@ -262,14 +262,14 @@ fn term_shape(tree: &Tree, term: &Term, depth: u32) -> String {
             let operands = operands
                 .iter()
                 .map(|operand| term_shape(tree, operand, depth - 1));
-            shape_of(*op, operands.collect(), ty())
+            shape_of(*op, &operands.collect::<Vec<_>>(), ty())
         }
         _ => ty(),
     }
 }
 
 /// The shape of an operation that has this type.
-fn shape_of(op: Op, operands: Vec<String>, ty: String) -> String {
+fn shape_of(op: Op, operands: &[String], ty: String) -> String {
     match op {
         Op::Unary(op) => format!("{}{}", op.symbol(), operands[0]),
         Op::Binary(op) => format!("({})", operands.join(op.symbol())),

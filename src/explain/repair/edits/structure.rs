@@ -82,8 +82,8 @@ impl Outline {
         let extents: Vec<Option<Span>> = (0..shader.statements.len()).map(extent).collect();
         let mut parents = vec![None; extents.len()];
         let mut open: Vec<usize> = Vec::new();
-        for at in 0..extents.len() {
-            let start = shader.statements[at].span.start;
+        for (at, statement) in shader.statements.iter().enumerate() {
+            let start = statement.span.start;
             while open
                 .last()
                 .is_some_and(|&last| extents[last].is_none_or(|last| last.end <= start))
@@ -91,10 +91,7 @@ impl Outline {
                 open.pop();
             }
             parents[at] = open.last().copied();
-            if matches!(
-                shader.statements[at].kind,
-                Shape::If { .. } | Shape::Loop | Shape::Other
-            ) {
+            if matches!(statement.kind, Shape::If { .. } | Shape::Loop | Shape::Other) {
                 open.push(at);
             }
         }
@@ -528,7 +525,7 @@ impl Writer<'_> {
             let longer = calls.iter().flat_map(|call| {
                 arguments
                     .iter()
-                    .map(move |argument| [call.as_slice(), &[argument.clone()]].concat())
+                    .map(move |argument| [call.as_slice(), std::slice::from_ref(argument)].concat())
             });
             calls = longer.take(2 * MAX_VALUES).collect();
         }
