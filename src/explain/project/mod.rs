@@ -2,8 +2,8 @@
 //! the repairs of that pass.
 //!
 //! Both projects are rendered side by side. A pass that differs although it reads what the reference's reads
-//! is wrong, and is one shader in one frame: it is explained like any other ([`step`]). A repair counts if
-//! the project with it renders the expected image, from frame 0 on ([`replay`]).
+//! is wrong, and is one shader in one frame: it is explained like any other (`step`). A repair counts if
+//! the project with it renders the expected image, from frame 0 on (`replay`).
 
 mod difference;
 mod replay;
