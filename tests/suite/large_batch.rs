@@ -1,4 +1,4 @@
-//! Batches of so many shaders that their report has several pages.
+//! Batches whose report has several pages.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -26,8 +26,8 @@ pub enum Pixels<'a, N> {
     Own(&'a mut [[N; 4]]),
 }
 
-/// Declares [`Number`], and implements it for each type: default methods would be instantiated in each crate that
-/// uses them, not once in this one.
+/// Declares [`Number`], and implements it for each type: default methods would be instantiated in each crate
+/// that uses them, not once in this one.
 macro_rules! numbers {
     (
         $($number:ty),*;

@@ -100,7 +100,7 @@ impl<'a> Flow<'a> {
         let event = self.schema.event(id);
         let origin = match event.kind {
             EventKind::Subexpression => {
-                let expr = places.computed(self.tree, event.at, rank);
+                let expr = places.computed(event.at, rank);
                 if let Some(expr) = expr {
                     self.parts.insert((expr, event.call), id);
                 }
@@ -215,6 +215,8 @@ impl<'a> Flow<'a> {
 /// The expressions and declarations of a tree by their places.
 struct Places {
     exprs: HashMap<Place, Vec<ExprId>>,
+    /// The operations that are not constant, operands before their users.
+    operations: HashMap<Place, Vec<ExprId>>,
     declared: HashMap<Place, VariableId>,
     returned: HashMap<Place, ExprId>,
 }
@@ -222,8 +224,22 @@ struct Places {
 impl Places {
     fn new(tree: &Tree) -> Self {
         let mut exprs: HashMap<Place, Vec<ExprId>> = HashMap::new();
+        let mut operations: HashMap<Place, Vec<ExprId>> = HashMap::new();
         for (id, expr) in tree.exprs.iter() {
             exprs.entry(expr.at).or_default().push(id);
+            let is_operation = matches!(
+                expr.kind,
+                ExprKind::Binary { .. }
+                    | ExprKind::Unary { .. }
+                    | ExprKind::Conditional { .. }
+                    | ExprKind::BuiltIn { .. }
+            );
+            if is_operation && tree.value(id).is_none() {
+                operations.entry(expr.at).or_default().push(id);
+            }
+        }
+        for all in operations.values_mut().filter(|all| all.len() > 1) {
+            all.sort_by_cached_key(|&id| tree.postorder(id).len());
         }
         let declared = tree.variables.iter();
         let declared = declared
@@ -243,6 +259,7 @@ impl Places {
         }
         Self {
             exprs,
+            operations,
             declared,
             returned,
         }
@@ -254,23 +271,8 @@ impl Places {
 
     /// The operation at a place with this rank in the order of evaluation: in a macro's body that mentions its
     /// arguments, several have the place of the whole.
-    fn computed(&self, tree: &Tree, place: Place, rank: usize) -> Option<ExprId> {
-        let is_computed = |&&expr: &&ExprId| {
-            let is_operation = matches!(
-                tree[expr].kind,
-                ExprKind::Binary { .. }
-                    | ExprKind::Unary { .. }
-                    | ExprKind::Conditional { .. }
-                    | ExprKind::BuiltIn { .. }
-            );
-            is_operation && tree.value(expr).is_none()
-        };
-        let mut all: Vec<ExprId> = self.at(place).iter().filter(is_computed).copied().collect();
-        if all.len() > 1 {
-            // Operands before their users.
-            all.sort_by_key(|&expr| tree.postorder(expr).len());
-        }
-        all.get(rank).copied()
+    fn computed(&self, place: Place, rank: usize) -> Option<ExprId> {
+        self.operations.get(&place)?.get(rank).copied()
     }
 }
 
@@ -463,26 +465,26 @@ impl<'a> Execution<'a> {
         kind.for_each_operand(|operand| self.values(operand, before, call, all));
     }
 
-    /// The value of an expression, or those of its parts where it has no event of its own.
+    /// The value of an expression, or those of its parts where it has no event of its own. Chains may be
+    /// thousands of operators long, so there is no recursion.
     fn values(&self, expr: ExprId, before: usize, call: Option<CallId>, all: &mut Vec<usize>) {
         let flow = self.flow;
-        match &flow.tree[expr].kind {
-            ExprKind::Variable(variable) => {
-                all.extend(self.sources(flow.instance(*variable, call), before));
+        let mut pending = vec![expr];
+        while let Some(expr) = pending.pop() {
+            match &flow.tree[expr].kind {
+                ExprKind::Variable(variable) => {
+                    all.extend(self.sources(flow.instance(*variable, call), before));
+                }
+                ExprKind::Call { .. } => {
+                    let id = flow.calls.get(&(expr, call));
+                    let returns = id.and_then(|id| flow.returns.get(id));
+                    all.extend(returns.and_then(|returns| self.latest(returns, before)));
+                }
+                kind => match flow.parts.get(&(expr, call)) {
+                    Some(&part) => all.extend(self.latest(&[part], before)),
+                    None => kind.for_each_operand(|operand| pending.push(operand)),
+                },
             }
-            ExprKind::Call { .. } => {
-                let id = flow.calls.get(&(expr, call));
-                let returns = id.and_then(|id| flow.returns.get(id));
-                all.extend(returns.and_then(|returns| self.latest(returns, before)));
-            }
-            kind => match flow
-                .parts
-                .get(&(expr, call))
-                .map(|&part| self.latest(&[part], before))
-            {
-                Some(position) => all.extend(position),
-                None => kind.for_each_operand(|operand| self.values(operand, before, call, all)),
-            },
         }
     }
 

@@ -407,25 +407,24 @@ impl<'p> Side<'p> {
 impl Execution<'_> {
     /// The first position whose inputs have most of these values; `None` if none has any.
     fn user(&self, values: &[Vec<f64>]) -> Option<usize> {
-        let wanted: Vec<HashSet<u64>> = values
-            .iter()
-            .map(|value| value.iter().copied().map(bucket).collect())
-            .collect();
-        let has_all = |event: &TraceEvent, wanted: &HashSet<u64>| {
-            let own: HashSet<u64> = numbers(event).into_iter().map(bucket).collect();
+        let has_all = |event: &TraceEvent, wanted: &[f64]| {
+            let own: Vec<u64> = numbers(event).into_iter().map(bucket).collect();
             wanted
                 .iter()
-                .all(|bucket| near(*bucket).iter().any(|near| own.contains(near)))
+                .all(|&value| near(bucket(value)).iter().any(|near| own.contains(near)))
         };
+        // Whether each event has each value.
+        let has: Vec<Vec<bool>> = values
+            .iter()
+            .map(|wanted| self.events.iter().map(|event| has_all(event, wanted)).collect())
+            .collect();
         let count = |at: usize| {
             // The statement that makes a value does not use it.
-            if wanted.iter().any(|wanted| has_all(&self.events[at], wanted)) {
+            if has.iter().any(|has| has[at]) {
                 return 0;
             }
             let inputs = self.inputs(at);
-            let is_input =
-                |wanted: &&HashSet<u64>| inputs.iter().any(|&at| has_all(&self.events[at], wanted));
-            wanted.iter().filter(is_input).count()
+            has.iter().filter(|has| inputs.iter().any(|&at| has[at])).count()
         };
         let all = (0..self.events.len()).map(|at| (count(at), at));
         let best = all.max_by(|a, b| a.0.cmp(&b.0).then(b.1.cmp(&a.1)));
@@ -561,6 +560,20 @@ mod tests {
         };
         let (shader, reference) = (with("d * 2.0"), with("d"));
         assert_eq!(departure(&shader, &reference)[0], Some("d * 2.0"));
+    }
+
+    #[test]
+    fn a_long_chain_that_is_not_evaluated_is_no_problem() {
+        let with = |blue: &str| {
+            let chain = vec!["p.x"; 20_000].join(" + ");
+            format!(
+                "void mainImage(out vec4 c, in vec2 p) {{
+                    c = vec4(p.x < -1.0 ? {chain} : p.y / 18.0, 0.2, {blue} * p.x / 32.0, 1.0);
+                }}"
+            )
+        };
+        let (shader, reference) = (with("0.5"), with("0.7"));
+        assert_eq!(departure(&shader, &reference)[0], Some("0.5 * p.x"));
     }
 
     #[test]
