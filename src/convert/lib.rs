@@ -6,9 +6,9 @@
 //! else is the file's. So no tolerance is needed: a conversion is proved if every pixel has the evaluator's
 //! bits.
 //!
-//! A [`Converter`] writes [`TargetCode`], with naga in a worker process; a [`Prover`] proves it, on a driver or
-//! on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without
-//! any worker.
+//! A [`Converter`] writes [`TargetCode`], with naga in a worker process; a [`Prover`] proves it, on a driver
+//! or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without any
+//! worker.
 
 mod graph;
 pub mod header;

@@ -36,8 +36,8 @@
 //! | `build` | the function of a typed tree: calls inlined, vectors scalarized, checks added |
 //! | `ir` | the function; the sites of faults, and the events of traces |
 //!
-//! A *word* is a component of type `int`, `uint` or `bool`. A *row* holds a component of all pixels of a batch, in
-//! *chunks* of sixteen; a *scalar* holds one that all pixels have in common.
+//! A *word* is a component of type `int`, `uint` or `bool`. A *row* holds a component of all pixels of a
+//! batch, in *chunks* of sixteen; a *scalar* holds one that all pixels have in common.
 //!
 //! `toyproof-eval-native` makes machine code of programs, with the same bits: for large images, use its
 //! `Program`.

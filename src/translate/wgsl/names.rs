@@ -163,8 +163,8 @@ fn type_label(cx: &LoweringContext, names: &Names, ty: Type) -> String {
 }
 
 /// Types and functions that WGSL predeclares and that printed code may use. Authors may redeclare all others
-/// of `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`; `binding_array`
-/// is naga's extension.
+/// of `naga::keywords::wgsl::BUILTIN_IDENTIFIERS`, which also lacks the aliases such as `vec2f`;
+/// `binding_array` is naga's extension.
 const PREDECLARED: &str = "\
     abs acos acosh all any array asin asinh atan atan2 atanh atomic binding_array bitcast bool ceil clamp \
     cos cosh cross degrees determinant distance dot dpdx dpdy exp exp2 f16 f32 faceForward floor fract \

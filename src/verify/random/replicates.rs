@@ -150,7 +150,8 @@ impl ReplicatedShader<'_> {
         first.unwrap_or(Err(Incomparable::NotReseeded))
     }
 
-    /// The first reseeding that changes some of the differing pixels of a shader, at least this share of them.
+    /// The first reseeding that changes some of the differing pixels of a shader, at least this share of
+    /// them.
     pub(crate) fn effective_reseeding(self, algorithm: &CheckResult, least: f64) -> Option<Reseeding> {
         let size = self.case.frame.size;
         let places = Places::spread(size, [RANDOMNESS_GRID; 2]);

@@ -13,8 +13,8 @@ use super::super::scan;
 use super::super::shader::{Shader, Shape};
 use super::is_float;
 
-/// The costs: a move into or out of a block, within a block, an exchange, a jump or `else`, a call of a helper
-/// function, screen coordinates, and a copy of an old value.
+/// The costs: a move into or out of a block, within a block, an exchange, a jump or `else`, a call of a
+/// helper function, screen coordinates, and a copy of an old value.
 const MOVE: u32 = 22;
 const FAR_MOVE: u32 = 24;
 const EXCHANGE: u32 = 23;
