@@ -34,7 +34,8 @@ impl ParametricProgram {
     /// Compiles a shader. The `parameters` are declared as uniforms of type `float` or `bool` in its tree.
     /// The result of an undefined operation is that of a strict GPU run.
     ///
-    /// # Errors If the shader has more than `max_values` values once its calls are inlined, or takes longer
+    /// # Errors
+    /// If the shader has more than `max_values` values once its calls are inlined, or takes longer
     /// than `limit` to compile.
     pub fn new(
         checked: &Checked,

@@ -18,7 +18,8 @@ pub trait Driver: fmt::Debug + Send {
     /// `watch` returns true; it receives the result and the time that rendering took. Callers may know that
     /// no pixel runs more than [`Self::safe_iterations`].
     ///
-    /// # Errors Why there is no image: [`DriverFailure::Invalid`] also for a shader that nests deeper than
+    /// # Errors
+    /// Why there is no image: [`DriverFailure::Invalid`] also for a shader that nests deeper than
     /// drivers support.
     fn draw_in_bands(
         &mut self,

@@ -114,7 +114,8 @@ pub enum Source {
 impl Graph {
     /// Creates a graph of these passes; `mipmaps` selects the buffers with mipmaps.
     ///
-    /// # Panics If a pass other than the last renders the image, the last does not, or a buffer has a number
+    /// # Panics
+    /// If a pass other than the last renders the image, the last does not, or a buffer has a number
     /// of 4 or more.
     pub fn new(passes: Vec<Pass>, mipmaps: [bool; BUFFERS]) -> Self {
         let image = passes.iter().position(|pass| pass.target == Target::Image);
