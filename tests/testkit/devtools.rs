@@ -154,9 +154,14 @@ impl Page {
         }
     }
 
-    /// Waits until an expression is true.
+    /// Waits until an expression is true, on the page that is shown then.
     pub fn until(&mut self, script: &str) {
-        wait_until(|| self.value(script) == true);
+        wait_until(|| match self.try_value(script, HANG_GUARD) {
+            Ok(value) => value == true,
+            // The page that was asked has been left.
+            Err(error) if error.contains("Inspected target navigated") => false,
+            Err(error) => panic!("{script}: {error}"),
+        });
     }
 
     /// Presses and releases a key.
