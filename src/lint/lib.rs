@@ -74,6 +74,14 @@ impl Lints {
     }
 }
 
+/// The number of variables that the functions of a shader read, on some path at least, without a value.
+pub fn uninitialized_reads(checked: &Checked, deadline: &Deadline) -> usize {
+    let program = Program::new(&checked.tree, checked.main_image, deadline);
+    let mut findings = Findings::default();
+    uninit::run(&program, &mut findings);
+    findings.all.len() + findings.maybe_uninitialized.len()
+}
+
 /// Searches a shader for suspicious code until the deadline. Also removes front-end warnings that the author
 /// allows.
 pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {

@@ -38,6 +38,8 @@ pub(crate) struct Confirmer<'a> {
     faults: &'a [Fault],
     checks: &'a Checks,
     pub(crate) deadline: Instant,
+    /// The number of variables that the shader reads without a value.
+    unset: OnceLock<usize>,
     /// The second frame and its reference; `None` if it cannot be rendered there.
     other: OnceLock<Option<(Frame, Expected)>>,
 }
@@ -65,6 +67,7 @@ impl<'a> Confirmer<'a> {
             faults: &subject.results.faults,
             checks,
             deadline,
+            unset: OnceLock::new(),
             other: OnceLock::new(),
         })
     }
@@ -102,6 +105,10 @@ impl<'a> Confirmer<'a> {
     /// Confirms an edited shader in the frame of the check alone.
     pub(crate) fn edited_in_frame(&self, checked: &Checked, iterations: u32) -> Option<Confirmation> {
         let iterations = iterations.max(MIN_IMAGE_ITERATIONS);
+        let unset = self.unset.get_or_init(|| unset_variables(self.case.checked));
+        if unset_variables(checked) > *unset {
+            return None;
+        }
         let (results, ruling) = self.right(checked, self.case.frame, self.expected, iterations)?;
         let summary = &results.algorithm.as_ref()?.summary;
         if self.adds_fault(&results.faults, summary.undefined > self.before.summary.undefined) {
@@ -251,6 +258,11 @@ impl<'a> Confirmer<'a> {
         let most = MAX_UNEXPLAINED_SHARE * self.before.summary.differing as f64;
         (is_right(decide(evidence).verdict) && algorithm.differing as f64 <= most).then_some(algorithm)
     }
+}
+
+/// The number of variables that a shader may read without a value; an edit that adds one is no repair.
+pub(crate) fn unset_variables(checked: &Checked) -> usize {
+    toyproof_lint::uninitialized_reads(checked, &Deadline::default())
 }
 
 /// Whether nothing speaks against the algorithm.

@@ -42,6 +42,8 @@ pub(super) enum Action {
     CopyBefore(usize),
     /// Inserts a copy of another statement behind.
     CopyAfter(usize),
+    /// Inserts an assignment in front.
+    Before(Term),
     /// Inserts an assignment behind.
     After(Term),
 }
@@ -142,8 +144,15 @@ impl Candidate {
     pub(super) fn with_numbers(&self, numbers: &Numbers, cost: u32) -> Self {
         let mut fitted = self.clone();
         fitted.cost = cost;
-        if let Change::Expression { term, .. } = &mut fitted.change {
-            *term = term.with_fitted(numbers);
+        match &mut fitted.change {
+            Change::Expression { term, .. } => *term = term.with_fitted(numbers),
+            Change::Statements(actions) => {
+                for (_, action) in actions {
+                    if let Action::Before(term) | Action::After(term) = action {
+                        *term = term.with_fitted(numbers);
+                    }
+                }
+            }
         }
         fitted.values = Values::Fixed;
         fitted
@@ -269,7 +278,7 @@ fn statement_edits(shader: &Shader, actions: &[(usize, Action)]) -> Option<Fix> 
                     messages.push(format!("delete `{}`", shortened(shader.text(own))));
                 }
             }
-            _ if !is_braced => return None,
+            Action::CopyBefore(_) | Action::CopyAfter(_) if !is_braced => return None,
             Action::CopyBefore(other) | Action::CopyAfter(other) => {
                 let copy = shader.text(extent(*other)?);
                 let is_before = matches!(action, Action::CopyBefore(_));
@@ -290,13 +299,28 @@ fn statement_edits(shader: &Shader, actions: &[(usize, Action)]) -> Option<Fix> 
                     format!("{verb} `{copy}` {side} `{}`", shortened(shader.text(own)))
                 });
             }
-            Action::After(term) => {
+            Action::Before(term) | Action::After(term) => {
                 let text = format!("{};", term.text(shader.tree, source, 0));
-                edits.push(Edit {
-                    span: place(own.end),
-                    replacement: format!(" {text}"),
-                });
-                messages.push(format!("insert `{text}` after `{}`", shortened(shader.text(own))));
+                let (before, after, side) = match action {
+                    Action::Before(_) => (format!("{text} "), String::new(), "before"),
+                    _ => (String::new(), format!(" {text}"), "after"),
+                };
+                // A body without braces gets them.
+                let (before, after) = if is_braced {
+                    (before, after)
+                } else {
+                    (format!("{{ {before}"), format!("{after} }}"))
+                };
+                for (at, replacement) in [(own.start, before), (own.end, after)] {
+                    if !replacement.is_empty() {
+                        let span = place(at);
+                        edits.push(Edit { span, replacement });
+                    }
+                }
+                messages.push(format!(
+                    "insert `{text}` {side} `{}`",
+                    shortened(shader.text(own))
+                ));
             }
         }
     }

@@ -9,7 +9,7 @@
 use toyproof_glsl::tree::{BinaryOp, ExprKind, Scalar, Type, UnaryOp};
 
 use super::edit::{Candidate, Change, EditKind};
-use super::shader::{Shader, Shape};
+use super::shader::Shader;
 use super::term::Term;
 use crate::engine::differ;
 use crate::engine::probes::Probe;
@@ -147,16 +147,18 @@ pub(super) fn suspicions(shader: &Shader, measured: &[Option<Suspicion>]) -> Vec
     suspicions
 }
 
-/// The suspicion of each statement: that of its most suspicious value. A jump has that of the statement in
-/// front of it, which is the head of its `if`.
+/// The suspicion of each statement: that of its most suspicious value, else that of the statement in front of
+/// it, which may be the head of its `if`.
 pub(super) fn suspicions_of_statements(shader: &Shader, sites: &[Suspicion]) -> Vec<Suspicion> {
     let mut suspicions = vec![Suspicion::default(); shader.statements.len()];
     for (site, &suspicion) in shader.sites.iter().zip(sites) {
         let own = &mut suspicions[site.statement];
         *own = own.max(suspicion);
     }
+    let function = |at: usize| shader.statements[at].at.map(|id| id.function);
     for at in 1..suspicions.len() {
-        if shader.statements[at].kind == Shape::Jump {
+        // A jump, or a statement whose values could not be disturbed, such as an index.
+        if suspicions[at].coverage == 0.0 && function(at) == function(at - 1) {
             suspicions[at] = suspicions[at - 1];
         }
     }

@@ -4,6 +4,7 @@
 mod edit;
 mod edits;
 mod evaluation;
+mod listing;
 mod localize;
 mod scan;
 mod schema;
@@ -18,6 +19,7 @@ use toyproof_glsl::Checked;
 use toyproof_image::Rgb8Image;
 
 pub(crate) use self::edit::DOCUMENTED;
+pub(crate) use self::listing::{ListedEdit, edits};
 pub(crate) use self::search::{NoisyImage, search};
 pub use crate::engine::confirm::Confirmation;
 use crate::known::KnownMistake;

@@ -210,6 +210,7 @@ impl Writer {
             Action::Delete => Some(Insertion::Delete),
             Action::CopyBefore(other) => copy(*other).map(Insertion::Before),
             Action::CopyAfter(other) => copy(*other).map(Insertion::After),
+            Action::Before(term) => assignment(self, term).map(Insertion::Before),
             Action::After(term) => assignment(self, term).map(Insertion::After),
         };
         if let Some(insertion) = insertion {

@@ -47,9 +47,8 @@ const EXACT_SHARE: f64 = 0.6;
 /// The rank of a repair above which an expression of the scene's shader may be more likely: fitted numbers.
 const MAX_NATURAL_RANK: f64 = 28.0;
 
-/// The shares of the budget after which single edits, edits of the structure, and donors are no longer tried.
-const SINGLES_SHARE: f64 = 0.6;
-const STRUCTURE_SHARE: f64 = 0.75;
+/// The shares of the budget after which single edits, and donors, are no longer tried.
+const SINGLES_SHARE: f64 = 0.7;
 const DONORS_SHARE: f64 = 0.9;
 
 /// The number of texts that are tried between two decisions on how to continue.
@@ -167,7 +166,7 @@ struct Found {
 }
 
 impl Search<'_> {
-    /// Searches for edits after which the probes are right: single ones, the structure, donors, then pairs.
+    /// Searches for edits after which the probes are right: single ones, donors, then pairs.
     fn run(&mut self, probes: &Probes, share: f64) {
         let (shader, budget) = (self.shader, self.budget.share(share));
         // The check has rendered the shader, so its loops end.
@@ -179,12 +178,14 @@ impl Search<'_> {
             self.suspects = Some(whole.suspects(&[]));
             return self.donors(&mut whole, 1.0);
         }
-        let partial = self.explore(&mut whole, None, SINGLES_SHARE);
+        let texts = if probes.are_means() {
+            Vec::new()
+        } else {
+            structural_edits(shader, &self.constants)
+        };
+        let partial = self.explore(&mut whole, texts, None, SINGLES_SHARE);
         self.suspects = Some(whole.suspects(&partial));
         let is_natural = |found: &Found| found.rank <= MAX_NATURAL_RANK;
-        if !self.found.iter().any(is_natural) && !probes.are_means() {
-            self.structure(&mut whole, STRUCTURE_SHARE);
-        }
         if !self.found.iter().any(is_natural) {
             self.donors(&mut whole, DONORS_SHARE);
         }
@@ -193,12 +194,18 @@ impl Search<'_> {
         }
     }
 
-    /// Tries all edits of a shader, in addition to a first edit that it has already, and confirms those that
-    /// pass. Returns those that make progress only.
-    fn explore(&mut self, evaluation: &mut Evaluation, first: Option<&Fix>, share: f64) -> Vec<TriedEdit> {
+    /// Tries all edits of a shader, in addition to a first edit that it has already, and edits of its texts,
+    /// and confirms those that pass. Returns those that make progress only.
+    fn explore(
+        &mut self,
+        evaluation: &mut Evaluation,
+        texts: Vec<TextEdit>,
+        first: Option<&Fix>,
+        share: f64,
+    ) -> Vec<TriedEdit> {
         let [sites, statements] = evaluation.in_order();
         let all = candidates(evaluation.shader, &self.constants, &sites, &statements);
-        self.try_in_order(evaluation, all, first, share)
+        self.try_in_order(evaluation, all, texts, first, share)
     }
 
     /// Tries expressions of other shaders, or of the scene's, in the most suspicious places.
@@ -218,39 +225,66 @@ impl Search<'_> {
                 statements,
             ));
         }
-        self.try_in_order(evaluation, all, None, share);
+        self.try_in_order(evaluation, all, Vec::new(), None, share);
     }
 
-    /// Tries candidates until a share of the budget is spent.
+    /// Tries candidates and texts, the most likely first, until a share of the budget is spent. Returns the
+    /// candidates that make progress only.
     fn try_in_order(
         &mut self,
         evaluation: &mut Evaluation,
         candidates: Vec<Candidate>,
+        texts: Vec<TextEdit>,
         first: Option<&Fix>,
         share: f64,
     ) -> Vec<TriedEdit> {
-        let ranked = candidates
+        let candidates = candidates
             .into_iter()
             .map(|candidate| (evaluation.search_rank(&candidate), candidate));
-        let mut all: Vec<(f64, Candidate)> = ranked.collect();
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let texts = texts.into_iter().map(|edit| {
+            let suspicion = evaluation.statement(edit.statement);
+            (suspicion.search_rank(edit.cost), edit)
+        });
+        let (candidates, texts) = (sorted(candidates), sorted(texts));
+        let (mut candidates, mut texts) = (&candidates[..], &texts[..]);
         let mut partial = Vec::new();
-        for batch in all.chunks(evaluation.batch()) {
+        let rank = |first: Option<f64>| first.unwrap_or(f64::INFINITY);
+        while !candidates.is_empty() || !texts.is_empty() {
+            let next = rank(candidates.first().map(|(rank, _)| *rank));
+            let next_text = rank(texts.first().map(|(rank, _)| *rank));
             let is_spent = evaluation.budget.is_spent(share);
             self.is_cut |= is_spent;
-            let is_late = evaluation.budget.is_late();
-            if is_spent || is_late || batch[0].0 > self.best + ALTERNATIVE_MARGIN || self.is_complete() {
+            let is_worse = next.min(next_text) > self.best + ALTERNATIVE_MARGIN;
+            if is_spent || evaluation.budget.is_late() || is_worse || self.is_complete() {
                 break;
             }
-            let tried = evaluation.try_all(batch).into_iter();
-            let (mut passing, progress): (Vec<_>, Vec<_>) = tried.partition(|edit| edit.outcome.passes);
-            partial.extend(progress);
-            passing.sort_by(|a, b| evaluation.report_rank(a).total_cmp(&evaluation.report_rank(b)));
-            for edit in passing {
-                self.confirm_candidate(evaluation, &edit, first);
+            if next_text <= next {
+                let (batch, rest) = texts.split_at(texts.len().min(TEXTS));
+                texts = rest;
+                self.try_texts(evaluation, batch);
+            } else {
+                let (batch, rest) = candidates.split_at(candidates.len().min(evaluation.batch()));
+                candidates = rest;
+                partial.extend(self.try_candidates(evaluation, batch, first));
             }
         }
         partial
+    }
+
+    /// Tries candidates, confirms those that pass, and returns those that make progress only.
+    fn try_candidates(
+        &mut self,
+        evaluation: &mut Evaluation,
+        batch: &[(f64, Candidate)],
+        first: Option<&Fix>,
+    ) -> Vec<TriedEdit> {
+        let tried = evaluation.try_all(batch).into_iter();
+        let (mut passing, progress): (Vec<_>, Vec<_>) = tried.partition(|edit| edit.outcome.passes);
+        passing.sort_by(|a, b| evaluation.report_rank(a).total_cmp(&evaluation.report_rank(b)));
+        for edit in passing {
+            self.confirm_candidate(evaluation, &edit, first);
+        }
+        progress
     }
 
     /// Whether no more repairs need to be confirmed.
@@ -259,33 +293,19 @@ impl Search<'_> {
     }
 
     /// Tries edits of the structure, each as a text, and confirms those that pass.
-    fn structure(&mut self, evaluation: &mut Evaluation, share: f64) {
-        let ranked = structural_edits(evaluation.shader).into_iter().map(|edit| {
+    fn try_texts(&mut self, evaluation: &mut Evaluation, batch: &[(f64, TextEdit)]) {
+        let passing = evaluation.try_texts(batch, |(_, edit)| self.edited(&edit.fix));
+        for (at, outcome) in passing {
+            let (search_rank, edit) = &batch[at];
             let suspicion = evaluation.statement(edit.statement);
-            (suspicion.search_rank(edit.cost), edit)
-        });
-        let mut all: Vec<(f64, TextEdit)> = ranked.collect();
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for batch in all.chunks(TEXTS) {
-            let is_spent = evaluation.budget.is_spent(share);
-            self.is_cut |= is_spent;
-            let is_late = evaluation.budget.is_late();
-            if is_spent || is_late || batch[0].0 > self.best + ALTERNATIVE_MARGIN || self.is_complete() {
-                break;
-            }
-            let passing = evaluation.try_texts(batch, |(_, edit)| self.edited(&edit.fix));
-            for (at, outcome) in passing {
-                let (search_rank, edit) = &batch[at];
-                let suspicion = evaluation.statement(edit.statement);
-                let tested = Tested {
-                    fix: edit.fix.clone(),
-                    kind: edit.kind,
-                    statement: edit.statement,
-                    search_rank: *search_rank,
-                    rank: suspicion.report_rank(edit.cost, outcome.remaining),
-                };
-                self.confirm(evaluation, tested);
-            }
+            let tested = Tested {
+                fix: edit.fix.clone(),
+                kind: edit.kind,
+                statement: edit.statement,
+                search_rank: *search_rank,
+                rank: suspicion.report_rank(edit.cost, outcome.remaining),
+            };
+            self.confirm(evaluation, tested);
         }
     }
 
@@ -410,7 +430,7 @@ impl Search<'_> {
             else {
                 continue;
             };
-            self.explore(&mut evaluation, Some(first), 1.0);
+            self.explore(&mut evaluation, Vec::new(), Some(first), 1.0);
             budget.charge(evaluation.budget.spent());
             if !self.found.is_empty() {
                 break;
@@ -427,6 +447,13 @@ impl Search<'_> {
             .map(|found| found.repair)
             .collect()
     }
+}
+
+/// Edits in the order of their ranks.
+fn sorted<T>(edits: impl Iterator<Item = (f64, T)>) -> Vec<(f64, T)> {
+    let mut all: Vec<(f64, T)> = edits.collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
 }
 
 impl Found {

@@ -11,8 +11,8 @@ use toyproof_glsl::tree::{
 use super::super::edit::{Action, Candidate, Change, EditKind};
 use super::super::shader::{Shader, Shape};
 use super::super::term::{Op, Term, TermKind};
-use super::Writer;
 use super::number::Constants;
+use super::writer::Writer;
 use crate::engine::tournament::Values;
 
 /// The sizes of donors in operations, names and numbers, and the largest number of different names.
@@ -35,6 +35,9 @@ const PARTS_PER_COST: usize = 4;
 const NAMES_PER_COST: usize = 6;
 const SIMILARITY: f64 = 8.0;
 
+/// The largest number of the reference's conditions that are tried at a place.
+const MAX_CONDITIONS: usize = 12;
+
 /// The cost of an assignment of the reference.
 const ASSIGNMENT: u32 = 23;
 
@@ -43,7 +46,7 @@ const MAX_INLINED: u32 = 3;
 
 /// An expression with holes for the author's names.
 #[derive(Debug, Clone)]
-pub(in crate::repair) struct Donor {
+pub(crate) struct Donor {
     term: Term,
     /// The types of the holes.
     holes: Vec<Type>,
@@ -74,7 +77,7 @@ fn similarity(one: &[String], other: &[String]) -> f64 {
 }
 
 /// Collects the donors of some shaders, each once, the most frequent ones first.
-pub(in crate::repair) fn donors<'a>(trees: impl IntoIterator<Item = &'a Tree>) -> Vec<Donor> {
+pub(crate) fn donors<'a>(trees: impl IntoIterator<Item = &'a Tree>) -> Vec<Donor> {
     let mut all: BTreeMap<String, (Donor, usize)> = BTreeMap::new();
     for tree in trees {
         let own: BTreeMap<String, Donor> = donors_of(tree)
@@ -143,7 +146,11 @@ fn assignment(tree: &Tree, expr: ExprId) -> Option<Donor> {
     let target = translation.term(target, &HashMap::new(), 0)?;
     let value = translation.term(value, &HashMap::new(), 0)?;
     let holes: Vec<Type> = translation.holes.iter().map(|&(_, ty)| ty).collect();
-    let fits = matches!(target.kind, TermKind::Hole(0)) && holes.len() <= MAX_HOLES;
+    let is_variable = match &target.kind {
+        TermKind::Apply(Op::Swizzle(_), operands) => operands[0].kind == TermKind::Hole(0),
+        kind => *kind == TermKind::Hole(0),
+    };
+    let fits = is_variable && holes.len() <= MAX_HOLES;
     fits.then(|| Donor {
         operations: operations(&value),
         term: Term::assign(op, target, value),
@@ -186,7 +193,7 @@ fn translated(tree: &Tree, expr: ExprId) -> Option<(Term, Translation<'_>)> {
 fn is_value(ty: Type) -> bool {
     matches!(
         ty,
-        Type::Scalar(Scalar::Float | Scalar::Bool) | Type::Vector(Scalar::Float, _)
+        Type::Scalar(Scalar::Float | Scalar::Bool) | Type::Vector(Scalar::Float, _) | Type::Matrix { .. }
     )
 }
 
@@ -227,7 +234,11 @@ impl Translation<'_> {
                     Op::BuiltIn(function) if function.is_texture() || function.out_parameter().is_some() => {
                         return None;
                     }
-                    Op::Construct(_) if !matches!(ty, Type::Scalar(_) | Type::Vector(..)) => return None,
+                    Op::Construct(_)
+                        if !matches!(ty, Type::Scalar(_) | Type::Vector(..) | Type::Matrix { .. }) =>
+                    {
+                        return None;
+                    }
                     _ => {}
                 }
                 let operands = operands
@@ -333,7 +344,7 @@ impl Translation<'_> {
 }
 
 /// The replacements of some sites by donors.
-pub(in crate::repair) fn candidates(
+pub(crate) fn candidates(
     shader: &Shader,
     constants: &Constants,
     donors: &[Donor],
@@ -376,7 +387,7 @@ pub(in crate::repair) fn candidates(
 }
 
 /// Assignments of the reference after some statements, to variables that these use.
-pub(in crate::repair) fn assignment_candidates(
+pub(crate) fn assignment_candidates(
     shader: &Shader,
     constants: &Constants,
     statements: &[usize],
@@ -420,6 +431,27 @@ impl Writer<'_> {
         let own = &self.shader.sites[site];
         let whole = Term::keep(self.tree, own.exprs[0]);
         self.fillings_in(own.statement, self.shader.text(own.span), Some(&whole), holes)
+    }
+
+    /// Conditions of the reference, as texts with names in scope at a statement, the smallest first.
+    pub(super) fn conditions(&self, statement: usize) -> Vec<String> {
+        let donors = self
+            .constants
+            .donors
+            .iter()
+            .filter(|donor| donor.term.ty == Type::BOOL);
+        let mut donors: Vec<&Donor> = donors.collect();
+        donors.sort_by_key(|donor| donor.size);
+        let text = self.shader.text(self.shader.statements[statement].span);
+        let texts = donors.into_iter().take(MAX_CONDITIONS).flat_map(|donor| {
+            let fillings = self.fillings_in(statement, text, None, &donor.holes).into_iter();
+            fillings
+                .take(NAMES_PER_COST)
+                .map(|terms| donor.term.filled(&terms))
+        });
+        texts
+            .map(|term| term.text(self.tree, self.shader.source, 0))
+            .collect()
     }
 
     /// The ways to fill holes with a value and those in scope at a statement, those in a text first.

@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{
 use super::super::edit::EditKind;
 use super::super::term::{Op, Term};
 use super::number::number;
-use super::{At, Writer, is_literal};
+use super::writer::{At, Writer, is_literal};
 
 /// The costs: another operator or function, another comparison, exchanged operands, deletions.
 const OTHER: u32 = 10;
@@ -46,7 +46,12 @@ impl Writer<'_> {
                 self.exchange(at, arguments, &call);
                 self.pass_through(at, arguments);
                 self.other_functions(at, *function, arguments);
+                self.exchanged_calls(at, *function, arguments);
             }
+            ExprKind::Construct {
+                constructor: Constructor::Scalar,
+                arguments,
+            } if at.ty == Type::FLOAT => self.integer_division(at, arguments[0]),
             ExprKind::Construct {
                 constructor: constructor @ (Constructor::Vector | Constructor::Matrix | Constructor::Struct),
                 arguments,
@@ -100,6 +105,19 @@ impl Writer<'_> {
                 Term::binary(op, b.clone(), a.clone()),
             );
         }
+        if op == Multiply
+            && is_matrix(right)
+            && let ExprKind::Binary {
+                op: Multiply,
+                left: first,
+                right: second,
+            } = tree[left].kind
+            && is_matrix(second)
+        {
+            let product = Term::binary(Multiply, self.keep(first), b.clone());
+            let swapped = product.and_then(|product| Term::binary(Multiply, product, self.keep(second)));
+            self.replace(at, EditKind::Operands, EXCHANGE, swapped);
+        }
         let kind = match op {
             Multiply | Divide | Remainder => EditKind::SuperfluousFactor,
             Add | Subtract => EditKind::SuperfluousTerm,
@@ -119,6 +137,53 @@ impl Writer<'_> {
         }
         if matches!(op, Add | Subtract) {
             self.regrouped(at, op, left, right);
+        }
+    }
+
+    /// Converts the operands of an integer division instead of its result, which has lost the fraction.
+    fn integer_division(&mut self, at: At, quotient: ExprId) {
+        let tree = self.tree;
+        if let ExprKind::Binary {
+            op: BinaryOp::Divide,
+            left,
+            right,
+        } = tree[quotient].kind
+            && tree[quotient].ty == Type::INT
+        {
+            let [left, right] = [left, right]
+                .map(|part| Term::construct(Constructor::Scalar, vec![self.keep(part)], Type::FLOAT));
+            self.replace(
+                at,
+                EditKind::Operands,
+                OTHER,
+                Term::binary(BinaryOp::Divide, left, right),
+            );
+        }
+    }
+
+    /// Calls two functions in the other order: g(f(x, a), b) for f(g(x, b), a).
+    fn exchanged_calls(&mut self, at: At, function: FunctionId, arguments: &[ExprId]) {
+        let tree = self.tree;
+        let inner = arguments
+            .iter()
+            .enumerate()
+            .filter_map(|(at, &argument)| match &tree[argument].kind {
+                ExprKind::Call { function, arguments } => Some((at, argument, *function, arguments)),
+                _ => None,
+            });
+        for (place, call, other, own) in inner.collect::<Vec<_>>() {
+            let Some(value) = own.get(place).copied().filter(|_| other != function) else {
+                continue;
+            };
+            if tree[call].ty != at.ty || tree[value].ty != at.ty {
+                continue;
+            }
+            let mut outer = self.keep_all(arguments);
+            outer[place] = self.keep(value);
+            let mut whole = self.keep_all(own);
+            whole[place] = Term::apply(Op::Call(function), outer, at.ty);
+            let swapped = Term::apply(Op::Call(other), whole, at.ty);
+            self.replace(at, EditKind::Operands, EXCHANGE, swapped);
         }
     }
 

@@ -6,7 +6,7 @@ use toyproof_glsl::tree::{BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, Scal
 
 use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
-use super::{At, Writer, is_float, is_input, is_literal, is_name};
+use super::writer::{At, Writer, is_float, is_input, is_literal, is_name};
 use crate::engine::fit::Fit;
 use crate::engine::tournament::Values;
 
@@ -20,8 +20,9 @@ const COSINE: u32 = 24;
 const CONDITION: u32 = 22;
 const FITTED: u32 = 40;
 
-/// The additional cost of an insertion at the use of a value.
+/// The additional costs of an insertion at the use of a value, and of a call of a function of angles.
 const USED: u32 = 2;
+const RARE: u32 = 6;
 
 /// The largest number of values that are combined in pairs.
 const MAX_PAIRED: usize = 7;
@@ -68,11 +69,31 @@ impl Writer<'_> {
                     self.replace(at, EditKind::MissingTerm, VALUE, term);
                 }
             }
+            Type::Vector(Scalar::Int, size) => self.offsets(at, size),
             ty if is_float(ty) => {
                 self.calls(at);
                 self.factors_and_terms(at);
             }
             _ => {}
+        }
+    }
+
+    /// Adds another vector, or one of the counters of loops, to an integer vector, such as a position.
+    fn offsets(&mut self, at: At, size: u8) {
+        let own = self.keep(at.expr);
+        let mut others = self.values(at.statement, at.ty);
+        let mut counters = self.values(at.statement, Type::INT);
+        counters.truncate(usize::from(size));
+        if counters.len() == usize::from(size) {
+            others.push(Term::construct(Constructor::Vector, counters.clone(), at.ty));
+            counters.reverse();
+            others.push(Term::construct(Constructor::Vector, counters, at.ty));
+        }
+        for other in others {
+            for op in [BinaryOp::Add, BinaryOp::Subtract] {
+                let term = Term::binary(op, own.clone(), other.clone());
+                self.replace(at, EditKind::MissingTerm, VALUE, term);
+            }
         }
     }
 
@@ -115,7 +136,9 @@ impl Writer<'_> {
         for (function, numbers) in limits.iter().chain(functions) {
             let numbers = numbers.iter().map(|&number| Term::float(number));
             let call = Term::call(*function, [own.clone()].into_iter().chain(numbers).collect());
-            self.replace(at, EditKind::MissingCall, CALL + used, call);
+            // Only an angle has degrees.
+            let rare = if *function == Radians { RARE } else { 0 };
+            self.replace(at, EditKind::MissingCall, CALL + used + rare, call);
         }
         // Gamma, and other powers.
         let exponent = if is_vector {

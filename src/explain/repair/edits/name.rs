@@ -4,7 +4,7 @@ use toyproof_glsl::tree::{ExprId, ExprKind, Swizzle, Type};
 
 use super::super::edit::EditKind;
 use super::super::term::{Op, Term};
-use super::{At, Writer, is_input};
+use super::writer::{At, Writer, is_input};
 
 /// The costs: another name, an input of the frame instead of a name, and other components.
 const OTHER: u32 = 12;

@@ -12,7 +12,7 @@ use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
 use super::donor::{Donor, assignments, donors};
 use super::plausibility::Shapes;
-use super::{At, Writer};
+use super::writer::{At, Writer};
 use crate::engine::fit::{Fit, rounded};
 use crate::engine::tournament::Values;
 
@@ -38,12 +38,12 @@ const MIN_HASH_FACTOR: f64 = 1000.0;
 /// The parts of the reference shader, or of the one that renders the scene: its numbers, vectors, shapes of
 /// operations, and donors.
 #[derive(Debug, Default)]
-pub(in crate::repair) struct Constants {
+pub(crate) struct Constants {
     pub(super) floats: Vec<f64>,
     integers: Vec<i32>,
     vectors: Vec<Vec<f64>>,
     pub(super) shapes: Shapes,
-    pub(in crate::repair) donors: Vec<Donor>,
+    pub(crate) donors: Vec<Donor>,
     /// Its assignments, as donors.
     pub(super) assignments: Vec<Donor>,
     /// The numbers of hashes.
@@ -52,9 +52,9 @@ pub(in crate::repair) struct Constants {
 
 impl Constants {
     /// Collects the numbers of a reference; empty if it has no shader.
-    pub(in crate::repair) fn new(expected: &Expected) -> Self {
+    pub(crate) fn new(expected: &Expected) -> Self {
         match (expected.shader(), expected.scene()) {
-            (Some(shader), _) => Self::in_tree(&shader.tree),
+            (Some(shader), _) => Self::in_trees(&[&shader.tree]),
             (None, Some(scene)) => Self::in_scene(scene),
             (None, None) => Self::default(),
         }
@@ -67,19 +67,23 @@ impl Constants {
         };
         let file = files.add(File::new("<scene>", shader.text.as_str()));
         glsl::check(&files, file, &glsl::Options::default())
-            .map(|checked| Self::in_tree(&checked.tree))
+            .map(|checked| Self::in_trees(&[&checked.tree]))
             .unwrap_or_default()
     }
 
-    fn in_tree(tree: &Tree) -> Self {
+    /// Collects the numbers of the passes of a reference.
+    pub(crate) fn in_trees(trees: &[&Tree]) -> Self {
         let mut constants = Self {
-            shapes: Shapes::new(tree),
-            donors: donors([tree]),
-            assignments: assignments(tree),
-            hash: hash_numbers(tree),
+            shapes: Shapes::new(trees),
+            donors: donors(trees.iter().copied()),
+            assignments: trees.iter().flat_map(|tree| assignments(tree)).collect(),
+            hash: trees.iter().flat_map(|tree| hash_numbers(tree)).collect(),
             ..Self::default()
         };
-        for (id, expr) in tree.exprs.iter() {
+        let exprs = trees
+            .iter()
+            .flat_map(|tree| tree.exprs.iter().map(move |(id, expr)| (*tree, id, expr)));
+        for (tree, id, expr) in exprs {
             match &expr.kind {
                 ExprKind::Literal(literal) => match literal.value {
                     Value::Float(value) => add(&mut constants.floats, value),
@@ -110,7 +114,7 @@ impl Constants {
     }
 
     /// Whether a shader has a number of the hash from which the reference draws random numbers.
-    pub(in crate::repair) fn has_hash_of(&self, checked: &Checked) -> bool {
+    pub(crate) fn has_hash_of(&self, checked: &Checked) -> bool {
         let numbers = hash_numbers(&checked.tree);
         numbers.iter().any(|number| self.hash.contains(number))
     }

@@ -3,9 +3,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Literal, Tree, UnaryOp, Value};
+use toyproof_glsl::tree::{
+    Constructor, Direction, ExprId, ExprKind, Literal, Tree, UnaryOp, Value, Variable, VariableId,
+    VariableKind,
+};
 
-use super::super::edit::{Candidate, Change};
+use super::super::edit::{Action, Candidate, Change};
 use super::super::shader::Shader;
 use super::super::term::{Op, Term, TermKind};
 use super::number::{Constants, number};
@@ -14,6 +17,9 @@ use crate::engine::tournament::Values;
 /// The gain of an edit that writes a vector or a number of the scene, and the loss of one that removes it.
 const VECTOR: i32 = 5;
 const NUMBER: i32 = 4;
+
+/// The gain of an edit that reads a variable which nothing else reads.
+const UNREAD: i32 = 5;
 
 /// The gain or loss for each enclosing operation that has, or had, a shape of the scene's shader; and the
 /// largest gain or loss.
@@ -25,15 +31,17 @@ const MAX_DEPTH: u32 = 3;
 
 /// The shapes of the operations in a shader.
 #[derive(Debug, Default)]
-pub(in crate::repair) struct Shapes(HashSet<String>);
+pub(crate) struct Shapes(HashSet<String>);
 
 impl Shapes {
-    /// The shapes of all operations of a tree, to every depth.
-    pub(in crate::repair) fn new(tree: &Tree) -> Self {
+    /// The shapes of all operations of some trees, to every depth.
+    pub(crate) fn new(trees: &[&Tree]) -> Self {
         let mut shapes = HashSet::new();
-        for (id, expr) in tree.exprs.iter() {
-            if is_operation(&expr.kind) {
-                shapes.extend((1..=MAX_DEPTH).map(|depth| shape(tree, id, depth, None)));
+        for tree in trees {
+            for (id, expr) in tree.exprs.iter() {
+                if is_operation(&expr.kind) {
+                    shapes.extend((1..=MAX_DEPTH).map(|depth| shape(tree, id, depth, None)));
+                }
             }
         }
         Self(shapes)
@@ -63,12 +71,22 @@ pub(super) fn adjust(shader: &Shader, constants: &Constants, candidates: &mut [C
         known: parts.filter(is_known).collect(),
         places,
     };
+    let unread = unread(shader.tree);
     for candidate in candidates {
-        let Change::Expression { site, term } = &candidate.change else {
-            continue;
-        };
-        let shape = rating.shape(*site, term);
         let adjusted = |cost: u32, gain: i32| u32::try_from(cost as i32 - gain).unwrap_or(0);
+        let (site, term) = match &candidate.change {
+            Change::Expression { site, term } => (site, term),
+            Change::Statements(actions) => {
+                let reads = actions.iter().any(|(_, action)| match action {
+                    Action::Before(term) | Action::After(term) => reads_any(term, &unread),
+                    _ => false,
+                });
+                candidate.cost = adjusted(candidate.cost, if reads { UNREAD } else { 0 });
+                continue;
+            }
+        };
+        let gain = if reads_any(term, &unread) { UNREAD } else { 0 };
+        let shape = rating.shape(*site, term) + gain;
         match &mut candidate.values {
             Values::Tried { values, fit } => {
                 let mut least = u32::MAX;
@@ -85,6 +103,42 @@ pub(super) fn adjust(shader: &Shader, constants: &Constants, candidates: &mut [C
             Values::Fixed => candidate.cost = adjusted(candidate.cost, shape + rating.numbers(*site, term)),
         }
     }
+}
+
+/// The variables of a shader that have a value which nothing reads.
+fn unread(tree: &Tree) -> HashSet<VariableId> {
+    let mut targets: HashSet<ExprId> = HashSet::new();
+    for (_, expr) in tree.exprs.iter() {
+        if let ExprKind::Assign { op: None, target, .. } = expr.kind {
+            targets.insert(target);
+        }
+    }
+    let read = tree.exprs.iter().filter_map(|(id, expr)| match expr.kind {
+        ExprKind::Variable(variable) if !targets.contains(&id) => Some(variable),
+        _ => None,
+    });
+    let read: HashSet<VariableId> = read.collect();
+    let has_value = |own: &Variable| match own.kind {
+        VariableKind::Local | VariableKind::Const | VariableKind::Global => own.initializer.is_some(),
+        VariableKind::Parameter(direction) => direction == Direction::In,
+        _ => false,
+    };
+    let variables = tree.variables.iter();
+    let unread = variables.filter(|(id, own)| has_value(own) && !own.name.is_empty() && !read.contains(id));
+    unread.map(|(id, _)| id).collect()
+}
+
+/// Whether a term reads one of some variables, other than as the target of an assignment.
+fn reads_any(term: &Term, variables: &HashSet<VariableId>) -> bool {
+    let mut reads = false;
+    let value = match &term.kind {
+        TermKind::Apply(Op::Assign(_), operands) => &operands[1],
+        _ => term,
+    };
+    value.each(&mut |part| {
+        reads |= matches!(part.kind, TermKind::Variable(id) if variables.contains(&id));
+    });
+    reads
 }
 
 struct Rating<'a> {

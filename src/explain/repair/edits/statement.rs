@@ -8,7 +8,7 @@ use toyproof_glsl::tree::{
 use super::super::edit::{Action, Candidate, Change, EditKind};
 use super::super::shader::Shape;
 use super::super::term::{Op, Term, TermKind, binary_type};
-use super::{At, Writer};
+use super::writer::{At, Writer};
 use crate::engine::tournament::Values;
 
 /// The costs: another operator of an assignment, another target, another value, deletions, moves,
@@ -22,6 +22,12 @@ const REPETITION: u32 = 21;
 const COPY: u32 = 25;
 const ASSIGNMENT: u32 = 24;
 const COMPOUND: u32 = 27;
+
+/// The gain of an assignment to a variable that nothing assigns, though it is no constant.
+const UNASSIGNED: u32 = 10;
+
+/// The additional cost of an operator with which a variable that has no value is read.
+const UNSET: u32 = 10;
 
 /// The largest number of variables and members that are assigned.
 const MAX_TARGETS: usize = 24;
@@ -62,6 +68,7 @@ impl Writer<'_> {
             self.copies(at);
             self.assignments(at);
         }
+        self.transformations(at);
     }
 
     /// Repeats a statement, and copies after it others of its function whose variables are in scope there.
@@ -117,6 +124,7 @@ impl Writer<'_> {
             matches!(
                 kind,
                 VariableKind::Local
+                    | VariableKind::Global
                     | VariableKind::Parameter(Direction::Out | Direction::InOut | Direction::In)
             )
         };
@@ -171,6 +179,13 @@ impl Writer<'_> {
 
     /// Inserts an assignment behind a statement.
     fn insert(&mut self, at: usize, op: Option<BinaryOp>, target: &Term, value: Term, cost: u32) {
+        let is_unassigned = match target.kind {
+            TermKind::Variable(id) => {
+                self.tree[id].kind == VariableKind::Local && !self.written.contains(&id)
+            }
+            _ => false,
+        };
+        let cost = if is_unassigned { cost - UNASSIGNED } else { cost };
         let assignment = Action::After(Term::assign(op, target.clone(), value));
         self.change(EditKind::MissingStatement, cost, vec![(at, assignment)]);
     }
@@ -197,8 +212,13 @@ impl Writer<'_> {
                 Some(op) => binary_type(op, at.ty, own_value.ty) == Some(at.ty),
             };
             if other != op && fits {
+                let cost = if op.is_none() && self.is_unset(target) {
+                    OPERATOR + UNSET
+                } else {
+                    OPERATOR
+                };
                 let term = Term::assign(other, own_target.clone(), own_value.clone());
-                self.replace(at, EditKind::Operator, OPERATOR, term);
+                self.replace(at, EditKind::Operator, cost, term);
             }
         }
         // A value of another type, such as a color in place of a number.
@@ -230,5 +250,19 @@ impl Writer<'_> {
                 );
             }
         }
+    }
+
+    /// Whether the target of an assignment has no value unless another assignment ran before.
+    fn is_unset(&self, target: ExprId) -> bool {
+        let ExprKind::Variable(id) = self.tree[target].kind else {
+            return false;
+        };
+        let own = &self.tree[id];
+        let has_value = own.initializer.is_some()
+            || matches!(
+                own.kind,
+                VariableKind::Parameter(Direction::In | Direction::InOut)
+            );
+        !has_value
     }
 }
