@@ -2,8 +2,9 @@
 //! the repairs of that pass.
 //!
 //! Both projects are rendered side by side. A pass that differs although it reads what the reference's reads
-//! is wrong, and is one shader in one frame: it is explained like any other (`step`). A repair counts if
-//! the project with it renders the expected image, from frame 0 on (`replay`).
+//! is wrong, and is one shader in one frame: it is explained like any other (`step`). Where passes hold other
+//! things than the reference's, edits are tried in the whole project (`whole`). A repair counts if the project
+//! with it renders the expected image, from frame 0 on (`replay`).
 
 mod difference;
 mod replay;
@@ -11,6 +12,7 @@ mod side_by_side;
 mod step;
 #[cfg(test)]
 mod tests;
+mod whole;
 mod wrapper;
 
 use std::time::{Duration, Instant};
@@ -35,6 +37,9 @@ use crate::repair::SearchResult;
 const REPLAYED_PIXELS_PER_UNIT: f64 = 2e7;
 const MIN_REPLAYS: usize = 2;
 const MAX_REPLAYS: usize = 24;
+
+/// The share of the budget for the search in the whole project after that in a pass.
+const SHARE_AFTER_PASS: f64 = 0.4;
 
 /// A project with its texts.
 #[derive(Debug, Clone, Copy)]
@@ -63,6 +68,8 @@ pub struct ProjectCase<'a> {
     /// The budget of the search for repairs, as in
     /// [`SearchOptions`](crate::repair::SearchOptions::budget).
     pub budget: f64,
+    /// Whether the values that depart from those of the reference are rendered.
+    pub value_images: bool,
     /// The evaluator's pool; rayon's global pool if `None`.
     pub pool: Option<&'a ThreadPool>,
 }
@@ -104,18 +111,44 @@ pub fn explain(case: &ProjectCase) -> Option<ProjectExplanation> {
     if passes.contains(&1) || case.frame.channels.iter().any(Option::is_some) {
         return None;
     }
-    let players = Players::new(case, deadline)?;
     let replays = max_replays(case);
-    let wrong = within(case.pool, || players.first_wrong(replays))?;
-    let replays = Replays::new(case, wrong.pass, replays, deadline);
-    let mut explained = step::explain(case, &wrong, &replays);
-    let is_repaired = explained
-        .as_ref()
-        .and_then(|findings| findings.search.as_ref())
-        .is_some_and(|search| !search.repairs.is_empty());
-    if !is_repaired && !wrong.corresponds {
-        return None;
+    let by_pass = explain_pass(case, replays, deadline);
+    let search = by_pass.as_ref().and_then(|found| found.search.as_ref());
+    if search.is_some_and(|search| !search.repairs.is_empty()) {
+        return by_pass;
     }
+    let replays = Replays::new(case, replays, deadline);
+    let share = if by_pass.is_some() { SHARE_AFTER_PASS } else { 1.0 };
+    let whole = within(case.pool, || {
+        whole::search(case, share * case.budget, &replays, deadline)
+    });
+    let Some(whole) = whole.filter(|whole| by_pass.is_none() || !whole.search.repairs.is_empty()) else {
+        return by_pass;
+    };
+    let departure = PassDeparture {
+        pass: Target::Image,
+        frame: whole.frame,
+    };
+    let mut explained = by_pass.unwrap_or_else(|| ProjectExplanation {
+        departure,
+        values: None,
+        mistake: None,
+        search: None,
+        is_cut_by_time: false,
+        panics: Vec::new(),
+    });
+    explained.search = Some(whole.search);
+    explained.is_cut_by_time |= Instant::now() >= deadline;
+    Some(explained)
+}
+
+/// Explains the first pass that differs; `None` if none is wrong in both projects, or its texture does not
+/// hold what the reference's holds.
+fn explain_pass(case: &ProjectCase, replays: usize, deadline: Instant) -> Option<ProjectExplanation> {
+    let players = Players::new(case, deadline)?;
+    let wrong = within(case.pool, || players.first_wrong(replays)).filter(|wrong| wrong.corresponds)?;
+    let replays = Replays::new(case, replays, deadline);
+    let mut explained = step::explain(case, &wrong, &replays);
     Some(ProjectExplanation {
         departure: wrong.departure,
         values: explained.as_mut().and_then(|findings| findings.departure.take()),

@@ -297,7 +297,7 @@ impl<'a> Players<'a> {
 }
 
 /// The settings of an evaluation in double precision.
-fn plain<'a>() -> Settings<'a, f64> {
+pub(super) fn plain<'a>() -> Settings<'a, f64> {
     Settings {
         undefined: UndefinedPolicy::Plain,
         ..Settings::default()

@@ -63,6 +63,7 @@ pub(super) fn explain(case: &ProjectCase, wrong: &Wrong, replays: &Replays) -> O
     };
     let edited = Edited {
         original: case.project.shader.checked[*pass],
+        pass: *pass,
         view: &view,
         replays,
         lenient: case.lenient,
@@ -78,6 +79,7 @@ pub(super) fn explain(case: &ProjectCase, wrong: &Wrong, replays: &Replays) -> O
             donors: None,
             pass: Some(&edited),
         }),
+        value_images: case.value_images,
     };
     let mut findings = check(None, &shader, &options).ok()?;
     findings.mistake = findings.mistake.filter(|_| is_image);
@@ -183,6 +185,7 @@ fn enlarged(difference: &Difference, size: [u32; 2]) -> Option<String> {
 #[derive(Debug)]
 struct Edited<'a> {
     original: &'a Checked,
+    pass: usize,
     view: &'a View,
     replays: &'a Replays<'a>,
     lenient: bool,
@@ -194,6 +197,6 @@ impl EditedPass for Edited<'_> {
     }
 
     fn confirm(&self, fix: &Fix) -> Option<Confirmation> {
-        self.replays.confirm(fix)
+        self.replays.confirm(self.pass, fix)
     }
 }

@@ -91,6 +91,7 @@ fn explained(own: Texts, reference: Texts) -> Option<(ProjectExplanation, Option
         frame: &frame,
         lenient: false,
         budget: 2.0,
+        value_images: false,
         pool: None,
     };
     let explanation = explain(&case)?;
@@ -283,8 +284,8 @@ fn channels_that_nothing_reads_are_not_compared() {
 }
 
 #[test]
-fn of_passes_that_do_not_correspond_nothing_is_said() {
-    // The angle is in degrees, and in red.
+fn passes_that_do_not_correspond_are_searched_in_the_whole_project() {
+    // The angle is in degrees, and in red; its speed is wrong.
     let own = Texts {
         buffer: "
 void mainImage(out vec4 c, in vec2 p) {
@@ -300,5 +301,17 @@ void mainImage(out vec4 c, in vec2 p) {
 }",
         ..TURNED
     };
-    assert!(explained(own, TURNED).is_none());
+    let (explanation, repair) = explained(own, TURNED).unwrap();
+    let departure = explanation.departure;
+    assert_eq!((departure.pass, departure.frame), (Target::Image, 1));
+    assert_eq!(repair.unwrap(), ("buffer-a.glsl".to_owned(), 4));
+    let repair = &explanation.search.unwrap().repairs[0];
+    assert!(repair.fix.message.contains("0.01"), "{}", repair.fix.message);
+    // Right in every frame, whatever it holds.
+    let buffer = own.buffer.replace("0.02", "0.01");
+    let right = Texts {
+        buffer: &buffer,
+        ..own
+    };
+    assert!(explained(right, TURNED).is_none());
 }

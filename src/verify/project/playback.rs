@@ -68,12 +68,13 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
     #[must_use]
     pub fn new(
         shader: &PassShader<'a>,
-        programs: &'a [Program],
+        programs: impl IntoIterator<Item = &'a Program>,
         state: Option<&State>,
         timeout: Duration,
         settings: Settings<'a, N>,
     ) -> Self {
-        let renderer = PassRenderer::new(programs.iter().map(Deref::deref), shader.media, settings);
+        let programs = programs.into_iter().map(Deref::deref);
+        let renderer = PassRenderer::new(programs, shader.media, settings);
         let mut player = Player::new(shader.graph.clone(), renderer);
         if let Some(state) = state {
             let load = |_: &mut _, texture: &_, mipmaps| Ok(PassRenderer::<N>::load(texture, mipmaps));
