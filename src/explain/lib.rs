@@ -67,6 +67,9 @@ pub struct Options<'a> {
     pub alternatives: Option<Alternatives<'a>>,
     /// How to search for repairs of a wrong shader; `None` if not at all.
     pub search: Option<SearchOptions<'a>>,
+    /// Whether the values that depart from those of the reference are rendered, see
+    /// [`Departure::images`](departure::Departure::images).
+    pub value_images: bool,
 }
 
 /// The final verdict, and what explains a difference.

@@ -245,9 +245,9 @@ impl<'a> Search<'a> {
         if ruling.verdict != Verdict::Wrong || ruling.reason.compares_means() {
             return None;
         }
-        let deadline = self.deadline;
+        let (deadline, with_images) = (self.deadline, self.options.value_images);
         self.contained(Part::Mistake, || {
-            departure::find(program, case.frame, expected, algorithm, deadline)
+            departure::find(program, case.frame, expected, algorithm, with_images, deadline)
         })
     }
 

@@ -160,6 +160,7 @@ mod tests {
                 value: vec![0.123_456, f64::NAN],
                 pixel: [3, 4],
             }),
+            images: None,
             missing: Some(departure::MissingValue {
                 user: Some(Span::new(file, 9, 10)),
                 span: Span::new(other, 4, 9),

@@ -90,7 +90,7 @@ fn another_style_is_correct_and_another_image_is_wrong() {
 
 #[test]
 fn a_batch_has_its_reports_and_marks() {
-    let wrong = DISK.replace("0.61", "0.66");
+    let wrong = DISK.replace("0.5 + 0.25 * p", "0.5 - 0.25 * p");
     let rubric = "[algorithm]\npoints = 4\n";
     let folder = folder(&[
         ("solution.glsl", DISK),
@@ -119,9 +119,17 @@ fn a_batch_has_its_reports_and_marks() {
     );
     assert!(read("junit.xml").contains("classname=\"solution.glsl\""));
     assert!(read("report.html").contains("Reference: solution.glsl"));
-    for image in ["anna-reference.png", "anna-actual.png", "mai-algorithm.png"] {
-        assert!(folder.path().join("out").join(image).is_file(), "{image}");
-    }
+    let exists = |image: &str| folder.path().join("out").join(image).is_file();
+    let values = ["mai-value.png", "mai-reference-value.png"];
+    let images = ["anna-reference.png", "anna-actual.png", "mai-algorithm.png"];
+    assert!(images.into_iter().chain(values).all(exists));
+    let page = read("report.html");
+    assert!(page.contains(" data-value=\"") && page.contains(" data-reference-value=\""));
+    // A fix says more than the values.
+    let run = check(folder.path(), &arguments);
+    assert!(run.stdout.contains("fix: "), "{run:?}");
+    assert!(exists("mai-fixed.png") && !values.into_iter().any(exists));
+    assert!(!read("report.html").contains(" data-value=\""));
 }
 
 #[test]

@@ -57,8 +57,9 @@ pub(in crate::cli) struct Args {
     /// Write images and reports into this folder
     ///
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
-    /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences, and
-    /// NAME-fixed.png where a fix was found. For all: report.html, report.csv, verdict.json, junit.xml and
+    /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences,
+    /// NAME-fixed.png where a fix was found, else NAME-value.png and NAME-reference-value.png of the values in
+    /// which the shader departs from a reference shader. For all: report.html, report.csv, verdict.json, junit.xml and
     /// report.sarif; with --class, class.csv.
     #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use toyproof_diagnostic::path_name;
 use toyproof_explain::Findings;
+use toyproof_explain::departure::ValueImages;
 use toyproof_image::{self as image, ImageError, Rgb8Image, input, output};
 use toyproof_project::files;
 use toyproof_report::{Exhibit, Gallery, MAX_IMAGE_BYTES, Rubric, StudentImages, Thumbnails, subsample};
@@ -34,9 +35,9 @@ pub(super) const FIXED: ImageKind = ImageKind {
     },
 };
 
-/// The rendered image, the reference, their difference, the image after the fix of a wrong shader, and an
-/// image for each check that finds a difference.
-pub(super) const IMAGES: [ImageKind; 7] = [
+/// The rendered image, the reference, their difference, the image after the fix of a wrong shader, an image
+/// for each check that finds a difference, and the values in which a wrong shader departs from its reference.
+pub(super) const IMAGES: [ImageKind; 9] = [
     ImageKind {
         suffix: "-actual.png",
         make: |findings| Some(Cow::Borrowed(&findings.results.actual)),
@@ -65,7 +66,25 @@ pub(super) const IMAGES: [ImageKind; 7] = [
         suffix: "-toolchain.png",
         make: |findings| check(findings, findings.results.toolchain.as_ref(), IN_BITS),
     },
+    ImageKind {
+        suffix: "-value.png",
+        make: |findings| value_images(findings)?.own.as_ref().map(Cow::Borrowed),
+    },
+    ImageKind {
+        suffix: "-reference-value.png",
+        make: |findings| value_images(findings)?.reference.as_ref().map(Cow::Borrowed),
+    },
 ];
+
+/// The values in which a wrong shader without a fix departs from its reference.
+fn value_images(findings: &Findings) -> Option<&ValueImages> {
+    let is_repaired = findings
+        .search
+        .as_ref()
+        .is_some_and(|search| !search.repairs.is_empty());
+    let departure = findings.departure.as_ref().filter(|_| !is_repaired)?;
+    departure.images.as_ref()
+}
 
 fn check<'a>(findings: &Findings, check: Option<&CheckResult>, legend: Legend) -> Option<Cow<'a, Rgb8Image>> {
     let check = check.filter(|check| !check.summary.is_same())?;
@@ -130,7 +149,8 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     let Some(stem) = &submission.output_stem else {
         return exhibit;
     };
-    let [actual, reference, _, fixed, checks @ ..] = IMAGES.map(|kind| with_suffix(stem, kind.suffix));
+    let paths = IMAGES.map(|kind| with_suffix(stem, kind.suffix));
+    let [actual, reference, _, fixed, checks @ .., value, reference_value] = paths;
     // The images of checks have a legend at the bottom, which the page does not show.
     let size = if step == 1 {
         None
@@ -148,6 +168,7 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
     exhibit.reference = add(&reference);
     exhibit.fixed = add(&fixed);
     exhibit.checks = checks.map(|path| add(&path));
+    exhibit.values = [value, reference_value].map(|path| add(&path));
     exhibit
 }
 

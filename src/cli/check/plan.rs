@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_classroom::assignment::{self, Assignment, FILE_NAME};
+use toyproof_classroom::assignment::{Assignment, FILE_NAME};
 use toyproof_diagnostic::path_name;
 use toyproof_image::{Frame, FrameInputs};
 use toyproof_project::files::OutsideLink;
@@ -64,12 +64,7 @@ impl Plan {
             if !options.is_frame_given {
                 frames.clone_from(&assignment.frames);
             }
-            plan.reference = match &assignment.reference {
-                assignment::Reference::Scene(scene) => ReferenceArgs::scene(scene.clone()),
-                assignment::Reference::Given { path, tolerance } => {
-                    ReferenceArgs::given(path.clone(), *tolerance)
-                }
-            };
+            plan.reference = ReferenceArgs::of(&assignment);
             plan.permitted.extend(&assignment.permitted);
             plan.rubric = plan.rubric.or_else(|| assignment.rubric.clone());
             plan.assignment = Some((assignment, text));

@@ -192,6 +192,7 @@ impl<'a> ShaderCheck<'a> {
             }),
             search: (explains && !has_history && options.search > 0.0)
                 .then(|| checker.search_options(shader, checked)),
+            value_images: options.out.is_some(),
         };
         if checker.fell_back.load(Ordering::Relaxed) {
             self.context.worker = None;
@@ -270,6 +271,7 @@ impl<'a> ShaderCheck<'a> {
             frame,
             lenient: options.language.is_lenient(),
             budget: options.search,
+            value_images: options.out.is_some(),
             pool: self.context.pool.as_ref(),
         };
         match contain(Part::Repair, || explain::project::explain(&case)) {

@@ -7,6 +7,7 @@
 //! in right pixels, too, are a matter of style, and count less.
 
 mod flow;
+mod picture;
 
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
@@ -18,6 +19,8 @@ use toyproof_image::Frame;
 use toyproof_verify::{CheckResult, Expected};
 
 use self::flow::{Execution, Flow};
+pub use self::picture::ValueImages;
+use self::picture::Values;
 
 /// The numbers of wrong and of right pixels that are traced.
 const MAX_WRONG: usize = 8;
@@ -45,6 +48,8 @@ pub struct Departure {
     pub unknown: Option<UnknownValue>,
     /// The first value of the reference that the shader does not have.
     pub missing: Option<MissingValue>,
+    /// The two in all pixels; `None` if they were not asked for.
+    pub images: Option<ValueImages>,
 }
 
 /// A value of a shader that its reference does not have.
@@ -84,17 +89,45 @@ impl Departure {
 }
 
 /// Finds the departure of a shader whose algorithm differs from its reference in this frame; `None` if the
-/// reference is no shader, or the place was not found before the deadline.
+/// reference is no shader, or the place was not found before the deadline. `with_images` selects whether the
+/// values are rendered.
 pub(crate) fn find(
     program: &Program,
     frame: &Frame,
     expected: &Expected,
     check: &CheckResult,
+    with_images: bool,
     deadline: Instant,
 ) -> Option<Departure> {
     let (reference, reference_frame) = expected.program()?;
-    let wrong = check.sample_pixels(frame.size, MAX_WRONG);
-    let right = check.sample_agreeing(frame.size, MAX_RIGHT);
+    let pixels = [
+        check.sample_pixels(frame.size, MAX_WRONG),
+        check.sample_agreeing(frame.size, MAX_RIGHT),
+    ];
+    let reference = (reference, reference_frame);
+    find_in((program, frame), reference, pixels, with_images, deadline)
+}
+
+/// Finds the departure of a shader from a reference shader in one pixel with a wrong color; both have their
+/// frames.
+#[must_use]
+pub fn in_pixel(
+    shader: (&Program, &Frame),
+    reference: (&Program, &Frame),
+    pixel: [u32; 2],
+    deadline: Instant,
+) -> Option<Departure> {
+    find_in(shader, reference, [vec![pixel], Vec::new()], false, deadline)
+}
+
+/// Finds the departure in some wrong and some right pixels.
+fn find_in(
+    (program, frame): (&Program, &Frame),
+    (reference, reference_frame): (&Program, &Frame),
+    [wrong, right]: [Vec<[u32; 2]>; 2],
+    with_images: bool,
+    deadline: Instant,
+) -> Option<Departure> {
     let settings = || Settings::<f64> {
         deadline: Some(deadline),
         ..Settings::default()
@@ -146,7 +179,21 @@ pub(crate) fn find(
             pixel: wrong[leaf.pixel].at,
         }
     });
-    (unknown.is_some() || missing.is_some()).then_some(Departure { unknown, missing })
+    if unknown.is_none() && missing.is_none() {
+        return None;
+    }
+    let images = with_images.then(|| {
+        let span = unknown.as_ref().map(|unknown| unknown.span);
+        let own = span.and_then(|span| Values::new(program, frame, span, deadline));
+        let span = missing.as_ref().map(|missing| missing.span);
+        let other = span.and_then(|span| Values::new(reference, reference_frame, span, deadline));
+        ValueImages::new(own.as_ref(), other.as_ref())
+    });
+    Some(Departure {
+        unknown,
+        missing,
+        images,
+    })
 }
 
 /// A pixel in both shaders.
@@ -495,9 +542,13 @@ mod tests {
             &frame,
             &expected,
             check,
+            true,
             Instant::now() + timeout,
         )
         .unwrap();
+        let images = found.images.as_ref().unwrap();
+        assert_eq!(images.own.is_some(), found.unknown.is_some());
+        assert_eq!(images.reference.is_some(), found.missing.is_some());
         let text = |text: &'t str, span: Span| &text[span.start as usize..span.end as usize];
         let unknown = found.unknown.as_ref();
         let missing = found.missing.as_ref();

@@ -60,6 +60,12 @@ impl Article<'_> {
     /// The attributes that refer to the images.
     fn images(&self) -> String {
         let [algorithm, precision, toolchain] = self.exhibit.checks;
+        let departure = self
+            .record
+            .departure
+            .as_ref()
+            .filter(|_| self.record.fix.is_none());
+        let [own, missing] = self.exhibit.values;
         let images = [
             ("actual", self.exhibit.actual),
             ("reference", self.exhibit.reference),
@@ -67,6 +73,14 @@ impl Article<'_> {
             ("algorithm", algorithm),
             ("precision", precision),
             ("toolchain", toolchain),
+            (
+                "value",
+                own.filter(|_| departure.is_some_and(|found| found.unknown.is_some())),
+            ),
+            (
+                "reference-value",
+                missing.filter(|_| departure.is_some_and(|found| found.missing.is_some())),
+            ),
         ];
         let images = images.into_iter();
         images

@@ -24,6 +24,8 @@ pub struct Exhibit {
     /// The difference images of the checks: algorithm, precision, toolchain. `None` if all pixels agree or
     /// the check did not run.
     pub checks: [Option<usize>; 3],
+    /// The first value in which a wrong shader departs from its reference, and the one that it lacks.
+    pub values: [Option<usize>; 2],
 }
 
 /// All images of a page, as PNGs, and the exhibits that refer to them.

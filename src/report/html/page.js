@@ -344,6 +344,7 @@
   };
 
   const CHECKS = ['algorithm', 'precision', 'toolchain'];
+  const VALUES = ['value', 'referenceValue'];
   const HEAT_MAPS = ['difference', ...CHECKS];
   const legendOf = (name) => (name === 'toolchain' ? settings.bits : settings.eye);
   const BLINK_MS = 800;
@@ -353,7 +354,7 @@
     const data = article.dataset;
     const images = { actual: await pixels(data.actual) };
     const { width, height } = images.actual;
-    for (const name of ['reference', 'fixed', ...CHECKS]) {
+    for (const name of ['reference', 'fixed', ...CHECKS, ...VALUES]) {
       if (data[name] !== undefined) images[name] = await pixels(data[name], [width, height]);
     }
     if (images.reference) images.difference = heatMap(images.reference, images.actual);
@@ -516,6 +517,8 @@
     algorithm: 'Difference: algorithm check',
     precision: 'Difference: precision check',
     toolchain: 'Difference: toolchain check',
+    value: 'First value that the reference does not have',
+    referenceValue: 'Value of the reference that is missing',
   };
   let folded = [];
   addEventListener('beforeprint', () => {
@@ -578,7 +581,7 @@
       entry.classList.remove('unused');
       if (!used.has(entry.id)) entry.remove();
     }
-    const places = ['actual', 'reference', 'fixed', ...CHECKS].map((name) => article.dataset[name]);
+    const places = ['actual', 'reference', 'fixed', ...CHECKS, ...VALUES].map((name) => article.dataset[name]);
     const images = [...new Set(places)].filter(Boolean).map((place) => document.getElementById(`p${place}`).cloneNode(true));
     const rest = [$('#viewer'), ...images, $('#settings'), own].map((element) => element.cloneNode(true));
     page.append(head, make('body', {}, $('.skip').cloneNode(true), header, content, glossary, ...rest));
