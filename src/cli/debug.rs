@@ -6,18 +6,19 @@ use std::time::{Duration, Instant};
 use toyproof_diagnostic::Deadline;
 use toyproof_eval::Failure;
 use toyproof_eval_native::Program;
+use toyproof_explain::departure;
 use toyproof_explain::trail::follow_back;
 use toyproof_glsl::Checked;
-use toyproof_image::{FRAME_RATE, Frame};
+use toyproof_image::{FRAME_RATE, Frame, FrameInputs};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_project::{CompiledProject, PassKind};
 use toyproof_report as report;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 use toyproof_verify::project::bind::{accumulate, default_frame};
-use toyproof_verify::{self as verify, debug};
+use toyproof_verify::{self as verify, DEFAULT_TOLERANCE, debug};
 
-use super::check::Scenes;
+use super::check::{Scenes, read_assignment};
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
 use super::project::{pass_shader, rendering, target};
 use super::reference::{GivenReference, ReferenceArgs};
@@ -33,7 +34,8 @@ use super::{CliError, Exit, Terminal};
 Examples:
   toyproof debug mine.glsl --pixel 320,180
   toyproof debug mine.glsl --pixel 320,180 --scene 03-shading -v
-  toyproof debug mine.glsl --pixel 320,180 --reference solution.glsl")]
+  toyproof debug mine.glsl --pixel 320,180 --reference solution.glsl
+  toyproof debug mine.glsl --pixel 320,180 --assignment shadows")]
 pub(super) struct Args {
     /// The shader: a file, or - for standard input
     shader: PathBuf,
@@ -45,6 +47,9 @@ pub(super) struct Args {
     pass: Option<PassKind>,
     #[command(flatten)]
     reference: ReferenceArgs,
+    /// The assignment (.toml), or its folder: its reference and its first frame, unless flags name another frame
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "reference"])]
+    assignment: Option<PathBuf>,
     /// The format of standard output: `human` shows what each line stores and decides (-v: every
     /// subexpression), `json` everything
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
@@ -60,8 +65,23 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let input = find_one(&args.shader, "debug", terminal)?;
-    let given = GivenReference::read(&args.reference, &args.language, args.timeout)?;
-    let (frame, scene) = frame_and_scene(args, &input, given.as_ref())?;
+    let assignment = match &args.assignment {
+        Some(path) => Some(read_assignment(path)?.1),
+        None => None,
+    };
+    let reference = match &assignment {
+        Some(assignment) => ReferenceArgs::of(assignment),
+        None => args.reference.clone(),
+    };
+    let given = GivenReference::read(&reference, &args.language, args.timeout)?;
+    let first = assignment
+        .as_ref()
+        .and_then(|assignment| assignment.frames.first());
+    let inputs = match first.filter(|_| !args.frame.is_given()) {
+        Some(first) => first.clone(),
+        None => args.frame.inputs(),
+    };
+    let (frame, scene) = frame_and_scene(args, &inputs, &reference, &input, given.as_ref())?;
     let shader = Shader::load(&input, &args.language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     let kind = args.pass.unwrap_or(PassKind::Image);
@@ -99,7 +119,7 @@ fn print_pass(
         let error = CliError::new(format_args!("{}: there is no {kind}", shader.name));
         return Err(error.with_help("name one of its passes with --pass"));
     };
-    if !args.frame.is_moment_given() {
+    if !args.frame.is_moment_given() && args.assignment.is_none() {
         let number = default_frame(scene.as_ref());
         frame = frame.at(number, number as f32 / FRAME_RATE);
     }
@@ -138,19 +158,21 @@ struct Reference {
 /// scene, if there is one.
 fn frame_and_scene(
     args: &Args,
+    inputs: &FrameInputs,
+    reference: &ReferenceArgs,
     input: &Result<Input, ReadError>,
     given: Option<&GivenReference>,
 ) -> Result<(Frame, Option<Scene>), CliError> {
-    let mut frame = args.frame.inputs().load()?;
+    let mut frame = inputs.load()?;
     let scene = if let Some(given) = given {
-        given.resize(&mut frame, args.frame.size)?;
+        given.resize(&mut frame, inputs.size)?;
         None
     } else {
-        let scenes = Scenes::new(args.reference.scene.as_deref());
+        let scenes = Scenes::new(reference.scene.as_deref());
         let found = input.as_ref().ok().and_then(|found| scenes.find(found));
         found.and_then(|found| found.scene.ok())
     };
-    if let (None, Some(scene)) = (args.frame.size, &scene) {
+    if let (None, Some(scene)) = (inputs.size, &scene) {
         frame.size = scene.film.size;
     }
     let ([x, y], [width, height]) = (args.pixel, frame.size);
@@ -189,7 +211,8 @@ fn print_trace(
         let [r, g, b, _] = image.get(x, y);
         expected = Some([r, g, b].map(f64::from));
     }
-    let reference = match given.as_ref().and_then(GivenReference::shader) {
+    let solution = given.as_ref().and_then(GivenReference::shader);
+    let reference = match solution {
         None => None,
         Some(shader) => {
             // Its fault is not that of the shader that is traced.
@@ -199,8 +222,38 @@ fn print_trace(
             Some(trace)
         }
     };
-    let (trace, _) = traced(args, shader, frame, expected, terminal)?;
-    print(args, &trace.beside(reference), terminal)
+    let (trace, color) = traced(args, shader, frame, expected, terminal)?;
+    let trace = trace.beside(reference);
+    let departure = solution
+        .filter(|_| is_wrong(color, expected))
+        .and_then(|solution| {
+            let programs = [shader, solution].map(|(_, checked)| Program::within(checked, args.timeout));
+            let [Ok(own), Ok(other)] = programs else {
+                return None;
+            };
+            let deadline = Instant::now() + args.timeout;
+            let departure = departure::in_pixel((&own, frame), (&other, frame), args.pixel, deadline)?;
+            Some((departure, [&shader.0.files, &solution.0.files]))
+        });
+    let trace = match departure {
+        Some((departure, files)) => trace.departing(&departure, files),
+        None => trace,
+    };
+    print(args, &trace, terminal)
+}
+
+/// Whether a color differs from the expected one beyond the default tolerance.
+fn is_wrong(color: Option<[f64; 3]>, expected: Option<[f64; 3]>) -> bool {
+    match (color, expected) {
+        (Some(color), Some(expected)) => {
+            let differs = |(own, other): (f64, f64)| {
+                let difference = (own.clamp(0.0, 1.0) - other.clamp(0.0, 1.0)).abs();
+                difference.is_nan() || difference > DEFAULT_TOLERANCE
+            };
+            color.into_iter().zip(expected).any(differs)
+        }
+        _ => false,
+    }
 }
 
 fn print(args: &Args, trace: &report::PixelTrace, terminal: &Terminal) -> Result<Exit, CliError> {

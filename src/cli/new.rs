@@ -231,7 +231,7 @@ type NewFiles = Vec<(String, Vec<u8>)>;
 
 /// The files of an assignment whose reference is a shader.
 fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, CliError> {
-    let reference = ReferenceArgs::given(args.from.clone(), None);
+    let reference = ReferenceArgs::given(args.from.clone());
     let given = GivenReference::read(&reference, &args.language, args.timeout)?;
     let given = given.ok_or_else(CliError::silent)?;
     let (shader, checked) = given.shader().ok_or_else(CliError::silent)?;

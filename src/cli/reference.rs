@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use sha2::{Digest, Sha256};
+use toyproof_classroom::assignment::{Assignment, Reference};
 use toyproof_diagnostic::{Deadline, Diagnostic, all_of, grouped, path_name, plural};
 use toyproof_glsl::Checked;
 use toyproof_image::{self as image, Frame, Image, input};
@@ -53,21 +54,25 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
 const EIGHT_BIT_TOLERANCE: f64 = 1.0 / 255.0;
 
 impl ReferenceArgs {
-    /// A scene as reference.
-    pub(super) fn scene(scene: PathBuf) -> Self {
+    /// The reference of an assignment.
+    pub(super) fn of(assignment: &Assignment) -> Self {
+        let (scene, reference, tolerance) = match &assignment.reference {
+            Reference::Scene(scene) => (Some(scene.clone()), None, None),
+            Reference::Given { path, tolerance } => (None, Some(path.clone()), *tolerance),
+        };
         Self {
-            scene: Some(scene),
-            reference: None,
-            tolerance: None,
+            scene,
+            reference,
+            tolerance,
         }
     }
 
-    /// A shader or an image as reference, with a tolerance in 8-bit levels.
-    pub(super) fn given(path: PathBuf, tolerance: Option<f64>) -> Self {
+    /// A shader or an image as reference.
+    pub(super) fn given(path: PathBuf) -> Self {
         Self {
             scene: None,
             reference: Some(path),
-            tolerance,
+            tolerance: None,
         }
     }
 

@@ -5,9 +5,12 @@ use std::fmt::Write;
 use serde::{Serialize, Serializer};
 use toyproof_diagnostic::{Files, Span, grouped};
 use toyproof_eval::{Event, EventKind, TraceSchema, TraceValue};
+use toyproof_explain::departure;
 use toyproof_explain::trail::Trail;
 use toyproof_glsl::tree::{Scalar, Tree, Type};
 use toyproof_verify::debug::{Explanation, Step, digits};
+
+use super::departure::Departure;
 
 /// The trace of a pixel in f32 and in f64, in terms of the source text.
 #[derive(Debug, Serialize)]
@@ -34,6 +37,8 @@ pub struct PixelTrace {
     steps: Vec<TraceStep>,
     /// The trace of the reference shader in the same pixel; null without one.
     reference: Option<Box<PixelTrace>>,
+    /// Where the values depart from those of the reference shader; null without one, or if the color is right.
+    departure: Option<Departure>,
     /// Where the difference of a project's pixel comes from, back through passes and frames; null for a
     /// single shader.
     trail: Option<Vec<TrailStep>>,
@@ -125,6 +130,7 @@ impl PixelTrace {
             cut: explanation.is_cut,
             steps: lines.collect(),
             reference: None,
+            departure: None,
             trail: None,
             trail_cut: false,
         }
@@ -152,6 +158,15 @@ impl PixelTrace {
     pub fn beside(self, reference: Option<Self>) -> Self {
         Self {
             reference: reference.map(Box::new),
+            ..self
+        }
+    }
+
+    /// Adds where the values depart from those of the reference shader; the files are those of both.
+    #[must_use]
+    pub fn departing(self, departure: &departure::Departure, [files, reference]: [&Files; 2]) -> Self {
+        Self {
+            departure: Some(Departure::new(departure, files, reference)),
             ..self
         }
     }
@@ -477,6 +492,15 @@ impl PixelTrace {
                 text,
                 "  first not finite   line {line}, column {column}: `{source}`"
             );
+        }
+        for (label, sentence) in self.departure.iter().flat_map(Departure::sentences) {
+            // The first difference is that of the two precisions here.
+            let label = if label == "missing value" {
+                label
+            } else {
+                "wrong value"
+            };
+            let _ = writeln!(text, "  {label:18} {sentence}");
         }
         text
     }

@@ -153,6 +153,51 @@ fn the_expected_color_is_shown_with_a_scene() {
 }
 
 #[test]
+fn a_wrong_value_is_shown_beside_that_of_the_reference_of_an_assignment() {
+    let shader = |op: &str| {
+        format!(
+            "void mainImage(out vec4 c, in vec2 p) {{
+    vec2 uv = p / iResolution.y;
+    float wave = sin(7.0 * uv.x {op} iTime);
+    c = vec4(vec3(0.5 + 0.4 * wave), 1.0);
+}}
+"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    fs::create_dir(folder.path().join("waves")).unwrap();
+    let assignment = "reference = \"solution.glsl\"\n[[frame]]\nsize = [32, 18]\ntime = 1.0\n";
+    write("waves/assignment.toml", assignment);
+    write("waves/solution.glsl", &shader("+"));
+    write("mine.glsl", &shader("-"));
+    let debug = |rest: &[&str]| {
+        let arguments = ["debug", "mine.glsl", "--pixel", "20,9", "--assignment", "waves"];
+        let run = toyproof(folder.path(), &[&arguments[..], rest].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        run.stdout
+    };
+    let human = debug(&[]);
+    assert!(human.contains("pixel (20, 9) of 32×18"), "{human}");
+    let wrong = "  wrong value        line 3: `7.0 * uv.x - iTime` is 6.972 at (20, 9)";
+    assert!(human.contains(wrong), "{human}");
+    let missing = "from `7.0 * uv.x + iTime` in line 3 of the reference";
+    assert!(human.contains(missing), "{human}");
+    let json: Value = serde_json::from_str(&debug(&["--format", "json"])).unwrap();
+    let value = json["departure"]["missing"]["value"][0].as_f64().unwrap();
+    assert!((value - 8.9722).abs() < 1e-4, "{value}");
+    // Another frame, in which both are equal.
+    let human = debug(&["--size", "32x18", "--time", "0"]);
+    assert!(
+        human.contains("expected color") && !human.contains("wrong value"),
+        "{human}"
+    );
+    let both = ["--scene", "02-sphere"];
+    let arguments = ["debug", "mine.glsl", "--pixel", "2,2", "--assignment", "waves"];
+    assert_eq!(toyproof(folder.path(), &[&arguments[..], &both].concat()).code, 2);
+}
+
+#[test]
 fn explain_follows_uniform_and_shared_values() {
     let folder = tempfile::tempdir().unwrap();
     let causes = [
