@@ -54,11 +54,11 @@ struct Rendered {
     textures: Vec<[Texture; 2]>,
 }
 
-/// Follows the difference in a pixel of a pass of the last frame.
+/// Renders the frames, and follows the difference in a pixel of a pass of the last one.
 ///
 /// # Errors
 /// Why a frame cannot be rendered.
-fn trail(frames: &Frames, target: Target, pixel: [u32; 2]) -> Result<Trail, Failure> {
+fn trace_back(frames: &Frames, target: Target, pixel: [u32; 2]) -> Result<Trail, Failure> {
     let rendered = render(frames)?;
     let passes = frames.shader.graph.passes();
     let mut hops = Vec::new();
@@ -135,7 +135,7 @@ pub fn follow_back(
         timeout,
         pool: None,
     };
-    trail(&frames, target, pixel)
+    trace_back(&frames, target, pixel)
 }
 
 fn source_of(target: Target) -> Option<Source> {

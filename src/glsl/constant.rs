@@ -231,8 +231,8 @@ const MAX_COMPARED: usize = 1 << 12;
 fn binary(op: BinaryOp, a: &Constant, b: &Constant) -> Option<Vec<Value>> {
     match op {
         BinaryOp::Equal | BinaryOp::NotEqual => {
-            let is_equal = a.scalar_count() <= MAX_COMPARED && b.scalar_count() <= MAX_COMPARED;
-            let is_equal = is_equal.then(|| a == b)?;
+            let is_small = a.scalar_count() <= MAX_COMPARED && b.scalar_count() <= MAX_COMPARED;
+            let is_equal = is_small.then(|| a == b)?;
             return Some(vec![Value::Bool(is_equal == (op == BinaryOp::Equal))]);
         }
         _ => {}

@@ -14,9 +14,9 @@ pub trait Driver: fmt::Debug + Send {
     type Code;
 
     /// Renders a frame, and passes the bands of [`Frame::bands`] to `on_band`, one after the other; the time
-    /// that it takes does not count. The check of loops that the driver may have terminated runs only if
-    /// `watch` returns true; it receives the result and the time that rendering took. Callers may know that
-    /// no pixel runs more than [`Self::safe_iterations`].
+    /// spent in `on_band` does not count as rendering. `watch` receives the result and the rendering time,
+    /// and decides whether the driver's loops are checked for termination; it may return false if no pixel
+    /// runs more than [`Self::safe_iterations`] iterations.
     ///
     /// # Errors
     /// Why there is no image: [`DriverFailure::Invalid`] also for a shader that nests deeper than

@@ -130,7 +130,8 @@ fn winnow(hashes: &[u64]) -> Vec<usize> {
     places
 }
 
-/// The kind of an expression or a statement, without names and numbers.
+/// The kind of an expression or a statement, without names and numbers. `T` is what else counts of it, such
+/// as its operator.
 #[derive(Hash)]
 enum Kind<T> {
     /// A number, also if it has a name, or any variable.
@@ -233,6 +234,7 @@ impl NodeList<'_> {
         if let Some(value) = declared.initializer
             && !(declared.kind == VariableKind::Const && is_number(value))
         {
+            // Hashes like the missing operator of `p = x`.
             self.add(&Kind::Assign(None::<()>), span);
             self.add(&Kind::<()>::Value, span);
             self.expression(value);

@@ -334,7 +334,8 @@ impl Linearizer<'_> {
         };
         let (otherwise, end) = (self.label(), self.label());
         let mask = self.next_mask();
-        // Both masks are live while the first branch runs; without a second branch, one mask is enough.
+        // The first branch has the higher mask: masks inside it are numbered above its own, so that the
+        // second branch's survives. Without a second branch, one mask is enough.
         let other = if second.is_empty() { mask } else { Mask(mask.0 + 1) };
         self.masks = self.masks.max(other.0 + 1);
         self.push(Step::Split {

@@ -23,9 +23,9 @@ pub(super) trait Checks {
     /// Returns an angle in degrees, of at most one turn.
     fn degrees_or(&mut self, key: &'static str, default: f64) -> f64;
 
-    /// Returns the distance of a screen of width 2 that fills a horizontal angle of view, if there is such a
-    /// key, in degrees.
-    fn field_of_view(&mut self, key: &'static str) -> Option<f64>;
+    /// Reads a horizontal angle of view, in degrees. Returns the distance at which a screen of width 2 fills
+    /// it; `None` without the key.
+    fn screen_distance(&mut self, key: &'static str) -> Option<f64>;
 
     /// Returns a number from 0 to 1.
     fn share_or(&mut self, key: &'static str, default: f64) -> f64;
@@ -79,7 +79,7 @@ impl Checks for Table<'_, '_> {
         checked(self, key, Some(default), problem, default)
     }
 
-    fn field_of_view(&mut self, key: &'static str) -> Option<f64> {
+    fn screen_distance(&mut self, key: &'static str) -> Option<f64> {
         let distance = |fov: f64| {
             // libm's sine and cosine: the same bits on every platform.
             let (sine, cosine) = libm::sincos((0.5 * fov).to_radians());
@@ -140,7 +140,8 @@ impl Checks for Table<'_, '_> {
     }
 }
 
-/// Returns the value of a key, or a default if it is missing or rejected, which is reported.
+/// Returns the value of a key: `default` if it is missing; `fallback` if it is rejected, or missing without a
+/// default. Either is reported, so `fallback` only has to be valid.
 fn checked<T: Value + Copy>(
     table: &mut Table,
     key: &'static str,

@@ -133,7 +133,7 @@ fn projection(table: &mut Table) -> Projection {
     }
     let screen_distance = table.positive_or("screen_distance", DEFAULT_EXTENT);
     Projection::Pinhole {
-        screen_distance: table.field_of_view("fov").unwrap_or(screen_distance),
+        screen_distance: table.screen_distance("fov").unwrap_or(screen_distance),
     }
 }
 

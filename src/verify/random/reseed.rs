@@ -39,9 +39,9 @@ pub struct Reseeding {
 }
 
 impl Reseeding {
-    /// The alternatives, in the order in which they are tried.
+    /// The alternatives, in the order in which they are tried: all operations, each kind alone, and none, for
+    /// which only the pixel's shift changes the numbers.
     pub(crate) fn all() -> [Self; 5] {
-        let [integers, conversions, fractions] = [true; 3];
         let none = Self {
             integers: false,
             conversions: false,
@@ -49,13 +49,22 @@ impl Reseeding {
         };
         [
             Self {
-                integers,
-                conversions,
-                fractions,
+                integers: true,
+                conversions: true,
+                fractions: true,
             },
-            Self { integers, ..none },
-            Self { fractions, ..none },
-            Self { conversions, ..none },
+            Self {
+                integers: true,
+                ..none
+            },
+            Self {
+                fractions: true,
+                ..none
+            },
+            Self {
+                conversions: true,
+                ..none
+            },
             none,
         ]
     }
@@ -101,6 +110,7 @@ impl Reseeding {
         let mut is_changed = |id: ExprId| {
             let before = salted.exprs.len();
             self.change(&mut salted, id, 1);
+            // A change adds expressions.
             salted.exprs.len() > before
         };
         let changed: Vec<ExprId> = checked.tree.exprs.ids().filter(|&id| is_changed(id)).collect();
