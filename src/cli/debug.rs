@@ -16,7 +16,7 @@ use toyproof_report as report;
 use toyproof_scene::{FrameTime, Scene};
 use toyproof_tracer::Tracer;
 use toyproof_verify::project::bind::{accumulate, default_frame};
-use toyproof_verify::{self as verify, DEFAULT_TOLERANCE, debug};
+use toyproof_verify::{self as verify, debug};
 
 use super::check::{Scenes, read_assignment};
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
@@ -225,7 +225,13 @@ fn print_trace(
     let (trace, color) = traced(args, shader, frame, expected, terminal)?;
     let trace = trace.beside(reference);
     let departure = solution
-        .filter(|_| is_wrong(color, expected))
+        .filter(|_| {
+            is_wrong(
+                color,
+                expected,
+                given.as_ref().map_or(0.0, GivenReference::tolerance),
+            )
+        })
         .and_then(|solution| {
             let programs = [shader, solution].map(|(_, checked)| Program::within(checked, args.timeout));
             let [Ok(own), Ok(other)] = programs else {
@@ -242,13 +248,13 @@ fn print_trace(
     print(args, &trace, terminal)
 }
 
-/// Whether a color differs from the expected one beyond the default tolerance.
-fn is_wrong(color: Option<[f64; 3]>, expected: Option<[f64; 3]>) -> bool {
+/// Whether a color differs from the expected one beyond the tolerance.
+fn is_wrong(color: Option<[f64; 3]>, expected: Option<[f64; 3]>, tolerance: f64) -> bool {
     match (color, expected) {
         (Some(color), Some(expected)) => {
             let differs = |(own, other): (f64, f64)| {
                 let difference = (own.clamp(0.0, 1.0) - other.clamp(0.0, 1.0)).abs();
-                difference.is_nan() || difference > DEFAULT_TOLERANCE
+                difference.is_nan() || difference > tolerance
             };
             color.into_iter().zip(expected).any(differs)
         }

@@ -139,6 +139,11 @@ impl GivenReference {
         }))
     }
 
+    /// The tolerance of colors in [0, 1].
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// The shader, if it is one.
     pub(super) fn shader(&self) -> Option<(&Shader, &Checked)> {
         match &self.content {

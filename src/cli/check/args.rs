@@ -58,9 +58,9 @@ pub(in crate::cli) struct Args {
     ///
     /// For each shader: the images NAME-actual.png, NAME-reference.png, NAME-difference.png,
     /// NAME-algorithm.png, NAME-precision.png and NAME-toolchain.png where a check finds differences,
-    /// NAME-fixed.png where a fix was found, else NAME-value.png and NAME-reference-value.png of the values in
-    /// which the shader departs from a reference shader. For all: report.html, report.csv, verdict.json, junit.xml and
-    /// report.sarif; with --class, class.csv.
+    /// NAME-fixed.png where a fix was found, else NAME-value.png and NAME-reference-value.png of the values
+    /// in which the shader departs from a reference shader. For all: report.html, report.csv, verdict.json,
+    /// junit.xml and report.sarif; with --class, class.csv.
     #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder

@@ -1,6 +1,7 @@
 //! A value of a shader in all pixels, as an image: its expression is assigned to a global, which becomes the
 //! color.
 
+use std::collections::HashSet;
 use std::time::Instant;
 
 use toyproof_diagnostic::Span;
@@ -12,6 +13,8 @@ use toyproof_glsl::tree::{
     StatementKind, Tree, Type, Value, Variable, VariableId, VariableKind,
 };
 use toyproof_image::{Frame, Image, Rgb8Image};
+
+use crate::repair::written;
 
 /// The value of a pixel that never computes the expression.
 const UNSET: f64 = 1e30;
@@ -43,13 +46,10 @@ impl ValueImages {
             .flat_map(|values| values.finite())
             .collect();
         all.sort_by(f64::total_cmp);
-        let at = |share: f64| {
-            all.get((share * all.len().saturating_sub(1) as f64) as usize)
-                .copied()
-        };
-        let range = match (at(OUTLIERS), at(1.0 - OUTLIERS)) {
+        let left_out = (OUTLIERS * all.len() as f64) as usize;
+        let range = match (all.get(left_out), all.iter().rev().nth(left_out)) {
             // Colors and factors are shown as they are.
-            (Some(low), Some(high)) if low < 0.0 || high > 1.0 => [low, high],
+            (Some(&low), Some(&high)) if low < 0.0 || high > 1.0 => [low, high],
             _ => [0.0, 1.0],
         };
         let [own, reference] = [own, reference].map(|values| values.map(|values| values.shown(range)));
@@ -119,7 +119,13 @@ fn expression(tree: &Tree, span: Span) -> Option<ExprId> {
         let own = expr.at.span;
         own.file == span.file && span.start <= own.start && own.end <= span.end && !expr.constant
     };
-    let all = tree.exprs.iter().filter(|(_, expr)| is_inside(expr));
+    // Lvalues have no value that could be assigned.
+    let lvalues = tree.exprs.iter().flat_map(|(id, _)| written(tree, id));
+    let lvalues: HashSet<ExprId> = lvalues.flat_map(|lvalue| tree.path(lvalue)).collect();
+    let all = tree
+        .exprs
+        .iter()
+        .filter(|(id, expr)| is_inside(expr) && !lvalues.contains(id));
     let is_value = |ty| matches!(ty, Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _));
     let values = all.filter(|(_, expr)| is_value(expr.ty));
     // Of equals, the one that was added last uses the others.
@@ -263,5 +269,75 @@ impl Writer<'_> {
         };
         let expr = self.push(kind, ty);
         self.statement(StatementKind::Expression(expr))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use toyproof_diagnostic::{File, Files};
+
+    use super::*;
+
+    const SHADER: &str = "void split(in vec2 p, out float x, inout vec2 rest) { x = p.x; rest.y += 2.0; }
+void mainImage(out vec4 c, in vec2 p) {
+    float x;
+    vec2 rest = p;
+    split(p / 4.0, x, rest);
+    rest[1] *= 0.5;
+    if (p.x < 2.0) x = -1.0 * p.y;
+    c = vec4(x, rest, 1.0);
+}";
+
+    /// The value of a text of the shader in its pixels.
+    fn values(text: &str) -> Option<Vec<Option<[f64; 3]>>> {
+        let mut files = Files::default();
+        let file = files.add(File::new("a.glsl", SHADER));
+        let checked = toyproof_glsl::check(&files, file, &toyproof_glsl::Options::default()).unwrap();
+        let program = Program::new(&checked).unwrap();
+        let start = SHADER.find(text).unwrap() as u32;
+        let span = Span::new(
+            checked.tree[checked.main_image].at.span.file,
+            start,
+            start + text.len() as u32,
+        );
+        let frame = Frame {
+            size: [4, 1],
+            ..Frame::default()
+        };
+        let deadline = Instant::now() + Duration::from_secs(60);
+        let values = Values::new(&program, &frame, span, deadline)?;
+        Some(values.image.pixels().iter().copied().map(computed).collect())
+    }
+
+    #[test]
+    fn a_value_is_shown_where_it_is_computed() {
+        let first = |text| -> Vec<Option<f64>> {
+            let values = values(text).unwrap().into_iter();
+            values.map(|value| Some(value?[0])).collect()
+        };
+        assert_eq!(first("p / 4.0"), [0.125, 0.375, 0.625, 0.875].map(Some));
+        assert_eq!(first("-1.0 * p.y"), [Some(-0.5), Some(-0.5), None, None]);
+        // The value after the assignment.
+        assert_eq!(first("rest.y += 2.0"), [Some(2.5); 4]);
+    }
+
+    #[test]
+    fn no_lvalue_is_replaced() {
+        assert_eq!(values("x, rest"), None);
+        assert_eq!(values("rest[1]"), None);
+    }
+
+    #[test]
+    fn both_images_have_one_range_of_colors() {
+        let with = |values: [f32; 2]| Values {
+            image: Image::new(2, 1, values.map(|value| [value, 1.0, 1.0, 1.0]).to_vec()),
+            components: 1,
+        };
+        let (own, other) = (with([-1.0, 3.0]), with([1.0, UNSET as f32]));
+        let images = ValueImages::new(Some(&own), Some(&other));
+        assert_eq!(images.own.unwrap().pixels(), [[0; 3], [255; 3]]);
+        assert_eq!(images.reference.unwrap().pixels(), [[128; 3], UNSET_COLOR]);
     }
 }

@@ -21,6 +21,7 @@ use toyproof_image::Rgb8Image;
 pub(crate) use self::edit::DOCUMENTED;
 pub(crate) use self::listing::{ListedEdit, edits};
 pub(crate) use self::search::{NoisyImage, search};
+pub(crate) use self::shader::written;
 pub use crate::engine::confirm::Confirmation;
 use crate::known::KnownMistake;
 

@@ -291,7 +291,7 @@ impl Collector<'_> {
 }
 
 /// The lvalues that an expression writes itself.
-pub(super) fn written(tree: &Tree, expr: ExprId) -> Vec<ExprId> {
+pub(crate) fn written(tree: &Tree, expr: ExprId) -> Vec<ExprId> {
     match &tree[expr].kind {
         ExprKind::Assign { target, .. } | ExprKind::Step { target, .. } => vec![*target],
         ExprKind::Call { function, arguments } => {

@@ -218,20 +218,7 @@ impl<'a> Writer<'a> {
 /// The variables that some expression of a shader writes, or a part of them.
 fn written_variables(tree: &Tree) -> HashSet<VariableId> {
     let lvalues = tree.exprs.iter().flat_map(|(id, _)| written(tree, id));
-    lvalues.filter_map(|lvalue| root(tree, lvalue)).collect()
-}
-
-/// The variable of which an lvalue is a part.
-pub(super) fn root(tree: &Tree, mut expr: ExprId) -> Option<VariableId> {
-    loop {
-        expr = match tree[expr].kind {
-            ExprKind::Variable(variable) => return Some(variable),
-            ExprKind::Swizzle { vector: base, .. }
-            | ExprKind::Member { structure: base, .. }
-            | ExprKind::Index { base, .. } => base,
-            _ => return None,
-        };
-    }
+    lvalues.filter_map(|lvalue| tree.root_variable(lvalue)).collect()
 }
 
 /// Whether a term reads an input of the frame.

@@ -143,7 +143,7 @@ impl Writer<'_> {
             let ExprKind::Assign { target, .. } = tree[expr].kind else {
                 continue;
             };
-            let parameter = writer::root(tree, target).map(|id| &tree[id]);
+            let parameter = tree.root_variable(target).map(|id| &tree[id]);
             let Some(parameter) = parameter.filter(|own| own.kind == VariableKind::Parameter(Direction::In))
             else {
                 continue;
