@@ -78,6 +78,13 @@ impl Departure {
         self.missing = None;
     }
 
+    /// The pixel in which the shader departs from its reference.
+    #[must_use]
+    pub fn pixel(&self) -> Option<[u32; 2]> {
+        let unknown = self.unknown.as_ref().map(|unknown| [unknown.x, unknown.y]);
+        unknown.or_else(|| self.missing.as_ref().map(|missing| [missing.x, missing.y]))
+    }
+
     /// Sentences, each with its label.
     pub(super) fn sentences(&self) -> Vec<(&'static str, String)> {
         let unknown = self.unknown.as_ref().map(|unknown| {
@@ -92,7 +99,7 @@ impl Departure {
             let (line, value) = (range.line, tuple(value));
             let call = called_at.map_or_else(String::new, |call| format!(", called in line {call}"));
             let text = format!(
-                "line {line}{call}: {text} is {value} at ({x}, {y}), a value that the reference does not have"
+                "line {line}{call}: {text} is {value} at ({x}, {y}), which nothing in the reference is equal to"
             );
             ("first difference", text)
         });
@@ -107,10 +114,11 @@ impl Departure {
             } = missing;
             let value = tuple(value);
             let place = line.map_or_else(String::new, |line| format!("line {line}: "));
-            let origin = format!("{text} in line {reference_line} of the reference");
+            let computed =
+                format!("{text} is {value} at ({x}, {y}) in line {reference_line} of the reference");
             (
                 "missing value",
-                format!("{place}{value} at ({x}, {y}), from {origin}"),
+                format!("{place}{computed}, which nothing in the shader is equal to"),
             )
         });
         unknown.into_iter().chain(missing).collect()
@@ -173,9 +181,10 @@ mod tests {
         assert_eq!(
             sentences,
             [
-                "line 2, called in line 1: `c + d` is (0.1235, not finite) at (3, 4), a value that the reference does \
-                 not have",
-                "line 2: 0.3333 at (5, 6), from `c - d` in line 1 of the reference",
+                "line 2, called in line 1: `c + d` is (0.1235, not finite) at (3, 4), which nothing in the reference \
+                 is equal to",
+                "line 2: `c - d` is 0.3333 at (5, 6) in line 1 of the reference, which nothing in the shader is \
+                 equal to",
             ]
         );
         record.hide_reference();

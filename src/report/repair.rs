@@ -96,8 +96,16 @@ impl Repair {
     pub(super) fn first_of(repairs: &[repair::Repair], files: &Files) -> Option<Self> {
         let mut repairs = repairs.iter().filter_map(|repair| Self::new(repair, files));
         let first = repairs.next()?;
+        let mut alternatives: Vec<Self> = Vec::new();
+        for other in repairs {
+            // Edits of whole statements and of their parts may read alike.
+            let is_new = |known: &Self| known.summary() != other.summary();
+            if is_new(&first) && alternatives.iter().all(is_new) {
+                alternatives.push(other);
+            }
+        }
         Some(Self {
-            alternatives: repairs.collect(),
+            alternatives,
             ..first
         })
     }
@@ -152,8 +160,13 @@ impl Repair {
                 (lines, _) => format!("edits of lines {}", all_of(lines)),
             };
         };
-        if let [line] = &lines[..] {
-            return format!("line {line}: {text}");
+        match &lines[..] {
+            [line] => return format!("line {line}: {text}"),
+            // One change, such as a statement that moves.
+            lines if repair::corrects_one_mistake(&self.id) => {
+                return format!("lines {}: {text}", all_of(lines));
+            }
+            _ => {}
         }
         let edits = self.edits.iter().map(|edit| {
             let text = edit.text.as_deref().unwrap_or_default();
@@ -283,7 +296,7 @@ pub(super) mod samples {
         let result = SearchResult {
             repairs: vec![
                 repair("wrong-operator", operator, 14_400),
-                repair("wrong-number", both, 14_398),
+                repair("two-mistakes", both, 14_398),
             ],
             suspects: vec![
                 Suspect {
@@ -339,6 +352,18 @@ mod tests {
             fix.alternatives[0].sentence(),
             "line 2: remove `b + c`, and line 4: replace `1.0` with `2.0`; then 14,398 of 14,400 pixels agree"
         );
+    }
+
+    #[test]
+    fn a_change_of_several_lines_is_stated_once_and_alternatives_that_read_alike_too() {
+        let (files, mut result) = search();
+        result.repairs[1].mistake.id = "misplaced-statement";
+        result.repairs.push(result.repairs[1].clone());
+        let fix = Repair::first_of(&result.repairs, &files).unwrap();
+        let [only] = &fix.alternatives[..] else {
+            panic!("{:?}", fix.alternatives);
+        };
+        assert_eq!(only.summary(), "lines 2 and 4: change <both>");
     }
 
     #[test]

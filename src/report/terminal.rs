@@ -211,7 +211,9 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
 pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
     let Some(fix) = &record.fix else {
         let departure = record.departure.iter().flat_map(Departure::sentences);
-        return departure.chain(suspect_lines(&record.suspects)).collect();
+        let suspects = suspect_lines(&record.suspects)
+            .map(|(label, lines)| (label, format!("{lines} (the wrong pixels depend most on these)")));
+        return departure.chain(suspects).collect();
     };
     let placed = |repair: &Repair, text: String| in_tab(repair, &record.shader) + &text;
     let others = fix.alternatives.iter();
@@ -233,7 +235,7 @@ fn suspect_texts(record: &Record, layout: &Layout) -> Vec<String> {
 
 /// The statement on a search that found no fix and was not complete.
 pub(super) const CUT_SEARCH: &str =
-    "the search for a fix reached its limit; a larger --search tries more edits";
+    "none of the edits that were tried corrects the image; a larger --search tries more";
 
 /// The statement of a record if its time limit cut the explanation of the verdict.
 pub(super) const CUT_BY_TIME: &str =
@@ -543,13 +545,13 @@ mod tests {
         let normal = text(&suspected(), Detail::Normal, None);
         assert_eq!(
             normal.lines().nth(1),
-            Some("             suspect lines: 4, 2"),
+            Some("             suspect lines: 4, 2 (the wrong pixels depend most on these)"),
             "{normal}"
         );
         assert!(normal.contains(CUT_SEARCH), "{normal}");
         let full = text(&suspected(), Detail::Full, None);
         let below = format!(
-            "suspect lines: 4, 2\n\
+            "suspect lines: 4, 2 (the wrong pixels depend most on these)\n\
              \x20              4:11  `1.0`\n\
              \x20              2:12  `b + c`\n\
              \x20            {CUT_SEARCH}\n"

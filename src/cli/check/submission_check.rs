@@ -6,7 +6,7 @@ use toyproof_classroom::assignment::Subject;
 use toyproof_diagnostic::{Files, Severity};
 use toyproof_explain::repair::{Donors, SearchOptions};
 use toyproof_explain::{self as explain, Options};
-use toyproof_report::{self as report, FrameResult, Record};
+use toyproof_report::{self as report, Departure, FrameResult, Record};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::{Case, Verdict};
 
@@ -116,8 +116,11 @@ impl Checker<'_> {
             }
         };
         let check = check.as_ref()?;
-        let pixel = check.worst.as_ref().or(check.first.as_ref())?;
-        Some(self.command("debug", record, format!("--pixel {},{}", pixel.x, pixel.y)))
+        let worst = check.worst.as_ref().or(check.first.as_ref())?;
+        // The pixel whose values are stated, so that they can be followed.
+        let stated = record.departure.as_ref().and_then(Departure::pixel);
+        let [x, y] = stated.unwrap_or([worst.x, worst.y]);
+        Some(self.command("debug", record, format!("--pixel {x},{y}")))
     }
 
     /// A command on a shader, with the flags of this run that it takes, and those of the frame that gives the

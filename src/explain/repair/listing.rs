@@ -1,5 +1,7 @@
 //! The edits of a shader as a list of texts, for a search that renders more than the shader.
 
+use std::collections::HashSet;
+
 use toyproof_diagnostic::{Fix, Span};
 use toyproof_glsl::Checked;
 
@@ -8,6 +10,9 @@ use super::edits::{Constants, assignment_candidates, candidates, structural_edit
 use super::shader::Shader;
 use crate::engine::tournament::Values;
 use crate::known::KnownMistake;
+
+/// The additional cost of an edit in a function that the references have, too.
+const COPIED: u32 = 10;
 
 /// An edit of a shader.
 #[derive(Debug, Clone)]
@@ -28,9 +33,12 @@ pub(crate) fn edits(
     references: &[&Checked],
     max_cost: u32,
 ) -> Vec<ListedEdit> {
-    let shader = Shader::new(checked, source);
     let trees: Vec<_> = references.iter().map(|reference| &reference.tree).collect();
     let constants = Constants::in_trees(&trees);
+    let shader = Shader {
+        copied: constants.definitions.shared_with(&checked.tree),
+        ..Shader::new(checked, source)
+    };
     let sites: Vec<usize> = (0..shader.sites.len()).collect();
     let statements: Vec<usize> = (0..shader.statements.len()).collect();
     let mut of_tree = candidates(&shader, &constants, &sites, &statements);
@@ -57,6 +65,16 @@ pub(crate) fn edits(
             cost: edit.cost,
         });
     let mut all: Vec<ListedEdit> = of_tree.chain(of_text).collect();
+    let copied = shader.statements.iter().filter(|statement| {
+        let function = statement.at.map(|id| id.function);
+        function.is_some_and(|function| shader.copied.contains(&function))
+    });
+    let copied: HashSet<Span> = copied.map(|statement| statement.span).collect();
+    for edit in &mut all {
+        if copied.contains(&edit.statement) {
+            edit.cost += COPIED;
+        }
+    }
     all.sort_by_key(|edit| edit.cost);
     all
 }

@@ -46,6 +46,9 @@ const CHANGED: f64 = 1e-9;
 /// comparison, and for types that are not changed.
 const INHERITED: f64 = 0.9;
 
+/// The suspicion of a function that the reference has, too, relative to others with the same influence.
+const COPIED: f64 = 0.5;
+
 /// The candidate that changes the value of a site; `None` if its type has no such change.
 pub(super) fn disturbed(shader: &Shader, site: usize, by: Disturbance) -> Option<Candidate> {
     let tree = shader.tree;
@@ -142,6 +145,12 @@ pub(super) fn suspicions(shader: &Shader, measured: &[Option<Suspicion>]) -> Vec
             && let Some(&value) = places.get(&value)
         {
             suspicions[at] = suspicions[value];
+        }
+    }
+    for (site, suspicion) in shader.sites.iter().zip(&mut suspicions) {
+        let statement = shader.statements[site.statement].at;
+        if statement.is_some_and(|id| shader.copied.contains(&id.function)) {
+            *suspicion = suspicion.scaled(COPIED);
         }
     }
     suspicions

@@ -1,6 +1,7 @@
 //! Repair: finds the lines that a wrong image depends on, and the smallest edits of the shader's own text
 //! after which its image is the expected one.
 
+mod copied;
 mod edit;
 mod edits;
 mod evaluation;
@@ -20,6 +21,7 @@ use toyproof_image::Rgb8Image;
 
 pub(crate) use self::edit::DOCUMENTED;
 pub(crate) use self::listing::{ListedEdit, edits};
+pub use self::search::corrects_one_mistake;
 pub(crate) use self::search::{NoisyImage, search};
 pub(crate) use self::shader::written;
 pub use crate::engine::confirm::Confirmation;

@@ -83,12 +83,16 @@ pub(crate) fn search(
         before,
         ..
     } = *confirmer;
-    let shader = Shader::new(case.checked, options.source);
+    let constants = Constants::new(expected);
+    let shader = Shader {
+        copied: constants.definitions.shared_with(&case.checked.tree),
+        ..Shader::new(case.checked, options.source)
+    };
     let mut search = Search {
         confirmer,
         options,
         shader: &shader,
-        constants: Constants::new(expected),
+        constants,
         budget: Budget::of_units(options.budget, confirmer.deadline),
         found: Vec::new(),
         best: f64::INFINITY,
@@ -475,8 +479,14 @@ impl Repair {
 
     /// Whether it corrects one mistake.
     pub(crate) fn is_single(&self) -> bool {
-        self.mistake.id != EditKind::Two.mistake().id
+        corrects_one_mistake(self.mistake.id)
     }
+}
+
+/// Whether a repair that is named by this mistake corrects no second one.
+#[must_use]
+pub fn corrects_one_mistake(id: &str) -> bool {
+    id != EditKind::Two.mistake().id
 }
 
 /// The edits that repair most of the wrong pixels, or remove most of the difference, without breaking others.

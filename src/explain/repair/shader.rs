@@ -23,6 +23,8 @@ pub(super) struct Shader<'a> {
     /// In source order of their statements, operands before their users.
     pub(super) sites: Vec<Site>,
     pub(super) statements: Vec<StatementSite>,
+    /// The functions that the reference has, too.
+    pub(super) copied: HashSet<FunctionId>,
 }
 
 /// An expression that has a value, or an assignment.
@@ -87,6 +89,7 @@ impl<'a> Shader<'a> {
                 source,
                 sites: Vec::new(),
                 statements: Vec::new(),
+                copied: HashSet::new(),
             },
             scope: Vec::new(),
             macro_sites: HashMap::new(),

@@ -8,6 +8,7 @@ use toyproof_glsl::{self as glsl, Checked};
 use toyproof_scene::{Scene, export};
 use toyproof_verify::Expected;
 
+use super::super::copied::Definitions;
 use super::super::edit::EditKind;
 use super::super::term::{Term, TermKind};
 use super::donor::{Donor, assignments, donors};
@@ -48,6 +49,8 @@ pub(crate) struct Constants {
     pub(super) assignments: Vec<Donor>,
     /// The numbers of hashes.
     hash: Vec<u64>,
+    /// The functions.
+    pub(crate) definitions: Definitions,
 }
 
 impl Constants {
@@ -78,6 +81,7 @@ impl Constants {
             donors: donors(trees.iter().copied()),
             assignments: trees.iter().flat_map(|tree| assignments(tree)).collect(),
             hash: trees.iter().flat_map(|tree| hash_numbers(tree)).collect(),
+            definitions: Definitions::new(trees),
             ..Self::default()
         };
         let exprs = trees
