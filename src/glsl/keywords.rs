@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::dialect::Version;
 use crate::token::{Symbol, named};
 use crate::tree::{Sampler, SamplerShape, Scalar, Type};
 
@@ -37,11 +38,13 @@ named! {
         Highp "highp",
         Mediump "mediump",
         Lowp "lowp",
+        Varying "varying",
+        Attribute "attribute",
     }
 }
 
 /// The words that §3.7 reserves.
-const RESERVED: &str = "attribute varying coherent volatile restrict readonly writeonly resource atomic_uint \
+const RESERVED: &str = "coherent volatile restrict readonly writeonly resource atomic_uint \
     noperspective patch sample subroutine common partition active asm class union enum typedef template this \
     goto inline noinline public static extern external interface long short double half fixed unsigned superp \
     input output hvec2 hvec3 hvec4 dvec2 dvec3 dvec4 fvec2 fvec3 fvec4 sampler3DRect filter image1D image2D \
@@ -52,6 +55,16 @@ const RESERVED: &str = "attribute varying coherent volatile restrict readonly wr
     usampler1DArray sampler2DRect sampler2DRectShadow isampler2DRect usampler2DRect samplerBuffer \
     isamplerBuffer usamplerBuffer sampler2DMS isampler2DMS usampler2DMS sampler2DMSArray isampler2DMSArray \
     usampler2DMSArray";
+
+/// The keywords and types of GLSL ES 3.00 that are names in GLSL ES 1.00 (§3.7 there), and those that it
+/// reserves.
+const NOT_IN_ES_100: &str = "layout centroid smooth case uint uvec2 uvec3 uvec4 mat2x2 mat2x3 mat2x4 mat3x2 mat3x3 \
+    mat3x4 mat4x2 mat4x3 mat4x4 sampler2DArray isampler2D isampler3D isamplerCube isampler2DArray usampler2D \
+    usampler3D usamplerCube usampler2DArray samplerCubeShadow sampler2DArrayShadow";
+const RESERVED_IN_ES_100: &str = "asm class union enum typedef template this packed goto switch default inline \
+    noinline volatile public static extern external interface flat long short double half fixed unsigned superp \
+    input output hvec2 hvec3 hvec4 dvec2 dvec3 dvec4 fvec2 fvec3 fvec4 sampler1D sampler3D sampler1DShadow \
+    sampler2DShadow sampler2DRect sampler3DRect sampler2DRectShadow sizeof cast namespace using";
 
 /// The lexical class of a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,25 +87,50 @@ pub(crate) struct Interner {
 }
 
 impl Default for Interner {
+    /// The words of GLSL ES 3.00.
     fn default() -> Self {
-        let mut interner = Self {
-            symbols: HashMap::new(),
-            texts: Vec::new(),
-        };
-        for &keyword in Keyword::ALL {
-            interner.add(keyword.text(), Word::Keyword(keyword));
-        }
-        for (name, ty) in built_in_types() {
-            interner.add(&name, Word::Type(ty));
-        }
-        for reserved in RESERVED.split_whitespace() {
-            interner.add(reserved, Word::Reserved);
-        }
-        interner
+        Self::new(Version::Es300)
     }
 }
 
 impl Interner {
+    /// The words of a version. Those of desktop GLSL are nearly those of GLSL ES 3.00.
+    pub(crate) fn new(version: Version) -> Self {
+        let mut interner = Self {
+            symbols: HashMap::new(),
+            texts: Vec::new(),
+        };
+        let lists = |words: &str, word: &str| words.split_whitespace().any(|listed| listed == word);
+        let class = |word: &str, class| match version {
+            Version::Es100 if lists(NOT_IN_ES_100, word) => Word::Name,
+            Version::Es100 if lists(RESERVED_IN_ES_100, word) => Word::Reserved,
+            _ => class,
+        };
+        for &keyword in Keyword::ALL {
+            let is_old = matches!(keyword, Keyword::Varying | Keyword::Attribute);
+            let word = if is_old && !version.has_old_names() {
+                Word::Reserved
+            } else {
+                Word::Keyword(keyword)
+            };
+            interner.add(keyword.text(), class(keyword.text(), word));
+        }
+        for (name, ty) in built_in_types() {
+            interner.add(&name, class(&name, Word::Type(ty)));
+        }
+        let reserved = if version == Version::Es100 {
+            RESERVED_IN_ES_100
+        } else {
+            RESERVED
+        };
+        for word in reserved.split_whitespace() {
+            if interner.find(word).is_none() {
+                interner.add(word, Word::Reserved);
+            }
+        }
+        interner
+    }
+
     /// Interns a text.
     pub(crate) fn symbol(&mut self, text: &str) -> Symbol {
         match self.symbols.get(text) {

@@ -62,12 +62,14 @@
 //! - `constant`: the values of constant expressions.
 //! - [`tree`]: the typed tree in arenas, and its visitors ([`tree::walk`]).
 //! - `single_edit`: one edit after which an invalid shader compiles.
+//! - `dialect`: the hosts of shaders with their inputs, and the versions of the language.
 //! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
 
 mod built_in;
 mod check;
 mod constant;
+mod dialect;
 mod foreign;
 mod keywords;
 mod parse;
@@ -81,6 +83,7 @@ pub mod tree;
 
 use std::collections::HashSet;
 
+pub use dialect::{Dialect, Version};
 pub use preprocess::{ControlComment, Expansions};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use sampling::{Filter, Sampling, Wrap};
@@ -90,7 +93,9 @@ use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Seve
 use tree::{FunctionId, SamplerShape, Tree};
 
 use self::check::{Channels, Checker};
+use self::dialect::Wrapping;
 use self::parse::Parser;
+use self::preprocess::PreprocessorOutput;
 
 /// Maximum nesting depth of statements, parentheses, calls, unary operators and `?:`, counted together.
 /// Deeper nesting is reported; this depth fits a stack of 2 MB. Chains of operators, of postfix `.x` and
@@ -104,6 +109,8 @@ pub struct Options {
     /// `mainImage`, in order), implicit conversions from integers to floats, arrays of arrays, `?:` of arrays
     /// and structures, and user functions named like built-in ones.
     pub lenient: bool,
+    /// The host of the shader; `None` to recognize it by the text. The tabs of a project are ShaderToy's.
+    pub dialect: Option<Dialect>,
     /// The tab of a project that the text is.
     pub stage: Stage,
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
@@ -121,8 +128,13 @@ pub struct Options {
 pub struct Checked {
     /// The shader.
     pub tree: Tree,
-    /// `void mainImage(out vec4, in vec2)`, or the function that ShaderToy calls in another [`Stage`].
+    /// `void mainImage(out vec4, in vec2)`, or the function that ShaderToy calls in another [`Stage`]. Of a
+    /// host that runs `main`, a function that calls it and returns its output.
     pub main_image: FunctionId,
+    /// The host of the shader.
+    pub dialect: Dialect,
+    /// The version of GLSL in which it is written.
+    pub version: Version,
     /// The shapes of `iChannel0` to `iChannel3`, as given in the options or inferred from use.
     pub channels: [SamplerShape; 4],
     /// How the textures of `iChannel0` to `iChannel3` are sampled.
@@ -191,6 +203,8 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
     Ok(Checked {
         tree: text.tree,
         main_image: text.entry.expect("every stage but Common has an entry point"),
+        dialect: text.wrapping.dialect,
+        version: text.wrapping.version,
         channels: text.channels,
         sampling: options.sampling,
         stage: options.stage,
@@ -224,6 +238,7 @@ struct Text {
     tree: Tree,
     /// The entry point, unless the stage has none.
     entry: Option<FunctionId>,
+    wrapping: Wrapping,
     channels: [SamplerShape; 4],
     warnings: Vec<Diagnostic>,
     control_comments: Vec<ControlComment>,
@@ -231,10 +246,40 @@ struct Text {
     unexpanded_names: HashSet<String>,
 }
 
+/// Preprocesses a text in its dialect, which is recognized if the options do not give it: only a shader of
+/// another host than ShaderToy has a function `main`.
+fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, PreprocessorOutput) {
+    let declared = preprocess::declared_version(files, file);
+    let read = |dialect| {
+        let wrapping = Wrapping::new(dialect, declared);
+        let text = preprocess::preprocess(files, file, options.stage, wrapping, &options.deadline);
+        (wrapping, text)
+    };
+    if options.stage != Stage::Image {
+        return read(Dialect::ShaderToy);
+    }
+    if let Some(dialect) = options.dialect {
+        return read(dialect);
+    }
+    let as_shadertoy = read(Dialect::ShaderToy);
+    let text = &as_shadertoy.1;
+    let occurs = |name: &str| text.interner.find(name).is_some();
+    let dialect = if text.defines_main() {
+        Dialect::of_main(occurs)
+    } else {
+        Dialect::of_main_image(occurs)
+    };
+    if dialect == Dialect::ShaderToy {
+        as_shadertoy
+    } else {
+        read(dialect)
+    }
+}
+
 fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnostics> {
     let deadline = &options.deadline;
     let too_slow = |late| Diagnostics::from(vec![overdue(late)]);
-    let mut text = preprocess::preprocess(files, file, options.stage, deadline);
+    let (wrapping, mut text) = preprocess(files, file, options);
     deadline.check().map_err(too_slow)?;
     if text.incomplete {
         let named = text.diagnostics.into_iter();
@@ -251,7 +296,12 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
     // each of the four channels.
     loop {
         channels.changed = false;
-        let mut checker = Parser::new(&text, source, Checker::new(&text, options, channels.clone())).parse();
+        let mut checker = Parser::new(
+            &text,
+            source,
+            Checker::new(&text, options, wrapping, channels.clone()),
+        )
+        .parse();
         deadline.check().map_err(too_slow)?;
         if checker.channels().changed {
             channels = checker.channels().clone();
@@ -268,6 +318,7 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
             return Ok(Text {
                 tree: checker.tree,
                 entry,
+                wrapping,
                 channels: channels.shapes,
                 warnings: all,
                 control_comments: text.control_comments,

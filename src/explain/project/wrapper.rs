@@ -29,6 +29,7 @@ pub(super) fn with_suffix(shader: &Checked, text: &str, suffix: &str, lenient: b
     let file = files.add(File::new("<pass>", format!("{text}{suffix}")));
     let options = glsl::Options {
         lenient,
+        dialect: Some(shader.dialect),
         stage: shader.stage,
         channels: shader.channels.map(Some),
         sampling: shader.sampling,

@@ -408,6 +408,7 @@ impl Search<'_> {
         }
         let options = glsl::Options {
             lenient: self.options.lenient,
+            dialect: Some(self.confirmer.case.checked.dialect),
             ..glsl::Options::default()
         };
         let checked = self.confirmer.checked(&text, &options)?;

@@ -18,6 +18,9 @@ impl Checker<'_> {
         let text = self.text(name);
         match self.scopes.find(name) {
             Some(&Entity::Variable(variable)) => {
+                if let Some(&value) = self.host_inputs.get(&variable) {
+                    return self.host_input(value, at);
+                }
                 let variable = self.bound_texture(variable);
                 let found = &self.tree[variable];
                 let constant = match found.kind {
@@ -38,7 +41,7 @@ impl Checker<'_> {
                 at,
                 format!("`{text}` is a function, not a variable"),
             ),
-            None if BuiltIn::named(text).is_some() => self.refuse(
+            None if BuiltIn::named(text).is_some_and(|function| self.language.has(function)) => self.refuse(
                 Code::NotAVariable,
                 at,
                 format!("`{text}` is a function, not a variable"),

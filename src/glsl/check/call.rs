@@ -28,11 +28,27 @@ impl Checker<'_> {
                 name_at,
                 format!("`{text}` is a variable, not a function"),
             ),
-            None => match BuiltIn::named(text) {
+            None => match self.built_in_function(text, &arguments) {
                 Some(function) => self.call_built_in(function, arguments, name_at, at),
                 None => self.undeclared_function(name, name_at, at),
             },
         }
+    }
+
+    /// The built-in function of a name that is called with these arguments: one of the language's, or one of
+    /// GLSL ES 1.00 for a shape of textures, such as `texture2D`.
+    fn built_in_function(&self, name: &str, arguments: &[ExprId]) -> Option<BuiltIn> {
+        let language = self.language;
+        if let Some(function) = BuiltIn::named(name).filter(|&function| language.has(function)) {
+            return Some(function);
+        }
+        let (function, shape) = language.old_texture_function(name)?;
+        let sampler = arguments.first().map(|&argument| self.ty(argument));
+        let has_shape = match sampler {
+            Some(Type::Sampler(sampler)) => sampler.shape == shape,
+            _ => true,
+        };
+        has_shape.then_some(function)
     }
 
     fn call_function(
@@ -47,8 +63,9 @@ impl Checker<'_> {
             return self.error_expr(at);
         }
         let Some(function) = self.find_overload(overloads, &types) else {
-            // Only `lenient` allows overloading a built-in function; its other overloads remain visible.
-            if let Some(built_in) = BuiltIn::named(&self.tree[overloads[0]].name) {
+            // Where a built-in function may be overloaded, its other overloads remain visible.
+            let name = self.tree[overloads[0]].name.clone();
+            if let Some(built_in) = self.built_in_function(&name, &arguments) {
                 return self.call_built_in(built_in, arguments, name_at, at);
             }
             let resolves = |checker: &Self, types: &[Type]| checker.find_overload(overloads, types).is_some();
@@ -81,8 +98,8 @@ impl Checker<'_> {
         self.push(kind, ty, false, at)
     }
 
-    /// The overload that takes exactly these types. Under `lenient`, otherwise the only one that takes them
-    /// after implicit conversion.
+    /// The overload that takes exactly these types, otherwise the only one that takes them after implicit
+    /// conversion.
     fn find_overload(&self, overloads: &[FunctionId], types: &[Type]) -> Option<FunctionId> {
         let takes = |function: FunctionId, fits: &dyn Fn(Type, Type, VariableKind) -> bool| {
             let parameters = &self.tree[function].parameters;

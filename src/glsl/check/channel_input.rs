@@ -56,13 +56,14 @@ impl Checker<'_> {
     }
 
     /// The element of an input for a channel.
-    fn of_channel(&mut self, input: Input, channel: u8, at: Place) -> ExprId {
+    pub(super) fn of_channel(&mut self, input: Input, channel: u8, at: Place) -> ExprId {
         let array = self.input(VariableKind::Input(input), at);
         let index = self.int_literal(channel.into(), at);
         self.index(array, index, at)
     }
 
-    fn input(&mut self, kind: VariableKind, at: Place) -> ExprId {
+    /// A variable of the prelude.
+    pub(super) fn input(&mut self, kind: VariableKind, at: Place) -> ExprId {
         let is_declared = |(_, variable): &(VariableId, &Variable)| variable.kind == kind;
         let declared = self.tree.variables.iter().find(is_declared);
         match declared.map(|(id, variable)| (id, variable.ty)) {
@@ -71,7 +72,7 @@ impl Checker<'_> {
         }
     }
 
-    fn int_literal(&mut self, value: i32, at: Place) -> ExprId {
+    pub(super) fn int_literal(&mut self, value: i32, at: Place) -> ExprId {
         let literal = Literal::new(value.to_string(), Value::Int(value));
         self.literal(literal, at)
     }

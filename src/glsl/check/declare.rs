@@ -62,6 +62,7 @@ impl Checker<'_> {
         if allowed {
             self.scopes.declare(name, Entity::Variable(variable));
         }
+        self.bind_to_host(variable);
         variable
     }
 
@@ -151,7 +152,11 @@ impl Checker<'_> {
         let expr = self.expect(expr, ty, &format!("the value of `{text}`"));
         // §4.3.3; desktop GLSL requires this only of constants used as array sizes.
         let must_be_constant = matches!(kind, VariableKind::Const | VariableKind::Global);
-        if must_be_constant && ty != Type::Error && !self.lenient && !self.tree[expr].constant {
+        if must_be_constant
+            && ty != Type::Error
+            && !self.language.initializes_at_run_time()
+            && !self.tree[expr].constant
+        {
             let what = if kind == VariableKind::Const {
                 "constant"
             } else {
@@ -187,7 +192,7 @@ impl Checker<'_> {
             Some(None) => Code::Redeclared
                 .at(at, format!("redeclaration of `{text}`, which ShaderToy declares"))
                 .help("remove this declaration"),
-            None if self.scopes.is_global() && text == "main" => Code::Redeclared
+            None if self.scopes.is_global() && text == "main" && self.dialect.calls_main_image() => Code::Redeclared
                 .at(at, "`main` is reserved for ShaderToy")
                 .help("define `void mainImage(out vec4 fragColor, in vec2 fragCoord)`, which ShaderToy calls for each pixel"),
             None => return true,
@@ -212,7 +217,7 @@ impl Checker<'_> {
 
     /// Whether a lone `;` is allowed at global scope: not in §9, but in desktop GLSL.
     pub(crate) fn takes_stray_semicolons(&self) -> bool {
-        self.lenient
+        self.language.is_desktop()
     }
 
     pub(crate) fn open_scope(&mut self) {
@@ -263,6 +268,8 @@ pub(crate) enum Storage {
     In,
     Out,
     InOut,
+    /// `varying`, the old name of a global `in`.
+    Varying,
 }
 
 impl Checker<'_> {
@@ -282,11 +289,19 @@ impl Checker<'_> {
             None if global => VariableKind::Global,
             None => VariableKind::Local,
             Some((Storage::Uniform, _)) if global => VariableKind::Uniform,
+            Some((Storage::Varying, _)) if global => VariableKind::Varying,
+            Some((Storage::In | Storage::Out, at)) if global && !self.language.version.has_stage_io() => {
+                let message = "in GLSL ES 1.00, only a parameter can be `in` or `out`";
+                let help = "write `varying` for an input, and `gl_FragColor` for the color; or begin with `#version 300 es`";
+                self.report(Code::BadQualifier.at(at, message).help(help));
+                VariableKind::Global
+            }
             Some((Storage::In, _)) if global => VariableKind::Varying,
             Some((Storage::Out, _)) if global => VariableKind::Output,
             Some((storage, at)) => {
                 let message = match storage {
                     Storage::Uniform => "a local variable cannot be `uniform`",
+                    Storage::Varying => "a local variable cannot be `varying`",
                     Storage::In | Storage::Out | Storage::InOut => {
                         "a local variable cannot be `in`, `out` or `inout`"
                     }

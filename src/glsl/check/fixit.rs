@@ -35,9 +35,10 @@ impl Checker<'_> {
 
     /// A note that explains why an implicit conversion known from desktop GLSL does not happen.
     fn conversion_note(&self, from: Type, to: Type) -> Option<String> {
-        (!self.lenient && is_desktop_conversion(from, to)).then(|| {
+        (!self.language.converts_implicitly() && is_desktop_conversion(from, to)).then(|| {
             format!(
-                "WebGL 2 has no implicit conversion from {} to {}, unlike desktop GLSL; `--lenient` accepts it",
+                "{} has no implicit conversion from {} to {}, unlike desktop GLSL; `--lenient` accepts it",
+                self.language.version.webgl(),
                 self.quoted_type(from),
                 self.quoted_type(to)
             )

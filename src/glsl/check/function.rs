@@ -84,7 +84,8 @@ impl Checker<'_> {
             }
         }
         if overloads.is_empty() {
-            allowed = self.check_declarable(name, at) && self.check_not_built_in_function(name, at);
+            allowed =
+                self.check_declarable(name, at) && self.check_not_built_in_function(name, at, parameters);
         }
         let parameters = parameters
             .iter()
@@ -105,10 +106,14 @@ impl Checker<'_> {
     }
 
     /// Checks that a function does not redefine a built-in one (§6.1); variables and structures may hide it.
-    /// Desktop GLSL also allows functions.
-    fn check_not_built_in_function(&mut self, name: Symbol, at: Place) -> bool {
+    /// GLSL ES 1.00 and desktop GLSL also allow functions.
+    fn check_not_built_in_function(&mut self, name: Symbol, at: Place, parameters: &[Parameter]) -> bool {
         let text = self.text(name);
-        let allowed = self.lenient || BuiltIn::named(text).is_none();
+        let types: Vec<Type> = parameters.iter().map(|parameter| parameter.ty).collect();
+        let allowed = BuiltIn::named(text).is_none_or(|function| {
+            let is_overload = self.language.may_overload() && function.result(&types).is_none();
+            is_overload || self.language.may_redefine(function)
+        });
         if !allowed {
             let message = format!("`{text}` is a built-in function and cannot be redefined");
             self.error(Code::Redeclared, at, message);
@@ -263,6 +268,9 @@ impl Checker<'_> {
                 .at(at, message)
                 .note("GLSL does not support recursion");
             self.report(diagnostic.help("use a loop"));
+        }
+        if !self.dialect.calls_main_image() {
+            return self.entry_of_main();
         }
         // `main` in place of `mainImage` has been reported.
         if self

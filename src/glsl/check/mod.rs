@@ -9,6 +9,7 @@ mod channel_input;
 mod declare;
 mod fixit;
 mod function;
+mod host;
 mod operator;
 mod prelude;
 mod quotient;
@@ -17,7 +18,7 @@ mod signature;
 mod statement;
 mod types;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Fix, IN_MACRO};
 
@@ -25,24 +26,32 @@ pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
 use self::function::Context;
 pub(crate) use self::function::Parameter;
 pub(crate) use self::prelude::Channels;
-use self::scope::{Scopes, UnknownName};
+use self::scope::{Entity, Scopes, UnknownName};
 pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
 use crate::Options;
+use crate::dialect::{Dialect, InputValue, Language, Wrapping};
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
 use crate::preprocess::PreprocessorOutput;
 use crate::reporting::{MAX_REPORTED, push_limited};
 use crate::stage::Stage;
 use crate::token::Symbol;
-use crate::tree::{Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value};
+use crate::tree::{
+    Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value, VariableId,
+};
 
 /// Builds the tree and enforces the rules.
 pub(crate) struct Checker<'a> {
     interner: &'a Interner,
-    lenient: bool,
+    language: Language,
+    dialect: Dialect,
     stage: Stage,
+    /// The uniforms and varyings that the host sets, with their values.
+    host_inputs: HashMap<VariableId, InputValue>,
+    /// The variable that holds the color, if the host runs `main`.
+    output: Option<VariableId>,
     pub(crate) tree: Tree,
     scopes: Scopes,
     channels: Channels,
@@ -76,7 +85,12 @@ struct Call {
 }
 
 impl<'a> Checker<'a> {
-    pub(crate) fn new(text: &'a PreprocessorOutput, options: &Options, channels: Channels) -> Self {
+    pub(crate) fn new(
+        text: &'a PreprocessorOutput,
+        options: &Options,
+        wrapping: Wrapping,
+        channels: Channels,
+    ) -> Self {
         let mut checker = Self {
             interner: &text.interner,
             unknown: Vec::new(),
@@ -85,8 +99,14 @@ impl<'a> Checker<'a> {
             lacks_names: text.lacks_names,
             // The last token is `End`, which may be lines below the last visible token.
             end: text.tokens.iter().rev().take(2).next_back().map(|token| token.at),
-            lenient: options.lenient,
+            language: Language {
+                version: wrapping.version,
+                is_lenient: options.lenient,
+            },
+            dialect: wrapping.dialect,
             stage: options.stage,
+            host_inputs: HashMap::new(),
+            output: None,
             tree: Tree::default(),
             scopes: Scopes::default(),
             channels,
@@ -188,7 +208,7 @@ impl<'a> Checker<'a> {
         self.push(ExprKind::Literal(literal), ty, true, at)
     }
 
-    /// Converts an expression to a type: returns it unchanged, or under `lenient` converted as in desktop
+    /// Converts an expression to a type: returns it unchanged, or implicitly converted as in desktop
     /// GLSL. Returns `None` if it does not fit.
     fn convert(&mut self, expr: ExprId, to: Type) -> Option<ExprId> {
         let from = self.ty(expr);
@@ -206,9 +226,9 @@ impl<'a> Checker<'a> {
         Some(self.push(kind, to, constant, at))
     }
 
-    /// Whether `lenient` is set and desktop GLSL converts implicitly from one type to the other.
+    /// Whether the language converts implicitly from one type to the other.
     fn converts_implicitly(&self, from: Type, to: Type) -> bool {
-        self.lenient && is_desktop_conversion(from, to)
+        self.language.converts_implicitly() && is_desktop_conversion(from, to)
     }
 
     /// Converts an expression to a type, or reports an error in which `role` names the expression.

@@ -58,14 +58,14 @@ impl Checker<'_> {
         self.refuse_with(diagnostic, at)
     }
 
-    /// Under `lenient`, converts the operand whose scalar type has the lower rank.
+    /// Where the language converts implicitly, converts the operand whose scalar type has the lower rank.
     fn promote_operands(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> (ExprId, ExprId) {
         let shift = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
         let (a, b) = (self.ty(left), self.ty(right));
         let (Some(x), Some(y)) = (a.scalar(), b.scalar()) else {
             return (left, right);
         };
-        if !self.lenient || shift || x == y {
+        if !self.language.converts_implicitly() || shift || x == y {
             return (left, right);
         }
         let to_left = b.with_scalar(x).and_then(|to| self.convert(right, to));
@@ -105,7 +105,7 @@ impl Checker<'_> {
         let at = self.tree[condition].at.to(self.tree[no].at);
         let condition = self.condition(condition);
         let (mut yes, mut no) = (yes, no);
-        // Under `lenient`, one side may be converted to the other's type.
+        // One side may be converted to the other's type.
         if let Some(fits) = self.convert(no, self.ty(yes)) {
             no = fits;
         } else if let Some(fits) = self.convert(yes, self.ty(no)) {
@@ -127,7 +127,7 @@ impl Checker<'_> {
             return self.refuse_with(diagnostic, at);
         }
         // Samplers are not values (§4.1.7). WebGL does not allow `?:` of `void`, arrays or structures.
-        let webgl_has_none = matches!(a, Type::Array(_) | Type::Struct(_)) && !self.lenient;
+        let webgl_has_none = matches!(a, Type::Array(_) | Type::Struct(_)) && !self.language.is_desktop();
         if a == Type::Void || self.holds_sampler(a) || webgl_has_none {
             let message = format!("the results of `?:` cannot be of type {}", self.quoted_type(a));
             return self.refuse(Code::BadType, at, message);

@@ -64,6 +64,7 @@ impl Checker<'_> {
         for (name, value) in LIMITS.into_iter().chain(offsets) {
             self.built_in(name, Type::INT, VariableKind::BuiltInConstant, Some(value));
         }
+        self.declare_old_outputs();
     }
 
     /// Whether another tab has an input of this name.
@@ -87,7 +88,7 @@ impl Checker<'_> {
             at: None,
         });
         // A name that does not occur in the text need not be in scope.
-        let is_declared = !kind.is_input() || self.stage.has_input(name);
+        let is_declared = !kind.is_input() || (self.dialect.is_implicit() && self.stage.has_input(name));
         if let Some(symbol) = self.interner.find(name).filter(|_| is_declared) {
             self.scopes.declare(symbol, Entity::Variable(variable));
         }

@@ -131,6 +131,9 @@ impl Checker<'_> {
 
     fn report_undeclared(&mut self, name: Symbol, at: Place, call: Option<Place>) -> ExprId {
         let text = self.text(name);
+        if let Some(value) = self.implicit_input(text).filter(|_| call.is_none()) {
+            return self.host_input(value, at);
+        }
         let (variables, functions) = self.names_in_scope();
         let (message, first, second) = match call {
             Some(_) => (format!("unknown function `{text}`"), functions, variables),

@@ -83,11 +83,14 @@ impl Checker<'_> {
     /// The array type of the given sizes, outermost first. `given` is the type of the initializer, which
     /// determines the sizes that are omitted.
     pub(super) fn array_type(&mut self, base: Type, sizes: &[Size], given: Option<Type>, at: Place) -> Type {
-        if sizes.len() > 1 && !self.lenient {
+        if sizes.len() > 1 && !self.language.has_arrays_of_arrays() {
             self.error(
                 Code::ArrayOfArrays,
                 at,
-                "arrays of arrays are not supported in GLSL ES 3.00",
+                format!(
+                    "arrays of arrays are not supported in {}",
+                    self.language.version.name()
+                ),
             );
             return Type::Error;
         }
@@ -247,7 +250,7 @@ impl Checker<'_> {
         }
         whole.structs += 1;
         whole.depth += 1;
-        let limit = if self.lenient {
+        let limit = if self.language.is_desktop() {
             MAX_NESTING
         } else {
             MAX_STRUCT_NESTING

@@ -1,6 +1,6 @@
 //! Declarations: types, variables, structures, functions (§4, §6.1).
 
-use toyproof_diagnostic::Code;
+use toyproof_diagnostic::{Code, Diagnostic};
 
 use super::{Halt, ParseResult, Parser};
 use crate::check::{Declarator, Members, Parameter, Qualifiers, Size, Specifier, Storage};
@@ -313,6 +313,12 @@ impl Parser<'_> {
 
 // Qualifiers (§4.3–§4.7).
 
+/// The error about a vertex shader's input.
+fn vertex_shader(at: Place) -> Diagnostic {
+    let diagnostic = Code::BadQualifier.at(at, "`attribute` belongs to a vertex shader");
+    diagnostic.help("toyproof runs fragment shaders that cover the image: give it the fragment shader alone")
+}
+
 impl Parser<'_> {
     /// Parses the qualifiers before a type, in the order of §4.7: `invariant`, interpolation, layout,
     /// storage, precision.
@@ -324,12 +330,15 @@ impl Parser<'_> {
             let Some(keyword) = self.keyword() else {
                 return Ok(qualifiers);
             };
+            if keyword == Keyword::Attribute {
+                return self.halt_with(vertex_shader(at));
+            }
             let rank = match keyword {
                 Keyword::Invariant => 1,
                 Keyword::Flat | Keyword::Smooth => 2,
                 Keyword::Layout => 3,
                 Keyword::Const | Keyword::Centroid => 4,
-                Keyword::In | Keyword::Out | Keyword::InOut | Keyword::Uniform => 5,
+                Keyword::In | Keyword::Out | Keyword::InOut | Keyword::Uniform | Keyword::Varying => 5,
                 Keyword::Highp | Keyword::Mediump | Keyword::Lowp => 6,
                 _ => return Ok(qualifiers),
             };
@@ -343,6 +352,7 @@ impl Parser<'_> {
                 Keyword::Const => qualifiers.is_const = Some(at),
                 Keyword::Uniform => qualifiers.storage = Some((Storage::Uniform, at)),
                 Keyword::In => qualifiers.storage = Some((Storage::In, at)),
+                Keyword::Varying => qualifiers.storage = Some((Storage::Varying, at)),
                 Keyword::Out => qualifiers.storage = Some((Storage::Out, at)),
                 Keyword::InOut => qualifiers.storage = Some((Storage::InOut, at)),
                 Keyword::Highp | Keyword::Mediump | Keyword::Lowp => qualifiers.precision = Some(at),
@@ -470,7 +480,7 @@ impl Parser<'_> {
     fn direction(&mut self, qualifiers: &Qualifiers) -> Direction {
         let interface = qualifiers.interface.first().map(|&(_, at)| at);
         let wrong = match (qualifiers.storage, qualifiers.is_const, interface) {
-            (_, _, Some(at)) | (Some((Storage::Uniform, at)), _, _) => {
+            (_, _, Some(at)) | (Some((Storage::Uniform | Storage::Varying, at)), _, _) => {
                 Some((at, "a parameter can only be `const`, `in`, `out` or `inout`"))
             }
             (Some((Storage::Out | Storage::InOut, at)), Some(_), None) => {

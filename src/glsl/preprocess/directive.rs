@@ -4,6 +4,7 @@ use toyproof_diagnostic::{Code, Diagnostic, Fix, Span, nearest};
 
 use super::macros::expect_end_of_directive;
 use super::{PpToken, Prefix, Preprocessor};
+use crate::dialect::Version;
 use crate::token::TokenKind;
 use crate::tree::Place;
 
@@ -22,6 +23,14 @@ pub(crate) const DIRECTIVES: [&str; 13] = [
     "extension",
     "version",
     "line",
+];
+
+/// The extensions of GLSL ES 1.00 that add functions or outputs to fragment shaders.
+const EXTENSIONS_OF_WEBGL_1: [&str; 4] = [
+    "GL_OES_standard_derivatives",
+    "GL_EXT_shader_texture_lod",
+    "GL_EXT_frag_depth",
+    "GL_EXT_draw_buffers",
 ];
 
 fn unknown_directive(name: &str, at: Place) -> Diagnostic {
@@ -126,18 +135,33 @@ impl Preprocessor<'_> {
         line
     }
 
-    /// Checks `#version 300 es`, which must come first.
+    /// Checks `#version`, which must come first. ShaderToy writes it itself, in front of the text.
     fn version(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         if self.seen > Prefix::Nothing {
             return Code::BadVersion.refuse(at, "`#version` must be the first line of code");
         }
         let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
-        if texts == ["300", "es"] {
+        let version = match texts[..] {
+            [number] => Version::parse(number, None),
+            [number, profile] => Version::parse(number, Some(profile)),
+            _ => None,
+        };
+        let dialect = self.wrapping.dialect;
+        let is_supported = match version {
+            Some(Version::Es300) => true,
+            Some(_) => !dialect.calls_main_image(),
+            None => false,
+        };
+        if is_supported {
             return Ok(());
         }
         let message = format!("unsupported version `{}`", texts.join(" "));
         let span = line.iter().map(|token| token.at.span).reduce(Span::to);
         let diagnostic = Code::BadVersion.at(at, message);
+        if !dialect.calls_main_image() {
+            let help = "write `100`, `300 es`, `310 es`, or a desktop version such as `330`";
+            return Err(diagnostic.help(help).into());
+        }
         let help = "ShaderToy uses `#version 300 es`";
         Err(Box::new(match span {
             Some(span) => diagnostic.fix(Fix::new(help, span, "300 es")),
@@ -145,7 +169,8 @@ impl Preprocessor<'_> {
         }))
     }
 
-    /// Checks `#extension name : behavior` (§3.5). No extension is supported.
+    /// Checks `#extension name : behavior` (§3.5). None is supported but those of WebGL 1 that every browser
+    /// has.
     fn extension(&mut self, line: &[PpToken], at: Place) -> Result<(), Box<Diagnostic>> {
         let texts: Vec<_> = line.iter().map(|token| self.text(token)).collect();
         let [name, ":", behavior @ ("require" | "enable" | "warn" | "disable")] = texts[..] else {
@@ -153,7 +178,12 @@ impl Preprocessor<'_> {
             let help = "write `#extension NAME : BEHAVIOR`, where BEHAVIOR is `require`, `enable`, `warn` or `disable`";
             return Err(Box::new(diagnostic.help(help)));
         };
-        if self.seen == Prefix::Text {
+        let version = self.wrapping.version;
+        if version == Version::Es100 && EXTENSIONS_OF_WEBGL_1.contains(&name) {
+            return Ok(());
+        }
+        // Browsers accept it anywhere in GLSL ES 1.00.
+        if self.seen == Prefix::Text && version != Version::Es100 {
             return Code::BadExtension.refuse(at, "`#extension` after the first declaration");
         }
         let fatal = behavior == "require" || (name == "all" && behavior == "enable");

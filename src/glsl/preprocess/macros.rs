@@ -8,6 +8,7 @@ use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 
 use super::{PpToken, Preprocessor};
 use crate::Stage;
+use crate::dialect::{Version, Wrapping};
 use crate::keywords::Interner;
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
@@ -55,9 +56,14 @@ impl Macro {
 
     /// The predefined macros: those of §3.4, and ShaderToy's `HW_PERFORMANCE`.
     /// Common, compiled alone, has only those of §3.4.
-    pub(super) fn predefined(file: FileId, stage: Stage, interner: &mut Interner) -> HashMap<Symbol, Self> {
+    pub(super) fn predefined(
+        file: FileId,
+        stage: Stage,
+        Wrapping { dialect, version }: Wrapping,
+        interner: &mut Interner,
+    ) -> HashMap<Symbol, Self> {
         let at = Place::plain(Span::new(file, 0, 0));
-        let mut number = |text| {
+        let mut number = |text: &str| {
             let token = PpToken {
                 kind: TokenKind::Number(interner.symbol(text)),
                 at,
@@ -69,19 +75,32 @@ impl Macro {
                 parameter: [None].into(),
             }
         };
-        let (one, version) = (number("1"), number("300"));
+        let (one, number) = (number("1"), number(&version.number().to_string()));
+        let has_host = dialect.calls_main_image() && stage != Stage::Common;
+        // Whether it exists, and whether it is one of the language's.
         let all = [
-            ("__LINE__", Body::Line, true),
-            ("__FILE__", Body::File, true),
-            ("__VERSION__", version, true),
-            ("GL_ES", one.clone(), true),
-            ("GL_FRAGMENT_PRECISION_HIGH", one.clone(), true),
-            ("HW_PERFORMANCE", one, false),
+            ("__LINE__", Body::Line, true, true),
+            ("__FILE__", Body::File, true, true),
+            ("__VERSION__", number, true, true),
+            ("GL_ES", one.clone(), version.is_es(), true),
+            ("GL_FRAGMENT_PRECISION_HIGH", one.clone(), version.is_es(), true),
+            (
+                "GL_OES_standard_derivatives",
+                one.clone(),
+                version == Version::Es100,
+                true,
+            ),
+            (
+                "GL_EXT_shader_texture_lod",
+                one.clone(),
+                version == Version::Es100,
+                true,
+            ),
+            ("HW_PERFORMANCE", one, has_host, false),
         ];
-        let is_defined = |is_language: bool| is_language || stage != Stage::Common;
         all.into_iter()
-            .filter(|(_, _, predefined)| is_defined(*predefined))
-            .map(|(name, body, predefined)| {
+            .filter(|(_, _, is_defined, _)| *is_defined)
+            .map(|(name, body, _, predefined)| {
                 let definition = Self {
                     predefined,
                     ..Self::new(None, body, at)

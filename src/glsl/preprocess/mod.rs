@@ -24,6 +24,7 @@ use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
 use super::token::{Punctuator, Symbol, Token, TokenKind};
 use crate::Stage;
+use crate::dialect::{Version, Wrapping};
 use crate::keywords::Interner;
 use crate::reporting::push_limited;
 
@@ -71,9 +72,10 @@ pub(crate) fn preprocess(
     files: &Files,
     file: FileId,
     stage: Stage,
+    wrapping: Wrapping,
     deadline: &Deadline,
 ) -> PreprocessorOutput {
-    let mut preprocessor = Preprocessor::new(files, file, stage);
+    let mut preprocessor = Preprocessor::new(files, file, stage, wrapping);
     let mut tokens = Vec::new();
     loop {
         let mut token = preprocessor.next_expanded();
@@ -143,6 +145,45 @@ pub(crate) fn preprocess(
     }
 }
 
+impl PreprocessorOutput {
+    /// Whether it defines or declares a function `void main(`.
+    pub(crate) fn defines_main(&self) -> bool {
+        let Some(main) = self.interner.find("main") else {
+            return false;
+        };
+        let is_main = |tokens: &[Token]| {
+            tokens[1].kind == TokenKind::Word(main)
+                && tokens[2].kind == TokenKind::Punctuator(Punctuator::LeftParen)
+                && matches!(tokens[0].kind, TokenKind::Word(word) if self.interner.text(word) == "void")
+        };
+        self.tokens.windows(3).any(is_main)
+    }
+}
+
+/// The version that `#version` in front of a text selects.
+pub(crate) fn declared_version(files: &Files, file: FileId) -> Option<Version> {
+    let mut interner = Interner::default();
+    let mut lexer = Lexer::new(file, files.get(file).text());
+    let mut ignored = Vec::new();
+    let mut next = || lexer.next(&mut interner, &mut ignored).kind;
+    let first = std::iter::repeat_with(&mut next).find(|&kind| kind != TokenKind::Newline);
+    if first != Some(TokenKind::Punctuator(Punctuator::Hash)) {
+        return None;
+    }
+    let line: Vec<TokenKind> = std::iter::repeat_with(next)
+        .take_while(|kind| !matches!(kind, TokenKind::Newline | TokenKind::End))
+        .collect();
+    let words = line.iter().map(|kind| match kind {
+        TokenKind::Word(word) | TokenKind::Number(word) => interner.text(*word),
+        _ => "",
+    });
+    match words.collect::<Vec<_>>()[..] {
+        ["version", number] => Version::parse(number, None),
+        ["version", number, profile] => Version::parse(number, Some(profile)),
+        _ => None,
+    }
+}
+
 /// The tokens of a text as it is written, and their texts: directives are not executed, macros not expanded,
 /// and ends of lines are tokens. Errors are not reported.
 pub(crate) fn source_tokens(files: &Files, file: FileId) -> (Vec<Token>, Interner) {
@@ -194,6 +235,7 @@ fn lookalike(c: char) -> Option<&'static str> {
 struct Preprocessor<'a> {
     text: &'a str,
     lexer: Lexer<'a>,
+    wrapping: Wrapping,
     interner: Interner,
     macros: HashMap<Symbol, Macro>,
     expansions: Expansions,
@@ -222,13 +264,14 @@ struct Preprocessor<'a> {
 }
 
 impl<'a> Preprocessor<'a> {
-    fn new(files: &'a Files, file: FileId, stage: Stage) -> Self {
-        let mut interner = Interner::default();
-        let macros = Macro::predefined(file, stage, &mut interner);
+    fn new(files: &'a Files, file: FileId, stage: Stage, wrapping: Wrapping) -> Self {
+        let mut interner = Interner::new(wrapping.version);
+        let macros = Macro::predefined(file, stage, wrapping, &mut interner);
         let text = files.get(file).text();
         Self {
             text,
             lexer: Lexer::new(file, text),
+            wrapping,
             interner,
             macros,
             expansions: Expansions::default(),

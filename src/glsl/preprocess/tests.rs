@@ -1,12 +1,19 @@
 use toyproof_diagnostic::File;
 
 use super::*;
+use crate::dialect::Dialect;
 
 /// The tokens' texts with blanks between them, or the code of the first diagnostic.
 fn expand(text: &str) -> String {
     let mut files = Files::default();
     let file = files.add(File::new("a", text));
-    let result = preprocess(&files, file, Stage::Image, &Deadline::default());
+    let result = preprocess(
+        &files,
+        file,
+        Stage::Image,
+        Wrapping::new(Dialect::ShaderToy, None),
+        &Deadline::default(),
+    );
     if let Some(first) = result.diagnostics.first() {
         return first.code.to_string();
     }
@@ -85,7 +92,13 @@ fn messages_on_parameter_lists() {
     ] {
         let mut files = Files::default();
         let file = files.add(File::new("a", text));
-        let result = preprocess(&files, file, Stage::Image, &Deadline::default());
+        let result = preprocess(
+            &files,
+            file,
+            Stage::Image,
+            Wrapping::new(Dialect::ShaderToy, None),
+            &Deadline::default(),
+        );
         assert_eq!(result.diagnostics[0].message, wanted, "{text}");
     }
 }
@@ -184,7 +197,13 @@ fn hostile_macros_end_in_a_diagnostic() {
 fn tokens_keep_their_use_and_spelling() {
     let mut files = Files::default();
     let file = files.add(File::new("a", "#define F(x) x + b\n#define G F(c)\nF(a); G"));
-    let result = preprocess(&files, file, Stage::Image, &Deadline::default());
+    let result = preprocess(
+        &files,
+        file,
+        Stage::Image,
+        Wrapping::new(Dialect::ShaderToy, None),
+        &Deadline::default(),
+    );
     let reported: Vec<_> = result.tokens[..7]
         .iter()
         .map(|token| (files.text(token.at.span), files.text(token.at.spelling)))

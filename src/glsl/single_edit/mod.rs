@@ -18,7 +18,7 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, File, FileId,
 
 use self::candidates::{Candidates, edited};
 use self::source::Source;
-use crate::preprocess::preprocess;
+use crate::preprocess;
 use crate::{Options, check};
 
 /// Maximum number of candidates that are verified.
@@ -79,9 +79,8 @@ pub fn single_edit(files: &Files, file: FileId, errors: &Diagnostics, options: &
         deadline: Deadline::after(limit.min(MAX_DURATION)),
         ..options.clone()
     };
-    let tokens = preprocess(files, file, options.stage, &options.deadline)
-        .tokens
-        .len();
+    let (_, preprocessed) = preprocess(files, file, &options);
+    let tokens = preprocessed.tokens.len();
     let checks = MAX_CHECKS
         .min(MAX_CHECKED_BYTES / text.len().max(1))
         .min(MAX_CHECKED_TOKENS / tokens.max(1));

@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use toyproof_diagnostic::{Code, Severity};
 
 use super::{MAIN, check_text};
+use crate::dialect::{Dialect, Wrapping};
 use crate::tree::{
     self, Block, Condition, ExprId, ExprKind, Item, Label, Place, StatementKind, Tree, Type, VariableId,
 };
@@ -244,11 +245,12 @@ fn every_stage_stops_at_its_deadline() {
 
     let mut files = Files::default();
     let file = files.add(File::new("a", text.as_str()));
-    let whole = preprocess::preprocess(&files, file, Stage::Image, &in_time.deadline);
-    let begun = preprocess::preprocess(&files, file, Stage::Image, &over);
+    let wrapping = Wrapping::new(Dialect::ShaderToy, None);
+    let whole = preprocess::preprocess(&files, file, Stage::Image, wrapping, &in_time.deadline);
+    let begun = preprocess::preprocess(&files, file, Stage::Image, wrapping, &over);
     assert!(begun.tokens.len() < whole.tokens.len());
     let parse = |options: &Options| {
-        let checker = Checker::new(&whole, options, Channels::new(options));
+        let checker = Checker::new(&whole, options, wrapping, Channels::new(options));
         Parser::new(&whole, files.get(file), checker)
             .parse()
             .tree

@@ -38,16 +38,20 @@ fn outcome(text: &str, options: &Options) -> String {
 /// Checks one case per line: the expected result, then the text. Two results as in `E0306/ok` are those of
 /// `strict` and `lenient`.
 fn cases(table: &str) {
+    let strict = Options {
+        dialect: Some(Dialect::ShaderToy),
+        ..Options::default()
+    };
     let lenient = Options {
         lenient: true,
-        ..Options::default()
+        ..strict.clone()
     };
     let mut wrong = Vec::new();
     for line in table.lines().map(str::trim).filter(|line| !line.is_empty()) {
         let (wanted, text) = line.split_once(' ').unwrap();
         let both = wanted.split_once('/').unwrap_or((wanted, wanted));
         let text = text.trim_start();
-        let found = (outcome(text, &Options::default()), outcome(text, &lenient));
+        let found = (outcome(text, &strict), outcome(text, &lenient));
         if (found.0.as_str(), found.1.as_str()) != both {
             wrong.push(format!("{}/{} {text}", found.0, found.1));
         }

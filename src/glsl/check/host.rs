@@ -1,0 +1,271 @@
+//! What a host adds to a shader: the values of the inputs that it sets, and the call of `main`.
+
+use toyproof_diagnostic::Code;
+
+use super::{Checker, Entity};
+use crate::dialect::InputValue;
+use crate::tree::{
+    BinaryOp, BuiltInVariable, Constructor, Direction, ExprId, ExprKind, Function, FunctionId, Input, Item,
+    Literal, Place, Scalar, Statement, StatementKind, Swizzle, Type, Value, Variable, VariableId,
+    VariableKind,
+};
+
+/// The names of the color in GLSL ES 1.00.
+const FRAG_COLOR: &str = "gl_FragColor";
+const FRAG_DATA: &str = "gl_FragData";
+
+/// The minimum of `gl_MaxDrawBuffers` with `GL_EXT_draw_buffers`: the size of `gl_FragData`.
+const MAX_DRAW_BUFFERS: u32 = 4;
+
+const VEC2: Type = Type::Vector(Scalar::Float, 2);
+const VEC3: Type = Type::Vector(Scalar::Float, 3);
+const VEC4: Type = Type::Vector(Scalar::Float, 4);
+
+impl Checker<'_> {
+    /// Declares `gl_FragColor` and `gl_FragData`, where the text uses them.
+    pub(super) fn declare_old_outputs(&mut self) {
+        if self.dialect.calls_main_image() || !self.language.version.has_old_names() {
+            return;
+        }
+        for name in [FRAG_COLOR, FRAG_DATA] {
+            let Some(symbol) = self.interner.find(name) else {
+                continue;
+            };
+            let ty = match name {
+                FRAG_DATA => self.tree.array_of(VEC4, MAX_DRAW_BUFFERS),
+                _ => VEC4,
+            };
+            let variable = self
+                .tree
+                .variables
+                .push(Variable::new(name, ty, VariableKind::Global, None));
+            self.scopes.declare(symbol, Entity::Variable(variable));
+            self.tree.items.push(Item::Variable(variable));
+            self.output.get_or_insert(variable);
+        }
+    }
+
+    /// Binds a global variable to the host: an input that it sets, a texture, or the color.
+    pub(super) fn bind_to_host(&mut self, variable: VariableId) {
+        if self.dialect.calls_main_image() {
+            return;
+        }
+        let Variable { ty, kind, name, .. } = &self.tree[variable];
+        let (ty, kind) = (*ty, *kind);
+        if kind == VariableKind::Output {
+            // Other outputs go to textures that nothing shows.
+            if self.output.is_none() && matches!(ty, VEC3 | VEC4) {
+                self.tree[variable].kind = VariableKind::Global;
+                self.output = Some(variable);
+            }
+            return;
+        }
+        if !matches!(kind, VariableKind::Uniform | VariableKind::Varying) {
+            return;
+        }
+        let known = self.dialect.input(name).into_iter().flatten();
+        let known = known.copied().find(|value| value.ty() == ty);
+        let value = known.or_else(|| match (kind, ty) {
+            // The only coordinates of a quad that covers the image.
+            (VariableKind::Varying, VEC2) => Some(InputValue::Quad),
+            (VariableKind::Uniform, Type::Sampler(_)) => self.free_texture(ty),
+            _ => None,
+        });
+        if let Some(value) = value {
+            self.host_inputs.insert(variable, value);
+        }
+    }
+
+    /// The first channel that no sampler is bound to.
+    fn free_texture(&self, ty: Type) -> Option<InputValue> {
+        let textures = (0..4).map(InputValue::Texture);
+        let mut free = textures.filter(|texture| !self.host_inputs.values().any(|bound| bound == texture));
+        free.find(|texture| texture.ty() == ty)
+    }
+
+    /// The value of an input that the host sets although the text does not declare it.
+    pub(super) fn implicit_input(&self, name: &str) -> Option<InputValue> {
+        let values = self.dialect.input(name).filter(|_| self.dialect.is_implicit());
+        values?.first().copied()
+    }
+
+    /// The expression of an input that the host sets.
+    pub(super) fn host_input(&mut self, value: InputValue, at: Place) -> ExprId {
+        match value {
+            InputValue::Whole(input) => self.input(VariableKind::Input(input), at),
+            InputValue::First(input, size) => {
+                let whole = self.input(VariableKind::Input(input), at);
+                self.first(whole, size, at)
+            }
+            InputValue::Float(input) => {
+                let integer = self.input(VariableKind::Input(input), at);
+                let constructor = Constructor::Scalar;
+                let arguments = vec![integer];
+                self.push(
+                    ExprKind::Construct {
+                        constructor,
+                        arguments,
+                    },
+                    Type::FLOAT,
+                    false,
+                    at,
+                )
+            }
+            InputValue::Mouse => {
+                let mouse = self.host_input(InputValue::First(Input::Mouse, 2), at);
+                self.over_resolution(mouse, at)
+            }
+            InputValue::Quad => {
+                let position = self.input(VariableKind::BuiltIn(BuiltInVariable::FragCoord), at);
+                let position = self.first(position, 2, at);
+                self.over_resolution(position, at)
+            }
+            InputValue::QuadInSpace => {
+                let quad = self.host_input(InputValue::Quad, at);
+                let zero = self.number(0.0, at);
+                self.vector(vec![quad, zero], VEC3, at)
+            }
+            InputValue::Surface => {
+                let quad = self.host_input(InputValue::Quad, at);
+                let half = self.number(0.5, at);
+                let centered = self.operation(BinaryOp::Subtract, quad, half, VEC2, at);
+                let [width, height] = [0, 1].map(|component| {
+                    let resolution = self.input(VariableKind::Input(Input::Resolution), at);
+                    self.component(resolution, component, at)
+                });
+                let aspect = self.operation(BinaryOp::Divide, width, height, Type::FLOAT, at);
+                let one = self.number(1.0, at);
+                let scale = self.vector(vec![aspect, one], VEC2, at);
+                self.operation(BinaryOp::Multiply, centered, scale, VEC2, at)
+            }
+            InputValue::TextureSize(channel) => {
+                let size = self.of_channel(Input::ChannelResolution, channel, at);
+                self.first(size, 2, at)
+            }
+            InputValue::Texture(channel) => self.input(VariableKind::Channel(channel), at),
+            InputValue::Constant(values) => {
+                let numbers = values
+                    .iter()
+                    .map(|&value| self.number(value, at))
+                    .collect::<Vec<_>>();
+                match numbers[..] {
+                    [number] => number,
+                    _ => self.vector(numbers, value.ty(), at),
+                }
+            }
+        }
+    }
+
+    fn first(&mut self, vector: ExprId, size: u8, at: Place) -> ExprId {
+        let components: Vec<u8> = (0..size).collect();
+        let components = Swizzle::new(&components).expect("at most four components");
+        let kind = ExprKind::Swizzle { vector, components };
+        self.push(kind, Type::vector(Scalar::Float, size), false, at)
+    }
+
+    fn component(&mut self, vector: ExprId, component: u8, at: Place) -> ExprId {
+        let components = Swizzle::new(&[component]).expect("one component");
+        self.push(ExprKind::Swizzle { vector, components }, Type::FLOAT, false, at)
+    }
+
+    fn over_resolution(&mut self, left: ExprId, at: Place) -> ExprId {
+        let resolution = self.host_input(InputValue::First(Input::Resolution, 2), at);
+        self.operation(BinaryOp::Divide, left, resolution, VEC2, at)
+    }
+
+    fn operation(&mut self, op: BinaryOp, left: ExprId, right: ExprId, ty: Type, at: Place) -> ExprId {
+        self.push(ExprKind::Binary { op, left, right }, ty, false, at)
+    }
+
+    fn number(&mut self, value: f64, at: Place) -> ExprId {
+        self.literal(Literal::new(format!("{value:?}"), Value::Float(value)), at)
+    }
+
+    fn vector(&mut self, arguments: Vec<ExprId>, ty: Type, at: Place) -> ExprId {
+        let constant = arguments.iter().all(|&argument| self.tree[argument].constant);
+        let constructor = Constructor::Vector;
+        self.push(
+            ExprKind::Construct {
+                constructor,
+                arguments,
+            },
+            ty,
+            constant,
+            at,
+        )
+    }
+
+    /// The entry point of a host that runs `main`: a function that calls it, and returns its color.
+    pub(super) fn entry_of_main(&mut self) -> Option<FunctionId> {
+        let main = self
+            .tree
+            .functions
+            .iter()
+            .find(|(_, function)| function.name == "main")?;
+        let (
+            main,
+            Function {
+                at,
+                return_type,
+                parameters,
+                ..
+            },
+        ) = main;
+        let at = *at;
+        if *return_type != Type::Void || !parameters.is_empty() {
+            let diagnostic = Code::NoMainImage.at(at, "`main` must have the form `void main()`");
+            self.report(diagnostic);
+            return None;
+        }
+        let mut parameter = |ty, name: &str, direction| {
+            let kind = VariableKind::Parameter(direction);
+            self.tree.variables.push(Variable::new(name, ty, kind, None))
+        };
+        let color = parameter(VEC4, "color", Direction::Out);
+        let position = parameter(VEC2, "position", Direction::In);
+        let arguments = Vec::new();
+        let call = self.push(
+            ExprKind::Call {
+                function: main,
+                arguments,
+            },
+            Type::Void,
+            false,
+            at,
+        );
+        let mut body = vec![Statement::new(StatementKind::Expression(call), at)];
+        if let Some(output) = self.output {
+            let target = self.push(ExprKind::Variable(color), VEC4, false, at);
+            let value = self.shown_color(output, at);
+            let op = None;
+            let assignment = self.push(ExprKind::Assign { op, target, value }, VEC4, false, at);
+            body.push(Statement::new(StatementKind::Expression(assignment), at));
+        }
+        let entry = self.tree.functions.push(Function {
+            name: "mainImage".to_owned(),
+            return_type: Type::Void,
+            parameters: vec![color, position],
+            body: Some(body),
+            at,
+        });
+        self.tree.items.push(Item::Function(entry));
+        Some(entry)
+    }
+
+    /// The value of an output as a color.
+    fn shown_color(&mut self, output: VariableId, at: Place) -> ExprId {
+        let ty = self.tree[output].ty;
+        let value = self.push(ExprKind::Variable(output), ty, false, at);
+        match ty {
+            VEC3 => {
+                let one = self.number(1.0, at);
+                self.vector(vec![value, one], VEC4, at)
+            }
+            Type::Array(_) => {
+                let index = self.int_literal(0, at);
+                self.index(value, index, at)
+            }
+            _ => value,
+        }
+    }
+}

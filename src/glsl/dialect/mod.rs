@@ -1,0 +1,30 @@
+//! Dialects: how a host wraps the language. A host calls another function than ShaderToy, and sets inputs of
+//! other names, which are expressions of ShaderToy's. So the tree of a shader does not depend on its dialect,
+//! and neither does anything behind the front end.
+
+mod host;
+mod language;
+
+pub use self::host::Dialect;
+pub(crate) use self::host::InputValue;
+pub(crate) use self::language::Language;
+pub use self::language::Version;
+
+/// The host of a text, and its version of the language.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Wrapping {
+    pub(crate) dialect: Dialect,
+    pub(crate) version: Version,
+}
+
+impl Wrapping {
+    /// `declared` is the version in the text. Without one, a page with WebGL compiles GLSL ES 1.00.
+    pub(crate) fn new(dialect: Dialect, declared: Option<Version>) -> Self {
+        let version = if dialect.calls_main_image() {
+            Version::Es300
+        } else {
+            declared.unwrap_or(Version::Es100)
+        };
+        Self { dialect, version }
+    }
+}
