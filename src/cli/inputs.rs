@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::ValueEnum;
-use toyproof_diagnostic::{Code, Deadline, Files, Severity, human, path_name};
-use toyproof_glsl as glsl;
+use toyproof_diagnostic::{Code, Deadline, Files, Severity, human, one_of, path_name};
+use toyproof_glsl::{self as glsl, Dialect, UniformValue};
 use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
 use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
@@ -205,6 +205,15 @@ pub(super) struct LanguageArgs {
     /// of arrays.
     #[arg(long)]
     lenient: bool,
+    /// The host of the shader, which sets its inputs [default: recognized by the text]
+    ///
+    /// shadertoy; ghostty; book-of-shaders (also glslViewer); glsl-sandbox; three (three.js, p5.js); webgl (any
+    /// other page).
+    #[arg(long, value_name = "auto|NAME", value_parser = parse_dialect, hide_short_help = true)]
+    dialect: Option<DialectChoice>,
+    /// The value of a uniform that the shader declares: `speed=2`, `color=1,0,0`
+    #[arg(long, value_name = "NAME=X[,Y…]", value_parser = parse_uniform, allow_hyphen_values = true)]
+    uniform: Vec<UniformValue>,
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
     ///
     /// A comment `// toyproof: allow(W0005)` in the shader takes precedence.
@@ -284,22 +293,77 @@ impl From<Float> for FloatMode {
     }
 }
 
+/// The value of `--dialect`.
+#[derive(Debug, Clone, Copy)]
+enum DialectChoice {
+    Recognized,
+    Given(Dialect),
+}
+
+/// Parses the name of a dialect.
+fn parse_dialect(text: &str) -> Result<DialectChoice, String> {
+    if text == "auto" {
+        return Ok(DialectChoice::Recognized);
+    }
+    let dialect = Dialect::named(text).map(DialectChoice::Given);
+    dialect.ok_or_else(|| {
+        let names: Vec<_> = Dialect::all().map(Dialect::name).collect();
+        format!("expected auto, {}", one_of(&names))
+    })
+}
+
+/// Parses the value of a uniform.
+fn parse_uniform(text: &str) -> Result<UniformValue, String> {
+    let expected = "expected a name, `=` and numbers with commas between them, such as color=1,0,0.5";
+    let (name, numbers) = text.split_once('=').ok_or(expected)?;
+    let component = |text: &str| match text.trim() {
+        "true" => Ok(1.0),
+        "false" => Ok(0.0),
+        number => number
+            .parse::<f64>()
+            .ok()
+            .filter(|number| number.is_finite())
+            .ok_or(expected),
+    };
+    let components = numbers.split(',').map(component).collect::<Result<_, _>>()?;
+    let name = name.trim().to_owned();
+    if name.is_empty() {
+        return Err(expected.to_owned());
+    }
+    Ok(UniformValue { name, components })
+}
+
 impl LanguageArgs {
     pub(super) fn is_lenient(&self) -> bool {
         self.lenient
     }
 
     pub(super) fn options(&self, deadline: Deadline) -> glsl::Options {
+        let dialect = match self.dialect {
+            Some(DialectChoice::Given(dialect)) => Some(dialect),
+            Some(DialectChoice::Recognized) | None => None,
+        };
         glsl::Options {
             lenient: self.lenient,
+            dialect,
+            uniforms: self.uniform.clone(),
             deadline,
             ..glsl::Options::default()
         }
     }
 
     /// The flags that set these options, for a command that the user may run.
-    pub(super) fn flags(&self) -> Option<String> {
-        self.lenient.then(|| "--lenient".to_owned())
+    pub(super) fn flags(&self) -> Vec<String> {
+        let lenient = self.lenient.then(|| "--lenient".to_owned());
+        let dialect = match self.dialect {
+            Some(DialectChoice::Given(dialect)) => Some(format!("--dialect {}", dialect.name())),
+            Some(DialectChoice::Recognized) | None => None,
+        };
+        let uniforms = self.uniform.iter().map(|UniformValue { name, components }| {
+            let components: Vec<String> = components.iter().map(f64::to_string).collect();
+            format!("--uniform {name}={}", components.join(","))
+        });
+        lenient.into_iter().chain(dialect).chain(uniforms).collect()
     }
 
     pub(super) fn denied(&self) -> &[Deny] {

@@ -103,6 +103,13 @@ impl Interner {
         let lists = |words: &str, word: &str| words.split_whitespace().any(|listed| listed == word);
         let class = |word: &str, class| match version {
             Version::Es100 if lists(NOT_IN_ES_100, word) => Word::Name,
+            Version::Desktop(_) if version.is_first_generation() && word.starts_with("uvec") => Word::Name,
+            Version::Desktop(_) if version.is_first_generation() && matches!(word, "uint" | "case") => {
+                Word::Name
+            }
+            Version::Desktop(_) if version.is_first_generation() && matches!(word, "switch" | "default") => {
+                Word::Reserved
+            }
             Version::Es100 if lists(RESERVED_IN_ES_100, word) => Word::Reserved,
             _ => class,
         };
@@ -124,7 +131,8 @@ impl Interner {
             RESERVED
         };
         for word in reserved.split_whitespace() {
-            if interner.find(word).is_none() {
+            let is_name = version.has_name_sample() && matches!(word, "sample" | "patch");
+            if !is_name && interner.find(word).is_none() {
                 interner.add(word, Word::Reserved);
             }
         }

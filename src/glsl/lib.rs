@@ -103,7 +103,7 @@ use self::preprocess::PreprocessorOutput;
 pub const MAX_NESTING: usize = 256;
 
 /// Options of a check.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Accepts what desktop GLSL accepts: global initializers that are not constant (they run before
     /// `mainImage`, in order), implicit conversions from integers to floats, arrays of arrays, `?:` of arrays
@@ -111,6 +111,8 @@ pub struct Options {
     pub lenient: bool,
     /// The host of the shader; `None` to recognize it by the text. The tabs of a project are ShaderToy's.
     pub dialect: Option<Dialect>,
+    /// The values of uniforms that the shader declares.
+    pub uniforms: Vec<UniformValue>,
     /// The tab of a project that the text is.
     pub stage: Stage,
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
@@ -121,6 +123,15 @@ pub struct Options {
     /// When the check must end. Lints get a quarter of the time for themselves; lints that take longer are
     /// skipped.
     pub deadline: Deadline,
+}
+
+/// The value of a uniform.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UniformValue {
+    /// The name of the uniform.
+    pub name: String,
+    /// Its components, matrices in column order; 1 and 0 for `true` and `false`.
+    pub components: Vec<f64>,
 }
 
 /// A shader without errors.
@@ -135,6 +146,10 @@ pub struct Checked {
     pub dialect: Dialect,
     /// The version of GLSL in which it is written.
     pub version: Version,
+    /// Whether it was checked leniently, see [`Options::lenient`].
+    pub lenient: bool,
+    /// The values of its uniforms, see [`Options::uniforms`].
+    pub uniforms: Vec<UniformValue>,
     /// The shapes of `iChannel0` to `iChannel3`, as given in the options or inferred from use.
     pub channels: [SamplerShape; 4],
     /// How the textures of `iChannel0` to `iChannel3` are sampled.
@@ -153,6 +168,19 @@ pub struct Checked {
 }
 
 impl Checked {
+    /// The options of the check, with which an edited text is checked alike; without a deadline.
+    pub fn options(&self) -> Options {
+        Options {
+            lenient: self.lenient,
+            dialect: Some(self.dialect),
+            uniforms: self.uniforms.clone(),
+            stage: self.stage,
+            channels: self.channels.map(Some),
+            sampling: self.sampling,
+            deadline: Deadline::default(),
+        }
+    }
+
     /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
     pub fn takes_derivatives(&self) -> bool {
         self.calls(tree::BuiltIn::is_derivative)
@@ -205,6 +233,8 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         main_image: text.entry.expect("every stage but Common has an entry point"),
         dialect: text.wrapping.dialect,
         version: text.wrapping.version,
+        lenient: options.lenient,
+        uniforms: options.uniforms.clone(),
         channels: text.channels,
         sampling: options.sampling,
         stage: options.stage,

@@ -27,6 +27,7 @@
 //! - `allow`: comments that suppress warnings.
 
 mod allow;
+mod appendix_a;
 mod direction;
 mod edges;
 mod equality;
@@ -88,6 +89,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     let tree = &checked.tree;
     let program = Program::new(tree, checked.main_image, deadline);
     let mut findings = Findings::default();
+    appendix_a::run(&program, checked, &mut findings);
     direction::run(&program, &mut findings);
     edges::run(&program, files, &mut findings);
     equality::run(&program, &mut findings);
@@ -98,7 +100,7 @@ pub fn lint(files: &Files, checked: &Checked, deadline: &Deadline) -> Lints {
     uniformity::run(&program, &mut findings);
     unused::run(&program, &mut findings);
     uninit::run(&program, &mut findings);
-    unset::run(&program, &mut findings);
+    unset::run(&program, checked.dialect, &mut findings);
     let within_deadline = deadline.check();
     let mut all = checked.warnings.clone();
     if within_deadline.is_ok() {

@@ -2,12 +2,13 @@
 //! read a channel.
 
 use toyproof_diagnostic::Code;
+use toyproof_glsl::Dialect;
 use toyproof_glsl::tree::{ExprKind, VariableKind};
 
 use super::Findings;
 use super::program::Program;
 
-pub(super) fn run(program: &Program, findings: &mut Findings) {
+pub(super) fn run(program: &Program, dialect: Dialect, findings: &mut Findings) {
     let tree = program.tree;
     for expr in program.all_exprs() {
         let ExprKind::Variable(variable) = tree[expr].kind else {
@@ -24,9 +25,20 @@ pub(super) fn run(program: &Program, findings: &mut Findings) {
         };
         let message = format!("nothing sets the {kind} `{}`, so it is 0", variable.name);
         findings.add(Code::UnsetUniform, at, message, |diagnostic| {
+            let title = dialect.title();
+            let value = format!("give it a value: `--uniform {}=…`", variable.name);
+            let help = match (dialect, variable.kind) {
+                (_, VariableKind::Varying) => {
+                    "a full-screen shader has only the coordinates of the screen, a `vec2`"
+                }
+                (Dialect::ShaderToy, _) => {
+                    "use one of ShaderToy's inputs, or a constant; or `--uniform NAME=VALUE`"
+                }
+                _ => &value,
+            };
             diagnostic
-                .note("ShaderToy sets only its own inputs, such as `iTime`")
-                .help("use one of ShaderToy's inputs, or a constant")
+                .note(format!("{title} sets only its own inputs"))
+                .help(help)
         });
     }
 }

@@ -49,7 +49,9 @@ pub use html::{
 };
 pub use junit::junit;
 pub use reason::{Statement, failure_position, loop_truncated, state};
-pub use record::{Alternative, FrameResult, Mistake, Position, Record, Report, SCHEMA, Seconds};
+pub use record::{
+    Alternative, DialectRecord, FrameResult, Mistake, Position, Record, Report, SCHEMA, Seconds,
+};
 pub use repair::{Repair, RepairEdit, SourceRange, Suspect};
 pub use rubric::{Mark, Rubric, StudentImages, Visibility, optional_points};
 pub use rubrics::Rubrics;

@@ -10,6 +10,7 @@ use toyproof_explain::Findings;
 use toyproof_explain::known::{Diagnosis, KnownMistake};
 use toyproof_explain::repair::SearchResult;
 use toyproof_explain::unused::Unused;
+use toyproof_glsl::{Checked, Dialect};
 use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Ruling, Verdict, decide};
 
@@ -87,6 +88,9 @@ pub struct Record {
     /// The file name of the shader or image that it was compared with instead.
     #[serde(default)]
     pub reference: Option<String>,
+    /// The host for which it is written, and the version of GLSL; null if it does not compile.
+    #[serde(default)]
+    pub dialect: Option<DialectRecord>,
     /// The verdict.
     pub verdict: Verdict,
     /// Why, in one short sentence.
@@ -154,6 +158,32 @@ pub struct Record {
     pub seconds: Seconds,
 }
 
+/// The dialect of a shader.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DialectRecord {
+    /// The name of the host on the command line, such as `shadertoy`.
+    pub host: String,
+    /// The version of GLSL, such as `GLSL ES 3.00`.
+    pub version: String,
+}
+
+impl DialectRecord {
+    /// The dialect of a shader.
+    #[must_use]
+    pub fn new(checked: &Checked) -> Self {
+        Self {
+            host: checked.dialect.name().to_owned(),
+            version: checked.version.name(),
+        }
+    }
+
+    /// The dialect for people: `The Book of Shaders, GLSL ES 1.00`.
+    pub(super) fn title(&self) -> String {
+        let host = Dialect::named(&self.host).map(Dialect::title);
+        format!("{}, {}", host.unwrap_or(&self.host), self.version)
+    }
+}
+
 /// The result of the checks of a shader in one frame, from which [`Record::new`] makes a record.
 #[derive(Debug)]
 pub struct FrameResult<'a> {
@@ -163,6 +193,8 @@ pub struct FrameResult<'a> {
     pub scene: Option<&'a str>,
     /// The file name of the shader or image that it was compared with instead.
     pub reference: Option<&'a str>,
+    /// The dialect in which it is written; `None` if it does not compile.
+    pub dialect: Option<DialectRecord>,
     /// The findings, or why there is no image.
     pub findings: Result<&'a Findings, &'a Failure>,
     /// The files of the positions in the findings.
@@ -184,6 +216,7 @@ impl Record {
         let mut record = Self {
             scene: result.scene.map(str::to_owned),
             reference: result.reference.map(str::to_owned),
+            dialect: result.dialect,
             diagnostics: result.diagnostics,
             growth: result.growth,
             ..Self::unchecked(result.shader.to_owned())
@@ -213,6 +246,7 @@ impl Record {
             shader,
             scene: None,
             reference: None,
+            dialect: None,
             verdict: Verdict::Error,
             reason: String::new(),
             details: Vec::new(),

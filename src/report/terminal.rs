@@ -134,6 +134,8 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
         lines.extend(record.is_cut_by_time.then(|| layout.below("", CUT_BY_TIME)));
     }
     if layout.detail >= Detail::Full {
+        let dialect = record.dialect.as_ref();
+        lines.extend(dialect.map(|dialect| layout.below("dialect: ", &dialect.title())));
         lines.extend(check_lines(record).iter().map(|line| layout.below("", line)));
     }
     if layout.detail >= Detail::Normal

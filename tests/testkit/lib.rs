@@ -309,7 +309,6 @@ pub fn check_reference_and_repair(expected: &Expected, shader: &str, exercise: &
 fn search_options(source: &str, budget: f64) -> SearchOptions<'_> {
     SearchOptions {
         source,
-        lenient: false,
         budget,
         donors: None,
         pass: None,

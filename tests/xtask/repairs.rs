@@ -158,7 +158,6 @@ fn try_sample(sample: &Sample, budget: f64, names: bool, donors: Option<&Donors>
     let hypotheses = names.then(|| Hypotheses::new(&scene, &frame)).flatten();
     let search = SearchOptions {
         source: &sample.shader,
-        lenient: false,
         budget,
         donors: None,
         pass: None,

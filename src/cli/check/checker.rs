@@ -113,7 +113,6 @@ impl<'a> Checker<'a> {
     pub(super) fn search_options<'s>(&self, shader: &'s Shader, checked: &Checked) -> SearchOptions<'s> {
         SearchOptions {
             source: shader.text(checked),
-            lenient: self.options.language.is_lenient(),
             budget: self.options.search,
             donors: None,
             pass: None,

@@ -11,7 +11,7 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_image::{FRAME_RATE, Frame};
 use toyproof_project::{CompiledProject, PassKind};
-use toyproof_report::{CheckedFrame, FrameResult, GrowthRecord, Record};
+use toyproof_report::{CheckedFrame, DialectRecord, FrameResult, GrowthRecord, Record};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, bind, default_frame};
 use toyproof_verify::{Case, Driver, Failure, FromStart, Verdict, unbound, unbound_channels};
@@ -94,6 +94,7 @@ impl<'a> ShaderCheck<'a> {
                 shader: &shader.name,
                 scene: scene_name,
                 reference: reference_name,
+                dialect: shader.image().ok().map(DialectRecord::new),
                 findings: findings.as_ref(),
                 files,
                 diagnostics: std::mem::take(&mut self.diagnostics),
@@ -269,7 +270,6 @@ impl<'a> ShaderCheck<'a> {
             },
             expected: &cached.expected,
             frame,
-            lenient: options.language.is_lenient(),
             budget: options.search,
             value_images: options.out.is_some(),
             pool: self.context.pool.as_ref(),

@@ -29,6 +29,7 @@ impl Checker<'_> {
                 shader: &submission.name,
                 scene: None,
                 reference: None,
+                dialect: None,
                 findings: Err(&panic.into()),
                 files: &Files::default(),
                 diagnostics: Vec::new(),

@@ -281,5 +281,35 @@ macro_rules! projects {
     /// }
     /// ```
     UnsetUniform "W0030" "A uniform that nothing sets",
+
+    /// WebGL 1 unrolls loops on old hardware, so its shaders, in GLSL ES 1.00, have only `for` loops with a
+    /// constant number of iterations, and arrays are indexed only by constants and the counters of such loops
+    /// (Appendix A). toyproof runs others as well; browsers refuse them. Leave a loop early with `break`.
+    ///
+    /// Wrong:
+    ///
+    /// ```glsl
+    /// precision highp float;
+    /// void main() {
+    ///     float sum = 0.0;
+    ///     while (sum < gl_FragCoord.x) sum += 9.0;
+    ///     gl_FragColor = vec4(sum / 640.0);
+    /// }
+    /// ```
+    ///
+    /// Right:
+    ///
+    /// ```glsl
+    /// precision highp float;
+    /// void main() {
+    ///     float sum = 0.0;
+    ///     for (int i = 0; i < 200; i++) {
+    ///         if (sum >= gl_FragCoord.x) break;
+    ///         sum += 9.0;
+    ///     }
+    ///     gl_FragColor = vec4(sum / 640.0);
+    /// }
+    /// ```
+    BeyondAppendixA "W0031" "A loop or an index that WebGL 1 refuses",
     } };
 }

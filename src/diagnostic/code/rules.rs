@@ -217,5 +217,30 @@ macro_rules! rules {
     /// #define WAVE(x) wave(x, iTime)
     /// ```
     InputOfOtherTab "E0412" "An input that the tab of a project does not have",
+
+    /// A page with WebGL compiles a shader without `#version` as GLSL ES 1.00, which has no operators on bits,
+    /// no remainder `%`, no suffixes of numbers, and no arrays as values. Begin the shader with
+    /// `#version 300 es`, for which the page must use WebGL 2, or do without: `mod` on floats for `%`.
+    ///
+    /// Wrong:
+    ///
+    /// ```glsl
+    /// precision highp float;
+    /// void main() {
+    ///     int stripe = int(gl_FragCoord.x) % 2;
+    ///     gl_FragColor = vec4(float(stripe));
+    /// }
+    /// ```
+    ///
+    /// Right:
+    ///
+    /// ```glsl
+    /// precision highp float;
+    /// void main() {
+    ///     float stripe = mod(floor(gl_FragCoord.x), 2.0);
+    ///     gl_FragColor = vec4(stripe);
+    /// }
+    /// ```
+    NotInVersion "E0413" "A feature that the version of GLSL does not have",
     } };
 }

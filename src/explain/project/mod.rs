@@ -63,8 +63,6 @@ pub struct ProjectCase<'a> {
     pub expected: &'a Expected,
     /// The frame that was checked, without the channels of the image.
     pub frame: &'a Frame,
-    /// Whether the texts are checked leniently.
-    pub lenient: bool,
     /// The budget of the search for repairs, as in
     /// [`SearchOptions`](crate::repair::SearchOptions::budget).
     pub budget: f64,

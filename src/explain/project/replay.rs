@@ -114,7 +114,7 @@ pub(super) fn edited(case: &ProjectCase, pass: usize, fix: &Fix) -> Option<HashM
         };
         let text = apply(project.text(pass), &fix)?;
         let original = project.shader.checked[pass];
-        Some((pass, with_suffix(original, &text, "", case.lenient)?))
+        Some((pass, with_suffix(original, &text, "")?))
     };
     let file = project.file(pass);
     let placed = |edit: &Edit| {

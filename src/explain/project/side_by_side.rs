@@ -270,7 +270,7 @@ impl<'a> Players<'a> {
             let project = self.case.project;
             let suffix = wrapper::suffix(&body, None);
             let own = project.shader.checked[pair.own];
-            let changed = with_suffix(own, project.text(pair.own), &suffix, self.case.lenient)?;
+            let changed = with_suffix(own, project.text(pair.own), &suffix)?;
             let mut checked: Vec<&Checked> = project.shader.checked.clone();
             checked[pair.own] = &changed;
             let shader = PassShader {

@@ -38,7 +38,7 @@ pub(super) fn explain(case: &ProjectCase, wrong: &Wrong, replays: &Replays) -> O
     let is_image = wrong.departure.pass == Target::Image;
     let takes_derivatives = own.takes_derivatives() || solution.takes_derivatives();
     let view = View::new(&step.difference, step.frame.size, is_image, takes_derivatives);
-    let shown = |checked: &Checked, text: &str| view.check(checked, text, case.lenient);
+    let shown = |checked: &Checked, text: &str| view.check(checked, text);
     let text = case.project.text(*pass);
     let (own, solution) = match &view.suffix {
         None => (Cow::Borrowed(own), Cow::Borrowed(solution)),
@@ -66,7 +66,6 @@ pub(super) fn explain(case: &ProjectCase, wrong: &Wrong, replays: &Replays) -> O
         pass: *pass,
         view: &view,
         replays,
-        lenient: case.lenient,
     };
     let options = Options {
         hypotheses: None,
@@ -74,7 +73,6 @@ pub(super) fn explain(case: &ProjectCase, wrong: &Wrong, replays: &Replays) -> O
         alternatives: (is_image && view.suffix.is_none()).then(Alternatives::default),
         search: Some(SearchOptions {
             source: text,
-            lenient: case.lenient,
             budget: case.budget,
             donors: None,
             pass: Some(&edited),
@@ -140,8 +138,8 @@ impl View {
         }
     }
 
-    fn check(&self, shader: &Checked, text: &str, lenient: bool) -> Option<Checked> {
-        with_suffix(shader, text, self.suffix.as_deref().unwrap_or(""), lenient)
+    fn check(&self, shader: &Checked, text: &str) -> Option<Checked> {
+        with_suffix(shader, text, self.suffix.as_deref().unwrap_or(""))
     }
 }
 
@@ -188,12 +186,11 @@ struct Edited<'a> {
     pass: usize,
     view: &'a View,
     replays: &'a Replays<'a>,
-    lenient: bool,
 }
 
 impl EditedPass for Edited<'_> {
     fn check(&self, text: &str) -> Option<Checked> {
-        self.view.check(self.original, text, self.lenient)
+        self.view.check(self.original, text)
     }
 
     fn confirm(&self, fix: &Fix) -> Option<Confirmation> {

@@ -89,7 +89,6 @@ fn explained(own: Texts, reference: Texts) -> Option<(ProjectExplanation, Option
         },
         expected: &Expected::Shader(Box::new(expected.unwrap().0)),
         frame: &frame,
-        lenient: false,
         budget: 2.0,
         value_images: false,
         pool: None,

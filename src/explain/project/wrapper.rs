@@ -1,6 +1,6 @@
 //! A shader whose entry point is another function, which calls `mainImage` and changes its color.
 
-use toyproof_diagnostic::{Deadline, File, Files};
+use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::tree::Item;
 use toyproof_glsl::{self as glsl, Checked};
 
@@ -24,18 +24,10 @@ pub(super) const POSITION: &str = "toyproofPosition";
 
 /// Checks a text that takes the place of a shader's, with the function after it; `None` if that is no valid
 /// shader. Without a `suffix`, the entry point stays.
-pub(super) fn with_suffix(shader: &Checked, text: &str, suffix: &str, lenient: bool) -> Option<Checked> {
+pub(super) fn with_suffix(shader: &Checked, text: &str, suffix: &str) -> Option<Checked> {
     let mut files = Files::default();
     let file = files.add(File::new("<pass>", format!("{text}{suffix}")));
-    let options = glsl::Options {
-        lenient,
-        dialect: Some(shader.dialect),
-        stage: shader.stage,
-        channels: shader.channels.map(Some),
-        sampling: shader.sampling,
-        deadline: Deadline::default(),
-    };
-    let mut checked = glsl::check(&files, file, &options).ok()?;
+    let mut checked = glsl::check(&files, file, &shader.options()).ok()?;
     if !suffix.is_empty() {
         let mut functions = checked.tree.functions.iter();
         let (id, _) = functions.find(|(_, function)| function.name == NAME)?;

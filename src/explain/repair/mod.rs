@@ -38,8 +38,6 @@ pub(crate) fn mistakes() -> impl Iterator<Item = KnownMistake> {
 pub struct SearchOptions<'a> {
     /// The text of the shader's file.
     pub source: &'a str,
-    /// Whether the shader was checked leniently, see [`toyproof_glsl::Options::lenient`].
-    pub lenient: bool,
     /// The work that may be done, in units of about a second on one core. Work is counted, not timed, so that
     /// the result is the same on any machine and with any number of threads.
     pub budget: f64,

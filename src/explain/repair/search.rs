@@ -406,12 +406,9 @@ impl Search<'_> {
             let checked = pass.check(&text)?;
             return Some((text, checked));
         }
-        let options = glsl::Options {
-            lenient: self.options.lenient,
-            dialect: Some(self.confirmer.case.checked.dialect),
-            ..glsl::Options::default()
-        };
-        let checked = self.confirmer.checked(&text, &options)?;
+        let checked = self
+            .confirmer
+            .checked(&text, &self.confirmer.case.checked.options())?;
         Some((text, checked))
     }
 

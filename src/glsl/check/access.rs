@@ -18,8 +18,8 @@ impl Checker<'_> {
         let text = self.text(name);
         match self.scopes.find(name) {
             Some(&Entity::Variable(variable)) => {
-                if let Some(&value) = self.host_inputs.get(&variable) {
-                    return self.host_input(value, at);
+                if let Some(bound) = self.bound.get(&variable) {
+                    return self.bound_value(bound.clone(), at);
                 }
                 let variable = self.bound_texture(variable);
                 let found = &self.tree[variable];
@@ -134,6 +134,7 @@ impl Checker<'_> {
         match ty {
             Type::Error => self.error_expr(whole),
             Type::Array(_) if self.text(name) == "length" => {
+                self.check_whole_array(ty, "the length", whole);
                 self.push(ExprKind::Length { array: base }, Type::INT, true, whole)
             }
             _ => {

@@ -157,6 +157,7 @@ impl Checker<'_> {
         if let Some(written) = function.out_parameter().and_then(|index| arguments.get(index)) {
             self.check_lvalue(*written, "passed to an `out` parameter");
         }
+        self.check_float_arguments(function, &arguments, at);
         if let Some(&offset) = found.constant.and_then(|index| arguments.get(index)) {
             self.check_texel_offset(function, offset);
         }
@@ -434,6 +435,7 @@ impl Checker<'_> {
         let Type::Array(id) = ty else {
             return self.error_expr(at);
         };
+        self.check_whole_array(ty, "a constructor", at);
         let array = self.tree.array(id);
         if array.size as usize != arguments.len() {
             let message = format!(

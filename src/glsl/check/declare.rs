@@ -3,7 +3,7 @@
 use toyproof_diagnostic::Code;
 
 use super::scope::Entity;
-use super::{Checker, Size, Specifier, is_desktop_conversion};
+use super::{Checker, Initializer, Size, Specifier, is_desktop_conversion};
 use crate::keywords::Keyword;
 use crate::reporting::push_limited;
 use crate::token::Symbol;
@@ -15,7 +15,7 @@ pub(crate) struct Declarator {
     pub(crate) name: Symbol,
     pub(crate) at: Place,
     pub(crate) sizes: Vec<Size>,
-    pub(crate) initializer: Option<ExprId>,
+    pub(crate) initializer: Option<Initializer>,
 }
 
 impl Checker<'_> {
@@ -35,10 +35,13 @@ impl Checker<'_> {
         } = declarator;
         let kind = self.variable_kind(qualifiers);
         let sizes: Vec<_> = sizes.iter().chain(&specifier.sizes).copied().collect();
-        let given = initializer.map(|expr| self.ty(expr));
+        let given = initializer
+            .as_ref()
+            .map(|initializer| self.initializer_type(initializer, specifier.base, sizes.len()));
         let ty = self.array_type(specifier.base, &sizes, given, at);
         let ty = self.variable_type(ty, kind, at);
         self.check_flat(qualifiers, ty, kind, at);
+        let initializer = initializer.map(|initializer| self.initial_value(initializer, ty));
         let initializer = self.initializer(initializer, ty, kind, name, at);
         // If the initializer contradicts the declared type, either may be intended. If only an implicit
         // conversion is missing, the declared type is.
@@ -62,7 +65,11 @@ impl Checker<'_> {
         if allowed {
             self.scopes.declare(name, Entity::Variable(variable));
         }
-        self.bind_to_host(variable);
+        if kind == VariableKind::Uniform {
+            let default = self.tree[variable].initializer.take();
+            self.bind_to_default(variable, default);
+        }
+        self.bind(variable);
         variable
     }
 
@@ -138,10 +145,12 @@ impl Checker<'_> {
             }
             return None;
         };
-        if matches!(
+        let has_default = kind == VariableKind::Uniform && self.language.version.has_uniform_defaults();
+        let is_interface = matches!(
             kind,
             VariableKind::Uniform | VariableKind::Varying | VariableKind::Output
-        ) {
+        );
+        if is_interface && !has_default {
             self.error(
                 Code::BadQualifier,
                 at,
@@ -151,12 +160,12 @@ impl Checker<'_> {
         }
         let expr = self.expect(expr, ty, &format!("the value of `{text}`"));
         // §4.3.3; desktop GLSL requires this only of constants used as array sizes.
-        let must_be_constant = matches!(kind, VariableKind::Const | VariableKind::Global);
-        if must_be_constant
-            && ty != Type::Error
-            && !self.language.initializes_at_run_time()
-            && !self.tree[expr].constant
-        {
+        let must_be_constant = match kind {
+            VariableKind::Const => !self.language.has_run_time_constants(),
+            VariableKind::Global => !self.language.initializes_at_run_time(),
+            _ => has_default,
+        };
+        if must_be_constant && ty != Type::Error && !self.tree[expr].constant {
             let what = if kind == VariableKind::Const {
                 "constant"
             } else {
@@ -213,6 +222,11 @@ impl Checker<'_> {
             let message = format!("`{text}` contains `__`, which is reserved");
             push_limited(&mut self.warnings, Code::ReservedName.at(at, message));
         }
+    }
+
+    /// Whether `{…}` is an initializer.
+    pub(crate) fn takes_initializer_lists(&self) -> bool {
+        self.language.has_initializer_lists()
     }
 
     /// Whether a lone `;` is allowed at global scope: not in §9, but in desktop GLSL.
@@ -315,6 +329,7 @@ impl Checker<'_> {
     /// Checks which qualifiers `in` and `out` allow in a fragment shader (§4.3.8, §4.3.9, §4.6.1).
     fn check_interface_qualifiers(&mut self, qualifiers: &Qualifiers) {
         let global = self.scopes.is_global();
+        let is_varying = matches!(qualifiers.storage, Some((Storage::Varying, _)));
         for &(keyword, at) in &qualifiers.interface {
             let (wanted, whose) = match keyword {
                 Keyword::Invariant | Keyword::Layout => (Storage::Out, "shader outputs"),
@@ -322,7 +337,9 @@ impl Checker<'_> {
             };
             let message = if !global {
                 format!("`{}` is only allowed on global variables", keyword.text())
-            } else if qualifiers.storage.is_none_or(|(storage, _)| storage != wanted) {
+            } else if qualifiers.storage.is_none_or(|(storage, _)| storage != wanted)
+                && !(keyword == Keyword::Invariant && is_varying)
+            {
                 format!("`{}` is only allowed on {whose}", keyword.text())
             } else {
                 continue;

@@ -1,12 +1,12 @@
 //! What a host adds to a shader: the values of the inputs that it sets, and the call of `main`.
 
-use toyproof_diagnostic::Code;
+use toyproof_diagnostic::{Code, plural};
 
 use super::{Checker, Entity};
 use crate::dialect::InputValue;
 use crate::tree::{
     BinaryOp, BuiltInVariable, Constructor, Direction, ExprId, ExprKind, Function, FunctionId, Input, Item,
-    Literal, Place, Scalar, Statement, StatementKind, Swizzle, Type, Value, Variable, VariableId,
+    Literal, Place, Scalar, Statement, StatementKind, Swizzle, Type, UnaryOp, Value, Variable, VariableId,
     VariableKind,
 };
 
@@ -20,6 +20,15 @@ const MAX_DRAW_BUFFERS: u32 = 4;
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC3: Type = Type::Vector(Scalar::Float, 3);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
+
+/// The value of a uniform or varying.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Bound {
+    /// An input of the host.
+    Input(InputValue),
+    /// A constant of this type, by its components.
+    Value(Type, Vec<f64>),
+}
 
 impl Checker<'_> {
     /// Declares `gl_FragColor` and `gl_FragData`, where the text uses them.
@@ -45,8 +54,12 @@ impl Checker<'_> {
         }
     }
 
-    /// Binds a global variable to the host: an input that it sets, a texture, or the color.
-    pub(super) fn bind_to_host(&mut self, variable: VariableId) {
+    /// Binds a global variable: a uniform to its value, an input to what the host sets, a sampler to a texture,
+    /// and an output to the color.
+    pub(super) fn bind(&mut self, variable: VariableId) {
+        if self.tree[variable].kind == VariableKind::Uniform && self.bind_to_value(variable) {
+            return;
+        }
         if self.dialect.calls_main_image() {
             return;
         }
@@ -72,14 +85,55 @@ impl Checker<'_> {
             _ => None,
         });
         if let Some(value) = value {
-            self.host_inputs.insert(variable, value);
+            self.bound.insert(variable, Bound::Input(value));
         }
+    }
+
+    /// Binds a uniform to the value that the caller gives; returns whether there is one.
+    fn bind_to_value(&mut self, variable: VariableId) -> bool {
+        let Variable { name, ty, at, .. } = &self.tree[variable];
+        let Some(given) = self.uniforms.iter().find(|given| given.name == *name) else {
+            return false;
+        };
+        let (ty, at) = (*ty, *at);
+        let components = ty.component_count().map_or(0, usize::from);
+        if components == given.components.len() {
+            self.bound
+                .insert(variable, Bound::Value(ty, given.components.clone()));
+        } else if let Some(at) = at {
+            let count = given.components.len();
+            let message = format!(
+                "the value of the uniform `{name}` has {count} {}, but it is {}",
+                plural(count as u64, "component", "components"),
+                self.quoted_type(ty)
+            );
+            self.error(Code::BadType, at, message);
+        }
+        true
+    }
+
+    /// Binds a uniform to the constant with which desktop GLSL initializes it.
+    pub(super) fn bind_to_default(&mut self, variable: VariableId, default: Option<ExprId>) {
+        let Some(value) = default.and_then(|expr| self.tree.value(expr)) else {
+            return;
+        };
+        let component = |value: &Value| match *value {
+            Value::Bool(value) => f64::from(value),
+            Value::Int(value) => f64::from(value),
+            Value::Uint(value) => f64::from(value),
+            Value::Float(value) => value,
+        };
+        let components = value.components().iter().map(component).collect();
+        let ty = self.tree[variable].ty;
+        self.bound.insert(variable, Bound::Value(ty, components));
     }
 
     /// The first channel that no sampler is bound to.
     fn free_texture(&self, ty: Type) -> Option<InputValue> {
         let textures = (0..4).map(InputValue::Texture);
-        let mut free = textures.filter(|texture| !self.host_inputs.values().any(|bound| bound == texture));
+        let is_bound =
+            |texture: &InputValue| self.bound.values().any(|bound| *bound == Bound::Input(*texture));
+        let mut free = textures.filter(|texture| !is_bound(texture));
         free.find(|texture| texture.ty() == ty)
     }
 
@@ -87,6 +141,31 @@ impl Checker<'_> {
     pub(super) fn implicit_input(&self, name: &str) -> Option<InputValue> {
         let values = self.dialect.input(name).filter(|_| self.dialect.is_implicit());
         values?.first().copied()
+    }
+
+    /// The expression of a variable that has a value.
+    pub(super) fn bound_value(&mut self, bound: Bound, at: Place) -> ExprId {
+        match bound {
+            Bound::Input(value) => self.host_input(value, at),
+            Bound::Value(ty, components) => {
+                let scalar = ty.scalar().unwrap_or(Scalar::Float);
+                let literals = components.iter().map(|&component| {
+                    let value = match scalar {
+                        Scalar::Bool => Value::Bool(component != 0.0),
+                        Scalar::Int => Value::Int(component as i32),
+                        Scalar::Uint => Value::Uint(component as u32),
+                        Scalar::Float => Value::Float(component),
+                    };
+                    self.value(value, at)
+                });
+                let literals: Vec<ExprId> = literals.collect();
+                match (ty, &literals[..]) {
+                    (Type::Scalar(_), &[only]) => only,
+                    (Type::Matrix { .. }, _) => self.constructed(Constructor::Matrix, literals, ty, at),
+                    _ => self.constructed(Constructor::Vector, literals, ty, at),
+                }
+            }
+        }
     }
 
     /// The expression of an input that the host sets.
@@ -178,21 +257,47 @@ impl Checker<'_> {
     }
 
     fn number(&mut self, value: f64, at: Place) -> ExprId {
-        self.literal(Literal::new(format!("{value:?}"), Value::Float(value)), at)
+        self.value(Value::Float(value), at)
+    }
+
+    /// The expression of a scalar; literals have no sign.
+    fn value(&mut self, value: Value, at: Place) -> ExprId {
+        let (magnitude, is_negative) = match value {
+            Value::Float(value) => (Value::Float(value.abs()), value.is_sign_negative()),
+            Value::Int(value) if value > i32::MIN => (Value::Int(value.abs()), value < 0),
+            _ => (value, false),
+        };
+        let text = match magnitude {
+            Value::Bool(value) => value.to_string(),
+            Value::Int(value) => value.to_string(),
+            Value::Uint(value) => format!("{value}u"),
+            Value::Float(value) => format!("{value:?}"),
+        };
+        let operand = self.literal(Literal::new(text, magnitude), at);
+        if !is_negative {
+            return operand;
+        }
+        let op = UnaryOp::Minus;
+        self.push(ExprKind::Unary { op, operand }, magnitude.ty(), true, at)
     }
 
     fn vector(&mut self, arguments: Vec<ExprId>, ty: Type, at: Place) -> ExprId {
+        self.constructed(Constructor::Vector, arguments, ty, at)
+    }
+
+    pub(super) fn constructed(
+        &mut self,
+        constructor: Constructor,
+        arguments: Vec<ExprId>,
+        ty: Type,
+        at: Place,
+    ) -> ExprId {
         let constant = arguments.iter().all(|&argument| self.tree[argument].constant);
-        let constructor = Constructor::Vector;
-        self.push(
-            ExprKind::Construct {
-                constructor,
-                arguments,
-            },
-            ty,
-            constant,
-            at,
-        )
+        let kind = ExprKind::Construct {
+            constructor,
+            arguments,
+        };
+        self.push(kind, ty, constant, at)
     }
 
     /// The entry point of a host that runs `main`: a function that calls it, and returns its color.

@@ -10,6 +10,7 @@ mod declare;
 mod fixit;
 mod function;
 mod host;
+mod initializer;
 mod operator;
 mod prelude;
 mod quotient;
@@ -17,6 +18,7 @@ mod scope;
 mod signature;
 mod statement;
 mod types;
+mod version;
 
 use std::collections::{HashMap, HashSet};
 
@@ -25,13 +27,14 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, Fix, IN_MACRO};
 pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
 use self::function::Context;
 pub(crate) use self::function::Parameter;
+use self::host::Bound;
+pub(crate) use self::initializer::Initializer;
 pub(crate) use self::prelude::Channels;
 use self::scope::{Entity, Scopes, UnknownName};
 pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
-use crate::Options;
-use crate::dialect::{Dialect, InputValue, Language, Wrapping};
+use crate::dialect::{Dialect, Language, Wrapping};
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
 use crate::preprocess::PreprocessorOutput;
@@ -41,6 +44,7 @@ use crate::token::Symbol;
 use crate::tree::{
     Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value, VariableId,
 };
+use crate::{Options, UniformValue};
 
 /// Builds the tree and enforces the rules.
 pub(crate) struct Checker<'a> {
@@ -48,8 +52,10 @@ pub(crate) struct Checker<'a> {
     language: Language,
     dialect: Dialect,
     stage: Stage,
-    /// The uniforms and varyings that the host sets, with their values.
-    host_inputs: HashMap<VariableId, InputValue>,
+    /// The uniforms and varyings that have a value.
+    bound: HashMap<VariableId, Bound>,
+    /// The values of uniforms that the caller gives.
+    uniforms: &'a [UniformValue],
     /// The variable that holds the color, if the host runs `main`.
     output: Option<VariableId>,
     pub(crate) tree: Tree,
@@ -87,7 +93,7 @@ struct Call {
 impl<'a> Checker<'a> {
     pub(crate) fn new(
         text: &'a PreprocessorOutput,
-        options: &Options,
+        options: &'a Options,
         wrapping: Wrapping,
         channels: Channels,
     ) -> Self {
@@ -105,7 +111,8 @@ impl<'a> Checker<'a> {
             },
             dialect: wrapping.dialect,
             stage: options.stage,
-            host_inputs: HashMap::new(),
+            bound: HashMap::new(),
+            uniforms: &options.uniforms,
             output: None,
             tree: Tree::default(),
             scopes: Scopes::default(),
@@ -228,7 +235,10 @@ impl<'a> Checker<'a> {
 
     /// Whether the language converts implicitly from one type to the other.
     fn converts_implicitly(&self, from: Type, to: Type) -> bool {
-        self.language.converts_implicitly() && is_desktop_conversion(from, to)
+        let is_unsigned = to.scalar() == Some(Scalar::Uint);
+        self.language.converts_implicitly()
+            && (!is_unsigned || self.language.converts_to_unsigned())
+            && is_desktop_conversion(from, to)
     }
 
     /// Converts an expression to a type, or reports an error in which `role` names the expression.

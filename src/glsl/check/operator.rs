@@ -25,6 +25,7 @@ impl Checker<'_> {
             }
             return self.refuse_with(diagnostic, at);
         }
+        self.check_complement(op, at);
         let constant = self.tree[operand].constant;
         self.push(ExprKind::Unary { op, operand }, ty, constant, at)
     }
@@ -34,6 +35,10 @@ impl Checker<'_> {
         let (a, b) = (self.ty(left), self.ty(right));
         if a == Type::Error || b == Type::Error {
             return self.error_expr(at);
+        }
+        self.check_operator(op, at);
+        if matches!(op, BinaryOp::Equal | BinaryOp::NotEqual) {
+            self.check_whole_array(a, "a comparison", at);
         }
         let (left, right) = self.promote_operands(op, left, right);
         let Some(ty) = self.binary_type(op, self.ty(left), self.ty(right)) else {
@@ -192,6 +197,10 @@ impl Checker<'_> {
         if ty == Type::Error || self.ty(value) == Type::Error {
             return self.error_expr(at);
         }
+        if let Some(op) = op {
+            self.check_operator(op, at);
+        }
+        self.check_whole_array(ty, "an assignment", at);
         self.push(ExprKind::Assign { op, target, value }, ty, false, at)
     }
 

@@ -19,8 +19,16 @@ pub enum Version {
 
 /// The first desktop version with implicit conversions from integers to floats.
 const IMPLICIT_CONVERSIONS: u16 = 120;
+/// The first desktop version in which a uniform may have an initializer.
+const UNIFORM_DEFAULTS: u16 = 120;
 /// The first desktop version in which `in` and `out` replace `varying`.
 const STAGE_IO: u16 = 130;
+/// The first desktop version in which an `int` becomes a `uint` where one is expected.
+const UNSIGNED_CONVERSIONS: u16 = 400;
+/// The first desktop version in which `sample` is a keyword.
+const SAMPLE_KEYWORD: u16 = 400;
+/// The first desktop version in which a `const` may have a value that is not constant.
+const RUN_TIME_CONSTANTS: u16 = 420;
 /// The first desktop version with `{…}` as an initializer.
 const INITIALIZER_LISTS: u16 = 420;
 /// The first desktop version without `texture2D` and the like.
@@ -121,6 +129,15 @@ impl Version {
         !matches!(self, Self::Desktop(_))
     }
 
+    /// Whether it is of the first generation, whose integers only count: they have no bits, and no functions.
+    pub(crate) fn is_first_generation(self) -> bool {
+        match self {
+            Self::Es100 => true,
+            Self::Desktop(number) => number < STAGE_IO,
+            Self::Es300 | Self::Es310 | Self::Es320 => false,
+        }
+    }
+
     /// Whether it is desktop GLSL, of this version or a later one.
     fn is_desktop_since(self, first: u16) -> bool {
         matches!(self, Self::Desktop(number) if number >= first)
@@ -133,6 +150,16 @@ impl Version {
             Self::Es300 | Self::Es310 | Self::Es320 => false,
             Self::Desktop(number) => number < NO_OLD_TEXTURE_FUNCTIONS,
         }
+    }
+
+    /// Whether `sample` and `patch` are names.
+    pub(crate) fn has_name_sample(self) -> bool {
+        !self.is_es() && !self.is_desktop_since(SAMPLE_KEYWORD)
+    }
+
+    /// Whether a uniform may have an initializer.
+    pub(crate) fn has_uniform_defaults(self) -> bool {
+        self.is_desktop_since(UNIFORM_DEFAULTS)
     }
 
     /// Whether global variables can be `in` and `out`.
@@ -149,6 +176,16 @@ impl Language {
     /// Whether integers become floats where these are expected.
     pub(crate) fn converts_implicitly(self) -> bool {
         self.is_lenient || self.version.is_desktop_since(IMPLICIT_CONVERSIONS)
+    }
+
+    /// Whether integers become unsigned ones where these are expected.
+    pub(crate) fn converts_to_unsigned(self) -> bool {
+        self.is_lenient || self.version.is_desktop_since(UNSIGNED_CONVERSIONS)
+    }
+
+    /// Whether a constant may be computed at run time, by an expression that is not constant.
+    pub(crate) fn has_run_time_constants(self) -> bool {
+        self.is_lenient || self.version.is_desktop_since(RUN_TIME_CONSTANTS)
     }
 
     /// Whether the initializer of a global variable may be computed at run time. WebGL 1 accepts what other
@@ -192,11 +229,15 @@ impl Language {
 
     /// Whether it has a built-in function.
     pub(crate) fn has(self, function: BuiltIn) -> bool {
-        if self.version != Version::Es100 {
+        if !self.version.is_first_generation() {
             return true;
         }
+        let is_of_desktop = self.version.is_desktop_since(IMPLICIT_CONVERSIONS)
+            && matches!(function, BuiltIn::Transpose | BuiltIn::OuterProduct);
         // Derivatives are an extension that every browser has.
-        function.is_derivative() || FUNCTIONS_OF_ES_100.split(' ').any(|name| name == function.name())
+        is_of_desktop
+            || function.is_derivative()
+            || FUNCTIONS_OF_ES_100.split(' ').any(|name| name == function.name())
     }
 }
 

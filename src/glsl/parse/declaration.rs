@@ -3,7 +3,7 @@
 use toyproof_diagnostic::{Code, Diagnostic};
 
 use super::{Halt, ParseResult, Parser};
-use crate::check::{Declarator, Members, Parameter, Qualifiers, Size, Specifier, Storage};
+use crate::check::{Declarator, Initializer, Members, Parameter, Qualifiers, Size, Specifier, Storage};
 use crate::keywords::{Keyword, Word};
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::{Direction, Item, Place, Type, VariableId};
@@ -102,7 +102,7 @@ impl Parser<'_> {
             return self.unexpected("`=`");
         }
         let declarator = self.declarator(name, at)?;
-        if let Some(value) = declarator.initializer {
+        if let Some(Initializer::Expression(value)) = declarator.initializer {
             self.check.condition(value);
         }
         Ok(self.check.declare_variable(&qualifiers, &specifier, declarator))
@@ -298,7 +298,7 @@ impl Parser<'_> {
     fn declarator(&mut self, name: Symbol, at: Place) -> ParseResult<Declarator> {
         let sizes = self.sizes()?;
         let initializer = if self.eat(Punctuator::Assign) {
-            Some(self.assignment()?)
+            Some(self.initializer()?)
         } else {
             None
         };
@@ -307,6 +307,30 @@ impl Parser<'_> {
             at,
             sizes,
             initializer,
+        })
+    }
+}
+
+impl Parser<'_> {
+    /// Parses an expression, or `{…}` where the language has it.
+    fn initializer(&mut self) -> ParseResult<Initializer> {
+        if !self.check.takes_initializer_lists() || !self.is(Punctuator::LeftBrace) {
+            return self.assignment().map(Initializer::Expression);
+        }
+        let open = self.next().at;
+        let mut items = Vec::new();
+        loop {
+            items.push(self.nested(Self::initializer)?);
+            let has_comma = self.eat(Punctuator::Comma);
+            if !has_comma || self.is(Punctuator::RightBrace) {
+                break;
+            }
+        }
+        let close = self.token().at;
+        self.expect(Punctuator::RightBrace)?;
+        Ok(Initializer::List {
+            items,
+            at: open.to(close),
         })
     }
 }

@@ -143,7 +143,9 @@ impl Parser<'_> {
         match token.kind {
             TokenKind::Number(text) => {
                 self.next();
-                match super::expression::literal(self.interner.text(text)) {
+                let text = self.interner.text(text);
+                self.check.check_suffix(text, token.at);
+                match super::expression::literal(text) {
                     Ok(literal) => Ok(self.check.literal(literal, token.at)),
                     Err(error) => Ok(self.check.malformed_literal(error, token.at)),
                 }
