@@ -91,3 +91,70 @@ impl Deref for Program {
         &self.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_eval::{Engine, Number, Settings, Substitute};
+    use toyproof_image::Frame;
+
+    use super::*;
+
+    /// The color of `int(float)`, and whether it is observed as out of range, with each engine. The shader
+    /// multiplies the float's double by the fraction of a pixel's center, 0.5, so that nothing folds it.
+    fn converted<N: Number>(double: &str, undefined: UndefinedPolicy) -> Vec<(f64, bool)> {
+        let text =
+            format!("void mainImage(out vec4 c, in vec2 p) {{ c = vec4(int(fract(p.x) * {double})); }}");
+        let mut files = Files::default();
+        let file = files.add(File::new("a", text));
+        let checked = toyproof_glsl::check(&files, file, &Default::default()).unwrap();
+        let program = Program::new(&checked).unwrap();
+        let frame = Frame {
+            size: [48, 27],
+            ..Frame::default()
+        };
+        let engines = [Engine::Handlers, Engine::Native, Engine::Avx2].into_iter();
+        let results = engines.map(|engine| {
+            let settings = Settings::<N> {
+                undefined,
+                engine,
+                ..Settings::default()
+            };
+            let rendered = program.render(&frame, &settings).unwrap();
+            let color = rendered.framebuffer.get(7, 5)[0].to_f64();
+            (color, !rendered.observations.faults.is_empty())
+        });
+        results.collect()
+    }
+
+    #[test]
+    fn the_range_of_int_begins_with_the_smallest_int_in_both_precisions() {
+        // Half of the third is the first f64 that is out of range, and rounds to the smallest int in f32.
+        for (double, is_int32, is_int64) in [
+            ("-4294967296.0", true, true),
+            ("-4294967297.0", true, true),
+            ("-4294967298.0", true, false),
+            ("-4294967808.0", false, false),
+            ("4294967040.0", true, true),
+            ("4294967296.0", false, false),
+        ] {
+            let smallest = f64::from(i32::MIN);
+            let observed = UndefinedPolicy::Observed;
+            for (_, is_fault) in converted::<f32>(double, observed) {
+                assert_eq!(is_fault, !is_int32, "{double} in f32");
+            }
+            for (_, is_fault) in converted::<f64>(double, observed) {
+                assert_eq!(is_fault, !is_int64, "{double} in f64");
+            }
+            let substitute = UndefinedPolicy::Substitute(Substitute::Number);
+            for (color, _) in converted::<f32>(double, substitute) {
+                assert_eq!(color == 0.0, !is_int32, "{double} in f32 is {color}");
+                assert!(!double.starts_with('-') || !is_int32 || color == smallest);
+            }
+            for (color, _) in converted::<f64>(double, substitute) {
+                assert_eq!(color == 0.0, !is_int64, "{double} in f64 is {color}");
+                assert!(!double.starts_with('-') || !is_int64 || color == smallest);
+            }
+        }
+    }
+}

@@ -493,6 +493,11 @@ static FAULTS: &[(&str, &[Fault])] = &[
     ("o.x = float(1 << (int(p.x) + 32));", &[Fault::ShiftTooFar]),
     ("o.x = float(1 << (int(p.x) - 1));", &[Fault::ShiftTooFar]),
     ("o.x = float(int(p.x * 1e20));", &[Fault::IntegerOverflow]),
+    ("o.x = float(int(fract(p.x) * -4294967296.0));", &[]),
+    (
+        "o.x = float(int(fract(p.x) * -4294967808.0));",
+        &[Fault::IntegerOverflow],
+    ),
     ("o.x = float(uint(p.x - 2.0));", &[Fault::IntegerOverflow]),
     ("o.x = float(uint(p.x - 1.0)) + float(int(p.x - 2.0));", &[]),
     ("o.x = smoothstep(p.x, p.y, 1.0);", &[Fault::EqualEdges]),

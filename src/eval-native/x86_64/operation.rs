@@ -15,6 +15,12 @@ const LESS_EQUAL: u8 = 2;
 const UNORDERED: u8 = 3;
 const NOT_EQUAL: u8 = 4;
 
+// The rounding modes of `vroundps` and `vroundpd`. The bit 8 suppresses the precision exception.
+const TO_EVEN: u8 = 8;
+const DOWN: u8 = 8 | 1;
+const UP: u8 = 8 | 2;
+const TOWARD_ZERO: u8 = 8 | 3;
+
 impl Lifter<'_> {
     // Nodes.
 
@@ -233,8 +239,16 @@ impl Lifter<'_> {
         let [a, b] = [first, second].map(|value| self.float_value(value));
         let zero = self.float(0.0);
         match predicate {
-            Predicate::NotInt => self.is_outside(a, -2_147_483_649.0, 2_147_483_648.0),
-            Predicate::NotUint => self.is_outside(a, -1.0, 4_294_967_296.0),
+            Predicate::NotInt => {
+                let (low, whole) = (self.float(-2_147_483_648.0), self.round(a, TOWARD_ZERO));
+                let is_above = self.compare(LESS_EQUAL, low, whole);
+                self.is_outside(a, is_above, 2_147_483_648.0)
+            }
+            Predicate::NotUint => {
+                let low = self.float(-1.0);
+                let is_above = self.compare(LESS, low, a);
+                self.is_outside(a, is_above, 4_294_967_296.0)
+            }
             Predicate::Unordered => self.compare(UNORDERED, a, b),
             Predicate::Equal => self.compare(EQUAL, a, b),
             Predicate::Greater => self.compare(LESS, b, a),
@@ -267,12 +281,12 @@ impl Lifter<'_> {
         }
     }
 
-    /// Whether a float is not between two numbers.
-    fn is_outside(&mut self, a: NodeId, low: f64, high: f64) -> WordNode {
-        let [low, high] = [low, high].map(|limit| self.float(limit));
-        let [above, below] = [self.compare(LESS, low, a), self.compare(LESS, a, high)];
-        let inside = self.logic(op::VPAND, above, below);
-        self.not(inside)
+    /// Whether a float is out of a range; `is_above` is whether it is above the lower limit.
+    fn is_outside(&mut self, a: NodeId, is_above: WordNode, limit: f64) -> WordNode {
+        let limit = self.float(limit);
+        let is_below = self.compare(LESS, a, limit);
+        let is_inside = self.logic(op::VPAND, is_above, is_below);
+        self.not(is_inside)
     }
 
     pub(super) fn operation(&mut self, operation: Operation, operands: [Value; 3]) -> Content {
@@ -342,10 +356,10 @@ impl Lifter<'_> {
             }
             O::Abs => self.absolute(a),
             O::Sqrt => self.float1([op::VSQRTPS, op::VSQRTPD], a),
-            O::Floor => self.round(a, 9),
-            O::Ceil => self.round(a, 10),
-            O::Trunc => self.round(a, 11),
-            O::RoundEven => self.round(a, 8),
+            O::Floor => self.round(a, DOWN),
+            O::Ceil => self.round(a, UP),
+            O::Trunc => self.round(a, TOWARD_ZERO),
+            O::RoundEven => self.round(a, TO_EVEN),
             O::Select => {
                 let mask = self.as_lanes(u);
                 self.blend(mask, b, c)
@@ -461,9 +475,9 @@ impl Lifter<'_> {
         self.word2(opcode, u, count)
     }
 
-    fn round(&mut self, a: NodeId, how: u8) -> NodeId {
+    fn round(&mut self, a: NodeId, mode: u8) -> NodeId {
         let opcode = self.by_precision([op::VROUNDPS, op::VROUNDPD]);
-        self.node(Action::UnaryImmediate(opcode, how), [a, NO_NODE, NO_NODE], true)
+        self.node(Action::UnaryImmediate(opcode, mode), [a, NO_NODE, NO_NODE], true)
     }
 
     /// Differences of the lanes that two permutations of a quad select.

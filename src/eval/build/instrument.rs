@@ -72,12 +72,10 @@ impl Builder<'_> {
     /// Returns the word of a predicate, or `None` if it depends on more than values or the result is defined.
     fn predicate_value(&self, predicate: Predicate, [a, b]: [Value; 2]) -> Option<Value> {
         use Operation as O;
-        let outside = |low: f64, high: f64| {
-            let (low, high) = (self.float(low), self.float(high));
-            let above = self.binary(O::Less, low, a);
-            let below = self.binary(O::Less, a, high);
-            let inside = self.binary(O::And, above, below);
-            self.unary(O::Not, inside)
+        let outside = |is_above: Value, limit: f64| {
+            let is_below = self.binary(O::Less, a, self.float(limit));
+            let is_inside = self.binary(O::And, is_above, is_below);
+            self.unary(O::Not, is_inside)
         };
         Some(match predicate {
             Predicate::AtLeast(limit) => {
@@ -85,8 +83,15 @@ impl Builder<'_> {
                 self.unary(O::Not, below)
             }
             Predicate::Zero => self.binary(O::EqualWord, a, self.word(0)),
-            Predicate::NotInt => outside(-2_147_483_649.0, 2_147_483_648.0),
-            Predicate::NotUint => outside(-1.0, 4_294_967_296.0),
+            Predicate::NotInt => {
+                let whole = self.unary(O::Trunc, a);
+                let is_above = self.binary(O::LessEqual, self.float(-2_147_483_648.0), whole);
+                outside(is_above, 2_147_483_648.0)
+            }
+            Predicate::NotUint => {
+                let is_above = self.binary(O::Less, self.float(-1.0), a);
+                outside(is_above, 4_294_967_296.0)
+            }
             Predicate::Unordered => {
                 let [a, b] = [a, b].map(|value| self.unary(O::IsNan, value));
                 self.binary(O::Or, a, b)

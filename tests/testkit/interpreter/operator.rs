@@ -215,8 +215,7 @@ impl<N: Real> Run<'_, N> {
             (Scalar::Float, Component::Int(value)) => Component::float(value.into()),
             (Scalar::Float, Component::Uint(value)) => Component::float(value.into()),
             (Scalar::Int, Component::Float(value)) => {
-                let is_inside = N::from_f64(-2_147_483_649.0) < value && value < N::from_f64(2_147_483_648.0);
-                self.fault(Fault::IntegerOverflow, expr, !is_inside);
+                self.fault(Fault::IntegerOverflow, expr, !is_int(value));
                 Component::Int(to_int(value.to_f64()))
             }
             (Scalar::Uint, Component::Float(value)) => {
@@ -230,6 +229,11 @@ impl<N: Real> Run<'_, N> {
             (Scalar::Uint, integer) => Component::Uint(integer.bits()),
         }
     }
+}
+
+/// Whether a float is in range of `int`.
+pub(super) fn is_int<N: Real>(value: N) -> bool {
+    value.trunc() >= N::from_f64(-2_147_483_648.0) && value < N::from_f64(2_147_483_648.0)
 }
 
 /// Rounds toward zero. Values that are too large become the largest f32 that fits: naga clamps to it before it converts.

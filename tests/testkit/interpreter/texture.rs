@@ -7,7 +7,7 @@ use toyproof::image::Texture;
 use toyproof::math::longer_square;
 
 use super::builtin::{max, min};
-use super::operator::to_int;
+use super::operator::{is_int, to_int};
 use super::real::{Real, Transcendental};
 use super::value::{Component, Value, floats, size};
 use super::{Result, Run};
@@ -74,8 +74,7 @@ impl<N: Real> Run<'_, N> {
             at = at.map(|x| x / divisor);
         }
         for x in at {
-            let is_inside = N::from_f64(-2_147_483_649.0) < x && x < N::from_f64(2_147_483_648.0);
-            self.fault(Fault::NoPlace, expr, !is_inside);
+            self.fault(Fault::NoPlace, expr, !is_int(x));
         }
         let is_undefined = std::mem::take(&mut self.is_undefined);
         let lookup = Lookup {

@@ -9,7 +9,7 @@ use crate::exec::number::Arithmetic;
 use crate::exec::recorder::{Recorder, TraceComponent};
 use crate::ir::{Kind, Predicate, SiteId};
 
-/// A predicate: whether one or two operands are at fault.
+/// The test of a [`Predicate`]: whether one or two operands are at fault.
 trait Holds<N: Arithmetic, T> {
     fn holds(a: T, b: T, limit: u32) -> bool;
 }
@@ -29,7 +29,9 @@ macro_rules! holds {
 holds! {
     AtLeast(a, _b, limit: u32) = a >= limit;
     Zero(a, _b, _limit: u32) = a == 0;
-    NotInt(a, _b, _limit: N) = !(a > N::from_f64(-2_147_483_649.0) && a < N::from_f64(2_147_483_648.0));
+    // Truncated, since f32 has no number between -2147483649 and -2147483648, and f64 has.
+    NotInt(a, _b, _limit: N) =
+        !(a.trunc() >= N::from_f64(-2_147_483_648.0) && a < N::from_f64(2_147_483_648.0));
     NotUint(a, _b, _limit: N) = !(a > N::from_f64(-1.0) && a < N::from_f64(4_294_967_296.0));
     Unordered(a, b, _limit: N) = a.is_nan() || b.is_nan();
     Equal(a, b, _limit: N) = a == b;
