@@ -296,18 +296,18 @@ impl<'a> Lifter<'a> {
             }
             Step::Split {
                 condition,
-                yes,
-                no,
+                first,
+                second,
                 when,
                 ..
             } => {
                 let condition = self.word_value(condition);
                 let chosen = self.chosen(mask, condition, when);
-                if yes != no {
+                if first != second {
                     let others = self.chosen(mask, condition, !when);
-                    self.set_mask(u32::from(no.0), others);
+                    self.set_mask(u32::from(second.0), others);
                 }
-                self.set_mask(u32::from(yes.0), chosen);
+                self.set_mask(u32::from(first.0), chosen);
             }
             Step::Copy { to } => {
                 let content = self.mask(mask);
@@ -359,7 +359,7 @@ impl<'a> Lifter<'a> {
     fn guarded_mask(&self, at: u32) -> u32 {
         let (step, mask) = &self.lowered.linear.steps[at as usize];
         match step {
-            Step::Split { yes, .. } => u32::from(yes.0),
+            Step::Split { first, .. } => u32::from(first.0),
             _ => u32::from(mask.0),
         }
     }
@@ -496,8 +496,8 @@ impl<'a> Lifter<'a> {
             Step::Store { cell, .. } => {
                 rows.extend(Self::row(function.cells[cell.0 as usize], locations.cell(cell)));
             }
-            Step::Split { yes, no, .. } => {
-                rows.extend([yes, no].map(|mask| (Table::Mask, u32::from(mask.0))));
+            Step::Split { first, second, .. } => {
+                rows.extend([first, second].map(|mask| (Table::Mask, u32::from(mask.0))));
             }
             Step::Copy { to } => rows.push((Table::Mask, u32::from(to.0))),
             Step::Remove {

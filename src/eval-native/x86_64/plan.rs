@@ -86,8 +86,8 @@ pub(super) fn plan(lowered: &LoweredCode) -> Option<Plan> {
         let class = classify(step, &stored, lowered)?;
         plan.classes[at] = class;
         match *step {
-            Step::Split { empty, .. } | Step::Remove { empty, .. } | Step::JumpIfEmpty(empty) => {
-                let target = empty as usize;
+            Step::Split { if_empty, .. } | Step::Remove { if_empty, .. } | Step::JumpIfEmpty(if_empty) => {
+                let target = if_empty as usize;
                 if open.last().is_some_and(|last| last.target < target) {
                     return None;
                 }

@@ -163,8 +163,8 @@ impl<N: Arithmetic> Writer<'_, N> {
             .iter()
             .enumerate()
             .filter_map(|(at, (step, _))| match *step {
-                Step::Split { empty: to, .. }
-                | Step::Remove { empty: to, .. }
+                Step::Split { if_empty: to, .. }
+                | Step::Remove { if_empty: to, .. }
                 | Step::JumpIfEmpty(to)
                 | Step::Jump(to)
                 | Step::JumpIf { to, .. } => Some((at, to as usize)),
@@ -264,18 +264,18 @@ impl<N: Arithmetic> Writer<'_, N> {
             }
             Step::Split {
                 condition,
-                yes,
-                no,
+                first,
+                second,
                 when,
                 ..
             } => {
                 let (condition, _) = self.value(condition);
-                let run = if yes == no {
+                let run = if first == second {
                     ops::choose(self.level, when)
                 } else {
                     ops::split(self.level, when)
                 };
-                self.push(run, 0, [condition, yes.0.into(), no.0.into()], 0);
+                self.push(run, 0, [condition, first.0.into(), second.0.into()], 0);
             }
             Step::Copy { to } => {
                 let run = ops::copy_mask(self.level);

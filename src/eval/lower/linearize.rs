@@ -29,24 +29,26 @@ pub enum Step {
         index: Value,
         value: Value,
     },
-    /// Splits the active pixels by a divergent condition. Jumps if none takes the first branch.
+    /// Splits the active pixels by a divergent condition: those for which it is `when` go to the first mask,
+    /// the others to the second. Both are the same mask if no branch needs the second. Jumps if the first is
+    /// empty.
     Split {
         condition: Value,
-        yes: Mask,
-        no: Mask,
+        first: Mask,
+        second: Mask,
         when: bool,
-        empty: Target,
+        if_empty: Target,
     },
     /// Copies the active pixels to a mask.
     Copy {
         to: Mask,
     },
-    /// Removes active pixels for which the condition is `when` from the masks between two masks, given
-    /// innermost first. Jumps if none is left.
+    /// Removes the active pixels whose condition has this value from the masks between two masks, given
+    /// innermost first; all of them without a condition. Jumps if none is left.
     Remove {
         condition: Option<(Value, bool)>,
         masks: (Mask, Mask),
-        empty: Target,
+        if_empty: Target,
     },
     JumpIfEmpty(Target),
     Jump(Target),
@@ -90,14 +92,15 @@ pub(crate) fn linearize(function: &Function, divergence: &Divergence, traced: bo
         divergence,
         traced,
         steps: Vec::new(),
-        labels: vec![u32::MAX],
+        // Label 0 is the end of the program, whose owner has mask 0.
+        labels: vec![UNBOUND],
         owners: vec![Owner {
             mask: Mask(0),
             end: 0,
         }],
         scopes: vec![ScopeExit::default(); function.scopes as usize],
-        open: 0,
-        outermost_left: usize::MAX,
+        open_scopes: 0,
+        outermost_left: NONE_LEFT,
         masks: 1,
         loops: Vec::new(),
         constants: Vec::new(),
@@ -107,11 +110,17 @@ pub(crate) fn linearize(function: &Function, divergence: &Divergence, traced: bo
     pass.finish()
 }
 
+/// The step of a label that is not bound yet.
+const UNBOUND: u32 = u32::MAX;
+
+/// The depth of the outermost scope that was left, if none was.
+const NONE_LEFT: usize = usize::MAX;
+
 /// The branch or scope that a mask belongs to.
 #[derive(Debug, Clone, Copy)]
 struct Owner {
     mask: Mask,
-    /// The label of its end.
+    /// The label of the owner's end.
     end: Target,
 }
 
@@ -120,9 +129,9 @@ struct Owner {
 struct ScopeExit {
     /// The number of enclosing scopes.
     depth: usize,
-    /// The number of mask owners around its body.
+    /// The number of mask owners around the scope's body.
     owners: usize,
-    /// The label of its end.
+    /// The label of the scope's end.
     end: Target,
 }
 
@@ -135,8 +144,7 @@ struct Linearizer<'a> {
     labels: Vec<u32>,
     owners: Vec<Owner>,
     scopes: Vec<ScopeExit>,
-    /// The number of open scopes.
-    open: usize,
+    open_scopes: usize,
     /// The depth of the outermost scope that was left.
     outermost_left: usize,
     masks: u16,
@@ -155,7 +163,7 @@ impl Linearizer<'_> {
     }
 
     fn label(&mut self) -> Target {
-        self.labels.push(u32::MAX);
+        self.labels.push(UNBOUND);
         self.labels.len() as u32 - 1
     }
 
@@ -241,18 +249,18 @@ impl Linearizer<'_> {
                 self.note_break(scope);
                 if self.divergence.value(condition) {
                     self.push_break(scope, Some((condition, when)));
-                } else if self.is_plain(scope) {
+                } else if self.is_undivided(scope) {
                     let to = self.scopes[scope.0 as usize].end;
                     self.push(Step::JumpIf { condition, when, to });
                 } else {
-                    let on = self.label();
+                    let next = self.label();
                     self.push(Step::JumpIf {
                         condition,
                         when: !when,
-                        to: on,
+                        to: next,
                     });
                     self.push_break(scope, None);
-                    self.bind(on);
+                    self.bind(next);
                 }
             }
             Node::Check {
@@ -281,22 +289,22 @@ impl Linearizer<'_> {
     }
 
     /// Emits code, and returns whether it leaves a scope that is open now.
-    fn leaves_open_scope(&mut self, work: impl FnOnce(&mut Self)) -> bool {
-        let before = std::mem::replace(&mut self.outermost_left, usize::MAX);
-        work(self);
-        let found = self.outermost_left < self.open;
+    fn leaves_open_scope(&mut self, emit: impl FnOnce(&mut Self)) -> bool {
+        let before = std::mem::replace(&mut self.outermost_left, NONE_LEFT);
+        emit(self);
+        let leaves = self.outermost_left < self.open_scopes;
         self.outermost_left = self.outermost_left.min(before);
-        found
+        leaves
     }
 
     /// Whether the pixels of a scope cannot have diverged here.
-    fn is_plain(&self, scope: Scope) -> bool {
+    fn is_undivided(&self, scope: Scope) -> bool {
         self.scopes[scope.0 as usize].owners == self.owners.len()
     }
 
     fn push_break(&mut self, scope: Scope, condition: Option<(Value, bool)>) {
         let ScopeExit { owners, end, .. } = self.scopes[scope.0 as usize];
-        if condition.is_none() && owners == self.owners.len() {
+        if condition.is_none() && self.is_undivided(scope) {
             self.push(Step::Jump(end));
             return;
         }
@@ -304,7 +312,7 @@ impl Linearizer<'_> {
         self.push(Step::Remove {
             condition,
             masks: (inner.mask, outer.mask),
-            empty: inner.end,
+            if_empty: inner.end,
         });
     }
 
@@ -333,21 +341,25 @@ impl Linearizer<'_> {
             (true, yes, no)
         };
         let (otherwise, end) = (self.label(), self.label());
-        let mask = self.next_mask();
         // The first branch has the higher mask: masks inside it are numbered above its own, so that the
         // second branch's survives. Without a second branch, one mask is enough.
-        let other = if second.is_empty() { mask } else { Mask(mask.0 + 1) };
-        self.masks = self.masks.max(other.0 + 1);
+        let second_mask = self.next_mask();
+        let first_mask = if second.is_empty() {
+            second_mask
+        } else {
+            Mask(second_mask.0 + 1)
+        };
+        self.masks = self.masks.max(first_mask.0 + 1);
         self.push(Step::Split {
             condition,
-            yes: mask.max(other),
-            no: mask.min(other),
+            first: first_mask,
+            second: second_mask,
             when,
-            empty: otherwise,
+            if_empty: otherwise,
         });
-        let left = self.leaves_open_scope(|pass| {
+        let leaves = self.leaves_open_scope(|pass| {
             pass.owners.push(Owner {
-                mask: mask.max(other),
+                mask: first_mask,
                 end: otherwise,
             });
             pass.block(first);
@@ -355,7 +367,7 @@ impl Linearizer<'_> {
             pass.bind(otherwise);
             if !second.is_empty() {
                 pass.owners.push(Owner {
-                    mask: mask.min(other),
+                    mask: second_mask,
                     end,
                 });
                 pass.push(Step::JumpIfEmpty(end));
@@ -364,7 +376,7 @@ impl Linearizer<'_> {
             }
         });
         self.bind(end);
-        if left {
+        if leaves {
             let end = self.owner().end;
             self.push(Step::JumpIfEmpty(end));
         }
@@ -372,27 +384,28 @@ impl Linearizer<'_> {
 
     fn scope(&mut self, scope: Scope, body: &Block) {
         let end = self.label();
-        let own = self.divergence.scope(scope);
-        if own {
+        let is_divergent = self.divergence.scope(scope);
+        if is_divergent {
             let mask = self.next_mask();
             self.push(Step::Copy { to: mask });
             self.owners.push(Owner { mask, end });
         }
         self.scopes[scope.0 as usize] = ScopeExit {
-            depth: self.open,
+            depth: self.open_scopes,
             owners: self.owners.len(),
             end,
         };
-        let left = self.leaves_open_scope(|pass| {
-            pass.open += 1;
+        let leaves = self.leaves_open_scope(|pass| {
+            pass.open_scopes += 1;
             pass.block(body);
-            pass.open -= 1;
+            pass.open_scopes -= 1;
         });
-        if own {
+        if is_divergent {
             self.owners.pop();
         }
         self.bind(end);
-        if own && left {
+        // A scope without a mask of its own needs no check: what emptied the owner's mask has jumped already.
+        if is_divergent && leaves {
             let end = self.owner().end;
             self.push(Step::JumpIfEmpty(end));
         }
@@ -409,8 +422,8 @@ impl Linearizer<'_> {
         } = self;
         for (step, _) in &mut steps {
             match step {
-                Step::Split { empty: to, .. }
-                | Step::Remove { empty: to, .. }
+                Step::Split { if_empty: to, .. }
+                | Step::Remove { if_empty: to, .. }
                 | Step::JumpIfEmpty(to)
                 | Step::Jump(to)
                 | Step::JumpIf { to, .. } => *to = labels[*to as usize],
@@ -423,15 +436,5 @@ impl Linearizer<'_> {
             loops,
             constants,
         }
-    }
-}
-
-impl Mask {
-    fn max(self, other: Self) -> Self {
-        Self(self.0.max(other.0))
-    }
-
-    fn min(self, other: Self) -> Self {
-        Self(self.0.min(other.0))
     }
 }

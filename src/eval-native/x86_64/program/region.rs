@@ -120,8 +120,8 @@ impl Writer<'_> {
 fn jump_of(lowered: &LoweredCode, at: u32) -> Option<(u32, u32)> {
     let (step, mask) = &lowered.linear.steps[at as usize];
     match *step {
-        Step::Split { yes, empty, .. } => Some((u32::from(yes.0), empty)),
-        Step::Remove { empty, .. } | Step::JumpIfEmpty(empty) => Some((u32::from(mask.0), empty)),
+        Step::Split { first, if_empty, .. } => Some((u32::from(first.0), if_empty)),
+        Step::Remove { if_empty, .. } | Step::JumpIfEmpty(if_empty) => Some((u32::from(mask.0), if_empty)),
         _ => None,
     }
 }

@@ -5,17 +5,17 @@ use crate::exec::batch::{Active, Batch, FUEL_ITERATIONS, Stop};
 use crate::exec::lanes::{LANES, any};
 use crate::exec::number::Arithmetic;
 
-/// Splits the active pixels by a condition word: those whose word is `WHEN` go to one mask, the others to a
-/// second one. Operands: the word and the two masks.
+/// Splits the active pixels by a condition word: those whose word is `WHEN` go to the first mask, the others
+/// to the second. Operands: the word and the two masks.
 struct Split<const WHEN: bool>;
 
 impl<N: Arithmetic, const WHEN: bool> Run<N> for Split<WHEN> {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
-        let [word, yes, no] = instruction.operands;
+        let [word, first, second] = instruction.operands;
         let condition = batch.word_row(word);
         let from = batch.mask_row(instruction.mask);
-        let (yes_row, no_row) = (batch.mask_row(yes), batch.mask_row(no));
+        let (first_row, second_row) = (batch.mask_row(first), batch.mask_row(second));
         let active = batch.active[instruction.mask as usize].get();
         // Different widths: with equal ones LLVM combines both reductions, which is three times slower.
         let (mut any_chosen, mut any_other) = (0_u32, 0_u64);
@@ -28,20 +28,20 @@ impl<N: Arithmetic, const WHEN: bool> Run<N> for Split<WHEN> {
             }
             any_chosen |= u32::from(any(&chosen)) << chunk;
             any_other |= u64::from(any(&others)) << chunk;
-            no_row[chunk].set(others);
-            yes_row[chunk].set(chosen);
+            second_row[chunk].set(others);
+            first_row[chunk].set(chosen);
         });
-        let no_active = Active {
+        let second_active = Active {
             chunks: any_other as u32,
             all: active.all && any_chosen == 0,
         };
-        let yes_active = Active {
+        let first_active = Active {
             chunks: any_chosen,
             all: active.all && any_other == 0,
         };
-        batch.active[no as usize].set(no_active);
-        batch.active[yes as usize].set(yes_active);
-        instruction.jump_if(yes_active.chunks == 0, at)
+        batch.active[second as usize].set(second_active);
+        batch.active[first as usize].set(first_active);
+        instruction.jump_if(first_active.chunks == 0, at)
     }
 }
 
