@@ -1,26 +1,35 @@
 //! The report for programs: `verdict.json`, and `--format json` on standard output.
 
+mod mistake;
+mod position;
+#[cfg(test)]
+pub(super) mod samples;
+mod seconds;
+#[cfg(test)]
+mod tests;
+
 use std::io::{self, Write};
-use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{self as diagnostic, Files};
 use toyproof_eval as eval;
 use toyproof_explain::Findings;
-use toyproof_explain::known::{Diagnosis, KnownMistake};
 use toyproof_explain::repair::SearchResult;
 use toyproof_explain::unused::Unused;
 use toyproof_glsl::{Checked, Dialect};
 use toyproof_verify::compare::{CheckSummary, Comparison};
 use toyproof_verify::{CheckResult, Evidence, Failure, Reason, Ruling, Verdict, decide};
 
+pub use self::mistake::{Alternative, Mistake};
+pub use self::position::Position;
+pub use self::seconds::Seconds;
 use super::departure::Departure;
 use super::reason::{Statement, state, state_reason};
 use super::unused::sentences;
 use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, StudentSubmission, Suspect};
 
 /// The JSON Schema of a [`Report`].
-pub const SCHEMA: &str = include_str!("verdict.schema.json");
+pub const SCHEMA: &str = include_str!("../verdict.schema.json");
 
 /// The statement of a record if no fix was searched for.
 const UNSEARCHED: &str =
@@ -275,7 +284,7 @@ impl Record {
 
     /// Adds the findings, apart from their notes.
     fn set_findings(&mut self, findings: &Findings, files: &Files) {
-        let answer = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
+        let summary = |check: &Option<CheckResult>| check.as_ref().map(|check| check.summary.clone());
         self.verdict = findings.verdict;
         self.set_statement(state(findings, files));
         self.mistake = findings
@@ -287,9 +296,9 @@ impl Record {
         }
         self.is_cut_by_time = findings.is_cut_by_time;
         self.cause = findings.cause.map(|cause| files.position(cause).into());
-        self.algorithm = answer(&findings.results.algorithm);
-        self.precision = answer(&findings.results.precision);
-        self.toolchain = answer(&findings.results.toolchain);
+        self.algorithm = summary(&findings.results.algorithm);
+        self.precision = summary(&findings.results.precision);
+        self.toolchain = summary(&findings.results.toolchain);
         self.comparison = findings
             .results
             .comparison
@@ -384,338 +393,5 @@ impl Record {
         } else {
             "not run: no GPU rendered the shader"
         })
-    }
-}
-
-/// A position in a shader.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Position {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-}
-
-impl From<diagnostic::Position> for Position {
-    fn from(diagnostic::Position { line, column }: diagnostic::Position) -> Self {
-        Self { line, column }
-    }
-}
-
-/// The mistake that explains a wrong image.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Mistake {
-    /// Its name, such as `far-root`; for two combined mistakes both names: `no-aspect+no-gamma`.
-    pub id: String,
-    /// The mistake in the shader, in one sentence.
-    pub text: String,
-    /// Whether it describes the image, which many mistakes may cause, and not a mistake.
-    pub is_symptom: bool,
-    /// Other mistakes that render the same image, the most likely first.
-    pub alternatives: Vec<Alternative>,
-}
-
-/// Another mistake that renders the same image.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Alternative {
-    /// Its name.
-    pub id: String,
-    /// What is wrong in the shader, in one sentence.
-    pub text: String,
-}
-
-impl Mistake {
-    /// Combines the recognized mistakes; `files` are those of the shader.
-    #[must_use]
-    pub fn new(diagnosis: &Diagnosis, files: &Files) -> Self {
-        let texts = diagnosis.mistakes.iter().map(|mistake| match mistake.at {
-            Some(at) => format!("{} (line {})", mistake.description, files.position(at).line),
-            None => mistake.description.to_string(),
-        });
-        let alternatives = diagnosis.alternatives.iter().map(|other| Alternative {
-            id: other.id.to_owned(),
-            text: other.description.to_string(),
-        });
-        Self {
-            id: diagnosis.id(),
-            text: texts.collect::<Vec<_>>().join("; and "),
-            is_symptom: diagnosis.mistakes.iter().all(|mistake| mistake.is_symptom),
-            alternatives: alternatives.collect(),
-        }
-    }
-
-    /// Whether several mistakes may be meant.
-    fn is_ambiguous(&self) -> bool {
-        self.is_symptom || !self.alternatives.is_empty()
-    }
-
-    /// Its name in a report.
-    pub(super) fn label(&self) -> &'static str {
-        if self.is_symptom {
-            "symptom"
-        } else {
-            "likely mistake"
-        }
-    }
-}
-
-impl From<&KnownMistake> for Mistake {
-    /// A single mistake without alternatives.
-    fn from(mistake: &KnownMistake) -> Self {
-        Self {
-            id: mistake.id.to_owned(),
-            text: mistake.description.to_string(),
-            is_symptom: mistake.is_symptom,
-            alternatives: Vec::new(),
-        }
-    }
-}
-
-/// Times in seconds; null for stages that did not run.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Seconds {
-    /// naga: parse, validate, write.
-    pub translate: Option<f64>,
-    /// The driver: compile, render, read back.
-    pub gpu: Option<f64>,
-    /// The evaluator: compile, and render every image in f32 and f64.
-    pub eval: Option<f64>,
-    /// The reference: tracing a scene, or evaluating a shader.
-    pub trace: Option<f64>,
-    /// All that was done for the shader, also the search for mistakes and fixes and its images; null if it
-    /// cannot be read, or nothing is written.
-    pub all: Option<f64>,
-}
-
-impl Seconds {
-    /// The sum of all stages; some of them ran in parallel.
-    #[must_use]
-    pub fn total(&self) -> f64 {
-        let parts = [self.translate, self.gpu, self.eval, self.trace];
-        // The sum of an empty iterator is −0.
-        parts.into_iter().flatten().fold(0.0, |sum, part| sum + part)
-    }
-}
-
-impl AddAssign for Seconds {
-    fn add_assign(&mut self, other: Self) {
-        let sum = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(|a, b| a + b);
-        self.translate = sum(self.translate, other.translate);
-        self.gpu = sum(self.gpu, other.gpu);
-        self.eval = sum(self.eval, other.eval);
-        self.trace = sum(self.trace, other.trace);
-        self.all = sum(self.all, other.all);
-    }
-}
-
-/// Sample records for the tests of the formats.
-#[cfg(test)]
-pub(super) mod samples {
-    use toyproof_diagnostic::{self as diagnostic, File, Files, Severity};
-    use toyproof_verify::Verdict;
-    use toyproof_verify::compare::CheckSummary;
-
-    use crate::{Record, Rubric, Seconds};
-
-    /// A record with this verdict, which is also its name, without checks.
-    pub(crate) fn record(verdict: Verdict) -> Record {
-        Record {
-            scene: Some("scene.toml".to_owned()),
-            verdict,
-            reason: format!("it is {verdict}"),
-            seconds: Seconds {
-                gpu: Some(1.0),
-                eval: Some(0.5),
-                ..Seconds::default()
-            },
-            ..Record::unchecked(verdict.to_string())
-        }
-    }
-
-    /// A summary of 1,000 pixels: the numbers that differ, are ill-conditioned and are undefined.
-    pub(crate) fn check_summary([differing, ill_conditioned, undefined]: [u64; 3]) -> CheckSummary {
-        CheckSummary {
-            pixels: 1000,
-            differing,
-            ill_conditioned,
-            undefined,
-            max_abs: 0.25,
-            ..CheckSummary::default()
-        }
-    }
-
-    pub(crate) fn correct() -> Record {
-        Record {
-            algorithm: Some(check_summary([0; 3])),
-            precision: Some(check_summary([0; 3])),
-            toolchain: Some(check_summary([0; 3])),
-            ..record(Verdict::Correct)
-        }
-    }
-
-    pub(crate) fn invalid() -> Record {
-        let mut record = record(Verdict::Invalid);
-        record.diagnostics.push(diagnostic::Json {
-            severity: Severity::Error,
-            code: "E0301".to_owned(),
-            message: "unknown name".to_owned(),
-            file: Some("a.glsl".to_owned()),
-            line: Some(2),
-            column: Some(3),
-            end_line: Some(2),
-            end_column: Some(7),
-            fix: Some(diagnostic::JsonFix {
-                message: "did you mean `near`?".to_owned(),
-                replacement: "near".to_owned(),
-                line: 2,
-                column: 3,
-                end_line: 2,
-                end_column: 7,
-            }),
-            notes: vec!["declare it".to_owned()],
-        });
-        record
-    }
-
-    /// One record of each verdict.
-    pub(crate) fn every_verdict() -> Vec<Record> {
-        let mut wrong = record(Verdict::Wrong);
-        wrong.algorithm = Some(check_summary([500, 0, 0]));
-        let mut unstable = correct();
-        (unstable.shader, unstable.verdict) = ("unstable".to_owned(), Verdict::Unstable);
-        unstable.precision = Some(check_summary([500, 0, 0]));
-        vec![
-            record(Verdict::Missing),
-            invalid(),
-            record(Verdict::Timeout),
-            record(Verdict::Error),
-            wrong,
-            unstable,
-            record(Verdict::Inconclusive),
-            correct(),
-            record(Verdict::Ok),
-        ]
-    }
-
-    impl Rubric {
-        /// A rubric without partial points for `compiles`, `algorithm` and `precision`.
-        pub(crate) fn with_points(compiles: f64, algorithm: f64, precision: f64) -> Self {
-            let text = format!(
-                "compiles.points = {compiles:?}\nalgorithm.points = {algorithm:?}\nprecision.points = {precision:?}"
-            );
-            let mut files = Files::default();
-            let file = files.add(File::new("r.toml", text));
-            Self::parse(&files, file).unwrap()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::frames::samples::in_frames;
-    use crate::record::samples::{every_verdict, record};
-    use crate::repair::samples::{repaired, suspected};
-    use crate::{Hints, growth, repair, written};
-
-    #[test]
-    fn reports_follow_the_schema_and_broken_ones_do_not() {
-        let schema = serde_json::from_str(SCHEMA).unwrap();
-        let validator = jsonschema::validator_for(&schema).unwrap();
-        let black = toyproof_image::Image::new(1, 1, vec![[0.0; 4]]);
-        let white = toyproof_image::Image::new(1, 1, vec![[1.0; 4]]);
-        let (comparison, _) = toyproof_verify::compare::compare(&black, &white);
-        let answer = CheckSummary::new(&black, &white, &[toyproof_verify::compare::PixelStatus::Differs]);
-        let with_checks = Record {
-            algorithm: Some(answer.clone()),
-            precision: Some(answer.clone()),
-            toolchain: Some(answer),
-            comparison: Some(comparison),
-            ..record(Verdict::Ok)
-        };
-        let mut records = every_verdict();
-        records.extend([with_checks, repaired(), suspected()]);
-        records.push(repaired().redacted(Hints::Line));
-        records.push(in_frames([Verdict::Correct, Verdict::Wrong]));
-        records.push(Record {
-            growth: Some(growth::samples::chaotic(5)),
-            ..record(Verdict::Chaotic)
-        });
-        let report = Report::new(Some("x".to_owned()), records);
-        let mut json: serde_json::Value = serde_json::from_str(&written(|out| report.json(out))).unwrap();
-        assert!(
-            validator.is_valid(&json),
-            "{:?}",
-            validator.iter_errors(&json).collect::<Vec<_>>()
-        );
-        for (path, value) in [
-            ("/shaders/10/fix/line", 0.into()),
-            ("/shaders/10/fix/edits", serde_json::json!([])),
-            ("/shaders/10/fix/alternatives/0/agreeing", "many".into()),
-            ("/shaders/11/suspects/0/score", 2.into()),
-            ("/shaders/14/growth/cause", "fate".into()),
-            ("/shaders/14/growth/frames/0/differing", (-1).into()),
-            ("/shaders/13/frames/0/size", serde_json::json!([0, 4])),
-            ("/shaders/13/frames/1/verdict", "splendid".into()),
-            ("/shaders/0/verdict", "splendid".into()),
-        ] {
-            let mut json = json.clone();
-            *json.pointer_mut(path).unwrap() = value;
-            assert!(!validator.is_valid(&json), "{path}");
-        }
-        json["shaders"][0].as_object_mut().unwrap().remove("verdict");
-        assert!(!validator.is_valid(&json));
-    }
-    #[test]
-    fn the_fix_has_the_keys_that_programs_read() {
-        let json = serde_json::to_value(repaired()).unwrap();
-        let fix = &json["fix"];
-        let edit = serde_json::json!({
-            "line": 2, "column": 12, "end_line": 2, "end_column": 17,
-            "replacement": "b - c", "text": "replace `b + c` with `b - c`",
-        });
-        assert_eq!(fix["edits"], serde_json::json!([edit]));
-        for (key, value) in edit.as_object().unwrap() {
-            assert_eq!(fix[key], *value, "{key}");
-        }
-        let rest = ["id", "file", "agreeing", "pixels"].map(|key| fix[key].clone());
-        assert_eq!(
-            serde_json::json!(rest),
-            serde_json::json!(["wrong-operator", "wrong", 14_400, 14_400])
-        );
-        assert_eq!(fix["alternatives"][0]["id"], "wrong-number");
-        assert_eq!(fix["alternatives"][0]["edits"].as_array().unwrap().len(), 2);
-        let suspect = &json["suspects"][0];
-        assert_eq!((&suspect["line"], &suspect["score"]), (&4.into(), &0.5.into()));
-        assert_eq!(json["is_search_cut"], true);
-    }
-
-    #[test]
-    fn records_are_read_back_also_from_older_reports() {
-        let json = serde_json::to_value(repaired()).unwrap();
-        let read: Record = serde_json::from_value(json.clone()).unwrap();
-        assert_eq!(serde_json::to_value(&read).unwrap(), json);
-        let mut older = json;
-        for key in ["fix", "suspects", "is_search_cut", "is_cut_by_time"] {
-            older.as_object_mut().unwrap().remove(key).unwrap();
-        }
-        let read: Record = serde_json::from_value(older).unwrap();
-        assert_eq!((read.fix, read.suspects.len()), (None, 0));
-    }
-
-    #[test]
-    fn a_fix_names_the_mistake_unless_a_known_one_explains_the_image() {
-        assert_eq!(repaired().mistake.unwrap().id, "wrong-operator");
-        let (files, result) = repair::samples::search();
-        let mut known = record(Verdict::Wrong);
-        known.mistake = Some(Mistake {
-            id: "no-shadows".to_owned(),
-            text: "shadows are missing".to_owned(),
-            is_symptom: false,
-            alternatives: Vec::new(),
-        });
-        let known = known.with_search(&result, &files);
-        assert_eq!(known.mistake.unwrap().id, "no-shadows");
-        assert_eq!(known.fix.unwrap().id, "wrong-operator");
     }
 }
