@@ -119,7 +119,7 @@ impl FloatMode {
     pub fn lower_within(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
         let passes = match self {
             Self::Strict => Passes::strict(),
-            Self::Fast => Passes::all(),
+            Self::Fast => Passes::required(),
         };
         lower_within(checked, passes, deadline)
     }
@@ -132,7 +132,7 @@ impl FloatMode {
     pub fn lower_for_host(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
         let passes = match self {
             Self::Strict => Passes::strict().without(Pass::Lookups),
-            Self::Fast => Passes::all(),
+            Self::Fast => Passes::required(),
         };
         lower_within(checked, passes, deadline)
     }

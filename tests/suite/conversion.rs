@@ -476,7 +476,7 @@ fn files_in_every_language_state_their_proof() {
 /// Names that surround a shader in some language: ours, naga's, those of hosts and of the preludes that
 /// replace them.
 const SURROUNDING_NAMES: &str = "toyproof_color toyproof_result toyproof_image_color toyproof_frame ToyproofFrame toyproof_size \
-    toyproof_need_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
+    toyproof_library_0 toyproof_sin toyproof_start toyproof_remainder toyproof_t1 toyproof_s1 main_1 global inputs Inputs \
     position color saturate screen time view View globals Globals fragment VertexOutput kept written_main written_color \
     writtenn_at written_image FragmentInput_main FragmentOutput ConstructRay constructRay naga_mod naga_div i_time \
     frag_coord shader_main main_image f32 vec3f lerp frac mul tex2D Texture2D SamplerState float4 main_ kernel size id \

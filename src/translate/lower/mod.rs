@@ -37,7 +37,7 @@ use crate::print::{Lowered, print};
 
 /// Lowers a shader and prints it as GLSL for naga.
 pub fn lower(checked: &Checked) -> Lowered {
-    lower_with(checked, Passes::all())
+    lower_with(checked, Passes::required())
 }
 
 /// Lowers a shader whose operations must have the same bits on every driver: operations that drivers compute
@@ -163,8 +163,8 @@ passes! {
 pub struct Passes(u64);
 
 impl Passes {
-    /// Every pass that naga and the drivers need.
-    pub fn all() -> Self {
+    /// The passes that naga and the drivers need.
+    pub fn required() -> Self {
         Self::strict()
             .without(Pass::Lookups)
             .without(Pass::InexactFunctions)

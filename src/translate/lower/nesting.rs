@@ -4,7 +4,7 @@
 //! entries, loops on another; statements nested deeper run regardless of their conditions. Its compiler also
 //! nests the statements after a conditional `return` or `continue`. So the statements of deep functions are
 //! flattened under flags ([`flatten`]), and long `a ? x : b ? y : …` likewise. Shaders that still nest too
-//! deep (loops in loops, or functions called under conditions that call others so) must not run on a driver.
+//! deeply (loops in loops, or calls under conditions, again and again) must not run on a driver.
 
 use std::collections::{HashMap, HashSet};
 
@@ -20,9 +20,11 @@ use crate::lower::{flatten, initializer, lvalue};
 /// Depth above which functions are flattened: the driver's limit is 79 with an `else`, less the levels that
 /// helper functions and its own passes add.
 const FLATTEN_ABOVE_DEPTH: u32 = 64;
+
 /// Maximum depth of conditions or loops that may run on a driver: below the measured 79 and 80, to leave a
 /// few for helper functions.
 const MAX_DRIVER_DEPTH: u32 = 72;
+
 /// Maximum depths of functions that are not flattened, in the first and the second attempt.
 const MAX_KEPT_DEPTHS: [u32; 2] = [8, 2];
 
@@ -32,7 +34,7 @@ pub(super) fn run(cx: &mut LoweringContext) {
         let depths = Depths::new(cx);
         if depths
             .of_image(cx)
-            .is_none_or(|whole| whole.both.0 <= FLATTEN_ABOVE_DEPTH)
+            .is_none_or(|whole| whole.both.depth <= FLATTEN_ABOVE_DEPTH)
         {
             return;
         }
@@ -47,9 +49,9 @@ pub(super) fn run(cx: &mut LoweringContext) {
     let Some(whole) = Depths::new(cx).of_image(cx) else {
         return;
     };
-    let (what, (depth, at)) = if whole.loops.0 > MAX_DRIVER_DEPTH {
+    let (what, Deepest { depth, at }) = if whole.loops.depth > MAX_DRIVER_DEPTH {
         ("loops", whole.loops)
-    } else if whole.conditions.0 > MAX_DRIVER_DEPTH {
+    } else if whole.conditions.depth > MAX_DRIVER_DEPTH {
         ("conditions", whole.conditions)
     } else {
         return;
@@ -83,34 +85,43 @@ impl Depth {
     }
 }
 
+/// A place of the largest depth, and that depth.
+#[derive(Clone, Copy)]
+struct Deepest {
+    depth: u32,
+    at: Place,
+}
+
 /// The deepest places of a function, including the functions that it calls.
 #[derive(Clone, Copy)]
 struct MaxDepths {
-    conditions: (u32, Place),
-    loops: (u32, Place),
+    conditions: Deepest,
+    loops: Deepest,
     /// Conditions and loops together.
-    both: (u32, Place),
+    both: Deepest,
 }
 
 impl MaxDepths {
     /// A place without nesting.
     fn shallow(at: Place) -> Self {
+        let here = Deepest { depth: 0, at };
         Self {
-            conditions: (0, at),
-            loops: (0, at),
-            both: (0, at),
+            conditions: here,
+            loops: here,
+            both: here,
         }
     }
 
-    /// Records a place at a depth.
+    /// Records a place at a depth, with the depths inside it: those of a called function.
     fn record(&mut self, depth: Depth, inner: Self) {
-        for (most, depth, inner) in [
+        for (deepest, outer, inner) in [
             (&mut self.conditions, depth.conditions, inner.conditions),
             (&mut self.loops, depth.loops, inner.loops),
             (&mut self.both, depth.conditions + depth.loops, inner.both),
         ] {
-            if depth + inner.0 > most.0 {
-                *most = (depth + inner.0, inner.1);
+            let depth = outer + inner.depth;
+            if depth > deepest.depth {
+                *deepest = Deepest { depth, at: inner.at };
             }
         }
     }
@@ -201,6 +212,7 @@ impl DepthVisitor<'_> {
         leaves
     }
 
+    /// Visits a statement at a depth. Returns whether control may jump out of its block, to code after it.
     fn statement(&mut self, statement: &Statement, depth: Depth) -> bool {
         if let StatementKind::If { arms, otherwise } = &statement.kind {
             let mut leaves = false;
@@ -211,10 +223,10 @@ impl DepthVisitor<'_> {
                 inner = inner.in_condition();
                 leaves |= self.block(&arm.body, inner);
             }
-            return leaves
-                | otherwise
-                    .iter()
-                    .fold(false, |leaves, body| leaves | self.block(body, inner));
+            if let Some(body) = otherwise {
+                leaves |= self.block(body, inner);
+            }
+            return leaves;
         }
         for expr in walk::own_expressions(&self.cx.tree, statement) {
             self.expression(expr, depth);
@@ -223,6 +235,7 @@ impl DepthVisitor<'_> {
         let inner = match statement.kind {
             StatementKind::Block(_) => depth,
             StatementKind::Switch { .. } => depth.in_condition(),
+            // Loops; other statements have no blocks.
             _ => depth.in_loop(),
         };
         for body in walk::child_blocks(statement) {

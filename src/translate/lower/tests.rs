@@ -45,7 +45,7 @@ fn naga(text: &str) -> Result<String, String> {
 /// text.
 pub(super) fn fixes_rejection(pass: Pass, text: &str) -> String {
     let checked = checked(text, true);
-    let without = lower_with(&checked, Passes::all().without(pass));
+    let without = lower_with(&checked, Passes::required().without(pass));
     assert!(
         naga(without.text()).is_err(),
         "naga is fixed; {pass:?} can be removed:\n{}",
@@ -58,21 +58,21 @@ pub(super) fn fixes_rejection(pass: Pass, text: &str) -> String {
 /// pass.
 pub(super) fn fixes_miscompilation(pass: Pass, text: &str, wrong: impl Fn(&str) -> bool) -> String {
     let checked = checked(text, true);
-    let without = lower_with(&checked, Passes::all().without(pass));
+    let without = lower_with(&checked, Passes::required().without(pass));
     let wgsl = naga(without.text()).unwrap_or_else(|error| panic!("{error}\n{}", without.text()));
     assert!(
         wrong(&wgsl),
         "naga is fixed; {pass:?} can be removed:\n{}\n{wgsl}",
         without.text()
     );
-    let lowered = lower_with(&checked, Passes::all());
+    let lowered = lower_with(&checked, Passes::required());
     let wgsl = naga(lowered.text()).unwrap_or_else(|error| panic!("{error}\n{}", lowered.text()));
     assert!(!wrong(&wgsl), "{}\n{wgsl}", lowered.text());
     lowered.text().to_owned()
 }
 
 pub(super) fn accepted(checked: &Checked) -> String {
-    let lowered = lower_with(checked, Passes::all());
+    let lowered = lower_with(checked, Passes::required());
     if let Err(error) = naga(lowered.text()) {
         panic!("{error}\n{}", lowered.text());
     }
@@ -211,7 +211,7 @@ fn every_lowered_expression_has_one_parent() {
     let checked = checked(&main_image(EVERYTHING, body), false);
     accepted(&checked);
     let mut cx = crate::lower::context::LoweringContext::new(&checked);
-    Passes::all()
+    Passes::required()
         .run(&mut cx, &toyproof_diagnostic::Deadline::default())
         .unwrap();
     let mut seen = std::collections::HashSet::new();
@@ -329,7 +329,7 @@ fn dead_code() {
             .validate(&module)
             .is_ok()
     };
-    assert!(!compacts(Passes::all().without(Pass::DeadCode)) && compacts(Passes::all()));
+    assert!(!compacts(Passes::required().without(Pass::DeadCode)) && compacts(Passes::required()));
 }
 
 #[test]
@@ -429,9 +429,9 @@ fn chains_of_else_if() {
     let checked = checked(&text, true);
     let depth = |passes| deepest(&naga(lower_with(&checked, passes).text()).expect("naga takes it"));
     // The nesting pass would flatten the chain as well.
-    let without = Passes::all().without(Pass::Nesting).without(Pass::ElseIfs);
-    assert!(depth(without) > Some(4 * 127) && depth(Passes::all()) <= Some(4 * 127));
-    let lowered = lower_with(&checked, Passes::all());
+    let without = Passes::required().without(Pass::Nesting).without(Pass::ElseIfs);
+    assert!(depth(without) > Some(4 * 127) && depth(Passes::required()) <= Some(4 * 127));
+    let lowered = lower_with(&checked, Passes::required());
     assert_eq!(lowered.text().matches("if (toyproof_open)").count(), 7);
 }
 

@@ -118,7 +118,7 @@ fn passes() -> Passes {
         Pass::MissingReturns,
     ]
     .into_iter()
-    .fold(Passes::all(), Passes::without)
+    .fold(Passes::required(), Passes::without)
 }
 
 #[cfg(test)]

@@ -28,29 +28,30 @@ pub fn expanded(spirv: &[u32]) -> Result<Vec<u32>, TranslateError> {
         return Err("these are no words of SPIR-V".into());
     }
     let types = Types::new(spirv);
-    let mut needs = Vec::new();
+    let mut functions = Vec::new();
     let mut sites = HashMap::new();
     for (at, instruction) in instructions(spirv) {
-        if let Some((need, arguments)) = types.need(instruction) {
-            sites.insert(at, (need.index_in(&mut needs), arguments));
+        if let Some((function, arguments)) = types.library_function(instruction) {
+            sites.insert(at, (function.index_in(&mut functions), arguments));
         }
     }
-    if needs.is_empty() {
+    if functions.is_empty() {
         return Ok(spirv.to_vec());
     }
-    let library = words(&library(&needs)?)?;
+    let library = words(&library(&functions)?)?;
     let mut linker = Linker::new(spirv, &library)?;
-    let functions = linker.link(|name| name != MAIN_IMAGE)?;
-    let call = |need| functions.get(&need_name(need)).copied();
-    let calls: Option<Vec<u32>> = (0..needs.len()).map(call).collect();
-    let calls = calls.ok_or("a function of the library is missing")?;
+    let linked = linker.link(|name| name != MAIN_IMAGE)?;
+    let id = |index| linked.get(&function_name(index)).copied();
+    let ids: Option<Vec<u32>> = (0..functions.len()).map(id).collect();
+    let ids = ids.ok_or("a function of the library is missing")?;
     let mut expanded = spirv[..HEADER_WORDS].to_vec();
     for (at, instruction) in instructions(spirv) {
         match sites.get(&at) {
-            Some((need, arguments)) => {
+            Some((function, arguments)) => {
+                // The opcode's word, the result's type and id, and the function's id.
                 let length = 4 + arguments.len() as u32;
                 expanded.extend([length << 16 | Op::FunctionCall as u32]);
-                expanded.extend([instruction[1], instruction[2], calls[*need]]);
+                expanded.extend([instruction[1], instruction[2], ids[*function]]);
                 expanded.extend(arguments);
             }
             None => expanded.extend(instruction),
@@ -107,79 +108,83 @@ impl Types {
     }
 
     /// The library function for an instruction whose result depends on the driver, and its operands.
-    fn need(&self, instruction: &[u32]) -> Option<(LibraryFunction, Vec<u32>)> {
+    fn library_function(&self, instruction: &[u32]) -> Option<(LibraryFunction, Vec<u32>)> {
         let result = self.names.get(instruction.get(1)?)?;
-        let (value, operands) = match (opcode(instruction)?, instruction.get(3..)?) {
+        let (callee, operands) = match (opcode(instruction)?, instruction.get(3..)?) {
             (Op::ExtInst, [set, number, operands @ ..]) if Some(*set) == self.glsl => {
                 let function = InexactFunction::from_extended(GlslStd450Op::from_u32(*number)?)?;
-                (function.built_in.name(), operands)
+                (Some(function.built_in.name()), operands)
             }
-            (Op::ConvertUToF, operands) => (result.as_str(), operands),
+            (Op::ConvertUToF, operands) => (Some(result.as_str()), operands),
             (Op::MatrixTimesVector | Op::VectorTimesMatrix | Op::MatrixTimesMatrix, operands) => {
-                ("*", operands)
+                (None, operands)
             }
-            (op, operands) => (InexactFunction::from_core(op)?.built_in.name(), operands),
+            (op, operands) => (Some(InexactFunction::from_core(op)?.built_in.name()), operands),
         };
         let types: Option<Vec<_>> = operands
             .iter()
             .map(|operand| self.names.get(self.of_values.get(operand)?).cloned())
             .collect();
-        let value = match value {
-            "*" => "a * b".to_owned(),
-            name => format!("{name}({})", ["a", "b", "c"].get(..operands.len())?.join(", ")),
+        let value = match callee {
+            Some(name) => format!("{name}({})", ["a", "b", "c"].get(..operands.len())?.join(", ")),
+            None => "a * b".to_owned(),
         };
-        let need = LibraryFunction {
+        let function = LibraryFunction {
             value,
             types: types?,
             result: result.clone(),
         };
-        Some((need, operands.to_vec()))
+        Some((function, operands.to_vec()))
     }
 }
 
-/// A library function: GLSL that computes its value from `a`, `b` and `c`, their types, and the type of the
-/// value.
+/// A function of the library.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct LibraryFunction {
+    /// GLSL that computes the value from the parameters `a`, `b` and `c`.
     value: String,
+    /// The types of the parameters.
     types: Vec<String>,
+    /// The type of the value.
     result: String,
 }
 
 impl LibraryFunction {
-    /// Returns the index of this need in a list, which it is appended to if missing.
-    fn index_in(self, needs: &mut Vec<Self>) -> usize {
-        needs.iter().position(|known| *known == self).unwrap_or_else(|| {
-            needs.push(self);
-            needs.len() - 1
+    /// Returns the index of this function in a list, and appends it if missing.
+    fn index_in(self, functions: &mut Vec<Self>) -> usize {
+        let index = functions.iter().position(|known| *known == self);
+        index.unwrap_or_else(|| {
+            functions.push(self);
+            functions.len() - 1
         })
     }
 }
 
-/// The last function that is linked calls all others.
+/// The entry function of the library. It calls the others so that none is removed. It is not linked: naga
+/// writes it last, where linking stops.
 const MAIN_IMAGE: &str = "mainImage";
 
-/// The name of the library function for the need with this index.
-fn need_name(index: usize) -> String {
-    format!("toyproof_need_{index}")
+/// The name of the library function with this index.
+fn function_name(index: usize) -> String {
+    format!("toyproof_library_{index}")
 }
 
-/// Builds a strict shader with one function for each need.
+/// Builds a strict shader with these functions.
 ///
 /// # Errors
 /// Its first error message, in one line.
-fn library(needs: &[LibraryFunction]) -> Result<ValidModule, TranslateError> {
+fn library(functions: &[LibraryFunction]) -> Result<ValidModule, TranslateError> {
     let mut text = String::new();
     let mut uses = String::new();
-    for (index, need) in needs.iter().enumerate() {
-        let parameters: Vec<_> = need
+    for (index, function) in functions.iter().enumerate() {
+        let parameters: Vec<_> = function
             .types
             .iter()
             .zip(["a", "b", "c"])
             .map(|(ty, name)| format!("{ty} {name}"))
             .collect();
-        let arguments: Vec<_> = need.types.iter().map(|ty| format!("{ty}(p.x)")).collect();
-        let (LibraryFunction { value, result, .. }, name) = (need, need_name(index));
+        let arguments: Vec<_> = function.types.iter().map(|ty| format!("{ty}(p.x)")).collect();
+        let (LibraryFunction { value, result, .. }, name) = (function, function_name(index));
         let _ = writeln!(
             text,
             "{result} {name}({}) {{ return {value}; }}",
@@ -273,7 +278,8 @@ mod tests {
             }";
         let expanded = expanded(&words_of_wgsl(text)).unwrap();
         let types = Types::new(&expanded);
-        let left = instructions(&expanded).filter(|(_, instruction)| types.need(instruction).is_some());
+        let left =
+            instructions(&expanded).filter(|(_, instruction)| types.library_function(instruction).is_some());
         // The library's own `unpackHalf2x16`, whose halves are exact.
         assert_eq!(left.count(), 2);
     }
