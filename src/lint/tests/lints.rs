@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn randomness() {
-    cases(
+    check_cases(
         "
         W0005 c.x = fract(sin(f.x) * 43758.5453);
         W0005 c.x = fract(sin(dot(f, vec2(12.9898, 78.233))) * 43758.5453);
@@ -26,7 +26,7 @@ fn randomness() {
 
 #[test]
 fn reversed_edges() {
-    cases(
+    check_cases(
         "
         W0021 c.x = smoothstep(1.0, 0.0, f.x);
         W0021 c.x = smoothstep(0.5, 0.5, f.x);
@@ -82,7 +82,7 @@ fn reversed_edges() {
 
 #[test]
 fn functions_that_are_never_called() {
-    cases(
+    check_cases(
         "
         W0022 float shade(float x) { return x; } | c.x = f.x;
         W0022 float shade(float x) { return x; } float lit(float x) { return shade(x); } | c.x = f.x;
@@ -129,7 +129,7 @@ fn functions_that_are_never_called() {
 
 #[test]
 fn lost_fractions() {
-    cases(
+    check_cases(
         "
         W0023 c.x = float(1 / 3);
         W0023 c.xyz = vec3(1 / 2, 0, 0);
@@ -155,7 +155,7 @@ fn lost_fractions() {
 
 #[test]
 fn unused_results() {
-    cases(
+    check_cases(
         "
         W0010 vec3 d = vec3(f, 1.0); normalize(d);
         W0010 f.x == 1.0;
@@ -178,7 +178,7 @@ fn unused_results() {
 
 #[test]
 fn uniforms_that_nothing_sets() {
-    cases(
+    check_cases(
         "
         W0030 uniform float speed; | c.x = speed;
         W0030 uniform vec2 offsets[3]; | c.xy = offsets[1];
@@ -197,7 +197,7 @@ fn uniforms_that_nothing_sets() {
 
 #[test]
 fn equality_of_floats() {
-    cases(
+    check_cases(
         "
         W0011 vec2 p = f / iResolution.xy; float b = dot(p, p), disc = b * b - 4.0; if (disc == 0.0) c.x = 1.0;
         W0011 for (float i = 0.0; i != 1.0; i += 0.1) c.x += i;
@@ -241,7 +241,7 @@ fn equality_of_floats() {
 
 #[test]
 fn derivatives_in_divergent_control_flow() {
-    cases(
+    check_cases(
         "
         W0006 if (f.x > 9.0) c.x = fwidth(f.y);
         W0006 if (f.x > 9.0) return; c.x = dFdx(f.y);
@@ -280,7 +280,7 @@ fn derivatives_in_divergent_control_flow() {
 
 #[test]
 fn loops() {
-    cases(
+    check_cases(
         "
         W0008 for (int i = 0; i < 70000; i++) c.x += f.x;
         W0008 for (int i = 0; i < 300; i++) for (int j = 0; j < 300; j++) c.x += f.x;

@@ -4,7 +4,7 @@ use super::*;
 
 #[test]
 fn uninitialized_reads() {
-    cases(
+    check_cases(
         "
         W0003 float a; c.x = a;
         W0003 vec3 sum; for (int i = 0; i < 3; i++) sum += vec3(f, i);  c.xyz = sum;
@@ -69,7 +69,7 @@ fn uninitialized_reads() {
 
 #[test]
 fn reads_that_flags_and_calls_guard() {
-    cases(
+    check_cases(
         "
         W0022 float never() { float a; return a; } |
         W0004 float a, least = 8.0; for (int i = 0; i < 3; i++) { float d = f.x * float(i); if (d < least) { least = d; a = 1.0; } } c.x = a;
@@ -136,7 +136,7 @@ fn reads_that_flags_and_calls_guard() {
 
 #[test]
 fn functions_without_final_return() {
-    cases(
+    check_cases(
         "
         W0016 float pick(float x) { if (x > 1.0) return 2.0; } | c.x = pick(f.x);
         W0016 float march(float x) { for (int i = 0; i < 9; i++) { if (x > float(i)) return x; } } | c.x = march(f.x);

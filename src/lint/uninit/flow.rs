@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{
     Statement, StatementKind, Type, Value, VariableId, VariableKind, walk,
 };
 
-use super::part::{Layout, Part, Parts};
+use super::part::{Access, Layout, Parts};
 use super::state::{Slot, Slots, State};
 use crate::program::{Program, direction};
 
@@ -38,7 +38,7 @@ pub(super) struct Flow {
     /// Whether the output color is unassigned on all paths to the end.
     pub(super) never_colors: bool,
     /// The global variables read and assigned.
-    pub(super) global_reads: Vec<(Part, ExprId)>,
+    pub(super) global_reads: Vec<(Access, ExprId)>,
     pub(super) global_writes: BTreeMap<VariableId, Parts>,
 }
 
@@ -356,10 +356,10 @@ impl Analysis<'_> {
 /// Pending work for an expression.
 enum Work {
     Evaluate(ExprId),
-    Read(Part, ExprId),
-    Assign(Part),
+    Read(Access, ExprId),
+    Assign(Access),
     /// Parts that a called function assigns on some of its paths.
-    AssignMaybe(Part),
+    AssignMaybe(Access),
     /// Keeps the state for the path that skips the next operand.
     Fork,
     /// Continues on the other path.
@@ -381,9 +381,9 @@ impl Analysis<'_> {
                 // Literals and constants read no variable that could be unassigned.
                 Work::Evaluate(expr) if self.program.tree[expr].constant => {}
                 Work::Evaluate(expr) => self.steps(expr, &mut pending),
-                Work::Read(part, expr) => self.read(part, expr),
-                Work::Assign(part) => self.assign(&part, State::assign),
-                Work::AssignMaybe(part) => self.assign(&part, State::assign_maybe),
+                Work::Read(access, expr) => self.read(access, expr),
+                Work::Assign(access) => self.assign(&access, State::assign),
+                Work::AssignMaybe(access) => self.assign(&access, State::assign_maybe),
                 Work::Fork => self.saved.push(self.state.clone()),
                 Work::Switch => {
                     if let Some(other) = self.saved.last_mut() {
@@ -408,10 +408,10 @@ impl Analysis<'_> {
             ExprKind::Variable(_)
             | ExprKind::Swizzle { .. }
             | ExprKind::Member { .. }
-            | ExprKind::Index { .. } => match self.layout.part(expr) {
-                Some(part) => {
+            | ExprKind::Index { .. } => match self.layout.access(expr) {
+                Some(access) => {
                     self.indices(expr, pending);
-                    pending.push(Work::Read(self.as_read(part, expr), expr));
+                    pending.push(Work::Read(self.as_read(access, expr), expr));
                 }
                 None => tree[expr]
                     .kind
@@ -442,26 +442,26 @@ impl Analysis<'_> {
             ExprKind::Assign { op, target, value } => {
                 self.indices(*target, pending);
                 pending.extend(self.assigned_values(*target, *value).map(Work::Evaluate));
-                if let Some(part) = self.layout.part(*target) {
+                if let Some(access) = self.layout.access(*target) {
                     if op.is_some() {
-                        pending.push(Work::Read(part.clone(), *target));
+                        pending.push(Work::Read(access.clone(), *target));
                     }
-                    pending.push(Work::Assign(part));
+                    pending.push(Work::Assign(access));
                 }
             }
             ExprKind::Step { target, .. } => {
                 self.indices(*target, pending);
-                if let Some(part) = self.layout.part(*target) {
-                    pending.extend([Work::Read(part.clone(), *target), Work::Assign(part)]);
+                if let Some(access) = self.layout.access(*target) {
+                    pending.extend([Work::Read(access.clone(), *target), Work::Assign(access)]);
                 }
             }
             ExprKind::Call { function, arguments } => self.call(*function, arguments, pending),
             ExprKind::BuiltIn { function, arguments } => {
                 for (index, &argument) in arguments.iter().enumerate() {
-                    match self.layout.part(argument) {
-                        Some(part) if function.out_parameter() == Some(index) => {
+                    match self.layout.access(argument) {
+                        Some(access) if function.out_parameter() == Some(index) => {
                             self.indices(argument, pending);
-                            pending.push(Work::Assign(part));
+                            pending.push(Work::Assign(access));
                         }
                         _ => pending.push(Work::Evaluate(argument)),
                     }
@@ -484,7 +484,7 @@ impl Analysis<'_> {
                     [colors @ .., alpha]
                         if !colors.is_empty()
                             && matches!(tree[*alpha].ty, Type::Scalar(_))
-                            && self.layout.part(*alpha).is_some() =>
+                            && self.layout.access(*alpha).is_some() =>
                     {
                         colors.to_vec()
                     }
@@ -501,20 +501,20 @@ impl Analysis<'_> {
         let mut after = Vec::new();
         let parameters = tree[function].parameters.iter().zip(arguments);
         for ((&parameter, &argument), summary) in parameters.zip(&self.summaries[function.index()]) {
-            let Some(part) = self.layout.part(argument) else {
+            let Some(access) = self.layout.access(argument) else {
                 pending.push(Work::Evaluate(argument));
                 continue;
             };
             self.indices(argument, pending);
             // A whole variable has the parts of the parameter; a part of a variable counts as one.
             let of_argument = |parts: Parts| match tree[argument].kind {
-                ExprKind::Variable(_) => part.parts & parts,
+                ExprKind::Variable(_) => access.parts & parts,
                 _ if parts == 0 => 0,
-                _ => part.parts,
+                _ => access.parts,
             };
-            let narrowed = |parts: Parts| Part {
+            let narrowed = |parts: Parts| Access {
                 parts: of_argument(parts),
-                ..part.clone()
+                ..access.clone()
             };
             let passed = direction(tree, parameter);
             if passed != Direction::Out {
@@ -533,9 +533,9 @@ impl Analysis<'_> {
 
     /// Reading a whole structure or array counts as reading one unknown part of it: it may be passed on with
     /// members that are never used.
-    fn as_read(&self, mut part: Part, expr: ExprId) -> Part {
-        part.one_of |= matches!(self.program.tree[expr].ty, Type::Struct(_) | Type::Array(_));
-        part
+    fn as_read(&self, mut access: Access, expr: ExprId) -> Access {
+        access.is_one_of_parts |= matches!(self.program.tree[expr].ty, Type::Struct(_) | Type::Array(_));
+        access
     }
 
     /// Evaluates the indices of an lvalue.
@@ -547,28 +547,28 @@ impl Analysis<'_> {
         }));
     }
 
-    fn read(&mut self, part: Part, expr: ExprId) {
-        let Some(&slot) = self.slots.get(&part.variable) else {
-            if self.is_unset_global(part.variable) && !self.is_rehearsal {
-                self.flow.global_reads.push((part, expr));
+    fn read(&mut self, access: Access, expr: ExprId) {
+        let Some(&slot) = self.slots.get(&access.variable) else {
+            if self.is_unset_global(access.variable) && !self.is_rehearsal {
+                self.flow.global_reads.push((access, expr));
             }
             return;
         };
-        let unassigned = self.state.unassigned(slot) & part.parts;
+        let unassigned = self.state.unassigned(slot) & access.parts;
         let never_assigned = unassigned & !self.state.assigned(slot);
-        if unassigned == 0 || part.one_of && unassigned != part.parts {
+        if unassigned == 0 || access.is_one_of_parts && unassigned != access.parts {
             return;
         }
-        let is_definite = never_assigned != 0 && (!part.one_of || never_assigned == part.parts);
-        self.state.drop_unassigned(slot, part.parts);
+        let is_definite = never_assigned != 0 && (!access.is_one_of_parts || never_assigned == access.parts);
+        self.state.drop_unassigned(slot, access.parts);
         if !self.is_rehearsal {
-            self.record(&part, expr, is_definite.then_some(never_assigned));
+            self.record(&access, expr, is_definite.then_some(never_assigned));
         }
     }
 
     /// Records a read of unassigned parts: for the callers if they pass them in, otherwise for the author.
-    fn record(&mut self, part: &Part, expr: ExprId, never_assigned: Option<Parts>) {
-        let variable = part.variable;
+    fn record(&mut self, access: &Access, expr: ExprId, never_assigned: Option<Parts>) {
+        let variable = access.variable;
         match (self.parameters.get(&variable), never_assigned) {
             (Some(&index), never_assigned) if direction(self.program.tree, variable) != Direction::Out => {
                 self.flow.parameters[index].reads |= never_assigned.unwrap_or(0);
@@ -582,17 +582,17 @@ impl Analysis<'_> {
         }
     }
 
-    fn assign(&mut self, part: &Part, assign: fn(&mut State, Slot, Parts)) {
-        if part.parts == 0 {
+    fn assign(&mut self, access: &Access, assign: fn(&mut State, Slot, Parts)) {
+        if access.parts == 0 {
             return;
         }
-        if let Some(&slot) = self.slots.get(&part.variable) {
-            assign(&mut self.state, slot, part.parts);
+        if let Some(&slot) = self.slots.get(&access.variable) {
+            assign(&mut self.state, slot, access.parts);
         }
-        if let Some(&index) = self.parameters.get(&part.variable) {
-            self.flow.parameters[index].assigned |= part.parts;
-        } else if self.is_unset_global(part.variable) {
-            *self.flow.global_writes.entry(part.variable).or_default() |= part.parts;
+        if let Some(&index) = self.parameters.get(&access.variable) {
+            self.flow.parameters[index].assigned |= access.parts;
+        } else if self.is_unset_global(access.variable) {
+            *self.flow.global_writes.entry(access.variable).or_default() |= access.parts;
         }
     }
 

@@ -13,7 +13,7 @@ mod state;
 use std::collections::{BTreeMap, BTreeSet};
 
 use flow::{Flow, analyze};
-use part::{Layout, Part, Parts};
+use part::{Access, Layout, Parts};
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::tree::{ExprId, Tree, Type, VariableId, VariableKind};
 
@@ -106,7 +106,7 @@ fn report_color(tree: &Tree, color: VariableId, findings: &mut Findings) {
 #[derive(Default)]
 struct GlobalAccesses {
     writes: BTreeMap<VariableId, Parts>,
-    reads: Vec<(Part, ExprId)>,
+    reads: Vec<(Access, ExprId)>,
 }
 
 impl GlobalAccesses {
@@ -121,15 +121,18 @@ impl GlobalAccesses {
     fn report(self, program: &Program, layout: &Layout, findings: &mut Findings) {
         let tree = program.tree;
         let mut reported = BTreeSet::new();
-        for (part, expr) in self.reads {
-            let missing = part.parts & !self.writes.get(&part.variable).copied().unwrap_or(0);
-            if missing == 0 || (part.one_of && missing != part.parts) || !reported.insert(part.variable) {
+        for (access, expr) in self.reads {
+            let missing = access.parts & !self.writes.get(&access.variable).copied().unwrap_or(0);
+            if missing == 0
+                || (access.is_one_of_parts && missing != access.parts)
+                || !reported.insert(access.variable)
+            {
                 continue;
             }
-            let name = layout.name(part.variable, missing);
+            let name = layout.name(access.variable, missing);
             let message = format!("`{name}` is used, but never assigned");
             findings.add(Code::Unwritten, tree[expr].at, message, |diagnostic| {
-                declared(tree, part.variable, diagnostic)
+                declared(tree, access.variable, diagnostic)
                     .note("its value is undefined; WebGL initializes it to 0")
                     .help("initialize it, or call the function that assigns it")
             });

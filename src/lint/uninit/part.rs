@@ -8,13 +8,13 @@ use toyproof_glsl::tree::{ExprId, ExprKind, StructId, Tree, Type, VariableId};
 /// parts has a single bit.
 pub(super) type Parts = u64;
 
-/// The parts that an lvalue names.
+/// An access to the parts that an lvalue names.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct Access {
     pub(super) variable: VariableId,
     pub(super) parts: Parts,
-    /// Whether a dynamic index selects among the parts: one of them is accessed, not all.
-    pub(super) one_of: bool,
+    /// Whether only one of the parts is accessed, which a dynamic index selects.
+    pub(super) is_one_of_parts: bool,
 }
 
 /// The number of parts of each type.
@@ -57,8 +57,8 @@ impl<'a> Layout<'a> {
         Parts::MAX >> (Parts::BITS - self.count(ty))
     }
 
-    /// The parts that an expression names, if it is a variable or part of one.
-    pub(super) fn part(&self, expr: ExprId) -> Option<Part> {
+    /// The access to a variable or a part of one; `None` for other expressions.
+    pub(super) fn access(&self, expr: ExprId) -> Option<Access> {
         let tree = self.tree;
         let mut chain: Vec<_> = tree.path(expr).collect();
         let ExprKind::Variable(variable) = tree[chain.pop()?].kind else {
@@ -66,9 +66,10 @@ impl<'a> Layout<'a> {
         };
         let mut ty = tree[variable].ty;
         let mut bits: Vec<u32> = (0..self.count(ty)).collect();
-        let mut one_of = false;
-        for &step in chain.iter().rev() {
-            match &tree[step].kind {
+        let mut is_one_of_parts = false;
+        // From the variable outward.
+        for &selection in chain.iter().rev() {
+            match &tree[selection].kind {
                 // A single bit represents the whole variable.
                 _ if bits.len() == 1 => {}
                 ExprKind::Swizzle { components, .. } => {
@@ -93,6 +94,7 @@ impl<'a> Layout<'a> {
                     let size = match ty {
                         Type::Vector(..) => 1,
                         Type::Matrix { rows, .. } => usize::from(rows),
+                        // The elements of an array share their bits, so an index selects nothing.
                         _ => 0,
                     };
                     let constant = tree.value(*index).and_then(|index| index.integer());
@@ -100,18 +102,18 @@ impl<'a> Layout<'a> {
                         Some(index) if size > 0 => {
                             bits = bits.iter().copied().skip(index * size).take(size).collect();
                         }
-                        _ => one_of |= size > 0,
+                        _ => is_one_of_parts |= size > 0,
                     }
                 }
                 _ => {}
             }
-            ty = tree[step].ty;
+            ty = tree[selection].ty;
         }
         let parts = bits.iter().fold(0, |parts, bit| parts | 1 << bit);
-        Some(Part {
+        Some(Access {
             variable,
             parts,
-            one_of,
+            is_one_of_parts,
         })
     }
 
