@@ -60,11 +60,11 @@ impl PassRenderer {
         self.device.name()
     }
 
-    /// A texture of a state.
+    /// Uploads a texture of a saved state, and computes its mipmaps if it shall have any.
     pub(super) fn load(&mut self, texture: &Texture, mipmaps: bool) -> Result<wgpu::Texture, Failure> {
         let made = self.zeros(texture.size(), mipmaps)?;
         self.device.with_error_scopes(|| {
-            for image in texture.to_single().iter().take(1) {
+            if let Some(image) = texture.to_single().first() {
                 write(&self.device.queue, &made, 0, extent(image.size()), image.pixels());
             }
             self.make_mipmaps(&made)
@@ -87,6 +87,7 @@ impl PassRenderer {
             .map(|channel| channel.as_ref().map(|(_, size)| *size));
         let mut channels = channels.into_iter();
         let views = std::array::from_fn(|channel| {
+            // A view of two dimensions fits no other declaration.
             let view = channels
                 .next()
                 .flatten()

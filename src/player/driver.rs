@@ -14,8 +14,8 @@ pub trait Driver: fmt::Debug + Send {
     type Code;
 
     /// Renders a frame, and passes the bands of [`Frame::bands`] to `on_band`, one after the other; the time
-    /// spent in `on_band` does not count as rendering. `watch` receives the result and the rendering time,
-    /// and decides whether the driver's loops are checked for termination; it may return false if no pixel
+    /// spent in `on_band` does not count as rendering. `checks_loops` receives the result and the rendering
+    /// time, and returns whether to check for loops that the driver truncated; it may return false if no pixel
     /// runs more than [`Self::safe_iterations`] iterations.
     ///
     /// # Errors
@@ -26,10 +26,10 @@ pub trait Driver: fmt::Debug + Send {
         code: Self::Code,
         frame: Frame,
         on_band: &mut dyn FnMut(Image),
-        watch: &mut dyn FnMut(&DrawOutput, Duration) -> bool,
+        checks_loops: &mut dyn FnMut(&DrawOutput, Duration) -> bool,
     ) -> Result<DrawOutput, DriverFailure>;
 
-    /// The number of loop iterations of a pixel up to which no loop is terminated.
+    /// The number of loop iterations of a pixel up to which no loop is truncated.
     fn safe_iterations(&self) -> u32;
 
     /// Releases the driver's memory until the next image.
@@ -73,10 +73,10 @@ pub struct DrawOutput {
     pub bands: Vec<Image>,
     /// Adapter and driver.
     pub device: String,
-    /// Whether the shader has loops and the driver is of a kind that terminates long loops, so that a check
+    /// Whether the shader has loops and the driver is of a kind that truncates long loops, so that a check
     /// is needed.
     pub may_truncate_loops: bool,
-    /// Number of pixels in which the driver terminated a loop, whose colors are meaningless. `None` if that
+    /// Number of pixels in which the driver truncated a loop, whose colors are meaningless. `None` if that
     /// could not be determined in time; 0 if it was not checked.
     pub loop_truncated: Option<u64>,
     /// Time for naga to parse, validate and emit.

@@ -93,14 +93,19 @@ fn draw(
         let last = counts.find(|counts| counts.most > safe_iterations || counts.is_last);
         last.is_some_and(|counts| counts.most <= safe_iterations)
     };
-    let mut watch = |drawn: &DrawOutput, render_time| {
+    let mut checks_loops = |drawn: &DrawOutput, render_time| {
         drawn.may_truncate_loops && (case.float == FloatMode::Fast || !are_short(render_time))
     };
     let lowered = case
         .float
         .lower_within(case.checked, &Deadline::after(case.timeout))?;
     let mut send = |band| bands.send(band);
-    let drawn = driver.draw_in_bands((lowered, case.float), case.frame.clone(), &mut send, &mut watch)?;
+    let drawn = driver.draw_in_bands(
+        (lowered, case.float),
+        case.frame.clone(),
+        &mut send,
+        &mut checks_loops,
+    )?;
     let [width, height] = case.frame.size;
     if u64::from(width) * u64::from(height) > MAX_PIXELS_OF_IDLE_WORKER {
         driver.stop();

@@ -7,14 +7,18 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use toyproof_diagnostic::{Files, Span};
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::{ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk};
+use toyproof_glsl::tree::{
+    BinaryOp, ExprId, ExprKind, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
+};
 
 use super::tokens::tokens;
 
 /// The number of nodes that a fingerprint covers: fewer match by chance.
 const NODES: usize = 14;
+
 /// The number of tokens that a fingerprint covers: about as much of a text.
 const TOKENS: usize = 24;
+
 /// One of this many consecutive fingerprints is kept: equal parts of `NODES + WINDOW - 1` nodes share one.
 const WINDOW: usize = 6;
 
@@ -40,7 +44,7 @@ impl Fingerprints {
             };
             list.block(function.body.as_deref().unwrap_or_default());
             let kinds: Vec<u64> = list.nodes.iter().map(|node| node.kind).collect();
-            keep(&mut kept, &kinds, NODES, |at| {
+            select(&mut kept, &kinds, NODES, |at| {
                 files.position(list.nodes[at].span).line
             });
         }
@@ -54,17 +58,17 @@ impl Fingerprints {
         let tokens = tokens(text);
         let kinds: Vec<u64> = tokens.iter().map(|&(kind, _)| kind).collect();
         let mut kept = HashMap::new();
-        keep(&mut kept, &kinds, TOKENS, |at| tokens[at].1);
+        select(&mut kept, &kinds, TOKENS, |at| tokens[at].1);
         Self(kept)
     }
 
-    /// Their number.
+    /// The number of fingerprints.
     #[must_use]
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// Their hashes, in no particular order.
+    /// The hashes of the fingerprints, in no particular order.
     pub fn hashes(&self) -> impl Iterator<Item = u64> {
         self.0.keys().copied()
     }
@@ -97,9 +101,9 @@ impl Fingerprints {
     }
 }
 
-/// Keeps the fingerprints of consecutive kinds, each of which covers a number of them; `line` is the line of
-/// one.
-fn keep(kept: &mut HashMap<u64, [usize; 2]>, kinds: &[u64], covered: usize, line: impl Fn(usize) -> usize) {
+/// Adds the selected fingerprints of a sequence of kinds, each of which covers `covered` consecutive kinds;
+/// `line` returns the line of a kind.
+fn select(kept: &mut HashMap<u64, [usize; 2]>, kinds: &[u64], covered: usize, line: impl Fn(usize) -> usize) {
     let grams: Vec<u64> = kinds.windows(covered).map(|kinds| hash(&kinds)).collect();
     for at in winnow(&grams) {
         let lines = (at..at + covered).map(&line);
@@ -130,8 +134,8 @@ fn winnow(hashes: &[u64]) -> Vec<usize> {
     places
 }
 
-/// The kind of an expression or a statement, without names and numbers. `T` is what else counts of it, such
-/// as its operator.
+/// The kind of an expression or a statement, without names and numbers. `T` is what else counts of a node,
+/// such as its operator; `()` for nothing.
 #[derive(Hash)]
 enum Kind<T> {
     /// A number, also if it has a name, or any variable.
@@ -235,7 +239,7 @@ impl NodeList<'_> {
             && !(declared.kind == VariableKind::Const && is_number(value))
         {
             // Hashes like the missing operator of `p = x`.
-            self.add(&Kind::Assign(None::<()>), span);
+            self.add(&Kind::Assign(None::<BinaryOp>), span);
             self.add(&Kind::<()>::Value, span);
             self.expression(value);
         }

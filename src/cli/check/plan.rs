@@ -16,11 +16,11 @@ use crate::cli::{CliError, Terminal};
 
 /// The requirements on shaders.
 pub(super) struct Plan {
-    /// Their reference.
+    /// The reference.
     pub(super) reference: ReferenceArgs,
     /// The frames, at least one.
     pub(super) frames: Vec<PlannedFrame>,
-    /// The differences from the reference with which they are still correct.
+    /// The differences from the reference that do not make a shader wrong.
     pub(super) permitted: Vec<Difference>,
     pub(super) rubric: Option<Rubric>,
     /// The assignment and its text, if there is one.
@@ -30,25 +30,25 @@ pub(super) struct Plan {
 /// A frame in which shaders are checked.
 pub(super) struct PlannedFrame {
     pub(super) inputs: FrameInputs,
-    /// With the channels loaded. Its size is the one of the inputs or the default; a scene or a reference
-    /// image may set another.
+    /// The inputs with loaded channels, in their size or the default one; a scene or a reference image may set
+    /// another size.
     pub(super) frame: Frame,
 }
 
 impl Plan {
-    /// Reads the plan that the options name, or the assignment of these shaders or in the folder of all of
-    /// them.
+    /// Reads the plan: the assignment that the task names, else, without a reference among the options, the
+    /// one in the folder of all shaders; else the options alone.
     pub(super) fn new(
         options: &PlanOptions,
-        part: &TaskInputs,
+        task: &TaskInputs,
         terminal: &Terminal,
     ) -> Result<Self, CliError> {
-        let rubric = part.rubric.as_ref().map(|path| parse_named(path, Rubric::parse));
+        let rubric = task.rubric.as_ref().map(|path| parse_named(path, Rubric::parse));
         let rubric = rubric.transpose()?;
-        let found = match &part.assignment {
-            Some(path) => Some(named(path)?),
+        let assignment = match &task.assignment {
+            Some(path) => Some(assignment_file(path)?),
             None if options.reference.is_given() => None,
-            None => beside(&part.shaders)?,
+            None => common_assignment(&task.shaders)?,
         };
         let mut plan = Self {
             reference: options.reference.clone(),
@@ -58,8 +58,8 @@ impl Plan {
             assignment: None,
         };
         let mut frames = vec![options.frame.clone()];
-        if let Some(path) = found {
-            let (assignment, text) = read(&path)?;
+        if let Some(path) = assignment {
+            let (assignment, text) = parse_assignment(&path)?;
             terminal.detail(&format!("assignment: {}", path_name(&path)));
             if !options.is_frame_given {
                 frames.clone_from(&assignment.frames);
@@ -79,13 +79,13 @@ impl Plan {
 
 /// Reads the assignment that an argument names, and returns its file.
 pub(in crate::cli) fn read_assignment(path: &Path) -> Result<(PathBuf, Assignment), CliError> {
-    let file = named(path)?;
-    let (assignment, _) = read(&file)?;
+    let file = assignment_file(path)?;
+    let (assignment, _) = parse_assignment(&file)?;
     Ok((file, assignment))
 }
 
-/// The file that `--assignment` names, which may be its folder.
-fn named(path: &Path) -> Result<PathBuf, CliError> {
+/// The file of the assignment that `--assignment` names, by its file or its folder.
+fn assignment_file(path: &Path) -> Result<PathBuf, CliError> {
     let file = if path.is_dir() {
         path.join(FILE_NAME)
     } else {
@@ -100,7 +100,7 @@ fn named(path: &Path) -> Result<PathBuf, CliError> {
 
 /// The assignment in the folder of all shaders. Folders of submissions are searched for shaders, but an
 /// assignment in one of them is not used: its author is a student.
-fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, CliError> {
+fn common_assignment(shaders: &[PathBuf]) -> Result<Option<PathBuf>, CliError> {
     let mut found: Option<PathBuf> = None;
     let mut without = None;
     for shader in shaders {
@@ -143,8 +143,8 @@ fn beside(shaders: &[PathBuf]) -> Result<Option<PathBuf>, CliError> {
     }
 }
 
-/// Reads an assignment, and its text.
-fn read(path: &Path) -> Result<(Assignment, String), CliError> {
+/// Reads an assignment. Also returns its text.
+fn parse_assignment(path: &Path) -> Result<(Assignment, String), CliError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     parse_named(path, |files, file| {
         let assignment = Assignment::parse(files, file, folder)?;

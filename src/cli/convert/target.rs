@@ -12,6 +12,7 @@ use super::Args;
 use crate::cli::CliError;
 use crate::cli::inputs::Format;
 
+/// The values of `--to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum To {
     Wgsl,
@@ -25,6 +26,7 @@ pub(super) enum To {
     Lowered,
 }
 
+/// The values of `--style`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum StyleName {
     /// A fragment shader with the bindings below; row 0 of its target is the bottom
@@ -49,6 +51,7 @@ impl From<StyleName> for Style {
 }
 
 impl To {
+    /// The target of the backends; `None` for lowered GLSL, which naga only reads.
     pub(super) fn target(self) -> Option<Target> {
         match self {
             Self::Wgsl => Some(Target::Wgsl),
@@ -60,14 +63,14 @@ impl To {
         }
     }
 
-    /// Its name on the command line.
+    /// The name on the command line.
     pub(super) fn name(self) -> &'static str {
         self.target().map_or("lowered", Target::name)
     }
 
-    /// Returns whether it may be written to a file with the extension of `other`: lowered output is GLSL.
-    fn may_end_as(self, other: Self) -> bool {
-        self == other || (self, other) == (Self::Lowered, Self::Glsl)
+    /// Returns whether a file with the extension of this language may contain `written`: lowered output is GLSL.
+    fn may_contain(self, written: Self) -> bool {
+        self == written || (self, written) == (Self::Glsl, Self::Lowered)
     }
 
     fn from_extension(path: &Path) -> Option<Self> {
@@ -104,13 +107,13 @@ pub(super) fn output(args: &Args, kind: OutputKind) -> Result<PathBuf, CliError>
 /// # Errors
 /// They disagree, or the output cannot take the results.
 pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> Result<To, CliError> {
-    let standard = output == Path::new("-");
+    let is_standard_output = output == Path::new("-");
     let several = kind != OutputKind::File;
-    let of_extension = (!standard && !output.is_dir())
+    let of_extension = (!is_standard_output && !output.is_dir())
         .then(|| To::from_extension(output))
         .flatten();
     let to = match (args.to, of_extension) {
-        (Some(to), Some(other)) if !to.may_end_as(other) => {
+        (Some(to), Some(other)) if !other.may_contain(to) => {
             let error = CliError::new(format_args!(
                 "the extension of {} means {}, but --to is {}",
                 path_name(output),
@@ -121,20 +124,20 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
         }
         (to, of) => to.or(of),
     };
-    let Some(to) = to.or((standard || several || output.is_dir()).then_some(To::Wgsl)) else {
+    let Some(to) = to.or((is_standard_output || several || output.is_dir()).then_some(To::Wgsl)) else {
         let error = format!("cannot determine the language of {}", path_name(output));
         return Err(CliError::new(error).with_help(
             "give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to",
         ));
     };
-    if several && (standard || of_extension.is_some()) {
+    if several && (is_standard_output || of_extension.is_some()) {
         return Err(needs_folder(kind, output));
     }
-    if standard && to == To::Spv && io::stdout().is_terminal() {
+    if is_standard_output && to == To::Spv && io::stdout().is_terminal() {
         let error = CliError::new("SPIR-V is binary and is not written to a terminal");
         return Err(error.with_help("name a file with -o"));
     }
-    if standard && args.format == Format::Json {
+    if is_standard_output && args.format == Format::Json {
         let error = CliError::new("--format json needs standard output, and so does the converted shader");
         return Err(error.with_help("name a file or a folder with -o"));
     }

@@ -218,11 +218,11 @@ impl Worker {
         lowered: Lowered,
         frame: Frame,
         float: FloatMode,
-        watch: bool,
+        checks_loops: bool,
     ) -> Result<DrawOutput, Failure> {
         let mut bands = Vec::new();
         let on_band = &mut |band| bands.push(band);
-        let drawn = self.draw_in_bands((lowered, float), frame, on_band, &mut |_, _| watch)?;
+        let drawn = self.draw_in_bands((lowered, float), frame, on_band, &mut |_, _| checks_loops)?;
         Ok(DrawOutput { bands, ..drawn })
     }
 
@@ -441,7 +441,7 @@ impl toyproof_player::Driver for Worker {
         (lowered, float): Self::Code,
         frame: Frame,
         on_band: &mut dyn FnMut(Image),
-        watch: &mut dyn FnMut(&DrawOutput, Duration) -> bool,
+        checks_loops: &mut dyn FnMut(&DrawOutput, Duration) -> bool,
     ) -> Result<DrawOutput, Failure> {
         if let Some(diagnostic) = lowered.too_deep() {
             return Err(Failure::Invalid(vec![diagnostic.clone()]));
@@ -460,8 +460,8 @@ impl toyproof_player::Driver for Worker {
             band_time += start.elapsed();
         });
         let mut drawn = result!(output, Output::Drawn(drawn) => *drawn)?;
-        let watch_loops = watch(&drawn, start.elapsed().saturating_sub(band_time));
-        if let (true, Job::Draw(draw_job)) = (drawn.may_truncate_loops && watch_loops, job) {
+        let is_check_wanted = checks_loops(&drawn, start.elapsed().saturating_sub(band_time));
+        if let (true, Job::Draw(draw_job)) = (drawn.may_truncate_loops && is_check_wanted, job) {
             // If this fails, the image is still valid.
             drawn.loop_truncated = match self.run(&Job::WatchLoops(draw_job)) {
                 Ok(Output::LoopTruncated(pixels)) => Some(pixels),

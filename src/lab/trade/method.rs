@@ -53,19 +53,23 @@ impl fmt::Display for Configuration {
     }
 }
 
+/// The cost of a frame in f64, relative to f32.
+const DOUBLE_COST: f64 = 1.5;
+
 /// A method of rendering an image.
 #[derive(Debug)]
 pub(super) struct Method {
     pub(super) configuration: Configuration,
-    /// The device and precision that it shares with other methods.
+    /// The device and precision, which other methods may share.
     pub(super) group: Group,
-    /// The estimated cost of a frame, in samples; comparable within a group.
+    /// The estimated cost of a frame, in samples. It predicts times within a group, and orders the first runs
+    /// of all methods.
     pub(super) cost: f64,
     pub(super) backend: Backend,
 }
 
 impl Method {
-    pub(super) fn cost(&self) -> Cost {
+    pub(super) fn scheduled_cost(&self) -> Cost {
         Cost {
             kind: self.group as usize,
             size: self.cost,
@@ -220,7 +224,7 @@ impl RenderContext<'_> {
                 methods.push(Method {
                     configuration: configuration("evaluator", precision),
                     group,
-                    cost: samples * if double { 1.5 } else { 1.0 },
+                    cost: samples * if double { DOUBLE_COST } else { 1.0 },
                     backend: Backend::Evaluator {
                         shader: index,
                         double,
@@ -257,6 +261,7 @@ fn render_traced<T: tracer::Backend>(scene: &Scene, frame: &Frame) -> (Image, Du
 
 /// Samples per pixel that are compared.
 const SAMPLE_COUNTS: [u32; 4] = [1, 4, 16, 64];
+
 /// Samplers compared for scenes that require samples, with their names.
 const SAMPLERS: [(Sampler, &str); 3] = [
     (Sampler::Independent, "independent"),
@@ -323,7 +328,7 @@ pub(super) fn scene_methods(scene: &Scene) -> Vec<Method> {
                     ..configuration.clone()
                 },
                 group,
-                cost: f64::from(film.samples) * if double { 1.5 } else { 1.0 },
+                cost: f64::from(film.samples) * if double { DOUBLE_COST } else { 1.0 },
                 backend: Backend::Tracer {
                     scene: Box::new(Scene {
                         film,

@@ -150,7 +150,7 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     let samples = scene.map_or(1.0, |scene| f64::from(scene.film.samples));
     let mut methods = scene.map_or_else(Vec::new, method::scene_methods);
     methods.extend(context.shader_methods(samples));
-    let costs: Vec<Cost> = methods.iter().map(Method::cost).collect();
+    let costs: Vec<Cost> = methods.iter().map(Method::scheduled_cost).collect();
     let mut bench = Bench {
         start,
         budget,

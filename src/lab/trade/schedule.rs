@@ -5,10 +5,10 @@ use serde::Serialize;
 
 /// Runs methods, and has a clock; a mock in tests.
 pub(super) trait Runner {
-    /// The reason why it had to stop.
+    /// The reason why the runner had to stop.
     type Error;
 
-    /// Runs a method. Returns the seconds of its frame; `None` if it cannot run and is to be skipped.
+    /// Runs a method. Returns the seconds of a frame; `None` if the method cannot run and is to be skipped.
     fn run(&mut self, method: usize, kind: RunKind) -> Result<Option<f64>, Self::Error>;
 
     /// Seconds since the start.
@@ -25,6 +25,7 @@ pub(super) enum RunKind {
 
 /// The maximum number of measured runs of a method.
 const MAX_RUNS: usize = 31;
+
 /// The safety factor on the estimated time of a warm-up run.
 const WARM_UP_MARGIN: f64 = 1.5;
 
@@ -33,7 +34,7 @@ const WARM_UP_MARGIN: f64 = 1.5;
 pub(super) struct Cost {
     /// The kind of method: the times of cheap methods predict those of others of the same kind.
     pub(super) kind: usize,
-    /// The cost of a frame, in any unit that is common to the kind.
+    /// The cost of a frame, in a unit that is the same for all methods of the kind.
     pub(super) size: f64,
 }
 
@@ -119,6 +120,7 @@ pub(super) fn measure<R: Runner>(
 /// (ASQC, 1993), section 3.3. It uses the median absolute deviation, because outliers inflate the standard
 /// deviation.
 const MAX_MODIFIED_Z_SCORE: f64 = 3.5;
+
 /// The third quartile of the standard normal distribution: the ratio of its median absolute deviation to its
 /// standard deviation.
 const QUARTILE: f64 = 0.6745;
@@ -130,7 +132,7 @@ pub struct TimeStatistics {
     pub runs: usize,
     /// The median without outliers, in seconds.
     pub median: f64,
-    /// The median absolute deviation from it, in seconds.
+    /// The median absolute deviation from the median, in seconds.
     #[serde(rename = "median_absolute_deviation")]
     pub deviation: f64,
     /// The number of outliers.
