@@ -13,7 +13,7 @@ use toyproof_verify::project::bind::{clock, programs};
 use toyproof_verify::project::frames::Frames;
 use toyproof_verify::project::playback::PassShader;
 
-/// A pixel of a pass on the way.
+/// A pixel of a pass on the path of a difference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hop {
     /// The pass.
@@ -35,7 +35,7 @@ pub struct Trail {
     pub frame: Frame,
     /// From the requested pixel back to the earliest one.
     pub hops: Vec<Hop>,
-    /// Whether the difference comes from a frame that was not kept, before the last of them.
+    /// Whether the trail ends early: the frame before the last hop's was not kept.
     pub is_cut: bool,
 }
 
@@ -54,7 +54,7 @@ struct Rendered {
     textures: Vec<[Texture; 2]>,
 }
 
-/// Renders the frames, and follows the difference in a pixel of a pass of the last one.
+/// Renders the frames, and follows the difference in a pixel of a pass of the last frame.
 ///
 /// # Errors
 /// Why a frame cannot be rendered.
@@ -63,11 +63,11 @@ fn trace_back(frames: &Frames, target: Target, pixel: [u32; 2]) -> Result<Trail,
     let passes = frames.shader.graph.passes();
     let mut hops = Vec::new();
     let first = passes.iter().position(|pass| pass.target == target);
-    let asked = rendered
+    let requested = rendered
         .back()
         .zip(first)
         .map(|(last, pass)| last.bound[pass][0].clone());
-    let frame = asked.unwrap_or_default();
+    let frame = requested.unwrap_or_default();
     let mut at = rendered.len().checked_sub(1).zip(first);
     let mut pixel = pixel;
     while let Some((index, pass)) = at {
@@ -158,7 +158,7 @@ fn render(frames: &Frames) -> Result<VecDeque<Rendered>, Failure> {
         .iter()
         .map(|&side| side as usize)
         .product();
-    let most = (MAX_KEPT_BYTES / (passes.len() * pixels * TEXEL_BYTES).max(1)).max(2);
+    let max_frames = (MAX_KEPT_BYTES / (passes.len() * pixels * TEXEL_BYTES).max(1)).max(2);
     let mut kept = VecDeque::new();
     for number in 0..=frames.last {
         let inputs = frames.clock.frame(number);
@@ -176,7 +176,7 @@ fn render(frames: &Frames) -> Result<VecDeque<Rendered>, Failure> {
             bound: bound.collect(),
             textures: textures.collect(),
         });
-        if kept.len() > most {
+        if kept.len() > max_frames {
             kept.pop_front();
         }
     }
@@ -201,8 +201,9 @@ impl Probe<'_> {
         double: [f64; 4],
         inputs: [Option<Source>; 4],
     ) -> Result<Option<(usize, [u32; 2])>, Failure> {
-        let step = self.color(&self.bound[0])?;
-        let (own, inherited) = (distance(single, step), distance(step, double));
+        // This pass alone in double precision, on float32 inputs: its difference from float32 arises here.
+        let own_double = self.color(&self.bound[0])?;
+        let (own, inherited) = (distance(single, own_double), distance(own_double, double));
         if inherited <= own {
             return Ok(None);
         }
@@ -214,7 +215,7 @@ impl Probe<'_> {
             }
             let mut mixed = single.clone();
             mixed.channels[channel].clone_from(&double.channels[channel]);
-            let change = distance(self.color(&mixed)?, step);
+            let change = distance(self.color(&mixed)?, own_double);
             if best.is_none_or(|(most, _)| change > most) && change > 0.0 {
                 best = Some((change, channel));
             }
@@ -222,12 +223,13 @@ impl Probe<'_> {
         let Some((_, channel)) = best else {
             return Ok(None);
         };
-        self.texel(channel, step).map(|texel| Some((channel, texel)))
+        self.most_influential_texel(channel, own_double)
+            .map(|texel| Some((channel, texel)))
     }
 
     /// The texel of a channel whose difference changes the pixel most: in each quarter of the texture in
-    /// turn, double precision takes the place of float32.
-    fn texel(&self, channel: usize, step: [f64; 4]) -> Result<[u32; 2], Failure> {
+    /// turn, double precision takes the place of float32. `own_double` is the color with float32 everywhere.
+    fn most_influential_texel(&self, channel: usize, own_double: [f64; 4]) -> Result<[u32; 2], Failure> {
         let [single, double] = self.bound;
         let [Some(single_texture), Some(double_texture)] =
             [single, double].map(|frame| frame.channels[channel].as_ref())
@@ -254,7 +256,7 @@ impl Probe<'_> {
                 }
                 let mut mixed = single.clone();
                 mixed.channels[channel] = Some(patched(single_texture, double_texture, corner, extent));
-                let change = distance(self.color(&mixed)?, step);
+                let change = distance(self.color(&mixed)?, own_double);
                 if best.is_none_or(|(most, ..)| change > most) {
                     best = Some((change, corner, extent));
                 }
@@ -279,7 +281,7 @@ impl Probe<'_> {
     }
 }
 
-/// A texture in double precision: that of float32, except in a rectangle.
+/// A texture in double precision: the float32 texels, except in a rectangle.
 fn patched(single: &Texture, double: &Texture, from: [u32; 2], size: [u32; 2]) -> Texture {
     let [width, height] = single.size();
     let is_inside =
@@ -302,10 +304,9 @@ fn texel(texture: &Texture, [x, y]: [u32; 2]) -> [f64; 4] {
     }
 }
 
-/// The largest difference of red, green and blue.
+/// The largest difference of red, green and blue; infinite if a color is NaN, or both are the same infinity.
 fn distance(a: [f64; 4], b: [f64; 4]) -> f64 {
     let differences = a.iter().zip(&b).take(3).map(|(a, b)| (a - b).abs());
-    // Numbers that are not finite differ from all others by more than any number.
     differences.fold(0.0, |most, difference| {
         if difference.is_nan() {
             f64::INFINITY

@@ -70,7 +70,7 @@ impl Tree {
     /// The cached value; `None` if it was not cached.
     #[expect(
         clippy::option_option,
-        reason = "a value that is not known, and one that there is not"
+        reason = "the outer option: whether it is cached; the inner: whether it has a value"
     )]
     fn cached_value(&self, expr: ExprId) -> Option<Option<Constant>> {
         match &self[expr].kind {
@@ -231,8 +231,8 @@ const MAX_COMPARED: usize = 1 << 12;
 fn binary(op: BinaryOp, a: &Constant, b: &Constant) -> Option<Vec<Value>> {
     match op {
         BinaryOp::Equal | BinaryOp::NotEqual => {
-            let is_small = a.scalar_count() <= MAX_COMPARED && b.scalar_count() <= MAX_COMPARED;
-            let is_equal = is_small.then(|| a == b)?;
+            let is_comparable = a.scalar_count() <= MAX_COMPARED && b.scalar_count() <= MAX_COMPARED;
+            let is_equal = is_comparable.then(|| a == b)?;
             return Some(vec![Value::Bool(is_equal == (op == BinaryOp::Equal))]);
         }
         _ => {}
@@ -325,7 +325,7 @@ fn scalars(op: BinaryOp, a: Value, b: Value) -> Option<Value> {
 /// Compares two values; `None` if their types are not ordered; the inner option is `None` if one is NaN.
 #[expect(
     clippy::option_option,
-    reason = "a comparison that is wrong, and one that is false"
+    reason = "the outer option: whether the types are ordered; the inner: whether neither is NaN"
 )]
 pub(crate) fn ordering(a: Value, b: Value) -> Option<Option<std::cmp::Ordering>> {
     Some(match (a, b) {

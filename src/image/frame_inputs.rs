@@ -92,7 +92,7 @@ impl FrameInputs {
             let loaded = channel.as_ref().map(Channel::load).transpose()?;
             *image = loaded.map(Texture::from);
         }
-        let inputs = Frame {
+        let frame = Frame {
             size: self.size.unwrap_or(Frame::default().size),
             mouse: self.mouse,
             date: self.date,
@@ -100,6 +100,6 @@ impl FrameInputs {
             channels,
             ..Frame::default()
         };
-        Ok(inputs.at(self.frame, self.time))
+        Ok(frame.at(self.frame, self.time))
     }
 }

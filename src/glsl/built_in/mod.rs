@@ -13,15 +13,15 @@ use crate::tree::{BinaryOp, Constant, Type, Value};
 /// What is known of a function.
 struct Row {
     name: &'static str,
-    /// In the notation of the specification. `genType` and similar types match a scalar and its vectors,
+    /// The signatures, in the notation of the specification. `genType` and similar types match a scalar and its vectors,
     /// `vec` the vectors alone, `mat` any matrix, `g` before `sampler` and `vec4` any of the three texel
     /// types; each has the same binding throughout one signature. `[float]` is optional; `const` requires a
     /// constant expression. The first signature that matches applies.
     signatures: &'static [&'static str],
-    /// Its value for constants.
+    /// The value for constants.
     constant: ConstantFunction,
     wgsl: Wgsl,
-    /// The definitions that replace it where the last bits must not depend on the implementation: one for
+    /// The definitions that replace the function where the last bits must not depend on the implementation: one for
     /// each number of arguments. Empty for functions that all implementations compute alike.
     exact: &'static [ExactDefinition],
 }
@@ -49,33 +49,33 @@ pub enum Wgsl {
 /// The composition of exact operations that replaces a function.
 #[derive(Debug, Clone, Copy)]
 pub struct ExactDefinition {
-    /// The instruction of SPIR-V that it replaces.
+    /// The instruction of SPIR-V that is replaced.
     pub instruction: Instruction,
-    /// What replaces it.
+    /// What replaces the instruction.
     pub definition: Definition,
 }
 
 /// An instruction of SPIR-V, by its name in the specification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Instruction {
-    /// Of `GLSL.std.450`.
+    /// An instruction of the extended set `GLSL.std.450`.
     Extended(&'static str),
-    /// Of the core.
+    /// A core instruction.
     Core(&'static str),
 }
 
 /// A composition of exact operations.
 #[derive(Debug, Clone, Copy)]
 pub enum Definition {
-    /// Of one component of each argument.
+    /// A function of one component of the argument.
     Unary(for<'a> fn(FloatTerm<'a>) -> FloatTerm<'a>),
-    /// As [`Self::Unary`].
+    /// A function of one component of each of two arguments.
     Binary(for<'a> fn(FloatTerm<'a>, FloatTerm<'a>) -> FloatTerm<'a>),
-    /// As [`Self::Unary`].
+    /// A function of one component of each of three arguments.
     Ternary(for<'a> fn(FloatTerm<'a>, FloatTerm<'a>, FloatTerm<'a>) -> FloatTerm<'a>),
-    /// Of all components of all arguments, matrices in column order.
+    /// A function of all components of all arguments, matrices in column order.
     Vectors(for<'a> fn(&[Vec<FloatTerm<'a>>]) -> Vec<FloatTerm<'a>>),
-    /// A GLSL body, of the parameter `toyproof_a`.
+    /// The body of a GLSL function with one parameter, named `toyproof_a`.
     Glsl(&'static str),
 }
 
@@ -107,6 +107,7 @@ const fn core(name: &'static str, definition: Definition) -> ExactDefinition {
     }
 }
 
+/// The name in a signature such as `float sin(float)`.
 const fn name_in(signature: &'static str) -> &'static str {
     let bytes = signature.as_bytes();
     let mut start = 0;
@@ -166,6 +167,7 @@ impl BuiltIn {
 
     /// Whether it reads a texture; such calls are not constant expressions (§4.3.3).
     pub fn is_texture(self) -> bool {
+        // The table lists the texture functions in a row.
         self >= Self::TextureSize && self <= Self::TextureProjGradOffset
     }
 

@@ -315,7 +315,7 @@ built_ins! {
     Any ["bool any(bvec)"] { constant: Booleans(|all| all.contains(&true)) },
     All ["bool all(bvec)"] { constant: Booleans(|all| !all.contains(&false)) },
     Not ["bvec not(bvec)"] { constant: Scalars(constant::not), wgsl: Special },
-    // §8.8 Texture lookup
+    // §8.8 Texture lookup: all functions from here to the next section, as `BuiltIn::is_texture` assumes.
     TextureSize [
         "ivec2 textureSize(gsampler2D, int)",
         "ivec3 textureSize(gsampler3D, int)",

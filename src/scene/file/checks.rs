@@ -5,7 +5,7 @@ use toyproof_toml::{Table, Value};
 
 use super::super::{Color, Point};
 
-/// The requirement on numbers in a message.
+// The requirements on numbers in messages.
 const FINITE: &str = "must be finite";
 const POSITIVE: &str = "must be greater than 0";
 
@@ -13,7 +13,7 @@ const POSITIVE: &str = "must be greater than 0";
 pub(super) trait Checks {
     fn number(&mut self, key: &'static str) -> f64;
 
-    /// Returns a number other than 0, if there is such a key.
+    /// Returns a number other than 0, if there is such a key; also a rejected one, which is reported.
     fn nonzero(&mut self, key: &'static str) -> Option<f64>;
 
     fn positive(&mut self, key: &'static str) -> f64;
@@ -24,7 +24,7 @@ pub(super) trait Checks {
     fn degrees_or(&mut self, key: &'static str, default: f64) -> f64;
 
     /// Reads a horizontal angle of view, in degrees. Returns the distance at which a screen of width 2 fills
-    /// it; `None` without the key.
+    /// it; `None` without the key. The distance of a rejected angle is returned, too.
     fn screen_distance(&mut self, key: &'static str) -> Option<f64>;
 
     /// Returns a number from 0 to 1.
@@ -34,7 +34,7 @@ pub(super) trait Checks {
 
     fn point(&mut self, key: &'static str) -> Point;
 
-    /// Returns a point, if there is such a key.
+    /// Returns a point, if there is such a key; also a rejected one, which is reported.
     fn optional_point(&mut self, key: &'static str) -> Option<Point>;
 
     fn point_or(&mut self, key: &'static str, default: Point) -> Point;
@@ -171,6 +171,7 @@ fn checked_direction(table: &mut Table, key: &'static str, default: Option<Point
         not_finite(direction).or(is_zero.then_some("must not be the zero vector"))
     };
     let vector = DVec3::from_array(checked(table, key, default, problem, [1.0; 3]));
+    // Scaled first, so that no square overflows.
     (vector / vector.abs().max_element()).normalize().to_array()
 }
 

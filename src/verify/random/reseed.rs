@@ -27,6 +27,9 @@ const MIN_HASH_INTEGER: u32 = 1 << 16;
 /// The smallest absolute value of a factor that turns a sine or a fraction into noise.
 const MIN_NOISE_FACTOR: f64 = 20.0;
 
+/// What a factor of noise grows by with each salt.
+const FACTOR_STEP: f64 = 17.31;
+
 /// The operations that are changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reseeding {
@@ -69,7 +72,7 @@ impl Reseeding {
         ]
     }
 
-    /// Returns the shader with other random numbers for each salt other than 0.
+    /// Returns the shader with other random numbers for each salt; with salt 0, it is unchanged.
     pub(crate) fn apply(self, checked: &Checked, salt: u32) -> Checked {
         let mut checked = checked.clone();
         let tree = &mut checked.tree;
@@ -204,16 +207,17 @@ impl Reseeding {
 /// Replaces an expression by its sum with a number that depends on the salt.
 fn add(tree: &mut Tree, id: ExprId, salt: u32) {
     let Expr { ty, at, .. } = tree[id].clone();
-    // Even, so that odd constants stay odd.
+    // Multiples of the golden ratio differ in all bits. Even, so that odd constants stay odd.
     let hash = salt.wrapping_mul(0x9E37_79B9) & !1;
     let value = match ty.scalar() {
         Some(Scalar::Uint) => Value::Uint(hash),
+        // Below 2²⁰, so that hardly any constant overflows.
         Some(Scalar::Int) => Value::Int((hash >> 12).cast_signed() & !1),
-        Some(Scalar::Float) => Value::Float(17.31 * f64::from(salt)),
+        Some(Scalar::Float) => Value::Float(FACTOR_STEP * f64::from(salt)),
         _ => return,
     };
-    let own = tree[id].clone();
-    let left = tree.exprs.push(own);
+    let term = tree[id].clone();
+    let left = tree.exprs.push(term);
     let right = tree.exprs.push(Expr {
         kind: ExprKind::Literal(value.into()),
         ty: value.ty(),
