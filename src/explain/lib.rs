@@ -63,7 +63,7 @@ use crate::whole_image::Alternatives;
 pub struct Options<'a> {
     /// The mistakes that are searched for in a wrong image, for the case's scene and frame.
     pub hypotheses: Option<&'a Hypotheses>,
-    /// What a wrong image is compared with as a whole; `None` if it is not.
+    /// What a wrong image is compared with as a whole; `None` for no such comparison.
     pub alternatives: Option<Alternatives<'a>>,
     /// How to search for repairs of a wrong shader; `None` if not at all.
     pub search: Option<SearchOptions<'a>>,
@@ -90,12 +90,12 @@ pub struct Explanation {
     pub search: Option<SearchResult>,
     /// The known mistake that explains the few differing pixels of a correct image.
     pub tolerated_mistake: Option<Diagnosis>,
-    /// Whether the explanation was cut by its time limit, which only a hang reaches: it may be another one
-    /// elsewhere.
+    /// Whether the explanation was cut by its time limit, which only a hang reaches: on another machine, the
+    /// explanation may be another one.
     pub is_cut_by_time: bool,
     /// Notes about unbound channels and about the place where the shader loses precision.
     pub notes: Vec<Diagnostic>,
-    /// Internal errors; what they concern is missing here.
+    /// Internal errors; the parts in which they occurred are missing here.
     pub panics: Vec<Panic>,
 }
 

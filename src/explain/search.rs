@@ -58,7 +58,7 @@ impl Explanation {
 struct Search<'a> {
     subject: Subject<'a>,
     options: &'a Options<'a>,
-    /// Only a hang exceeds it.
+    /// The end of the search, which only a hang exceeds.
     deadline: Instant,
     panics: Vec<Panic>,
 }

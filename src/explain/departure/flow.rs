@@ -16,10 +16,11 @@ use toyproof_glsl::tree::{
 enum Origin {
     /// A subexpression, a condition or a returned value.
     Expression(ExprId),
-    /// `target = value` or `target += value`, where `keeps_old` if the old value of the variable counts.
+    /// `target = value` or `target += value`.
     Assignment {
         value: ExprId,
         variable: VariableId,
+        /// Whether the old value of the variable counts.
         keeps_old: bool,
     },
     /// `++x`.

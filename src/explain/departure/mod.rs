@@ -22,8 +22,10 @@ use self::flow::{Execution, Flow};
 pub use self::picture::ValueImages;
 use self::picture::Values;
 
-/// The numbers of wrong and of right pixels that are traced.
+/// The largest number of wrong pixels that are traced.
 const MAX_WRONG: usize = 8;
+
+/// The largest number of right pixels that are traced.
 const MAX_RIGHT: usize = 8;
 
 /// The bits of a float that are compared: the relative difference of equal values is below 2⁻¹⁸, far above
@@ -33,9 +35,10 @@ const IGNORED_BITS: u32 = 52 - 18;
 /// The number of events after which no more pixels are traced: about 200 MB.
 const MAX_EVENTS: usize = 1 << 20;
 
-/// The number of pixels in which a shader has a value that says little, and the number of such values
-/// between two others.
+/// The least number of pixels in which a shader has a common value, which says little.
 const COMMON: usize = 3;
+
+/// The largest number of values through which unknown ones are searched for.
 const MAX_COMMON: usize = 5000;
 
 /// Floats below this are zeros, such as those that cancellation leaves.
@@ -48,7 +51,7 @@ pub struct Departure {
     pub unknown: Option<UnknownValue>,
     /// The first value of the reference that the shader does not have.
     pub missing: Option<MissingValue>,
-    /// The two in all pixels; `None` if they were not asked for.
+    /// Both values in all pixels; `None` if they were not asked for.
     pub images: Option<ValueImages>,
 }
 
@@ -57,9 +60,9 @@ pub struct Departure {
 pub struct UnknownValue {
     /// The statement or expression of the shader.
     pub span: Span,
-    /// The call of the function that contains it; `None` in `mainImage`.
+    /// The call of the function that contains the statement; `None` in `mainImage`.
     pub call: Option<Span>,
-    /// Its value.
+    /// The value.
     pub value: Vec<f64>,
     /// The pixel, from the left and from the bottom.
     pub pixel: [u32; 2],
@@ -72,7 +75,7 @@ pub struct MissingValue {
     pub user: Option<Span>,
     /// The statement or expression of the reference.
     pub span: Span,
-    /// Its value.
+    /// The value.
     pub value: Vec<f64>,
     /// The pixel, from the left and from the bottom.
     pub pixel: [u32; 2],
@@ -223,7 +226,7 @@ impl Pixel {
 struct Event {
     /// The index of the pixel among the wrong ones.
     pixel: usize,
-    /// The position in its trace.
+    /// The position in the trace of the pixel.
     position: usize,
 }
 
@@ -246,12 +249,12 @@ impl Leaf {
 /// What a value says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Familiarity {
-    /// The other shader has it in this pixel.
+    /// The other shader has the value in this pixel.
     Known,
-    /// The other shader does not have it.
+    /// The other shader does not have the value.
     Unknown,
-    /// One of the shaders has it in several pixels, such as 0, 1 and the colors of the scene; or it is no
-    /// float. It may be right or wrong.
+    /// The value may be right or wrong: one of the shaders has it in several pixels, such as 0, 1 and the
+    /// colors of the scene; or it is no float.
     Common,
 }
 

@@ -19,9 +19,11 @@ use crate::repair::written;
 /// The value of a pixel that never computes the expression.
 const UNSET: f64 = 1e30;
 
-/// The colors of pixels that never compute the expression, and of values that are not finite.
+/// The color of a pixel that never computes the expression: dark blue.
 const UNSET_COLOR: [u8; 3] = [24, 24, 72];
-const NOT_FINITE: [u8; 3] = [255, 0, 255];
+
+/// The color of a value that is not finite: magenta.
+const NOT_FINITE_COLOR: [u8; 3] = [255, 0, 255];
 
 /// The share of the values at either end that the range of colors leaves out.
 const OUTLIERS: f64 = 0.01;
@@ -97,7 +99,7 @@ impl Values {
         let level = |value: f64| (255.0 * ((value - low) / (high - low)).clamp(0.0, 1.0)).round() as u8;
         let color = |pixel: &[f32; 4]| match computed(*pixel) {
             None => UNSET_COLOR,
-            Some(values) if !values.iter().all(|value| value.is_finite()) => NOT_FINITE,
+            Some(values) if !values.iter().all(|value| value.is_finite()) => NOT_FINITE_COLOR,
             Some(values) if self.components == 1 => [level(values[0]); 3],
             Some([x, y, _]) if self.components == 2 => [level(x), level(y), 0],
             Some(values) => values.map(level),
@@ -107,7 +109,7 @@ impl Values {
     }
 }
 
-/// The components of a pixel that are shown; `None` if it never computes the expression.
+/// The components of a pixel that are shown; `None` if the pixel never computes the expression.
 fn computed(pixel: [f32; 4]) -> Option<[f64; 3]> {
     let values = [pixel[0], pixel[1], pixel[2]].map(f64::from);
     (pixel[0] != UNSET as f32).then_some(values)

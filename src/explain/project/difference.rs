@@ -3,26 +3,29 @@
 use toyproof_image::Image;
 use toyproof_verify::compare::EXACT_TOLERANCE;
 
-/// The width of the range that is shown of a channel, relative to that of its values: wrong values may be
-/// beyond.
+/// The width of the shown range of a channel, relative to the range of the reference's values: wrong values
+/// may be beyond.
 pub(super) const SHOWN_RANGE: f64 = 2.0;
 
-/// The range of a channel with one value, relative to it, and of one that is zero.
+/// The width of the range of a channel with a single value, relative to the value.
 const RELATIVE_RANGE: f64 = 1e-3;
+
+/// The width of the range of a channel that is zero.
 const MIN_RANGE: f64 = 1e-6;
 
 /// The difference of a texture from that of the reference.
 #[derive(Debug, Clone)]
 pub(super) struct Difference {
-    /// The number of pixels that differ, of all.
+    /// The number of pixels that differ.
     pub(super) pixels: usize,
+    /// The number of all pixels.
     of: usize,
     /// The number of pixels that differ in each channel.
     pub(super) channels: [usize; 4],
     /// The number of pixels that differ in colors clamped to [0, 1].
     pub(super) visible: usize,
-    /// The corners of the smallest rectangle around the pixels that differ: its first column and row, and
-    /// those after its last.
+    /// The corners of the smallest rectangle around the pixels that differ: the first column and row inside,
+    /// and the first ones beyond.
     pub(super) rectangle: [[u32; 2]; 2],
     /// The range of each channel of the reference.
     pub(super) ranges: [Range; 4],

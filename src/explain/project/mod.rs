@@ -32,19 +32,22 @@ use crate::departure::Departure;
 use crate::known::Diagnosis;
 use crate::repair::SearchResult;
 
-/// The work of replays in pixels of passes, for each unit of the budget; the least number of replays, and the
-/// largest.
+/// The work of replays for each unit of the budget, in pixels of passes.
 const REPLAYED_PIXELS_PER_UNIT: f64 = 2e7;
+
+/// The least number of replays.
 const MIN_REPLAYS: usize = 2;
+
+/// The largest number of replays.
 const MAX_REPLAYS: usize = 24;
 
-/// The share of the budget for the search in the whole project after that in a pass.
+/// The share of the budget for the search in the whole project, after a search in one pass.
 const SHARE_AFTER_PASS: f64 = 0.4;
 
 /// A project with its texts.
 #[derive(Debug, Clone, Copy)]
 pub struct Project<'a> {
-    /// The passes that render its image.
+    /// The passes that render the project's image.
     pub shader: &'a PassShader<'a>,
     /// The texts.
     pub files: &'a Files,
@@ -57,7 +60,7 @@ pub struct Project<'a> {
 pub struct ProjectCase<'a> {
     /// The project with the wrong image.
     pub project: Project<'a>,
-    /// The project that it was compared with.
+    /// The project with the expected image.
     pub reference: Project<'a>,
     /// The image of the reference in the frame.
     pub expected: &'a Expected,
@@ -77,7 +80,7 @@ pub struct ProjectCase<'a> {
 pub struct PassDeparture {
     /// The pass.
     pub pass: Target,
-    /// The first frame in which it differs.
+    /// The first frame in which the pass differs.
     pub frame: i32,
 }
 
@@ -95,7 +98,7 @@ pub struct ProjectExplanation {
     pub search: Option<SearchResult>,
     /// Whether only a hang ended the explanation.
     pub is_cut_by_time: bool,
-    /// Internal errors; what they concern is missing here.
+    /// Internal errors; the parts in which they occurred are missing here.
     pub panics: Vec<Panic>,
 }
 
@@ -179,7 +182,7 @@ impl<'a> Project<'a> {
     }
 }
 
-/// The time limit of a frame: only a hang exceeds it.
+/// The time limit of a frame, which only a hang exceeds.
 fn frame_timeout(deadline: Instant) -> Duration {
     deadline
         .saturating_duration_since(Instant::now())

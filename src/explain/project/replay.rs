@@ -21,6 +21,7 @@ use crate::engine::confirm::{Confirmation, apply, unset_variables};
 #[derive(Debug)]
 pub(super) struct Replays<'a> {
     case: &'a ProjectCase<'a>,
+    /// The number of replays that are left.
     left: AtomicUsize,
     deadline: Instant,
 }

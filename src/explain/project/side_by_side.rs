@@ -32,23 +32,26 @@ pub(super) struct Players<'a> {
     deadline: Instant,
 }
 
-/// A pass of both projects: its numbers in each.
+/// A pass of both projects.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     target: Target,
+    /// The number of the pass in the project.
     own: usize,
+    /// The number of the pass in the reference.
     reference: usize,
 }
 
 /// The first wrong pass.
 pub(super) struct Wrong {
-    /// Its numbers in the project and in the reference.
+    /// The number of the pass in the project.
     pub(super) pass: usize,
+    /// The number of the pass in the reference.
     pub(super) reference: usize,
     pub(super) departure: PassDeparture,
-    /// The frame in which most of its pixels are wrong.
+    /// The frame in which most of the pass's pixels are wrong.
     pub(super) step: Step,
-    /// Whether its texture holds what the reference's holds.
+    /// Whether the pass's texture holds what the reference's holds.
     pub(super) corresponds: bool,
 }
 
@@ -64,8 +67,9 @@ pub(super) struct Step {
 /// The comparison of a pass in all frames.
 #[derive(Default)]
 struct History {
-    /// The first frame in which any pixel is wrong, and the first in which many are.
+    /// The first frame in which any pixel is wrong.
     first: Option<i32>,
+    /// The first frame in which many pixels are wrong.
     first_of_many: Option<i32>,
     /// The frame with the most wrong pixels.
     worst: Option<Step>,
@@ -99,8 +103,8 @@ impl<'a> Players<'a> {
         })
     }
 
-    /// The first pass that is wrong. Channels that nothing reads are not compared; finding them out takes
-    /// some `replays`.
+    /// The first pass that is wrong. Channels that nothing reads are not compared; to find these channels
+    /// takes some `replays`.
     pub(super) fn first_wrong(&self, replays: usize) -> Option<Wrong> {
         // The alpha of the image is not shown.
         let mut ignored: Vec<[bool; 4]> = self
@@ -239,8 +243,8 @@ impl<'a> Players<'a> {
         rendered.ok().map(|rendered| rendered.image)
     }
 
-    /// Whether a pass holds in its texture what the reference holds there. If it does not, it differs without
-    /// being wrong, and so do the passes that read it.
+    /// Whether a pass holds in its texture what the reference holds there. Otherwise the pass differs without
+    /// being wrong, and so do the passes that read its texture.
     fn corresponds(&self, at: usize, histories: &[History]) -> bool {
         let pair = self.pairs[at];
         let passes = self.case.project.shader.graph.passes();

@@ -20,9 +20,10 @@ use crate::repair::{Confirmation, EditedPass, SearchOptions};
 use crate::whole_image::Alternatives;
 use crate::{Findings, Options, check};
 
-/// The largest part of the frame that is enlarged because few pixels are wrong, and the largest share of
-/// these.
+/// The largest part of the frame that is enlarged because few pixels are wrong.
 const MAX_ENLARGED: f64 = 0.25;
+
+/// The largest share of wrong pixels that are few.
 const MAX_FEW: f64 = 10.0 * MAX_DIFFERING;
 
 /// Explains the wrong pass; `None` if it cannot be compared alone.
@@ -112,7 +113,7 @@ fn move_to(file: FileId, findings: &mut Findings) {
 /// How a pass is shown as an image.
 #[derive(Debug)]
 struct View {
-    /// The function that maps its texture to colors; `None` if the difference is visible without it.
+    /// The function that maps the pass's texture to colors; `None` if the difference is visible without it.
     suffix: Option<String>,
 }
 
@@ -163,10 +164,10 @@ fn shown_channels(difference: &Difference) -> String {
     body
 }
 
-/// The place of a pixel if the rectangle of those that differ fills the frame; `None` if they are many.
+/// The place of a pixel if the rectangle of the differing pixels fills the frame; `None` if many differ.
 fn enlarged(difference: &Difference, size: [u32; 2]) -> Option<String> {
     let [first, last] = difference.rectangle;
-    // Some pixels around them are right.
+    // Some pixels around the differing ones are right.
     let first = first.map(|place| place.saturating_sub(1));
     let last = [0, 1].map(|axis| (last[axis] + 1).min(size[axis]));
     let [width, height] = [0, 1].map(|axis| f64::from(last[axis].saturating_sub(first[axis])));

@@ -78,8 +78,9 @@ pub(super) fn search(case: &ProjectCase, budget: f64, replays: &Replays, deadlin
     let mut work = 0;
     let mut best_rank = f64::INFINITY;
     loop {
-        let rank =
-            |edit: &PassEdit| f64::from(edit.own.cost) - PROGRESS_BONUS * progress.of(edit.own.statement);
+        let rank = |edit: &PassEdit| {
+            f64::from(edit.listed.cost) - PROGRESS_BONUS * progress.of(edit.listed.statement)
+        };
         left.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
         let batch: Vec<PassEdit> = left.drain(..BATCH.min(left.len())).collect();
         let is_spent = work as f64 > budget * PIXELS_PER_UNIT;
@@ -95,17 +96,17 @@ pub(super) fn search(case: &ProjectCase, budget: f64, replays: &Replays, deadlin
         work += outcomes.iter().map(|(_, work)| work).sum::<usize>();
         for ((edit, rank), (outcome, _)) in batch.into_iter().zip(ranks).zip(outcomes) {
             if let Outcome::Wrong { remaining } = outcome {
-                progress.add(edit.own.statement, 1.0 - remaining);
+                progress.add(edit.listed.statement, 1.0 - remaining);
             }
             if matches!(outcome, Outcome::Right)
                 && search.repairs.len() < MAX_REPAIRS
-                && let Some(confirmation) = replays.confirm(edit.pass, &edit.own.fix)
+                && let Some(confirmation) = replays.confirm(edit.pass, &edit.listed.fix)
             {
-                progress.add(edit.own.statement, 1.0);
+                progress.add(edit.listed.statement, 1.0);
                 best_rank = best_rank.min(rank);
                 search.repairs.push(Repair {
-                    fix: edit.own.fix,
-                    mistake: edit.own.mistake,
+                    fix: edit.listed.fix,
+                    mistake: edit.listed.mistake,
                     agreeing: confirmation.agreeing,
                     pixels: confirmation.pixels,
                     by_means: confirmation.by_means,
@@ -124,7 +125,7 @@ pub(super) fn search(case: &ProjectCase, budget: f64, replays: &Replays, deadlin
 /// An edit of a pass.
 struct PassEdit {
     pass: usize,
-    own: ListedEdit,
+    listed: ListedEdit,
 }
 
 /// The largest share of the difference that an edit of each statement removes.
@@ -181,8 +182,9 @@ struct Small<'a> {
     programs: Vec<Program>,
     /// The images of the reference, from frame 0 on.
     expected: Vec<Arc<Image>>,
-    /// The first frame whose image is wrong, and the number of wrong pixels in each frame.
+    /// The first frame whose image is wrong.
     first: i32,
+    /// The number of wrong pixels in each frame, before an edit.
     before: Vec<usize>,
     deadline: Instant,
 }
@@ -260,8 +262,7 @@ impl<'a> Small<'a> {
         Difference::new(image, &self.expected[frame], IGNORED, tolerance)
     }
 
-    /// The edits of all passes. Those of Common are edits of the first pass that uses
-    /// them.
+    /// The edits of all passes. An edit of Common is an edit of the first pass that uses the edited code.
     fn edits(&self) -> Vec<PassEdit> {
         let project = self.case.project;
         let mut of_common = HashSet::new();
@@ -276,7 +277,7 @@ impl<'a> Small<'a> {
                 });
                 let places: Vec<_> = places.collect();
                 let is_common = places.iter().any(|(file, ..)| !project.tabs.contains(file));
-                (!is_common || of_common.insert(places)).then_some(PassEdit { pass, own: edit })
+                (!is_common || of_common.insert(places)).then_some(PassEdit { pass, listed: edit })
             }));
         }
         all
@@ -285,7 +286,7 @@ impl<'a> Small<'a> {
     /// Renders the project with an edit, up to the first image that is wrong. Also returns the work in pixels.
     fn outcome(&self, edit: &PassEdit) -> (Outcome, usize) {
         let invalid = (Outcome::Invalid, COMPILE_WORK);
-        let Some(changed) = edited(self.case, edit.pass, &edit.own.fix) else {
+        let Some(changed) = edited(self.case, edit.pass, &edit.listed.fix) else {
             return invalid;
         };
         let timeout = frame_timeout(self.deadline);

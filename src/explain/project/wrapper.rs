@@ -4,12 +4,14 @@ use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::tree::Item;
 use toyproof_glsl::{self as glsl, Checked};
 
-/// The name of the function, and that of its variable that holds the color.
+/// The name of the entry point.
 const NAME: &str = "toyproofShown";
+
+/// The name of the entry point's variable that holds the color.
 pub(super) const COLOR: &str = "toyproofColor";
 
-/// The text of the function, which changes the color by `body`. `position` is an expression of the pixel's
-/// place; its own place if `None`.
+/// The text of the entry point, which changes the color by `body`. `position` is an expression of the place
+/// that the color is from; `None` for the pixel's own place.
 pub(super) fn suffix(body: &str, position: Option<&str>) -> String {
     let position = position.unwrap_or(POSITION);
     // A backslash may end the last line of the shader.
@@ -22,8 +24,8 @@ pub(super) fn suffix(body: &str, position: Option<&str>) -> String {
 /// The parameter with the place of the pixel.
 pub(super) const POSITION: &str = "toyproofPosition";
 
-/// Checks a text that takes the place of a shader's, with the function after it; `None` if that is no valid
-/// shader. Without a `suffix`, the entry point stays.
+/// Checks a text that takes the place of a shader's, followed by a new entry point; `None` if that is no valid
+/// shader. With an empty `suffix`, `mainImage` stays the entry point.
 pub(super) fn with_suffix(shader: &Checked, text: &str, suffix: &str) -> Option<Checked> {
     let mut files = Files::default();
     let file = files.add(File::new("<pass>", format!("{text}{suffix}")));
@@ -38,7 +40,7 @@ pub(super) fn with_suffix(shader: &Checked, text: &str, suffix: &str) -> Option<
         if let (Some(place), Some(name)) = (position(&checked), name) {
             checked.tree.variables[place].name = name;
         }
-        // It is no part of the shader that an edit may change.
+        // The new entry point is no part of the shader that an edit may change.
         checked.tree.items.retain(|item| *item != Item::Function(id));
     }
     Some(checked)

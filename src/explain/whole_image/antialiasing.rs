@@ -28,11 +28,13 @@ fn grid(side: u32, [share, start]: [f64; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// The largest numbers of rows, and of pixels of a row, at which a grid is tried.
+/// The largest number of rows at which a grid is tried.
 const MAX_PROBED_ROWS: usize = 12;
+
+/// The largest number of pixels of a row at which a grid is tried.
 const MAX_PROBED_COLUMNS: usize = 24;
 
-/// The share of these pixels that must agree.
+/// The share of the probed pixels that must agree.
 const MIN_PROBES: f64 = 0.95;
 
 /// The largest number of samples of the reference that are taken.
@@ -45,16 +47,17 @@ const WITHIN: u32 = 9;
 /// features than the samples show.
 const MARGIN: f64 = 0.05;
 
-/// The smallest range of colors within a pixel that shows how it is sampled, and the smallest number of such
-/// pixels.
+/// The smallest range of colors within an edge pixel. The color of such a pixel shows how it is sampled.
 const MIN_RANGE: f64 = 0.05;
+
+/// The smallest number of edge pixels.
 const MIN_EDGE_PIXELS: u64 = 24;
 
 /// The smallest number of independent samples whose means scatter as little as the colors do.
 const MIN_EFFECTIVE_SAMPLES: f64 = 2.0;
 
-/// The largest sum of squared distances to the means within the pixels, as a share of that to the colors at
-/// their centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are
+/// The largest sum of squared distances to the means within the pixels, as a share of the sum of those to the
+/// colors at the pixels' centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are
 /// equal.
 const MAX_UNEXPLAINED: f64 = 0.4;
 
@@ -113,7 +116,7 @@ impl Rows {
         )
     }
 
-    /// Few of them, spread over all.
+    /// Few of the pixels, spread over all.
     fn thinned(&self) -> Self {
         let step = self.0.len().div_ceil(MAX_PROBED_ROWS).max(1);
         let rows = self.0.iter().skip(step / 2).step_by(step);
@@ -129,8 +132,8 @@ impl Rows {
     }
 }
 
-/// The colors of the samples of each pixel, in the order of the pixels; `None` if there are too many, or the
-/// reference has no color within pixels.
+/// The colors of the samples of each pixel, in the order of the pixels; `None` if there are too many samples,
+/// or the reference has no color within pixels.
 fn samples(expected: &Expected, rows: &Rows, offsets: &[f64]) -> Option<Vec<Vec<[f64; 3]>>> {
     let side = offsets.len();
     if rows.count() * side * side > MAX_SAMPLES {
@@ -170,8 +173,8 @@ fn pixels(rows: &Rows) -> impl Iterator<Item = [u32; 2]> + '_ {
     rows.flat_map(|(y, columns)| columns.iter().map(move |&x| [x, *y]))
 }
 
-/// Those of some pixels that are the means of their samples; `None` if there are too many, or the reference
-/// has no color within pixels.
+/// The pixels whose colors are the means of their samples; `None` if there are too many samples, or the
+/// reference has no color within pixels.
 fn means(submission: &Submission, rows: &Rows, offsets: &[f64]) -> Option<Vec<[u32; 2]>> {
     let samples = samples(submission.expected(), rows, offsets)?;
     let is_mean = |&([x, y], samples): &([u32; 2], &Vec<[f64; 3]>)| {
@@ -211,17 +214,20 @@ struct Statistics {
     pixels: usize,
     /// The pixels whose color is within.
     within: Vec<[u32; 2]>,
-    /// The pixels with an edge, and those with an intermediate color.
+    /// The number of pixels with an edge.
     edges: u64,
+    /// The number of edge pixels with an intermediate color.
     intermediate: u64,
-    /// The sums of the variances within pixels, and of the squared distances to the means and to the centers.
+    /// The sum of the variances within edge pixels.
     variance: f64,
+    /// The sum of the squared distances of colors to the means within their pixels.
     to_mean: f64,
+    /// The sum of the squared distances of colors to the reference's colors at the centers.
     to_center: f64,
 }
 
 impl Statistics {
-    fn add(&mut self, pixel: [u32; 2], own: [f64; 3], samples: &[[f64; 3]], tolerance: f64) {
+    fn add(&mut self, pixel: [u32; 2], color: [f64; 3], samples: &[[f64; 3]], tolerance: f64) {
         self.pixels += 1;
         let mean = mean(samples);
         let range = |i: usize| {
@@ -234,7 +240,7 @@ impl Statistics {
         let is_within = (0..3).all(|i| {
             let (low, high) = ranges[i];
             let margin = tolerance + MARGIN * (high - low);
-            (low - margin..=high + margin).contains(&own[i])
+            (low - margin..=high + margin).contains(&color[i])
         });
         if is_within {
             self.within.push(pixel);
@@ -246,11 +252,11 @@ impl Statistics {
         if high - low > MIN_RANGE {
             self.edges += 1;
             let margin = 2.0 * MARGIN * (high - low);
-            self.intermediate += u64::from((low + margin..=high - margin).contains(&own[i]));
+            self.intermediate += u64::from((low + margin..=high - margin).contains(&color[i]));
             let squares = samples.iter().map(|sample| (sample[i] - mean[i]).powi(2));
             self.variance += squares.sum::<f64>() / samples.len() as f64;
-            self.to_mean += (own[i] - mean[i]).powi(2);
-            self.to_center += (own[i] - samples[samples.len() / 2][i]).powi(2);
+            self.to_mean += (color[i] - mean[i]).powi(2);
+            self.to_center += (color[i] - samples[samples.len() / 2][i]).powi(2);
         }
     }
 
@@ -266,7 +272,8 @@ impl Statistics {
     }
 }
 
-/// Compares pixels with the colors within them; `None` if there are too many, or the reference has none.
+/// Compares pixels with the colors within them; `None` if there are too many samples, or the reference has no
+/// color within pixels.
 fn within(submission: &Submission, rows: &Rows) -> Option<Statistics> {
     let offsets: Vec<f64> = (0..WITHIN)
         .map(|at| f64::from(at) / f64::from(WITHIN - 1) - 0.5)

@@ -6,12 +6,12 @@ use toyproof_verify::compare::TOLERANCE;
 /// A usual curve, from a component of the expected color to that of the shader, which is in [0, 1].
 pub(super) struct Curve {
     pub(super) name: String,
-    of: Box<dyn Fn(f64) -> f64 + Sync>,
+    function: Box<dyn Fn(f64) -> f64 + Sync>,
 }
 
 impl Curve {
     pub(super) fn value(&self, component: f64) -> f64 {
-        (self.of)(component.max(0.0)).clamp(0.0, 1.0)
+        (self.function)(component.max(0.0)).clamp(0.0, 1.0)
     }
 
     /// The values for all components within a distance of this one, widened by the tolerance.
@@ -64,7 +64,7 @@ const ENCODINGS: [(&str, Function); 7] = [
 /// The number of encodings that are not inverses, which may follow a tone map.
 const FORWARD_ENCODINGS: usize = 4;
 
-/// IEC 61966-2-1.
+/// The encoding of IEC 61966-2-1.
 fn srgb(c: f64) -> f64 {
     if c <= 0.003_130_8 {
         12.92 * c
@@ -83,15 +83,18 @@ fn inverse_srgb(c: f64) -> f64 {
 
 /// The usual curves, the simplest first.
 pub(super) fn usual() -> Vec<Curve> {
-    let single = ENCODINGS.into_iter().chain(TONE_MAPS).map(|(name, of)| Curve {
-        name: name.to_owned(),
-        of: Box::new(of),
-    });
+    let single = ENCODINGS
+        .into_iter()
+        .chain(TONE_MAPS)
+        .map(|(name, function)| Curve {
+            name: name.to_owned(),
+            function: Box::new(function),
+        });
     let forward = &ENCODINGS[..FORWARD_ENCODINGS];
     let both = TONE_MAPS.into_iter().flat_map(|(tone_map, map)| {
         forward.iter().map(move |&(encoding, encode)| Curve {
             name: format!("{tone_map}, followed by {encoding}"),
-            of: Box::new(move |c| encode(map(c))),
+            function: Box::new(move |c| encode(map(c))),
         })
     });
     single.chain(both).collect()
@@ -103,7 +106,7 @@ pub(super) struct Isotonic {
     steps: Vec<[f64; 2]>,
 }
 
-/// A block of neighboring points, which have one value: their mean.
+/// A block of neighboring points, whose common value is the mean of their values.
 struct Block {
     sum: f64,
     count: usize,

@@ -61,16 +61,18 @@ const MAX_CONFIRMED: usize = 3;
 struct Convention {
     /// The factor of the coordinate.
     factor: Factor,
-    /// Whether it is 0 in the lower left corner, as `fragCoord` is, and not in the center.
+    /// Whether the coordinate is 0 in the lower left corner, as `fragCoord` is, and not in the center.
     is_from_corner: bool,
     /// The shift of `fragCoord`, in pixels.
     shift: f64,
 }
 
-/// `power` of 2 times `aspect` power of the aspect ratio.
+/// A power of 2 times a power of the aspect ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Factor {
+    /// The exponent of 2.
     two: i32,
+    /// The exponent of the aspect ratio.
     aspect: i32,
 }
 
