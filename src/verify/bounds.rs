@@ -15,28 +15,31 @@ const ITERATION_FACTOR: u32 = 8;
 pub const MIN_IMAGE_ITERATIONS: u32 = 1 << 17;
 
 /// The number of loop iterations after which a pixel of a mutant, of a variant of a reference or of a shader
-/// with other random numbers is given up. It takes seconds.
+/// with other random numbers is given up: so many take seconds.
 pub const MAX_ITERATIONS: u32 = 1 << 22;
 
 /// The number of loop iterations after which a pixel is not traced: recording its values takes seconds.
 pub const MAX_TRACED_ITERATIONS: u32 = 1 << 18;
 
-/// The time for explaining a difference, and for each unit of a search's budget, which takes a second on an
-/// idle core. Machines are seldom fifty times slower.
+/// The time limit for explaining a difference, which only a hang reaches.
 pub const EXPLANATION_TIMEOUT: Duration = Duration::from_secs(600);
+
+/// The time limit for each unit of a search's budget, in seconds. A unit takes a second on an idle core, and
+/// machines are seldom fifty times slower.
 const TIMEOUT_PER_UNIT: f64 = 60.0;
 
 /// The largest time for a search: three years.
 const MAX_SEARCH_SECONDS: f64 = 1e8;
 
-/// The largest number of loop iterations of a pixel of an edited shader, by those of the shader; of one that
-/// is evaluated at few pixels.
+/// The largest number of loop iterations of a pixel of an edited shader that is evaluated at few pixels, by
+/// the number of the shader's iterations.
 #[must_use]
 pub fn iterations_of_edited(iterations: u32, least: u32) -> u32 {
     iterations.saturating_mul(ITERATION_FACTOR).max(least)
 }
 
-/// The same of one whose whole image is evaluated: pixels that were not tried may need more.
+/// The largest number of loop iterations of a pixel of an edited shader whose whole image is evaluated: pixels
+/// that were not tried may need more.
 #[must_use]
 pub fn iterations_of_image(iterations: u32) -> u32 {
     iterations_of_edited(iterations, MIN_IMAGE_ITERATIONS)

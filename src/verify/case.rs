@@ -16,7 +16,7 @@ use crate::project::growth::VisibleGrowth;
 pub struct Case<'a> {
     /// The shader.
     pub checked: &'a Checked,
-    /// The lints' results for it.
+    /// The results of linting the shader.
     pub lints: &'a Lints,
     /// The reference, if there is one; its frame must be `frame`.
     pub expected: Option<&'a Expected>,
@@ -24,7 +24,7 @@ pub struct Case<'a> {
     pub frame: &'a Frame,
     /// What earlier frames contribute; none if the frame does not depend on them.
     pub from_start: Option<FromStart<'a>>,
-    /// How far the driver may rearrange arithmetic. If it may, there is no toolchain check.
+    /// How far the driver may rearrange arithmetic. There is no toolchain check if it may do so at all.
     pub float: FloatMode,
     /// The time limit of an image.
     pub timeout: Duration,

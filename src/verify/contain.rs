@@ -64,14 +64,14 @@ impl fmt::Display for Part {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("internal error while {part}: {message}; this is a bug in toyproof; please report it with the input")]
 pub struct Panic {
-    /// The part in which it was contained.
+    /// The part in which the panic occurred.
     pub part: Part,
     /// The panic's own message.
     pub message: String,
 }
 
-/// Runs a part of the work. If it panics, the values that it has changed must not be used, unless their
-/// invariants hold after each step.
+/// Runs a part of the work. After a panic, values that `work` has changed must not be used, unless the
+/// invariants of these hold after each of its steps.
 ///
 /// # Errors
 /// The panic, if there was one; its location has gone to the panic hook.

@@ -105,11 +105,11 @@ fn settings<'a, N: Number>(max_iterations: u32, deadline: Option<Instant>) -> Se
 pub struct Step {
     /// The event.
     pub event: EventId,
-    /// Its position in the execution.
+    /// The position of the event in the execution.
     position: TracePosition,
-    /// Its values in f32; `None` if it did not occur there.
+    /// The values in f32; `None` if the event did not occur there.
     pub single: Option<Vec<TraceValue>>,
-    /// Its values in f64; `None` if it did not occur there.
+    /// The values in f64; `None` if the event did not occur there.
     pub double: Option<Vec<TraceValue>>,
 }
 
@@ -158,11 +158,11 @@ impl Step {
 /// A component of a step that occurred in both traces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// Its number.
+    /// The number of the component.
     pub index: usize,
-    /// Its value in f32.
+    /// The value in f32.
     pub single: TraceValue,
-    /// Its value in f64.
+    /// The value in f64.
     pub double: TraceValue,
 }
 
@@ -185,7 +185,9 @@ fn distance(single: f64, double: f64) -> f64 {
 pub fn ulps(single: f64, double: f64) -> f64 {
     // For denormals, which are flushed, the unit is that of the smallest normal number.
     let scale = double.abs().max(f64::from(f32::MIN_POSITIVE));
+    // An f64 has 52 bits of mantissa, and a biased exponent of 11 bits.
     let exponent = ((scale.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    // An f32 has 23 bits of mantissa.
     distance(single, double) / f64::from(exponent - 23).exp2()
 }
 

@@ -25,23 +25,23 @@ use crate::random::replicate_test::{Bias, RARE_EVENT_VARIANCE_RATIO, REPLICATES,
 pub enum Verdict {
     /// No shader was submitted.
     Missing,
-    /// It does not compile, is not text, or is nested too deeply.
+    /// The shader does not compile, is not text, or is nested too deeply.
     Invalid,
-    /// It never ends or takes too long; also if a driver truncated its loops.
+    /// The shader never ends or takes too long; also if a driver truncated loops.
     Timeout,
-    /// Its algorithm differs from the reference.
+    /// The algorithm differs from the reference.
     Wrong,
     /// Nothing could be evaluated, or, without a reference, naga, the driver or toyproof failed.
     Error,
-    /// Its algorithm is right, but float32 is not precise enough for it.
+    /// The algorithm is right, but float32 is not precise enough for it.
     Unstable,
     /// Each frame is right and precise, but feedback amplifies rounding errors until images differ.
     Chaotic,
-    /// It cannot be decided.
+    /// The verdict cannot be decided.
     Inconclusive,
-    /// Its image agrees with the reference.
+    /// The image agrees with the reference.
     Correct,
-    /// It renders, and there is no reference to compare with.
+    /// The shader renders, and there is no reference to compare with.
     Ok,
 }
 
@@ -106,11 +106,11 @@ pub enum Reason {
     AlgorithmDiffers {
         /// The pixels that differ.
         differing: Share,
-        /// Their regions.
+        /// The regions of the pixels that differ.
         regions: Regions,
     },
     /// In these pixels, rounding decides whether a ray hits the surface that it starts from: `unstable`, or
-    /// `wrong` if it does in double precision too.
+    /// `wrong` if that is so in double precision too.
     SelfIntersection(SelfIntersection),
     /// These pixels depend on undefined behavior: `inconclusive`.
     Undefined(Share),
@@ -131,7 +131,7 @@ pub enum Reason {
         ill_conditioned: u64,
         /// The number of pixels that depend on undefined behavior.
         undefined: u64,
-        /// The largest compact region of these.
+        /// The largest compact region of pixels that depend on undefined behavior.
         undefined_region: Option<Region>,
         /// The number of pixels in which rounding decides the color of the reference itself, such as where an
         /// edge of a scene passes through the sample.
@@ -171,18 +171,18 @@ impl Reason {
 /// The result of comparing the means of a shader and its reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Means {
-    /// They differ: `wrong`.
+    /// The means differ: `wrong`.
     Different {
         /// The center of the most significant difference, in pixels.
         at: [u32; 2],
         /// The significance in standard deviations, if it is known; infinite if the shader is not random.
         deviations: Option<f64>,
     },
-    /// They agree, but the shader takes fewer samples than the scene: `wrong`.
+    /// The means agree, but the shader takes fewer samples than the scene: `wrong`.
     FewerSamples {
         /// The shader's number of samples per pixel.
         own: u32,
-        /// The scene's number.
+        /// The scene's number of samples per pixel.
         scene: u32,
         /// The ratio of the variances.
         variance: f64,
@@ -198,13 +198,14 @@ pub enum Means {
     Underpowered,
     /// The reference, or the shader, cannot be rendered with other random numbers: `inconclusive`.
     UnknownNoise,
-    /// They agree: `correct`.
+    /// The means agree: `correct`.
     Same {
         /// The upper bound of the difference over the image.
         within: f64,
         /// The number of pixels that were compared.
         pixels: u64,
-        /// The number of sets of random numbers that the shader was evaluated with; `None` for its one image.
+        /// The number of sets of random numbers that the shader was evaluated with; `None` if only its one image
+        /// was compared.
         replicates: Option<usize>,
         /// The ratio of the variances, where it exceeds `MAX_VARIANCE_RATIO`.
         variance: Option<f64>,

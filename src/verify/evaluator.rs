@@ -35,14 +35,16 @@ const PERTURBED_TIME_FACTOR: u32 = 64;
 pub struct Evaluator<'a> {
     program: &'a Program,
     frame: &'a Frame,
-    /// The frame with what earlier frames render in double precision; `None` if it does not depend on them.
+    /// The frame with what earlier frames render in double precision; `None` for a frame that does not depend on
+    /// earlier ones.
     double_frame: Option<&'a Frame>,
     /// The largest number of loop iterations of a pixel.
     max_iterations: u32,
     /// Set when the images are no longer needed.
     stop: &'a AtomicBool,
-    /// The time left for the images in f32 and in f64.
+    /// The time left for the image in f32.
     single: TimeBudget,
+    /// The time left for the image in f64.
     double: TimeBudget,
     /// The time left for the image in f64 of what earlier frames render in f32.
     step: TimeBudget,
@@ -59,9 +61,9 @@ struct TimeBudget(Cell<Duration>);
 
 /// A band, as the evaluator renders it.
 pub struct Band {
-    /// In f32, with the bits of a strict GPU run.
+    /// The band in f32, with the bits of a strict GPU run.
     pub single: Image,
-    /// In f64; why it could not be evaluated, where only float32 could.
+    /// The band in f64; why double precision could not be evaluated, where only float32 could.
     pub double: Result<DoubleBand, Failure>,
     /// Pixels whose color depends on undefined behavior, in f32 or in f64.
     pub undefined: Vec<bool>,
@@ -81,7 +83,7 @@ pub struct DoubleBand {
 
 /// An image in one number type, with its undefined pixels and observations.
 pub struct Evaluation {
-    /// Rounded to f32.
+    /// The image, rounded to f32.
     pub image: Image,
     /// Pixels whose color depends on undefined behavior.
     pub undefined: Vec<bool>,

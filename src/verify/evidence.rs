@@ -63,7 +63,7 @@ pub struct CheckEvidence {
 pub struct SelfIntersection {
     /// The pixels.
     pub pixels: Share,
-    /// Whether it decides in double precision too.
+    /// Whether rounding decides in double precision too.
     pub in_double: bool,
 }
 

@@ -12,10 +12,11 @@ use crate::limits::MAX_UNSTABLE;
 /// The largest number of pixels that are examined.
 const MAX_PIXELS: usize = 64;
 
-/// The share of them that must have the color that the tracer renders with rays that hit their own surface.
-/// It is below 1 because a ray between mirrors may do so more often than is traced. In double precision, no
-/// other effect of rounding reaches this share.
+/// The share of the examined pixels that must have the color that the tracer renders with rays that hit their
+/// own surface. The share is below 1 because a ray between mirrors may do so more often than is traced.
 const MIN_EXPLAINED_SHARE: f64 = 0.4;
+
+/// The same share in double precision, where no other effect of rounding reaches it.
 const MIN_EXPLAINED_SHARE_IN_DOUBLE: f64 = 0.3;
 
 /// The smallest share of pixels that differ in float32 alone; fewer may be a lack of precision at silhouettes
@@ -62,7 +63,7 @@ struct Candidate<'a> {
     in_double: bool,
     /// The smallest share of differing pixels.
     min_share: f64,
-    /// The smallest share of the examined pixels that it must explain.
+    /// The smallest share of the examined pixels that self-intersection must explain.
     min_explained: f64,
 }
 
@@ -92,8 +93,8 @@ impl Candidate<'_> {
     }
 }
 
-/// Returns ill-conditioned pixels spread over the image, or else differing ones, among those
-/// whose colors are kept.
+/// Returns ill-conditioned pixels spread over the image, or else differing ones, of those whose colors are
+/// kept.
 fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
     let is_ill_conditioned = check.statuses.contains(&PixelStatus::IllConditioned);
     let status = if is_ill_conditioned {
@@ -112,25 +113,27 @@ fn pixels_to_examine(check: &CheckResult, size: [u32; 2]) -> Vec<[u32; 2]> {
 /// A pixel that differs visibly from the scene's. Colors are clamped to [0, 1].
 struct DifferingPixel {
     pixel: [u32; 2],
-    own: [f64; 3],
+    /// The shader's color.
+    actual: [f64; 3],
+    /// The scene's color.
     exact: [f64; 3],
 }
 
 impl DifferingPixel {
-    /// `None` if the pixel has the scene's color, or its own is not kept.
+    /// `None` if the pixel has the scene's color, or the shader's color is not kept.
     fn new(tracer: &Tracer<f64>, check: &CheckResult, size: [u32; 2], pixel: [u32; 2]) -> Option<Self> {
         let [x, y] = pixel;
-        let own = check.actual.get(&(y as usize * size[0] as usize + x as usize))?;
-        let own = own.map(|part| f64::from(part).clamp(0.0, 1.0));
+        let actual = check.actual.get(&(y as usize * size[0] as usize + x as usize))?;
+        let actual = actual.map(|part| f64::from(part).clamp(0.0, 1.0));
         let exact = tracer.pixel(x, y).map(|part| part.clamp(0.0, 1.0));
         (0..3)
-            .any(|i| !is_near(own[i], exact[i]))
-            .then_some(Self { pixel, own, exact })
+            .any(|i| !is_near(actual[i], exact[i]))
+            .then_some(Self { pixel, actual, exact })
     }
 
     /// Whether its color comes from rays that hit their own surface, in all of its samples or in some.
     fn is_acne(&self, tracer: &Tracer<f64>, epsilons: &[RayEpsilons]) -> bool {
-        let Self { own, exact, .. } = self;
+        let Self { actual, exact, .. } = self;
         // If lights and BRDFs are also sampled, an intermediate color proves nothing.
         let is_jittered = tracer.sampler() == Some(Sampler::SineHash);
         epsilons.iter().any(|epsilons| {
@@ -139,9 +142,9 @@ impl DifferingPixel {
                 .map(|part| part.clamp(0.0, 1.0));
             let is_mixed = |i: usize| {
                 let (least, most) = (other[i].min(exact[i]), other[i].max(exact[i]));
-                is_jittered && (least - COLOR_TOLERANCE..=most + COLOR_TOLERANCE).contains(&own[i])
+                is_jittered && (least - COLOR_TOLERANCE..=most + COLOR_TOLERANCE).contains(&actual[i])
             };
-            (0..3).all(|i| is_near(own[i], other[i]) || is_mixed(i))
+            (0..3).all(|i| is_near(actual[i], other[i]) || is_mixed(i))
         })
     }
 }

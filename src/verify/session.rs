@@ -37,7 +37,7 @@ pub(super) struct IterationCount {
 /// The results so far.
 pub(super) struct VerifySession<'a, 'e> {
     case: &'a Case<'a>,
-    /// The evaluator, or why it failed.
+    /// The evaluator, or its failure.
     pub(super) evaluator: Result<Evaluator<'e>, eval::Failure>,
     counts: Option<Sender<IterationCount>>,
     /// The observations of the evaluator in f32.

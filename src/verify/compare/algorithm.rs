@@ -30,12 +30,12 @@ pub trait Reference: Sync {
 /// The pixels of a band that depend on undefined behavior, bottom row first.
 #[derive(Debug, Clone, Copy)]
 pub struct Undefined<'a> {
-    /// Those of the shader.
+    /// The pixels of the shader that do.
     pub pixels: &'a [bool],
     /// The shader's images with other results of its undefined operations; `None` if these have no
     /// substitutes.
     pub substituted: Option<&'a [Image]>,
-    /// Those of the reference; empty if there are none.
+    /// The pixels of the reference that do; empty if there are none.
     pub in_reference: &'a [bool],
 }
 
@@ -276,15 +276,17 @@ fn differing(statuses: &[PixelStatus]) -> usize {
 
 // Fitting: which of the legal ray epsilons a shader has, from some of the pixels in which it differs.
 
-/// The largest number of pixels that are compared with all ray epsilons; divided by the number of samples,
-/// down to the smallest number.
+/// The largest number of pixels that are compared with all ray epsilons, for one sample per pixel: the number
+/// is divided by that of the samples.
 const MAX_FITTED_PIXELS: usize = 32;
+
+/// The least number of pixels that are compared with all ray epsilons, for many samples per pixel.
 const MIN_FITTED_PIXELS: usize = 8;
 
 /// The largest number of samples that are taken to compare pixels one by one.
 const MAX_FIT_SAMPLES: usize = 3_000_000;
 
-/// The share of them that the shader's epsilons must explain.
+/// The share of the compared pixels that the shader's epsilons must explain.
 const MIN_EXPLAINED_SHARE: f64 = 0.1;
 
 /// How often the epsilons of light rays and of other rays are fitted alternately.

@@ -22,16 +22,16 @@ pub const EXACT_TOLERANCE: f64 = 1e-4;
 /// The status of a pixel in a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PixelStatus {
-    /// It agrees with the reference.
+    /// The pixel agrees with the reference.
     Agrees,
-    /// It differs, but might not with another rounding of the same operations: it is ill-conditioned.
+    /// The pixel differs, but might not with another rounding of the same operations: it is ill-conditioned.
     IllConditioned,
-    /// It differs, and so does the scene itself when its numbers are perturbed by less than a shader's
+    /// The pixel differs, and so does the scene itself when its numbers are perturbed by less than a shader's
     /// precision: an edge passes through the pixel's sample.
     Tied,
-    /// Its color depends on undefined behavior.
+    /// The color depends on undefined behavior.
     Undefined,
-    /// It differs.
+    /// The pixel differs.
     Differs,
 }
 

@@ -14,11 +14,11 @@ const MIN_SIDE: u32 = 3;
 /// corner are connected.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Regions {
-    /// How many there are.
+    /// The number of regions.
     pub count: u64,
-    /// The largest one; of equal ones the first, bottom row first.
+    /// The largest region; of equal ones the first, bottom row first.
     pub largest: Option<Region>,
-    /// The largest compact one, an area and not a line: it contains a block of 3×3 pixels, or has at least as
+    /// The largest compact region, an area and not a line: it contains a block of 3×3 pixels, or has at least as
     /// many and fills half of its rectangle, as a small disk does.
     pub largest_compact: Option<Region>,
 }
@@ -26,7 +26,7 @@ pub struct Regions {
 /// A connected region: its number of pixels, and the rectangle that encloses it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Region {
-    /// The number of its pixels.
+    /// The number of pixels.
     pub pixels: u64,
     /// The leftmost column.
     pub x: u32,
@@ -39,7 +39,7 @@ pub struct Region {
 }
 
 impl Region {
-    /// Whether it is as large as a small disk and fills half of its rectangle.
+    /// Whether the region is as large as a small disk and fills half of its rectangle.
     fn is_disk(&self) -> bool {
         let area = u64::from(self.width) * u64::from(self.height);
         self.width.min(self.height) >= MIN_SIDE

@@ -29,9 +29,9 @@ pub(super) struct AcceptedColors {
 /// The pixels of a reference whose color depends on how it marches along its rays.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MarchDependence {
-    /// Those that change with the number of steps, the largest distance or the length of the steps.
+    /// The pixels that change with the number of steps, the largest distance or the length of the steps.
     pub pixels: Share,
-    /// The limits of marches on which some of them depend, alone or together, by the places where loops
+    /// The limits of marches on which some of these pixels depend, alone or together, by the places where loops
     /// compare with them, in the order of the text.
     pub limits: Vec<Span>,
 }

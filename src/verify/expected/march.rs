@@ -27,18 +27,18 @@ const MAX_CALLS: u32 = 3;
 /// A loop that marches.
 #[derive(Debug, Clone, PartialEq)]
 struct March {
-    /// The limits of its steps and of the distance.
+    /// The limits of the march's steps and of its distance.
     limits: Vec<Limit>,
-    /// The expressions that it adds to the distance, or to the place.
+    /// The expressions that the loop adds to the distance, or to the place.
     advances: Vec<ExprId>,
 }
 
 /// A number that ends a march.
 #[derive(Debug, Clone, PartialEq)]
 struct Limit {
-    /// The place where the loop compares with it.
+    /// The place where the loop compares with the limit.
     at: Span,
-    /// The literals that determine it, also elsewhere.
+    /// The literals that determine the limit, also elsewhere.
     literals: Vec<ExprId>,
 }
 
@@ -201,7 +201,7 @@ impl Writes {
         writes
     }
 
-    /// Those of the written variables that depend on some, in one iteration.
+    /// The written variables whose values depend, in one iteration, on an expression that satisfies `on`.
     fn dependent(&self, tree: &Tree, on: impl Fn(ExprId) -> bool) -> HashSet<VariableId> {
         let mut dependent = HashSet::new();
         loop {

@@ -3,9 +3,9 @@
 /// The number type whose rounding is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberType {
-    /// In f64.
+    /// f64.
     Double,
-    /// In f32.
+    /// f32.
     Single,
 }
 

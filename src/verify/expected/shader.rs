@@ -187,7 +187,7 @@ impl ShaderReference {
         self.accepted.get_or_init(|| AcceptedColors::new(self)).as_ref()
     }
 
-    /// Those colors, if they have been computed.
+    /// The colors of [`Self::accepted`], if they have been computed.
     pub(super) fn used(&self) -> Option<&AcceptedColors> {
         self.accepted.get()?.as_ref()
     }

@@ -263,9 +263,10 @@ fn open<'a>(
 }
 
 /// The number of pixels whose bits differ. The sign of a zero and the bits of NaN are open.
-fn differing(own: &Texture, other: &Image) -> usize {
-    let own = own.to_single();
+fn differing(evaluated: &Texture, rendered: &Image) -> usize {
+    let evaluated = evaluated.to_single();
     let is_open = |a: f32, b: f32| a == b || a.is_nan() && b.is_nan();
     let differs = |(a, b): &(&[f32; 4], &[f32; 4])| !a.iter().zip(*b).all(|(&a, &b)| is_open(a, b));
-    own[0].pixels().iter().zip(other.pixels()).filter(differs).count()
+    let pairs = evaluated[0].pixels().iter().zip(rendered.pixels());
+    pairs.filter(differs).count()
 }

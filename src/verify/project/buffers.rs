@@ -22,9 +22,9 @@ pub(super) struct BufferLints<'a> {
 /// The texels of a buffer.
 #[derive(Debug, Clone, Copy)]
 struct BufferTexels {
-    /// Whether they were zero in all frames.
+    /// Whether all texels were zero in all frames.
     are_zero: bool,
-    /// The number of those that have a NaN in the last frame.
+    /// The number of texels that have a NaN in the last frame.
     nan: u64,
 }
 
@@ -33,9 +33,9 @@ struct FirstNan {
     pass: usize,
     /// The frame as the pass read it.
     inputs: Frame,
-    /// The number of texels.
+    /// The number of texels with a NaN.
     texels: u64,
-    /// The first of them.
+    /// The first texel with a NaN.
     at: [u32; 2],
 }
 

@@ -15,7 +15,7 @@ use crate::bounds::EVALUATOR_TIME_FACTOR;
 pub struct Frames<'a> {
     /// The shader.
     pub shader: &'a PassShader<'a>,
-    /// The programs of its passes.
+    /// The programs of the shader's passes.
     pub programs: &'a [Program],
     /// The inputs of each frame.
     pub clock: &'a Clock,

@@ -60,9 +60,9 @@ pub struct FrameError {
 pub struct VisibleGrowth {
     /// The pixels of the last frame that differ visibly.
     pub differing: Share,
-    /// The one of them with the largest difference.
+    /// The pixel with the largest difference.
     pub worst: [u32; 2],
-    /// The first frame in which as many do.
+    /// The first frame in which as many pixels differ visibly.
     pub since: i32,
     /// Why.
     pub cause: GrowthCause,

@@ -21,7 +21,7 @@ const _: () = assert!((SELECTION_SETS.end - SELECTION_SETS.start) as usize == RE
 /// The sets of random numbers that estimate the means.
 pub(crate) const ESTIMATE_SETS: Range<u32> = 9..17;
 
-/// The halves of these sets.
+/// The halves of [`ESTIMATE_SETS`].
 const ESTIMATE_HALVES: [Range<u32>; 2] = [9..13, 13..17];
 
 /// The number of sets in which a pixel is compared with itself. A feature that covers the part a of a pixel
@@ -29,12 +29,16 @@ const ESTIMATE_HALVES: [Range<u32>; 2] = [9..13, 13..17];
 /// below 1/(e·n).
 pub(crate) const RESAMPLES: u32 = 16;
 
-/// The largest numbers of samples, of paths and of pixels of a replicate.
+/// The largest number of samples of a replicate.
 const MAX_SAMPLES: u32 = 1 << 18;
+
+/// The largest number of paths of a replicate.
 const MAX_PATHS: u32 = 1 << 17;
+
+/// The largest number of pixels of a replicate.
 const MAX_PIXELS: u32 = 1 << 15;
 
-/// The largest number of pixels of a replicate of a shader: seventeen of them take about as long as an image
+/// The largest number of pixels of a replicate of a shader: seventeen replicates take about as long as an image
 /// of 640×360.
 const MAX_PIXELS_OF_SHADERS: u32 = 1 << 14;
 

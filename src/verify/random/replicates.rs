@@ -26,8 +26,8 @@ const WEIGHT_REPLICATES: usize = 4;
 /// The largest mean of samples: above it, the inverse of a tone map has no precision left.
 const MAX_SAMPLE_MEAN: f64 = 1e4;
 
-/// The share of the reference's random pixels that must change, or the reseeding had no effect. If a rare
-/// event decides, such as a direction that hits a lamp, most of them do not.
+/// The share of the reference's random pixels that must change, or the reseeding had no effect. Most pixels do
+/// not change if a rare event decides, such as a direction that hits a lamp.
 pub(crate) const MIN_CHANGED_SHARE: f64 = 0.1;
 
 /// The largest ratio of the squared distances from the reference of a shader with other random numbers and
@@ -392,7 +392,7 @@ pub(crate) fn places(size: [u32; 2], reference: &dyn StochasticReference) -> Pla
 struct ShaderPixel {
     /// The color as it is shown.
     tone_mapped: [f64; 3],
-    /// The mean of its samples, by the inverse of the tone map.
+    /// The mean of the pixel's samples, by the inverse of the tone map.
     mean: [f64; 3],
 }
 
@@ -455,6 +455,7 @@ fn is_white(
 ) -> bool {
     let own_mean = self::mean(own);
     let [shown, own_shown] = [mean, own_mean].map(|mean| reference.tone_mapped(mean));
+    // Nearly all values are within three standard deviations.
     let is_beyond = |mean: f64, variance: f64| mean + 3.0 * variance.sqrt() > 1.0;
     let variances = [estimate.variance, variance(own)];
     (0..3).any(|i| {

@@ -27,14 +27,16 @@ use crate::limits::MAX_VARIANCE_RATIO;
 /// The largest number of differing pixels that are resampled.
 const MAX_RESAMPLED_PIXELS: usize = 256;
 
-/// The share of them that must change in at least one of the sets.
+/// The share of the resampled differing pixels that must change in at least one of the sets.
 const MIN_RANDOM_SHARE: f64 = 0.98;
 
 /// The largest number of pixels that are resampled.
 const MAX_PIXELS: u32 = 1 << 18;
 
-/// The largest numbers of samples and of paths of one set of random numbers.
+/// The largest number of samples of one set of random numbers.
 const MAX_SAMPLES: u32 = 1 << 20;
+
+/// The largest number of paths of one set of random numbers.
 const MAX_PATHS: u32 = 1 << 18;
 
 /// A stochastic reference, with what is recorded to compare the means of a shader with it.
@@ -44,7 +46,7 @@ pub(crate) struct Stochastic<'a> {
     size: [u32; 2],
     /// The rows of a scene.
     rows: Option<SampledRows<'a>>,
-    /// Whether it is an image, whose noise is unknown.
+    /// Whether the reference is an image, whose noise is unknown.
     is_image: bool,
 }
 
@@ -295,6 +297,7 @@ struct SampleSets<'a> {
     tracer: &'a Tracer<f64>,
     /// The means of samples of each set, before the tone map.
     means: Vec<Vec<[f64; 3]>>,
+    /// The means after the tone map.
     colors: Vec<Vec<[f64; 3]>>,
 }
 
