@@ -97,7 +97,7 @@ const DISPATCH: f64 = 1.0;
 /// `bool` is 0 or 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Point<'v> {
-    /// Where it is.
+    /// The position.
     pub at: [f64; 2],
     /// The parameters; those that are missing are 0.
     pub values: &'v [f64],

@@ -91,8 +91,9 @@ struct FrameCode<'a> {
     input: NativeInput<'a>,
     vectors: Vectors,
     precision: Precision,
-    /// The batches whose results were denormal, and the others.
+    /// The number of batches whose results were denormal.
     underflows: AtomicU32,
+    /// The number of other batches.
     others: AtomicU32,
 }
 

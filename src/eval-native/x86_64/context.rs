@@ -14,9 +14,11 @@ pub(super) struct Context {
     pub(super) call: *const u8,
     pub(super) refuel: *const u8,
     pub(super) note: *const u8,
-    /// MXCSR of the caller, that of the code, and the status bits that the code has set.
+    /// MXCSR of the caller.
     pub(super) caller_mxcsr: u32,
+    /// MXCSR of the code.
     pub(super) own_mxcsr: u32,
+    /// The status bits of MXCSR that the code has set.
     pub(super) status: u32,
     pub(super) scratch: u32,
     /// Vector registers while a function is called.

@@ -59,7 +59,7 @@ pub(super) enum Action {
     ShiftRight(u8),
     /// Takes the lower half of each lane of 64 bits.
     Narrow,
-    /// Its operand, until the end of a guard assigns another node to it.
+    /// The operand, until the end of a guard assigns another node to it.
     Merge,
 }
 
@@ -72,7 +72,7 @@ pub(super) struct Node {
 }
 
 impl Node {
-    /// Whether it can be loaded at any time, so that it needs no register until it is used.
+    /// Whether the node can be loaded at any time, so that it needs no register until it is used.
     pub(super) fn is_lazy(&self) -> bool {
         matches!(
             self.action,

@@ -7,24 +7,24 @@ use toyproof_eval::native::{Location, LoweredCode, Operation, Predicate, Step, T
 pub(super) enum Class {
     /// Not at all.
     Nothing,
-    /// In a region.
+    /// Executed in a region.
     Vector,
-    /// On scalars, before the region around it.
+    /// Executed on scalars, before the region around the step.
     Scalar,
-    /// By its handler, before the region around it.
+    /// Executed by the step's handler, before the region around the step.
     ScalarCall,
-    /// On scalars, where it is: it changes a variable.
+    /// Executed on scalars, in its place, since the step changes a variable.
     ScalarStore,
-    /// By its handler, where it is.
+    /// Executed by the step's handler, in its place.
     Call,
-    /// At the end of a region: where the mask is empty for the whole batch, control jumps.
+    /// Executed at the end of a region: where the mask is empty for the whole batch, control jumps.
     Branch,
-    /// By jumps and counters.
+    /// Executed by jumps and counters.
     Control,
 }
 
 impl Class {
-    /// Whether it ends a region.
+    /// Whether a step of this class ends a region.
     pub(super) fn is_barrier(self) -> bool {
         matches!(
             self,
@@ -43,7 +43,7 @@ pub(super) struct Plan {
     pub(super) targets: Vec<bool>,
 }
 
-/// The number of guards within each other.
+/// The largest number of guards within each other.
 const MAX_HEIGHT: u32 = 16;
 
 /// A jump whose target lies ahead.

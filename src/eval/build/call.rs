@@ -15,6 +15,7 @@ struct Argument {
     channel: Option<u8>,
     /// The part of a variable that is copied in when the call begins, if the values are not read before.
     copy_in: Option<LValue>,
+    /// The part of a variable that gets the parameter's value when the call ends.
     copy_out: Option<LValue>,
 }
 

@@ -139,7 +139,7 @@ impl Builder<'_> {
 pub(super) struct WrittenFlags {
     /// A flag word for each component: whether it has been written.
     flags: Cells,
-    /// The location of its declaration.
+    /// The place of the variable's declaration.
     at: Place,
 }
 
@@ -210,13 +210,13 @@ impl Builder<'_> {
         self.set_flags(Cells { first, count }, false);
     }
 
-    /// Ends all `out` parameters but the first `left`.
-    pub(super) fn end_out_parameters(&mut self, left: usize) {
-        self.out_parameters.truncate(left);
+    /// Ends all `out` parameters but the first `count`.
+    pub(super) fn end_out_parameters(&mut self, count: usize) {
+        self.out_parameters.truncate(count);
     }
 
-    fn set_flags(&self, flags: Cells, written: bool) {
-        let value = self.bool_value(written);
+    fn set_flags(&self, flags: Cells, is_written: bool) {
+        let value = self.bool_value(is_written);
         for flag in flags.first..flags.first + flags.count {
             self.store(Cell(flag), value);
         }
@@ -244,14 +244,14 @@ impl Builder<'_> {
     }
 
     /// Checks the flags of cells that are read. Copying a whole structure is not a read.
-    pub(super) fn check_written(&mut self, ty: Type, of: &[u32], index: Option<(Value, Cells)>) {
+    pub(super) fn check_written(&mut self, ty: Type, cells_read: &[u32], index: Option<(Value, Cells)>) {
         if matches!(ty, Type::Struct(_) | Type::Array(_)) {
             return;
         }
-        let Some((_, at)) = of.first().and_then(|&cell| self.flag(cell)) else {
+        let Some((_, at)) = cells_read.first().and_then(|&cell| self.flag(cell)) else {
             return;
         };
-        let flags = of.iter().filter_map(|&cell| {
+        let flags = cells_read.iter().filter_map(|&cell| {
             let (flag, _) = self.flag(cell)?;
             Some(match index {
                 None => self.load(Cell(flag)),

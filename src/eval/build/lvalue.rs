@@ -10,7 +10,7 @@ use crate::ir::{Cell, Cells, Fault, Kind, NONE, Node, Operation, Predicate, Valu
 /// The location of a variable.
 #[derive(Debug, Clone)]
 pub(super) enum Location {
-    /// In cells of its own.
+    /// A variable in cells of its own.
     Cells(Cells),
     /// A read-only variable.
     Values(Vec<Value>),
@@ -22,11 +22,11 @@ pub(super) enum Location {
 #[derive(Debug, Clone)]
 pub(super) struct LValue {
     ty: Type,
-    /// The first of its cells.
+    /// The first cell of the part.
     first: u32,
-    /// The offsets of its components from there, if they are not contiguous.
+    /// The offsets of the components from the first cell, if the components are not contiguous.
     swizzle: Option<Vec<u32>>,
-    /// The dynamic index added to each, and the cells that it may select.
+    /// The dynamic index that is added to each component's cell, and the cells that the index may select.
     index: Option<(Value, Cells)>,
 }
 
@@ -132,9 +132,9 @@ impl Builder<'_> {
     }
 
     /// Narrows a target by one selection.
-    fn narrow(&mut self, target: &mut LValue, step: ExprId) -> Result<()> {
-        let ty = self.ty(step);
-        match self.tree[step].kind {
+    fn narrow(&mut self, target: &mut LValue, selection: ExprId) -> Result<()> {
+        let ty = self.ty(selection);
+        match self.tree[selection].kind {
             ExprKind::Member { member, .. } => {
                 if let Type::Struct(id) = target.ty {
                     target.first += member_offset(self.tree, id, member) as u32;

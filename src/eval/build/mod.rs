@@ -44,13 +44,13 @@ const STACK_BYTES: usize = 128 << 20;
 /// Why a shader cannot be evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Refusal {
-    /// It has too many values or variables after inlining.
+    /// The shader has too many values or variables after inlining.
     #[error("the shader is too large after inlining to be evaluated on the CPU")]
     TooLong,
-    /// It is nested too deeply after inlining.
+    /// The shader is nested too deeply after inlining.
     #[error("the shader is nested too deeply after inlining to be evaluated on the CPU")]
     TooDeep,
-    /// There is not enough memory for it, or for the stack.
+    /// There is not enough memory for the shader, or for the stack.
     #[error("not enough memory to evaluate the shader on the CPU")]
     NoMemory,
     /// Compilation exceeds its time limit.
@@ -204,7 +204,7 @@ impl IrWriter {
 struct InlinedCall {
     scope: Scope,
     result: Cells,
-    /// Its call, for traces.
+    /// The call, for traces.
     call: Option<CallId>,
 }
 
@@ -213,7 +213,7 @@ struct Builder<'a> {
     tree: &'a Tree,
     /// How the textures of the channels are sampled.
     sampling: [Sampling; 4],
-    /// Whether the alpha of the color is an output; else it is 1.
+    /// Whether the alpha of the color is an output; else the alpha is 1.
     keeps_alpha: bool,
     /// The uniforms whose values are given for each run, with their numbers.
     parameters: HashMap<VariableId, u32>,

@@ -20,18 +20,23 @@ pub struct FrameCode<N: Arithmetic> {
     pub(crate) instructions: Vec<Instruction<N>>,
     /// The first instruction of each step, and the end.
     pub(crate) positions: Vec<u32>,
-    /// The initial values of scalars; those of computed constants are set by `prologue`.
+    /// The initial values of float scalars; `prologue` sets computed constants.
     pub(crate) floats: Vec<N>,
+    /// The initial values of word scalars; `prologue` sets computed constants.
     pub(crate) words: Vec<u32>,
+    /// The instructions that compute constants.
     pub(crate) prologue: Vec<Instruction<N>>,
-    /// The number of rows.
+    /// The number of rows of floats.
     pub(crate) float_rows: usize,
+    /// The number of rows of words.
     pub(crate) word_rows: usize,
+    /// The number of masks.
     pub(crate) masks: usize,
     /// The number of chunks in a row.
     pub(crate) width: usize,
-    /// Red, green, blue, alpha.
+    /// The locations of red, green, blue and alpha.
     pub(crate) color: [Location; 4],
+    /// The location of the word that is set by `discard`.
     pub(crate) discarded: Location,
     /// The numbers, kinds and rows of the parameters.
     pub(crate) parameters: Vec<(u32, Kind, u32)>,

@@ -60,7 +60,7 @@ macro_rules! define_number {
             fn to_f64(self) -> f64;
             /// Converts to the nearest f32.
             fn to_f32(self) -> f32;
-            /// Whether it is NaN.
+            /// Whether the number is NaN.
             fn is_nan(self) -> bool;
             /// Returns `yes` where the bits of the mask are set, `no` where they are clear, bit by bit.
             #[must_use]
@@ -440,7 +440,7 @@ impl Seed {
     }
 
     #[inline(always)]
-    fn round_randomly_unless(self, value: f64, exact: bool) -> RandomRounding {
+    fn round_randomly_unless(self, value: f64, is_exact: bool) -> RandomRounding {
         let bits = value.to_bits();
         // Two iterations of xor-folding and 32×32-bit multiplication, which vectorize.
         let seed = self.number.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
@@ -452,7 +452,7 @@ impl Seed {
         let step = third.wrapping_sub(1) << self.unit;
         let moved = f64::from_bits(bits.wrapping_add(step));
         let size = value.abs();
-        let unchanged = exact || !(size > f64::MIN_POSITIVE && size < f64::MAX);
+        let unchanged = is_exact || !(size > f64::MIN_POSITIVE && size < f64::MAX);
         RandomRounding(if unchanged { value } else { moved })
     }
 }

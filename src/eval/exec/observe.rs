@@ -31,9 +31,9 @@ impl Notes {
 pub struct Observed {
     /// The fault and its source location.
     pub site: Site,
-    /// The number of pixels.
+    /// The number of pixels with the fault.
     pub pixels: u64,
-    /// The first of them, row by row from the bottom.
+    /// The first pixel with the fault, row by row from the bottom.
     pub first: [u32; 2],
 }
 
@@ -44,8 +44,7 @@ pub struct Observations {
     pub faults: Vec<Observed>,
     /// The largest number of loop iterations of a pixel, all loops together.
     pub max_iterations: u32,
-    /// The number of pixels that exceed the 65,535 iterations after which Mesa before version 23 ends all
-    /// loops of a pixel.
+    /// The number of pixels that exceed [`MESA_CAP`].
     pub beyond_cap: u64,
 }
 

@@ -12,7 +12,7 @@ use crate::ir::EventId;
 pub struct TraceEvent {
     /// The static event.
     pub event: EventId,
-    /// The components of its value.
+    /// The components of the event's value.
     pub values: Vec<TraceValue>,
 }
 
@@ -44,7 +44,7 @@ const MAX_TRACE_COMPONENTS: usize = 1 << 21;
 pub struct ForcedPrefix<'a> {
     /// The other trace.
     pub trace: &'a ExecutionTrace,
-    /// The number of its events to force; clamped to its length.
+    /// The number of events of that trace to force; clamped to the trace's length.
     pub length: usize,
 }
 

@@ -23,8 +23,10 @@ use crate::ir::SiteId;
 use crate::lower::LoweredCode;
 use crate::lower::regalloc::Location;
 
-/// Width and height of a chunk in pixels.
+/// The width of a chunk, in pixels.
 const CHUNK_COLUMNS: usize = TILE_COLUMNS / 2;
+
+/// The height of a chunk, in pixels.
 const CHUNK_ROWS: usize = LANES / CHUNK_COLUMNS;
 
 /// The smallest number of pixels for which compiling to machine code takes less time than it saves.

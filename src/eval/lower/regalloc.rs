@@ -27,10 +27,11 @@ pub enum Location {
 pub struct Allocation {
     values: Vec<Option<Location>>,
     cells: Vec<Option<Location>>,
-    /// The last step that may read each value and cell.
+    /// The last step that may read each value.
     value_ends: Vec<u32>,
+    /// The last step that may read each cell.
     cell_ends: Vec<u32>,
-    /// Whether a step is elided: its value already is in its location.
+    /// Whether a step is elided, since the value is in the location already.
     pub elided: Vec<bool>,
     pub(crate) rows: PerKind,
     pub(crate) scalars: PerKind,

@@ -481,17 +481,23 @@ impl Triggers {
         Some(self.list[at].fact)
     }
 
-    /// Returns the first trigger in a part of the list whose `outer` is below a bound, within the range of a
+    /// Returns the first trigger in a section of the list whose `outer` is below a bound, within the range of a
     /// tree node.
-    fn find(&self, node: usize, [start, end]: [usize; 2], part: [usize; 2], before: usize) -> Option<usize> {
-        if end <= part[0] || part[1] <= start || self.min_outer[node] >= before {
+    fn find(
+        &self,
+        node: usize,
+        [start, end]: [usize; 2],
+        section: [usize; 2],
+        bound: usize,
+    ) -> Option<usize> {
+        if end <= section[0] || section[1] <= start || self.min_outer[node] >= bound {
             return None;
         }
         if end - start == 1 {
             return Some(start);
         }
         let middle = start.midpoint(end);
-        self.find(2 * node, [start, middle], part, before)
-            .or_else(|| self.find(2 * node + 1, [middle, end], part, before))
+        self.find(2 * node, [start, middle], section, bound)
+            .or_else(|| self.find(2 * node + 1, [middle, end], section, bound))
     }
 }

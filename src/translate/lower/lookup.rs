@@ -125,8 +125,10 @@ impl Lookup {
     }
 }
 
-/// The names of the parameters: the coordinates, up to two arguments for the level, and the offset.
+/// The names of the parameters: the coordinates, and up to two arguments for the level.
 const NAMES: [&str; 3] = ["toyproof_p", "toyproof_a", "toyproof_b"];
+
+/// The name of the parameter for the offset.
 const OFFSET: &str = "toyproof_offset";
 
 /// Adds the function for the lookups of a channel with arguments of these types.

@@ -17,9 +17,9 @@ pub(super) fn path_nodes(tree: &Tree, lvalue: ExprId) -> Vec<ExprId> {
 /// The indices of a path that must be evaluated only once.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hoist {
-    /// Those with side effects.
+    /// The indices with side effects.
     Effectful,
-    /// All that are not constant.
+    /// All indices that are not constant.
     NonConstant,
 }
 

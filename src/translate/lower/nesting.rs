@@ -129,7 +129,7 @@ impl MaxDepths {
 
 /// The nesting depths of all functions.
 struct Depths {
-    /// Depths without those of called functions.
+    /// The depths without those of called functions.
     own: HashMap<FunctionId, u32>,
     /// Depths including those of called functions.
     whole: HashMap<FunctionId, MaxDepths>,

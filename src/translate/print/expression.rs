@@ -9,13 +9,14 @@ use toyproof_glsl::tree::{
 
 use super::Printer;
 
-/// Precedence levels; those of binary operators lie between.
+/// Precedence levels, from the weakest binding to the strongest.
 mod level {
     pub(super) const SEQUENCE: u8 = 0;
     pub(super) const ASSIGN: u8 = 1;
     pub(super) const CONDITIONAL: u8 = 2;
-    /// The offset of the operator's own precedence, 1 to 11.
+    /// The offset of the levels of binary operators: each adds the operator's own precedence, 1 to 11.
     pub(super) const BINARY: u8 = 2;
+
     pub(super) const UNARY: u8 = 14;
     pub(super) const POSTFIX: u8 = 15;
 }

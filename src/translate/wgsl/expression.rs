@@ -302,8 +302,8 @@ impl Writer<'_> {
                 });
             }
             BinaryOp::BitAnd | BinaryOp::BitOr | BinaryOp::BitXor => {
-                let splat = |code: String, own: Type, other: Type| match other {
-                    Type::Vector(..) if is_scalar(own) => format!("{}({code})", self.type_name(other)),
+                let splat = |code: String, ty: Type, other_type: Type| match other_type {
+                    Type::Vector(..) if is_scalar(ty) => format!("{}({code})", self.type_name(other_type)),
                     _ => code,
                 };
                 let left = splat(left.within(&[Primary, Unary, Chain(op)]), left_type, right_type);

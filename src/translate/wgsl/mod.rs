@@ -32,7 +32,7 @@ use crate::print::{CaseLabels, Order};
 /// Why this writer cannot print a shader.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Unprintable {
-    /// A construct that it does not support, whose place is not known.
+    /// A construct that the writer does not support, whose place is not known.
     #[error("{0} is not supported")]
     Construct(&'static str),
     /// A feature that the host does not provide, or a construct that is not supported.

@@ -369,10 +369,11 @@ fn around_shader(template: &str) -> [&str; 2] {
     parts.map_or([template, ""], |(before, after)| [before, after])
 }
 
-/// Fills in a part of a template.
-fn fill(part: &str, holds: impl Fn(&str) -> bool, values: &[(&str, String)]) -> String {
+/// Fills in a part of a template: leaves out the lines none of whose conditions holds, and replaces names by
+/// values.
+fn fill(template: &str, holds: impl Fn(&str) -> bool, values: &[(&str, String)]) -> String {
     let mut text = String::new();
-    for line in part.lines() {
+    for line in template.lines() {
         let line = match line.split_once("//?") {
             Some((_, conditions)) if !conditions.split_whitespace().any(&holds) => continue,
             Some((line, _)) => line.trim_end(),
@@ -395,7 +396,7 @@ fn channel_number(condition: &str) -> Option<u8> {
 pub struct HostedShader {
     /// The module's text, with our bindings and the entry point `main`.
     pub text: String,
-    /// Whether row 0 of its target is the top of the image.
+    /// Whether row 0 of the module's target is the top of the image.
     pub upside_down: bool,
 }
 

@@ -5,7 +5,7 @@ use crate::x86_64::assemble::{
 };
 use crate::x86_64::node::{Precision, Table, TableRow};
 
-/// The base registers of the tables in memory, which stay the same.
+// The base registers of the tables in memory, which stay the same.
 pub(crate) const FLOATS: Gpr = RBX;
 pub(crate) const WORDS: Gpr = RBP;
 pub(crate) const MASKS: Gpr = R12;
@@ -15,25 +15,37 @@ pub(crate) const CONTEXT: Gpr = R15;
 
 /// The offset of the vector's words from the start of their row.
 pub(super) const OFFSET: Gpr = RCX;
+
 /// The offset at which the chunk ends.
 pub(super) const CHUNK_END: Gpr = RDX;
+
 /// A bit for each chunk that is left.
 pub(super) const CHUNKS: Gpr = R8;
+
+/// The address of the table of each pixel's iterations.
 pub(super) const ITERATIONS: Gpr = RSI;
 
 /// The bytes of the words of a chunk.
 pub(super) const CHUNK_BYTES: i32 = 64;
 
-/// The stack frame: accumulators of masks, then the caller's stack pointer, then spilled vectors.
-pub(crate) const SAVED_STACK: i32 = 248;
-pub(super) const SPILLED: i32 = 256;
-/// The number of accumulators.
+// The stack frame: accumulators of masks, then the caller's stack pointer, then spilled vectors.
+
+/// The number of accumulators, of 4 bytes each.
 pub(super) const MAX_MASKS: usize = 62;
+
+/// The offset of the caller's stack pointer.
+pub(crate) const SAVED_STACK: i32 = 248;
+
+/// The offset of the spilled vectors.
+pub(super) const SPILLED: i32 = 256;
+
 /// The number of vectors that may be spilled.
 pub(super) const MAX_SLOTS: u32 = 512;
 
-/// The number of registers that nodes may take; the last one is for sequences of instructions.
+/// The number of registers that nodes may take.
 pub(super) const REGISTERS: usize = 15;
+
+/// The register for sequences of instructions: the last one.
 pub(super) const SCRATCH: Vector = 15;
 
 /// A vector with pixels to note.

@@ -31,12 +31,13 @@ pub(super) struct Registers<'a> {
     /// Slots that are free after the item, which may still read them.
     pub(super) pending_slots: Vec<u32>,
     pub(super) slot_count: u32,
-    /// The items that use each node, in order; those of node `n` begin at `first_use[n]`.
+    /// The items that use each node, in order, node by node.
     pub(super) uses: Vec<u32>,
+    /// The index in `uses` at which the items of each node begin.
     pub(super) first_use: Vec<u32>,
     /// The use of each node that comes next.
     pub(super) next_use: Vec<u32>,
-    /// Whether a node cannot be loaded again, although it is lazy: its row has changed.
+    /// Whether a node cannot be loaded again although it is lazy, since its row has changed.
     pub(super) stale: Vec<bool>,
     /// The nodes that load each row, in order, latest first.
     pub(super) row_nodes: Map<TableRow, Vec<NodeId>>,

@@ -13,8 +13,10 @@ use crate::x86_64::op;
 /// The registers that belong to the caller.
 const PRESERVED: [Gpr; 6] = [RBX, RBP, R12, R13, R14, R15];
 
-/// Bits of MXCSR: flush denormal results to zero; the status.
+/// The bit of MXCSR that flushes denormal results to zero.
 const FLUSH_TO_ZERO: u32 = 1 << 15;
+
+/// The status bits of MXCSR.
 const STATUS: u32 = 0x3F;
 
 impl Writer<'_> {

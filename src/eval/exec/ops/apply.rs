@@ -8,7 +8,7 @@ use crate::ir::{Operation, for_each_operation};
 pub(super) trait Of1<N: Arithmetic, A: Copy, R: Copy + Default> {
     fn apply(a: A, noise: N::Noise) -> R;
 
-    /// Applies it to each lane.
+    /// Applies the operation to each lane.
     #[inline(always)]
     fn apply_to_lanes(a: Lanes<A>, noise: N::Noise) -> Lanes<R> {
         let mut results = [R::default(); LANES];
@@ -23,7 +23,7 @@ pub(super) trait Of1<N: Arithmetic, A: Copy, R: Copy + Default> {
 pub(super) trait Of2<N: Arithmetic, A: Copy, B: Copy, R: Copy + Default> {
     fn apply(a: A, b: B, noise: N::Noise) -> R;
 
-    /// Applies it to each lane.
+    /// Applies the operation to each lane.
     #[inline(always)]
     fn apply_to_lanes(a: Lanes<A>, b: Lanes<B>, noise: N::Noise) -> Lanes<R> {
         let mut results = [R::default(); LANES];
@@ -206,7 +206,7 @@ fn to_int(x: f64) -> i32 {
     }
 }
 
-/// Rounds toward zero; values that are too large become the largest f32 that fits a `uint`.
+/// Rounds toward zero. Values that are too large become the largest f32 that fits a `uint`, as in [`to_int`].
 #[inline(always)]
 fn to_uint(x: f64) -> u32 {
     if x < 4_294_967_296.0 {
@@ -261,7 +261,9 @@ fn f32_to_f16(x: f32) -> u16 {
         let units = (f32::from_bits(magnitude) * 16_777_216.0).round_ties_even();
         return sign | units as u16;
     }
+    // The 13 bits of the fraction that are lost round to even.
     let rounded = magnitude + 0xfff + (magnitude >> 13 & 1);
+    // The biases of the exponents differ by 112: 0x3800_0000 is 112 << 23.
     sign | ((rounded - 0x3800_0000) >> 13) as u16
 }
 
@@ -271,6 +273,7 @@ fn f16_to_f32(half: u16) -> f32 {
     let (exponent, fraction) = (u32::from(half >> 10 & 0x1f), u32::from(half & 0x3ff));
     let magnitude = match exponent {
         0 => (fraction as f32 / 16_777_216.0).to_bits(),
+        // Infinity and NaN.
         31 => 0x7f80_0000 | fraction << 13,
         _ => (exponent + 112) << 23 | fraction << 13,
     };

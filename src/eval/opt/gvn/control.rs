@@ -18,9 +18,9 @@ pub(super) type PathChanges = Map<Cell, Option<Value>>;
 #[derive(Debug)]
 pub(super) struct OpenScope {
     scope: Scope,
-    /// Where its changes begin.
+    /// Where the changes in the scope begin.
     mark: usize,
-    /// The paths that leave it; none, and no further paths, where the budget is exhausted.
+    /// The paths that leave the scope; none, and no further paths, where the budget is exhausted.
     pub(super) paths: Vec<Option<PathChanges>>,
 }
 
@@ -43,14 +43,14 @@ impl ValueNumbering<'_> {
             leaves -= 1;
         }
         if !paths.is_empty() {
-            if self.reachable {
+            if self.is_reachable {
                 paths.push(self.path_since(mark));
             }
             self.cell_values.roll_back(mark);
             if let Some(paths) = paths.into_iter().collect() {
                 self.merge_paths(paths);
             } else {
-                self.reachable = true;
+                self.is_reachable = true;
                 self.invalidate_stores(self.changes.of_scope(template));
             }
         }
@@ -64,7 +64,7 @@ impl ValueNumbering<'_> {
     /// Rewrites a break of all active pixels.
     pub(super) fn rewrite_break(&mut self, template: Scope, out: &mut Block) {
         let scope = self.record_exit(template);
-        self.reachable = false;
+        self.is_reachable = false;
         out.push(Node::Break(scope));
     }
 
@@ -96,18 +96,18 @@ impl ValueNumbering<'_> {
     /// Joins paths: keeps what holds on all of them.
     pub(super) fn merge_paths(&mut self, paths: Vec<PathChanges>) {
         let count = paths.len();
-        self.reachable = count > 0;
+        self.is_reachable = count > 0;
         // The common value of each cell on the paths that change it, and the number of these paths.
         let mut merged: Map<Cell, (Option<Value>, usize)> = Map::default();
         for (cell, value) in paths.into_iter().flatten() {
-            let (same, changed) = merged.entry(cell).or_insert((value, 0));
-            *same = same.filter(|_| *same == value);
-            *changed += 1;
+            let (common, changing_paths) = merged.entry(cell).or_insert((value, 0));
+            *common = common.filter(|_| *common == value);
+            *changing_paths += 1;
         }
         let mut merged: Vec<_> = merged.into_iter().collect();
         merged.sort_unstable_by_key(|(cell, _)| *cell);
-        for (cell, (value, changed)) in merged {
-            let everywhere = changed == count || self.cell_values.get(cell) == value;
+        for (cell, (value, changing_paths)) in merged {
+            let everywhere = changing_paths == count || self.cell_values.get(cell) == value;
             self.cell_values.set(cell, value.filter(|_| everywhere));
         }
     }
@@ -120,7 +120,7 @@ impl ValueNumbering<'_> {
 pub(super) struct OpenLoop {
     /// The number of enclosing scopes.
     pub(super) depth: usize,
-    /// Where its changes begin.
+    /// Where the changes in the loop begin.
     pub(super) mark: usize,
 }
 
@@ -151,13 +151,13 @@ impl ValueNumbering<'_> {
         });
         let body = self.block(body);
         self.open_loops.pop();
-        self.reachable = false;
+        self.is_reachable = false;
         out.push(Node::Loop { id, body });
     }
 
-    /// Forgets all cells that a part of the function stores to.
-    pub(super) fn invalidate_stores(&mut self, part: Range<usize>) {
-        for at in part {
+    /// Forgets all cells that some changes store to.
+    pub(super) fn invalidate_stores(&mut self, changes: Range<usize>) {
+        for at in changes {
             match self.changes.get(at) {
                 Change::Computed(_) => {}
                 Change::Stored(cell, _) => self.cell_values.set(cell, None),
@@ -251,14 +251,14 @@ impl ValueNumbering<'_> {
         loop {
             self.budget.outermost_decided = usize::MAX;
             self.nodes(body, &mut out);
-            if !self.reachable
+            if !self.is_reachable
                 || self.budget.is_full()
                 || self.budget.outermost_decided >= checkpoint.paths.len()
             {
                 break;
             }
         }
-        let done = !self.reachable && !self.budget.is_full();
+        let done = !self.is_reachable && !self.budget.is_full();
         if outermost {
             self.budget.values_left = None;
         }
@@ -286,7 +286,7 @@ impl ValueNumbering<'_> {
     /// Replacements of values of the body are not restored: each value is computed again before its use, and
     /// [`Self::repeat`] clears them first. The path budget is not restored: it bounds time, too.
     fn roll_back(&mut self, checkpoint: &Checkpoint) {
-        self.reachable = true;
+        self.is_reachable = true;
         self.cell_values.roll_back(checkpoint.cell_values);
         self.available.roll_back(checkpoint.available);
         for (exit, &paths) in self.open_scopes.iter_mut().zip(&checkpoint.paths) {

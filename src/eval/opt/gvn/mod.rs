@@ -44,7 +44,7 @@ pub(crate) fn number_values(function: &mut Function, fold: Fold, traced: bool) {
         open_scopes: Vec::new(),
         depths: vec![0; scopes as usize],
         open_loops: Vec::new(),
-        reachable: true,
+        is_reachable: true,
         budget: UnrollBudget::default(),
         path_budget: control::MAX_PATH_CHANGES,
     };
@@ -63,7 +63,7 @@ struct ValueNumbering<'a> {
     epochs: Vec<u32>,
     /// The definitions of the function that is read.
     templates: Vec<ValueDef>,
-    /// The new value of each; in an unrolled loop, that of the latest iteration.
+    /// The new value of each template; in an unrolled loop, that of the latest iteration.
     replacements: Vec<Value>,
     /// The changes made by the loops and scopes of the function that is read.
     changes: Changes,
@@ -77,12 +77,12 @@ struct ValueNumbering<'a> {
     available: RollbackMap<(ValueDef, u32), Value>,
     /// The open scopes.
     open_scopes: Vec<OpenScope>,
-    /// The index among them of each scope of the function that is read.
+    /// The index of each scope of the function that is read, among the open ones.
     depths: Vec<usize>,
     /// The open loops.
     open_loops: Vec<OpenLoop>,
     /// Whether control flow reaches this point.
-    reachable: bool,
+    is_reachable: bool,
     budget: UnrollBudget,
     /// How many changes may still be stored for paths that leave scopes.
     path_budget: usize,
@@ -99,7 +99,7 @@ impl ValueNumbering<'_> {
 
     fn nodes(&mut self, block: &[Node], out: &mut Block) {
         for node in block {
-            if !self.reachable || self.budget.is_full() {
+            if !self.is_reachable || self.budget.is_full() {
                 break;
             }
             self.budget.read();
@@ -198,9 +198,9 @@ impl ValueNumbering<'_> {
         let mark = self.cell_values.mark();
         let mut paths = Vec::new();
         let [yes, no] = branches.map(|branch| {
-            self.reachable = true;
+            self.is_reachable = true;
             let branch = self.block(branch);
-            if self.reachable {
+            if self.is_reachable {
                 paths.push(self.cell_values.changes_since(mark));
             }
             self.cell_values.roll_back(mark);
