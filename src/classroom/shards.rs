@@ -1,15 +1,15 @@
 //! The distribution of a batch of shaders over shards, which are checked on several machines.
 
-/// A shard may exceed its share of the costs by this part, so that most shaders stay in their shard when
-/// others come and go.
+/// How much a shard may exceed its share of the costs, relative to the share, so that most shaders stay in
+/// the same shard when others come and go.
 const SLACK: f64 = 0.05;
 
 /// An item of the distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Item {
-    /// The time that it takes, in any unit. Expensive items are placed first, cheap ones fill the gaps.
+    /// The time that the item takes, in any unit. Expensive items are placed first, cheap ones fill the gaps.
     pub cost: u64,
-    /// A hash of its content, which chooses its shard.
+    /// A hash of the content, which determines the shard.
     pub hash: u64,
 }
 

@@ -193,8 +193,10 @@ fn create_file(
     Ok(Some(path))
 }
 
-/// The names of the files of an assignment.
+/// The name of the reference shader of a new assignment.
 const SOLUTION: &str = "solution.glsl";
+
+/// The name of the scene of a new assignment.
 const SCENE: &str = "scene.toml";
 
 /// Creates the folder of an assignment. Everything is rendered before the first file is written.

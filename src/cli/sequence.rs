@@ -60,9 +60,9 @@ impl Frames {
 /// How the rendering of a frame ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum FrameEnd {
-    /// Its image is written.
+    /// The image is written.
     Written,
-    /// The user interrupted it.
+    /// The user interrupted the rendering.
     Interrupted,
 }
 

@@ -24,9 +24,9 @@ pub(super) struct Shader {
     pub(super) name: String,
     pub(super) files: Files,
     pub(super) content: Result<Content, Unusable>,
-    /// Of a project: those of its image, with the warnings about all tabs.
+    /// The lints; of a project, the lints of its image with the warnings about all tabs.
     pub(super) lints: Lints,
-    /// Whether it is a project whose image reads other passes, and so depends on earlier frames.
+    /// Whether this is a project whose image reads other passes, and so depends on earlier frames.
     pub(super) has_passes: bool,
     /// Whether a student submitted no shader.
     pub(super) is_missing: bool,
@@ -40,9 +40,9 @@ pub(super) enum Content {
 
 /// Why a shader cannot be used.
 pub(super) enum Unusable {
-    /// Its content is invalid.
+    /// The content is invalid.
     Invalid(Vec<Diagnostic>),
-    /// It cannot be read.
+    /// The content cannot be read.
     Unreadable(Unreadable),
 }
 

@@ -347,6 +347,7 @@ impl Terminal {
                 _ => {
                     let _ = bars.clear();
                     let _ = writeln!(anstream::stderr().lock(), "interrupted");
+                    // 128 plus the number of SIGINT, as of a program that the signal ends.
                     std::process::exit(130);
                 }
             });

@@ -120,10 +120,10 @@ pub struct Conversion {
 /// Why our own WGSL writer was not used.
 #[derive(Debug, Error)]
 pub enum FallbackReason {
-    /// It wrote nothing.
+    /// The writer wrote nothing.
     #[error(transparent)]
     Unwritable(WgslError),
-    /// Its text could not be proved, and naga's could.
+    /// The text could not be proved, and naga's could.
     #[error(transparent)]
     Unproved(ProofError),
 }

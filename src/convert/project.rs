@@ -15,7 +15,7 @@ use crate::{ConvertError, Converter, FallbackReason, ProofError, Prover, Source,
 /// A project to convert.
 #[derive(Debug, Clone, Copy)]
 pub struct ProjectSource<'a> {
-    /// Its name, for the host.
+    /// The name, for the host.
     pub name: &'a str,
     /// The project.
     pub project: &'a CompiledProject,
@@ -43,16 +43,16 @@ pub struct PassFile {
     pub kind: PassKind,
     /// The name of the file.
     pub name: String,
-    /// Its content.
+    /// The content.
     pub code: TargetCode,
 }
 
 /// The file that says how a host plays the passes: [`GRAPH_FILE`], or a script.
 #[derive(Debug)]
 pub struct HostFile {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// Its content.
+    /// The content.
     pub text: String,
 }
 

@@ -151,7 +151,7 @@ pub enum ProofError {
     FullyUndefined {
         /// The operation that occurs in most pixels.
         fault: Fault,
-        /// Its position: file, line and column.
+        /// The position: file, line and column.
         at: String,
     },
     /// A channel is a cube map or a volume, which are black in the compared frames, so that reads of it

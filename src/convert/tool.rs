@@ -19,7 +19,7 @@ pub enum ToolError {
     Refused {
         /// The tool.
         tool: &'static str,
-        /// Its first error message.
+        /// The first error message.
         message: String,
     },
     /// The file could not be written for it.
@@ -167,7 +167,7 @@ impl Tool {
         })
     }
 
-    /// Its name, with its version if it reports one.
+    /// The name, with its version if it reports one.
     fn name_and_version(&self) -> String {
         let version = self
             .version

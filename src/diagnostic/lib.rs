@@ -141,7 +141,7 @@ pub struct Diagnostic {
     pub code: Code,
     /// One sentence without a full stop, in the terms of the file's language.
     pub message: String,
-    /// Its span; `None` if it concerns the whole file or no file.
+    /// The span; `None` if the diagnostic concerns a whole file or no file.
     pub span: Option<Span>,
     /// A short text at the caret.
     pub label: Option<String>,

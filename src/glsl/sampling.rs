@@ -30,11 +30,11 @@ pub enum Filter {
     Mipmap,
 }
 
-/// The values outside of a texture.
+/// How a texture continues beyond its edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// Its edge.
+    /// The texels of the edge continue.
     Clamp,
-    /// Its repetitions.
+    /// The texture is repeated.
     Repeat,
 }

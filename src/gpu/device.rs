@@ -22,7 +22,7 @@ pub struct Driver {
     pub software: bool,
     /// Whether float32 textures can be filtered linearly.
     pub float32_filterable: bool,
-    /// Its float controls for 32 bits, by their Vulkan names: `DenormFlushToZero`, `RoundingModeRTE`, …
+    /// The float controls for 32 bits, by their Vulkan names: `DenormFlushToZero`, `RoundingModeRTE`, …
     pub float_controls: Vec<String>,
     /// Whether it terminates long loops; `None` if that could not be measured.
     pub loop_cap: Option<LoopCap>,

@@ -32,7 +32,7 @@ pub(super) enum Definition {
     Value(ExprId),
     /// This assignment, step or call changes it, in whole or in part.
     Change(ExprId),
-    /// Its value comes from outside the shader: a parameter of `mainImage`.
+    /// The value comes from outside the shader: a parameter of `mainImage`.
     External,
 }
 

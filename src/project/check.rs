@@ -22,7 +22,7 @@ pub struct CheckedProject {
 pub struct CheckedPass {
     /// The kind of pass.
     pub kind: PassKind,
-    /// Its tree, whose spans refer to the joined text of the tabs.
+    /// The tree, whose spans refer to the joined text of the tabs.
     pub checked: Checked,
     /// The lints' findings.
     pub lints: Lints,

@@ -7,7 +7,7 @@ use toyproof_diagnostic::{Code, Diagnostic, Span};
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub(crate) value: Value,
-    /// Its place; `None` if it was not read from a file.
+    /// The place; `None` if the node was not read from a file.
     pub(crate) span: Option<Span>,
 }
 
@@ -140,7 +140,7 @@ impl Node {
         }
     }
 
-    /// Its type, for messages: "a string".
+    /// The type, for messages: "a string".
     pub(crate) fn describe(&self) -> &'static str {
         match &self.value {
             Value::Null => "null",

@@ -48,7 +48,7 @@ pub enum Buffer {
 pub struct Pass {
     /// What it renders.
     pub kind: PassKind,
-    /// Its text, without Common.
+    /// The text, without Common.
     pub file: FileId,
     /// The inputs of `iChannel0` to `iChannel3`.
     pub inputs: [Option<Input>; 4],

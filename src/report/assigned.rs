@@ -145,11 +145,11 @@ impl Record {
 }
 
 /// A mark without partial points.
-fn mark(name: String, of: f64, passed: bool, why: String) -> Mark {
+fn mark(name: String, max_points: f64, passed: bool, why: String) -> Mark {
     Mark {
         name: name.into(),
-        points: if passed { of } else { 0.0 },
-        of,
+        points: if passed { max_points } else { 0.0 },
+        of: max_points,
         why,
     }
 }

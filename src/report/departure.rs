@@ -22,11 +22,11 @@ pub struct UnknownValue {
     /// The statement or expression.
     #[serde(flatten)]
     pub range: SourceRange,
-    /// Its text on one line, shortened, in backticks.
+    /// The text on one line, shortened, in backticks.
     pub text: String,
-    /// The line of the call of the function that contains it; null in `mainImage`.
+    /// The line of the call of the function that contains the statement; null in `mainImage`.
     pub called_at: Option<usize>,
-    /// Its value; null for a component that is not finite.
+    /// The value; null for a component that is not finite.
     pub value: Vec<Option<f64>>,
     /// The pixel, from the left.
     pub x: u32,
@@ -43,7 +43,7 @@ pub struct MissingValue {
     pub reference_line: usize,
     /// The text of the statement or expression on one line, shortened, in backticks.
     pub text: String,
-    /// Its value; null for a component that is not finite.
+    /// The value; null for a component that is not finite.
     pub value: Vec<Option<f64>>,
     /// The pixel, from the left.
     pub x: u32,

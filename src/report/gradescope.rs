@@ -62,7 +62,7 @@ pub struct Thumbnails(Vec<ShaderThumbnails>);
 #[derive(Debug, Default)]
 struct ShaderThumbnails {
     shader: String,
-    /// Each with its caption, as a PNG.
+    /// The images as PNGs, each with its caption.
     images: Vec<(&'static str, Vec<u8>)>,
 }
 

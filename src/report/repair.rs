@@ -49,12 +49,12 @@ pub struct Repair {
     pub agreeing: u64,
     /// The number of pixels that were compared.
     pub pixels: u64,
-    /// Whether their means agree, because the shader has random numbers of its own.
+    /// Whether the means of the pixels agree, because the shader has random numbers of its own.
     #[serde(default)]
     pub by_means: bool,
     /// All edits, in the order of the text.
     pub edits: Vec<RepairEdit>,
-    /// Other repairs, the most likely first; of one of these, empty.
+    /// Other repairs, the most likely first; empty for a repair that is itself an alternative.
     #[serde(default)]
     pub alternatives: Vec<Self>,
 }
@@ -233,7 +233,7 @@ impl Suspect {
         }
     }
 
-    /// Its line, after the tab of a project that it is in: `buffer-a.glsl:35`.
+    /// The line, after the tab of a project that it is in: `buffer-a.glsl:35`.
     pub(super) fn place(&self) -> String {
         let line = self.range.line;
         let tab = self.file.as_deref().and_then(|file| file.rsplit('/').next());

@@ -14,9 +14,9 @@ pub struct StudentSubmission {
     pub assignment: Option<String>,
     /// The student's name.
     pub student: String,
-    /// The number that the learning management system gives to the student, if it does.
+    /// The number that the learning management system gives to the student, if any.
     pub id: Option<String>,
-    /// How late it is; null if it is not.
+    /// How late the submission is; null if it is in time.
     pub late: Option<Late>,
 }
 
@@ -43,6 +43,7 @@ impl fmt::Display for Late {
         let (days, hours, minutes) = (seconds / 86_400, seconds / 3600 % 24, seconds.div_ceil(60) % 60);
         let days_and = format!("{} {}", grouped(days), plural(days, "day", "days"));
         match seconds {
+            // From 59 min 1 s on, the minutes are rounded up to an hour.
             0..3_541 => write!(f, "late by {minutes} min"),
             3_541..86_400 => write!(f, "late by {} h {minutes} min", seconds.div_ceil(60) / 60),
             _ if hours == 0 => write!(f, "late by {days_and}"),
@@ -52,7 +53,7 @@ impl fmt::Display for Late {
 }
 
 impl Record {
-    /// How late the submission is; `None` if it is not, or no class is checked.
+    /// How late the submission is; `None` if it is in time, or no class is checked.
     #[must_use]
     pub fn late(&self) -> Option<Late> {
         self.submitted.as_ref()?.late

@@ -17,15 +17,17 @@ use super::departure::Departure;
 pub struct PixelTrace {
     version: u32,
     shader: String,
-    /// From the left and from the bottom, in pixels.
+    /// The pixel, from the left and from the bottom.
     pixel: [u32; 2],
+    /// The size of the frame, in pixels.
     size: [u32; 2],
     /// The color of the reference; null without one.
     expected: Option<[Component; 3]>,
-    /// The final colors; null if the pixel is discarded.
+    /// The final color in f32; null if the pixel is discarded.
     f32: Option<[Component; 3]>,
+    /// The final color in f64; null if the pixel is discarded.
     f64: Option<[Component; 3]>,
-    /// The index of the first step where the two differ; null if none does.
+    /// The index of the first step where f32 and f64 differ; null if there is none.
     divergence_at: Option<usize>,
     /// The index of the step that causes a visible difference of the colors; null if there is none.
     cause_at: Option<usize>,
@@ -94,11 +96,11 @@ struct TraceStep {
 pub struct TracedPixel<'a> {
     /// The shader's name.
     pub shader: &'a str,
-    /// Its source files.
+    /// The source files.
     pub files: &'a Files,
-    /// Its tree.
+    /// The tree.
     pub tree: &'a Tree,
-    /// Pixels from the left and from the bottom.
+    /// The pixel, from the left and from the bottom.
     pub pixel: [u32; 2],
     /// The size of the frame in pixels.
     pub size: [u32; 2],
@@ -393,8 +395,10 @@ fn components(tree: &Tree, ty: Type) -> Vec<String> {
 /// about a screen.
 const CONTEXT_STEPS: usize = 40;
 
-/// The column widths of names and of numbers, in characters.
+/// The width of the column of names, in characters.
 const NAME_WIDTH: usize = 26;
+
+/// The width of a column of numbers, in characters.
 const NUMBER_WIDTH: usize = 20;
 
 impl PixelTrace {

@@ -48,7 +48,7 @@ impl Sampler {
         !matches!(self, Self::Center | Self::SineHash)
     }
 
-    /// Its name in scene files.
+    /// The name in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Center => "center",
@@ -147,7 +147,7 @@ pub enum Projection {
 /// A figure, in screen coordinates: x ∈ [−1, 1], y ∈ [−1, 1] / aspect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure {
-    /// Its outline.
+    /// The outline.
     pub outline: Outline,
     /// The fill color.
     pub color: Color,

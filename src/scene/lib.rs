@@ -80,9 +80,9 @@ pub struct Scene {
 /// A surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// Its shape, before any motion.
+    /// The shape, before any motion.
     pub shape: Shape,
-    /// Its material.
+    /// The material.
     pub material: Material,
     /// The index of the motion that moves it.
     pub motion: Option<usize>,

@@ -7,7 +7,7 @@ use super::{Color, Point};
 pub struct Material {
     /// The reflection model.
     pub model: Model,
-    /// Its color.
+    /// The color.
     pub color: Color,
     /// A pattern with a second color.
     pub pattern: Option<Pattern>,
@@ -148,7 +148,7 @@ pub enum Background {
 pub struct Light {
     /// The position of its center.
     pub position: Point,
-    /// Its color.
+    /// The color.
     pub color: Color,
     /// Whether objects strictly between it and a surface cast shadows.
     pub shadow: bool,

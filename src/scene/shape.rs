@@ -48,7 +48,7 @@ pub struct Cuboid {
 /// A quadric in a local frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadric {
-    /// Its kind, in local coordinates.
+    /// The kind, in local coordinates.
     pub kind: QuadricKind,
     /// The origin of the local frame.
     pub origin: Point,

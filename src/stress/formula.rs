@@ -9,7 +9,7 @@ use crate::function::Signature;
 /// A formula for ray–sphere intersection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Formula {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
     /// `float NAME(vec3 o, vec3 d, vec3 c, float r, float tMin)`, for directions of any length unless stated
     /// otherwise: returns the smallest t above tMin, or a value not above tMin if there is none.
@@ -147,7 +147,7 @@ impl Formula {
 /// A test subject.
 #[derive(Debug, Clone)]
 pub struct Subject {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// The kind of cases that it is tested on.
     pub kind: Kind,

@@ -53,7 +53,7 @@ pub struct Format {
 pub struct Located<T> {
     /// The value.
     pub value: T,
-    /// Its place.
+    /// The place.
     pub span: Span,
 }
 

@@ -8,7 +8,7 @@ use toml::de::{DeInteger, DeValue};
 /// A value that does not have the expected type.
 #[derive(Debug)]
 pub struct Mismatch {
-    /// Its place.
+    /// The place.
     pub(super) bytes: Range<usize>,
     /// A description of the value that was found.
     pub(super) found: String,

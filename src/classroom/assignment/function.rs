@@ -58,9 +58,9 @@ pub struct FunctionCase {
 pub struct Subject<'a> {
     /// The shader.
     pub checked: &'a Checked,
-    /// Its files.
+    /// The files.
     pub files: &'a Files,
-    /// Its text.
+    /// The text.
     pub text: &'a str,
     /// Whether the language is lenient.
     pub lenient: bool,

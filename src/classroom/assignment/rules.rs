@@ -14,9 +14,9 @@ pub struct Rules {
     pub points: f64,
     /// The functions that a shader must define.
     pub must_define: Vec<String>,
-    /// The functions, built-in or the shader's own, that it must not call.
+    /// The functions, built-in or the shader's own, that a shader must not call.
     pub must_not_call: Vec<String>,
-    /// Whether it may read textures.
+    /// Whether a shader may read textures.
     pub textures: bool,
     /// The largest number of lines, without blank lines and comments.
     pub max_lines: Option<u32>,

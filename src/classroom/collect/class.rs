@@ -38,15 +38,15 @@ pub enum StudentList {
 /// An assignment, and which files are its submissions.
 #[derive(Debug)]
 pub struct ClassAssignment {
-    /// The name of its folder.
+    /// The name of the assignment's folder.
     pub name: String,
-    /// Patterns for the paths of its files in a submission.
+    /// Patterns for the paths of the assignment's files in a submission.
     patterns: Vec<String>,
     /// The file or the folder of the assignment, if it is named.
     pub assignment: Option<PathBuf>,
     /// The rubric, if it is not that of the assignment.
     pub rubric: Option<PathBuf>,
-    /// When it is due.
+    /// When the submissions are due.
     pub deadline: Option<Moment>,
 }
 
@@ -55,7 +55,7 @@ pub struct ClassAssignment {
 pub enum Purpose {
     /// Collecting submissions.
     Collect,
-    /// Also checking them, for which each assignment has to be named.
+    /// Collecting and checking submissions, for which each assignment has to be named.
     Check,
 }
 

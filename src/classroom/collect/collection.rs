@@ -23,9 +23,9 @@ const COPY_SECONDS: i64 = 60;
 /// A file of a student.
 #[derive(Debug)]
 pub struct SubmittedFile {
-    /// Its path in the submission.
+    /// The path in the submission.
     pub path: Vec<String>,
-    /// Its content, or why it cannot be read.
+    /// The content, or why it cannot be read.
     pub content: Result<Content, String>,
     time: Option<FileTime>,
     /// Whether the system marks it as late; `None` if the system marks nothing in names.
@@ -33,7 +33,7 @@ pub struct SubmittedFile {
 }
 
 impl SubmittedFile {
-    /// Its path in the submission, with `/`.
+    /// The path in the submission, with `/`.
     #[must_use]
     pub fn original_path(&self) -> String {
         self.path.join("/")
@@ -49,18 +49,18 @@ impl SubmittedFile {
 /// The submission of a student.
 #[derive(Debug, Default)]
 pub struct Submission {
-    /// Its files.
+    /// The files.
     pub files: Vec<SubmittedFile>,
 }
 
 /// How late something was submitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lateness {
-    /// It is on time.
+    /// Submitted on time.
     OnTime,
-    /// It is late.
+    /// Submitted late.
     Late(Late),
-    /// The download does not state it.
+    /// The download does not state the time.
     Unknown,
 }
 

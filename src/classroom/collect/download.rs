@@ -39,7 +39,7 @@ const MAX_PATH_BYTES: usize = 1000;
 /// A file of a download.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct DownloadFile {
-    /// Its path in the download; archives in it are components that end with `.zip`. The last component of an
+    /// The path in the download; archives in it are components that end with `.zip`. The last component of an
     /// empty folder is empty.
     pub path: Vec<String>,
     /// The content, or why it cannot be read.

@@ -9,9 +9,9 @@ use unicode_normalization::UnicodeNormalization;
 /// What the path of a file in a download says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SubmissionPath {
-    /// Its owner.
+    /// The owner.
     pub student: Student,
-    /// Its path in the submission; empty for a folder.
+    /// The path in the submission; empty for a folder.
     pub path: Vec<String>,
     /// Whether the system marks it as late; `None` if the system marks nothing in names.
     pub is_late: Option<bool>,

@@ -48,7 +48,7 @@ pub struct Entry {
 /// A file that was not collected.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SkippedFile {
-    /// Its path.
+    /// The path.
     pub file: String,
     /// Why, in one sentence.
     pub reason: String,

@@ -26,13 +26,13 @@ const MAX_NOTES: usize = 10;
 pub fn write_student(
     folder: &Path,
     assignment: Option<&ClassAssignment>,
-    own: &StudentFolder,
+    student_folder: &StudentFolder,
     lateness: Lateness,
 ) -> Result<(Entry, Vec<String>), String> {
     let mut entry = Entry {
-        folder: own.name.clone(),
-        name: own.student.name.clone(),
-        id: own.student.id.clone(),
+        folder: student_folder.name.clone(),
+        name: student_folder.student.name.clone(),
+        id: student_folder.student.id.clone(),
         late: match lateness {
             Lateness::Late(late) => Some(late),
             Lateness::OnTime | Lateness::Unknown => None,
@@ -42,7 +42,7 @@ pub fn write_student(
     };
     let mut notes = Vec::new();
     let mut paths = Paths::default();
-    for handed in &own.submission.files {
+    for handed in &student_folder.submission.files {
         let original = handed.original_path();
         let mut skip = |reason: &str| {
             let (file, reason) = (original.clone(), reason.to_owned());
@@ -60,7 +60,7 @@ pub fn write_student(
             }) => {
                 let (last, parents) = handed.path.split_last().expect("a file has a name");
                 let file = paths.file(parents, &output_name(last, *is_renamed));
-                let path = folder.join(&own.name).join(&file);
+                let path = folder.join(&student_folder.name).join(&file);
                 match output::write_inside(folder, &path, text.as_bytes()) {
                     Ok(()) => {}
                     // The path is invalid; another one may be valid.
@@ -129,16 +129,16 @@ pub fn remove_earlier(folder: &Path) -> Result<(), String> {
         };
         is_collected = true;
         for student in roster.students {
-            let own = assignment.join(&student.folder);
+            let folder_of_student = assignment.join(&student.folder);
             let is_inside = |path: &Path| path.components().all(|part| matches!(part, Component::Normal(_)));
             if !is_inside(student.folder.as_ref()) {
                 continue;
             }
             for file in student.files.iter().filter(|file| is_inside(file.as_ref())) {
                 // A file that cannot be removed is written again, or reported as a shader without a student.
-                let _ = fs::remove_file(own.join(file));
+                let _ = fs::remove_file(folder_of_student.join(file));
             }
-            let _ = fs::remove_dir(own);
+            let _ = fs::remove_dir(folder_of_student);
         }
         let _ = fs::remove_file(assignment.join(FILE_NAME));
     }

@@ -14,7 +14,7 @@ pub enum Content {
         text: String,
         /// The encoding, if it is not UTF-8.
         encoding: Option<&'static str>,
-        /// Whether its name has the extension of another kind of file.
+        /// Whether the file's name has the extension of another kind of file.
         is_renamed: bool,
     },
     /// Something else, and why.

@@ -10,24 +10,24 @@ const MIN_FINGERPRINTS: usize = 8;
 /// A shader to compare.
 #[derive(Debug)]
 pub struct Subject {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// The fingerprints of its tree; `None` if it does not compile.
+    /// The fingerprints of the tree; `None` if the shader does not compile.
     pub tree: Option<Fingerprints>,
-    /// Those of its text.
+    /// The fingerprints of the text.
     pub text: Fingerprints,
 }
 
 impl Subject {
-    /// The fingerprints with which it is compared, unless the other shader does not compile.
-    fn own(&self) -> &Fingerprints {
+    /// The fingerprints with which the shader is compared, unless the other one does not compile.
+    fn preferred(&self) -> &Fingerprints {
         self.tree.as_ref().unwrap_or(&self.text)
     }
 
-    /// Whether it has enough fingerprints to be compared.
+    /// Whether the shader has enough fingerprints to be compared.
     #[must_use]
     pub fn is_large_enough(&self) -> bool {
-        self.own().count() >= MIN_FINGERPRINTS
+        self.preferred().count() >= MIN_FINGERPRINTS
     }
 
     /// The fingerprints of both shaders that are compared: of trees, or else of texts.
@@ -73,9 +73,9 @@ fn leave_out(
 /// Two shaders that share much of their structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
-    /// Their indices, in ascending order.
+    /// The indices of both shaders, in ascending order.
     pub shaders: [usize; 2],
-    /// The shared part of the smaller one, from 0 to 1.
+    /// The shared part of the smaller shader, from 0 to 1.
     pub share: f64,
 }
 

@@ -20,7 +20,7 @@ use crate::cli::names::with_suffix;
 
 /// A kind of image, which a shader may lack.
 pub(super) struct ImageKind {
-    /// The suffix of its file name.
+    /// The suffix of the image's file name.
     pub(super) suffix: &'static str,
     /// Creates the image, if the findings have it. Images are large, so each is made only when it is written.
     pub(super) make: fn(&Findings) -> Option<Cow<'_, Rgb8Image>>,

@@ -27,14 +27,14 @@ pub(in crate::cli) struct SceneOfShader {
 
 /// Finds the scenes of shaders.
 pub(in crate::cli) struct Scenes {
-    /// The path and the text, or the error, of the scene that `--scene` names. It may be a pipe, so it is
+    /// The path and the text, or the error, of the scene that `--scene` names. The file may be a pipe, so it is
     /// read once.
     named: Option<(PathBuf, Result<File, String>)>,
 }
 
 /// The reference of a shader.
 pub(super) enum Reference<'a> {
-    /// A scene, its own or the one that `--scene` names.
+    /// A scene: the shader's own, or the one that `--scene` names.
     Scene(Box<SceneOfShader>),
     /// The shader or image that `--reference` names.
     Given(&'a PreparedReference),

@@ -9,9 +9,11 @@ use toyproof_image::Frame;
 use toyproof_scene::Scene;
 use toyproof_verify::{Conditioning, Expected, ReferenceKind};
 
-/// The cache holds at most this many scenes in each frame, the most recently used, and fewer if they exceed
-/// `MAX_CACHED_BYTES`. The shaders of one scene usually follow each other.
+/// The largest number of scenes in each frame that the cache holds, the most recently used. The shaders of one
+/// scene usually follow each other.
 const MAX_CACHED_SCENES: usize = 8;
+
+/// The largest size of the scenes that the cache holds, if there are several.
 const MAX_CACHED_BYTES: usize = 256 << 20;
 
 /// A reference with the results that are computed once and shared.

@@ -18,23 +18,23 @@ use crate::cli::project::image_files;
 pub(super) struct Submission {
     pub(super) input: Result<Input, ReadError>,
     pub(super) name: String,
-    /// The path of its images without their suffixes; `None` without `--out`.
+    /// The path of the shader's images without the suffixes of file names; `None` without `--out`.
     pub(super) output_stem: Option<PathBuf>,
-    /// A hash of everything that its record depends on; `None` if its files cannot be read, or without
+    /// A hash of everything that the record depends on; `None` if the shader's files cannot be read, or without
     /// `--out`.
     pub(super) key: Option<String>,
-    /// The size of its text in bytes, where it has a key.
+    /// The size of the text in bytes, where there is a key.
     pub(super) bytes: u64,
-    /// Seconds of an earlier check, if `--costs` names a report that has them.
+    /// The seconds of an earlier check, if `--costs` names a report with this shader.
     pub(super) seconds: Option<f64>,
-    /// The index of its task.
+    /// The index of the task.
     pub(super) task: usize,
     /// The student and the assignment, for a class.
     pub(super) submitted: Option<StudentSubmission>,
 }
 
 impl Submission {
-    /// Whether it belongs to an assignment of a class.
+    /// Whether the shader belongs to an assignment of a class.
     pub(super) fn is_assigned(&self) -> bool {
         let assignment = self.submitted.as_ref().map(|one| &one.assignment);
         assignment.is_some_and(Option::is_some)

@@ -29,9 +29,9 @@ pub(super) struct Job {
     pub(super) input: Result<Input, ReadError>,
     /// A file, or the folder of a project with several passes.
     path: PathBuf,
-    /// What the path of a file gets appended.
+    /// What is appended to the path of a file.
     suffix: String,
-    /// Whether it is a project with several passes, if that is known before it is converted.
+    /// Whether the input is a project with several passes, if that is known before the conversion.
     has_passes: Option<bool>,
 }
 
@@ -133,7 +133,7 @@ enum Status {
 }
 
 impl Status {
-    /// Its name and color on the terminal.
+    /// The name and color on the terminal.
     fn label(self) -> (&'static str, TextStyle) {
         let (label, color) = match self {
             Self::Converted => ("converted", AnsiColor::Green),

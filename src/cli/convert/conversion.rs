@@ -52,7 +52,7 @@ pub(super) struct Conversion {
 
 /// A file to write.
 pub(super) struct OutputFile {
-    /// Its name in the folder of a project; `None` for the one file of a shader.
+    /// The name in the folder of a project; `None` for the one file of a shader.
     pub(super) name: Option<String>,
     pub(super) bytes: Vec<u8>,
 }

@@ -134,28 +134,28 @@ impl Row {
 }
 
 impl BuiltIn {
-    /// Its name in GLSL.
+    /// The name in GLSL.
     pub fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// Its signatures, in the notation of the specification.
+    /// The signatures, in the notation of the specification.
     pub(crate) fn signatures(self) -> &'static [&'static str] {
         self.row().signatures
     }
 
-    /// Its value for constant arguments, of type `ty`; `None` if it is undefined or not supported.
+    /// The value for constant arguments, of type `ty`; `None` if the value is undefined or not supported.
     pub(crate) fn of_constants(self, ty: Type, arguments: &[Constant]) -> Option<Vec<Value>> {
         self.row().constant.call(ty, arguments)
     }
 
-    /// Its form in WGSL.
+    /// The form in WGSL.
     pub fn wgsl(self) -> Wgsl {
         self.row().wgsl
     }
 
-    /// Its definitions by exact operations, if its last bits are implementation-defined: one for each number
-    /// of arguments.
+    /// The definitions by exact operations, one for each number of arguments; empty unless the last bits are
+    /// implementation-defined.
     pub fn exact_definitions(self) -> &'static [ExactDefinition] {
         self.row().exact
     }

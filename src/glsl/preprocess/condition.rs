@@ -12,7 +12,7 @@ pub(super) struct Group {
     /// Whether the enclosing lines are active.
     outer: bool,
     branch: Branch,
-    /// Whether its `#else` has been read.
+    /// Whether the group's `#else` has been read, so that the last branch is open.
     last: bool,
     pub(super) at: Place,
 }

@@ -19,7 +19,7 @@ const MAX_ARGUMENT_NESTING: usize = 256;
 pub(super) struct Frame {
     tokens: std::vec::IntoIter<PpToken>,
     /// The macro that expanded to this list, if any.
-    of: Option<Symbol>,
+    expanded_from: Option<Symbol>,
 }
 
 /// The source of tokens: frames on top of the file, or on top of nothing.
@@ -224,7 +224,7 @@ impl Preprocessor<'_> {
             if let Some(token) = frame.tokens.next() {
                 return token;
             }
-            if let Some(done) = self.stream.frames().pop().and_then(|frame| frame.of)
+            if let Some(done) = self.stream.frames().pop().and_then(|frame| frame.expanded_from)
                 && let Some(definition) = self.macros.get_mut(&done)
             {
                 definition.active_expansions -= 1;
@@ -236,12 +236,15 @@ impl Preprocessor<'_> {
         }
     }
 
-    fn push(&mut self, tokens: Vec<PpToken>, of: Option<Symbol>) {
-        if let Some(definition) = of.and_then(|name| self.macros.get_mut(&name)) {
+    fn push(&mut self, tokens: Vec<PpToken>, expanded_from: Option<Symbol>) {
+        if let Some(definition) = expanded_from.and_then(|name| self.macros.get_mut(&name)) {
             definition.active_expansions += 1;
         }
         let tokens = tokens.into_iter();
-        self.stream.frames().push(Frame { tokens, of });
+        self.stream.frames().push(Frame {
+            tokens,
+            expanded_from,
+        });
     }
 
     /// Stops preprocessing: reports that once, and returns the end of the text.

@@ -21,7 +21,7 @@ pub(super) struct PpToken {
 /// A `// toyproof: …` comment.
 #[derive(Debug, Clone, Copy)]
 pub struct ControlComment {
-    /// Its span, from the `//` to the end of the line.
+    /// The span, from the `//` to the end of the line.
     pub at: Span,
     /// Whether only comments precede it in the file.
     pub first: bool,

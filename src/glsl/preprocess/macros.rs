@@ -18,12 +18,12 @@ pub(super) struct Macro {
     /// The parameters of a function-like macro; `None` for an object-like macro.
     pub(super) parameters: Option<Vec<Symbol>>,
     pub(super) body: Body,
-    /// The place of its name in its definition.
+    /// The place of the macro's name in the definition.
     pub(super) at: Place,
-    /// The number of its active expansions; while there is one, the name is not expanded.
+    /// The number of active expansions; while there is one, the name is not expanded.
     pub(super) active_expansions: usize,
     pub(super) predefined: bool,
-    /// Its index in [`Expansions`](super::Expansions); `None` for a predefined macro.
+    /// The index in [`Expansions`](super::Expansions); `None` for a predefined macro.
     pub(super) definition: Option<usize>,
 }
 

@@ -247,9 +247,9 @@ struct Preprocessor<'a> {
     /// Whether the next token begins a line.
     line_start: bool,
     seen: Prefix,
-    /// The offset that `#line` adds to line numbers, and the file number it sets: visible to `__LINE__` and
-    /// `__FILE__` only.
+    /// The offset that `#line` adds to line numbers, visible to `__LINE__` only.
     line_offset: i64,
+    /// The file number that `#line` sets, visible to `__FILE__` only.
     file_number: i64,
     /// A byte position and its line, from which lines are counted.
     counted: (usize, i64),

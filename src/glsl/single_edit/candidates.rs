@@ -12,15 +12,16 @@ const MAX_ERRORS: usize = 4;
 /// Cost of an edit at the next error instead of this one, in tokens.
 const COST_PER_ERROR: usize = 6;
 
-/// Cost of a fix that an error carries: little, but more than that of the removal of an obvious duplicate.
+/// Cost of a fix that an error carries: little, but more than the removal of an obvious duplicate.
 const COST_CARRIED: usize = 1;
 
 /// Additional cost of each further fix of the same kind of error.
 const COST_PER_FIX: usize = 3;
 
-/// Number of tokens before an error that are tried; more where a bracket is reported, which may be far from
-/// its partner.
+/// Number of tokens before an error that are tried.
 const TOKENS_BEFORE: usize = 40;
+
+/// Number of tokens before an error that are tried where a bracket is reported, whose partner may be far.
 const TOKENS_BEFORE_BRACKET: usize = 120;
 
 /// Number of tokens after an error that are tried.
@@ -126,9 +127,9 @@ impl<'a> Candidates<'a> {
         self.near.get(&index).copied()
     }
 
-    /// `cost` where the errors report the grammar, otherwise `other`.
-    pub(super) fn cost(&self, cost: usize, other: usize) -> usize {
-        if self.is_syntax() { cost } else { other }
+    /// The cost of an edit: `of_syntax` where the errors report the grammar, otherwise `of_others`.
+    pub(super) fn cost(&self, of_syntax: usize, of_others: usize) -> usize {
+        if self.is_syntax() { of_syntax } else { of_others }
     }
 
     /// Adds the insertion of a text after the token before `index`.

@@ -16,7 +16,7 @@ pub struct Expr {
     pub ty: Type,
     /// Whether it is a constant expression (§4.3.3), which [`Tree::value`](super::Tree::value) evaluates.
     pub constant: bool,
-    /// Its place in the source text.
+    /// The place in the source text.
     pub at: Place,
 }
 

@@ -21,7 +21,7 @@ pub type FunctionId = Id<Function>;
 /// A user function: one overload of its name.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// The return type; `void` if there is no result.
     pub return_type: Type,
@@ -39,11 +39,11 @@ pub type VariableId = Id<Variable>;
 /// A variable, a constant, a parameter, a uniform or a built-in variable.
 #[derive(Debug, Clone)]
 pub struct Variable {
-    /// Its name; empty for an unnamed parameter. Several variables may share a name: scopes are resolved.
+    /// The name; empty for an unnamed parameter. Several variables may share a name: scopes are resolved.
     pub name: String,
-    /// Its type.
+    /// The type.
     pub ty: Type,
-    /// Its kind.
+    /// The kind.
     pub kind: VariableKind,
     /// The initial value. A local or a global without one starts as zero, as in WebGL.
     pub initializer: Option<ExprId>,
@@ -140,7 +140,7 @@ pub type Block = Vec<Statement>;
 pub struct Statement {
     /// The kind of statement.
     pub kind: StatementKind,
-    /// Its place, up to its `;`; for compound statements, their first keyword or `{`.
+    /// The place of the statement, up to the `;`; of a compound statement, the first keyword or `{`.
     pub at: Place,
 }
 
@@ -248,7 +248,7 @@ pub enum Label {
     Case {
         /// The expression, of the selector's type.
         expr: ExprId,
-        /// Its value; of an `int`, the bit pattern.
+        /// The value; of an `int`, the bit pattern.
         value: u32,
     },
     /// `default:`.

@@ -88,9 +88,9 @@ pub type StructId = Id<Struct>;
 /// A structure type. Each declaration is a distinct type, whatever its name (§4.1.8).
 #[derive(Debug, Clone)]
 pub struct Struct {
-    /// Its name; empty for `struct { … } x;`.
+    /// The name; empty for `struct { … } x;`.
     pub name: String,
-    /// Its members, at least one.
+    /// The members, at least one.
     pub members: Vec<Member>,
     /// The place of its name, or of the keyword `struct`.
     pub at: Place,
@@ -99,9 +99,9 @@ pub struct Struct {
 /// A member of a structure.
 #[derive(Debug, Clone)]
 pub struct Member {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its type.
+    /// The type.
     pub ty: Type,
     /// The place of its name.
     pub at: Place,
@@ -156,7 +156,7 @@ impl Type {
 }
 
 impl Scalar {
-    /// Its name in GLSL.
+    /// The name in GLSL.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bool => "bool",
@@ -181,7 +181,7 @@ impl Sampler {
     /// `sampler2D`.
     pub const D2: Self = Self::float(SamplerShape::D2);
 
-    /// Its name in GLSL: `isampler2DArray`.
+    /// The name in GLSL: `isampler2DArray`.
     pub fn name(self) -> String {
         let shape = match self.shape {
             SamplerShape::D2 => "2D",
@@ -228,7 +228,7 @@ pub enum Value {
 /// access and a constructor take time proportional to their direct parts only.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
-    /// Its type.
+    /// The type.
     pub ty: Type,
     content: Content,
 }

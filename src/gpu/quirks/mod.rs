@@ -47,7 +47,7 @@ pub enum Scope {
 /// A fault of a driver, and its workaround.
 #[derive(Debug, Clone, Copy)]
 pub struct Quirk {
-    /// Its name in kebab case.
+    /// The name in kebab case.
     pub name: &'static str,
     /// The affected family of drivers.
     pub driver: DriverKind,

@@ -16,7 +16,7 @@ use super::method::{RenderContext, Shader};
 #[derive(Debug)]
 pub(super) struct Reference {
     pub(super) image: Image,
-    /// Its own error: a root mean square, in [0, 1].
+    /// The error of the image itself: a root mean square, in [0, 1].
     pub(super) error: f64,
     /// The renderer and its samples.
     pub(super) description: String,

@@ -34,7 +34,7 @@ const MAX_JSON_BYTES: u64 = 8 << 20;
 pub enum InputSource {
     /// Standard input, or a pipe: it can be read only once.
     Stream {
-        /// Its name in messages.
+        /// The name in messages.
         name: String,
         /// The content.
         bytes: Vec<u8>,

@@ -63,7 +63,7 @@ const MAX_ENTRIES: usize = 1_000_000;
 pub struct OutsideLink {
     /// The link.
     pub link: PathBuf,
-    /// Its target.
+    /// The target of the link.
     pub target: PathBuf,
     /// The searched folder.
     pub folder: PathBuf,

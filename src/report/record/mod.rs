@@ -90,7 +90,7 @@ impl Report {
 /// The findings on one shader. Checks that did not run are null.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
-    /// Its name, as the user gave it.
+    /// The name, as the user gave it.
     pub shader: String,
     /// The name of the scene, if it was compared with one.
     pub scene: Option<String>,

@@ -12,7 +12,7 @@ use crate::tally::Outcome;
 pub struct Mistake {
     /// The behavior of the function, as text to follow its name.
     pub description: &'static str,
-    /// Its identifier.
+    /// The identifier.
     pub name: &'static str,
     /// Whether the function is right for callers that keep to its precondition.
     pub recoverable: bool,

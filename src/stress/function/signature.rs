@@ -14,7 +14,7 @@ use crate::case::RaySphere;
 /// A function, with the roles of its inputs and outputs.
 #[derive(Debug, Clone)]
 pub struct Signature {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// The names and types of its parameters.
     parameters: Vec<(String, String)>,
