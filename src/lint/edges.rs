@@ -190,7 +190,7 @@ impl Sum {
         Some(())
     }
 
-    /// Whether no part of it is ever negative.
+    /// Whether no part of the expression is ever negative.
     fn is_never_negative(&self, program: &Program) -> bool {
         let mut terms = self.terms.iter().filter(|term| term.factor != 0.0);
         self.constant >= 0.0 && terms.all(|term| term.factor > 0.0 && is_never_negative(program, term.expr))

@@ -228,10 +228,10 @@ fn has_exit(block: &Block, break_exits: bool) -> bool {
             .into_iter()
             .any(|body| has_exit(body, false)),
         _ => {
-            let own = break_exits && !is_loop(statement);
+            let break_exits = break_exits && !is_loop(statement);
             walk::child_blocks(statement)
                 .into_iter()
-                .any(|body| has_exit(body, own))
+                .any(|body| has_exit(body, break_exits))
         }
     })
 }
@@ -265,6 +265,7 @@ fn max_iterations(program: &Program, condition: ExprId, step: Option<ExprId>) ->
         BinaryOp::Greater | BinaryOp::GreaterEqual if by < 0.0 => first - bound,
         // The counter moves away from its bound: an `int` wraps around through all its values.
         BinaryOp::Less | BinaryOp::LessEqual if first < bound && tree[counter].ty == Type::INT => {
+            // About 2³² values.
             return Some(4e9 / by.abs());
         }
         _ => return None,

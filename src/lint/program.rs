@@ -21,7 +21,7 @@ pub(super) struct Program<'a> {
     exprs: Vec<Vec<ExprId>>,
     /// By variable index.
     definitions: Vec<Vec<Definition>>,
-    /// By function index: the operands of its `return` statements.
+    /// The operands of the `return` statements of each function, by the function's index.
     returned: Vec<Vec<ExprId>>,
 }
 

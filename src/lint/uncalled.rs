@@ -16,7 +16,7 @@ use super::program::{Program, callee};
 /// The functions that `ShaderToy` calls, some of them in other tabs or on other devices.
 const ENTRIES: [&str; 5] = ["main", "mainImage", "mainVR", "mainSound", "mainCubemap"];
 
-/// The largest number of functions that are reported one by one: more of them are a library.
+/// The largest number of functions that are reported one by one: more functions are a library.
 const MAX_SINGLE: usize = 3;
 
 pub(super) fn run(program: &Program, files: &Files, checked: &Checked, findings: &mut Findings) {

@@ -114,7 +114,7 @@ fn report(tree: &Tree, expr: ExprId, function: BuiltIn, cause: ExprId, findings:
 #[derive(Clone, Copy)]
 struct Control {
     /// A condition in this function.
-    own: Option<ExprId>,
+    function: Option<ExprId>,
     /// A condition in a caller.
     callers: Option<ExprId>,
 }
@@ -162,9 +162,10 @@ struct DivergenceAnalysis<'a> {
 /// How a value may vary within the pixels of a quad.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Divergence {
-    /// It may differ between pixels.
+    /// Whether the value may differ between pixels.
     differs: bool,
-    /// It was computed after control flow diverged: pixels on other paths hold an older value, or none.
+    /// Whether the value was computed after control flow diverged: pixels on other paths hold an older one,
+    /// or none.
     after_divergence: bool,
 }
 
@@ -221,7 +222,7 @@ impl<'a> DivergenceAnalysis<'a> {
         let tree = self.program.tree;
         if let Some(body) = &tree[function].body {
             let control = Control {
-                own: None,
+                function: None,
                 callers: self.calls[function.index()],
             };
             self.block(function, body, control, &mut DivergentExits::default(), visit);
@@ -238,7 +239,7 @@ impl<'a> DivergenceAnalysis<'a> {
     ) {
         for statement in block {
             let control = Control {
-                own: control.own.or(exits.cause()),
+                function: control.function.or(exits.cause()),
                 ..control
             };
             self.statement(function, statement, control, exits, visit);
@@ -254,8 +255,8 @@ impl<'a> DivergenceAnalysis<'a> {
         visit: &mut Visit,
     ) {
         let tree = self.program.tree;
-        let within = |own: Option<ExprId>| Control {
-            own: control.own.or(own),
+        let within = |condition: Option<ExprId>| Control {
+            function: control.function.or(condition),
             ..control
         };
         match &statement.kind {
@@ -315,22 +316,22 @@ impl<'a> DivergenceAnalysis<'a> {
                 let after = Some(Condition::Expression(*condition));
                 self.visit_loop(function, statement, (after, None), body, control, exits, visit);
             }
-            StatementKind::Break => exits.loop_or_switch = exits.loop_or_switch.or(control.own),
-            StatementKind::Continue => exits.iteration = exits.iteration.or(control.own),
+            StatementKind::Break => exits.loop_or_switch = exits.loop_or_switch.or(control.function),
+            StatementKind::Continue => exits.iteration = exits.iteration.or(control.function),
             StatementKind::Return(value) => {
                 if let Some(value) = value {
                     self.expression(*value, control, visit);
                     let value = self.values[value.index()];
-                    let one_of_many = control.own.is_some() && self.program.returned(function).len() > 1;
+                    let one_of_many = control.function.is_some() && self.program.returned(function).len() > 1;
                     let result = &mut self.results[function.index()];
                     let more = result.or(Divergence {
-                        differs: value.differs || control.own.is_some(),
+                        differs: value.differs || control.function.is_some(),
                         after_divergence: value.after_divergence || one_of_many,
                     });
                     self.changed |= *result != more;
                     *result = more;
                 }
-                exits.function = exits.function.or(control.own);
+                exits.function = exits.function.or(control.function);
             }
             StatementKind::Expression(expr) => self.expression(*expr, control, visit),
             StatementKind::Declare(variable) => {
@@ -360,7 +361,7 @@ impl<'a> DivergenceAnalysis<'a> {
         let tree = self.program.tree;
         let key = std::ptr::from_ref(statement);
         let control = Control {
-            own: control.own.or(self.loops.get(&key).copied()),
+            function: control.function.or(self.loops.get(&key).copied()),
             ..control
         };
         let condition = condition.and_then(|condition| match condition {
@@ -377,7 +378,7 @@ impl<'a> DivergenceAnalysis<'a> {
             cause = self.values[condition.index()].differs.then_some(condition);
         }
         let within = Control {
-            own: control.own.or(cause),
+            function: control.function.or(cause),
             ..control
         };
         self.block(function, body, within, &mut inner, visit);
@@ -387,7 +388,7 @@ impl<'a> DivergenceAnalysis<'a> {
             self.expression(
                 step,
                 Control {
-                    own: within.own.or(left),
+                    function: within.function.or(left),
                     ..within
                 },
                 visit,
@@ -413,7 +414,7 @@ impl<'a> DivergenceAnalysis<'a> {
     fn write(&mut self, variable: VariableId, value: Divergence, control: Control) {
         // All pixels that run this call share its caller's control flow, so that only globals diverge by it.
         let is_global = self.program.tree[variable].kind == VariableKind::Global;
-        let differs = control.own.is_some() || is_global && control.callers.is_some();
+        let differs = control.function.is_some() || is_global && control.callers.is_some();
         // A variable that is set once is as available as its value.
         let is_alias = self.program.single_value(variable).is_some();
         let divergence = Divergence {
@@ -446,11 +447,11 @@ impl DivergenceAnalysis<'_> {
         let mut pending = vec![(root, control)];
         while let Some((expr, control)) = pending.pop() {
             self.effects(expr, control);
-            if let Some(cause) = control.own.or(control.callers) {
+            if let Some(cause) = control.function.or(control.callers) {
                 visit(expr, cause, &self.values);
             }
             let within = |condition: ExprId, differs: bool| Control {
-                own: control.own.or(differs.then_some(condition)),
+                function: control.function.or(differs.then_some(condition)),
                 ..control
             };
             match tree[expr].kind {
@@ -478,7 +479,7 @@ impl DivergenceAnalysis<'_> {
         let mut written = Vec::new();
         if let ExprKind::Call { function, arguments } = &tree[expr].kind {
             if self.calls[function.index()].is_none()
-                && let Some(cause) = control.own.or(control.callers)
+                && let Some(cause) = control.function.or(control.callers)
             {
                 self.calls[function.index()] = Some(cause);
                 self.changed = true;

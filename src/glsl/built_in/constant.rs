@@ -8,7 +8,7 @@ use crate::tree::{Constant, Type, Value};
 /// How the value of a function follows from constant arguments.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum ConstantFunction {
-    /// It has none that is known.
+    /// No function for constants is known.
     Unknown,
     /// Componentwise, of one float.
     Float(fn(f64) -> f64),

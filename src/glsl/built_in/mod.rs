@@ -13,16 +13,16 @@ use crate::tree::{BinaryOp, Constant, Type, Value};
 /// What is known of a function.
 struct Row {
     name: &'static str,
-    /// The signatures, in the notation of the specification. `genType` and similar types match a scalar and its vectors,
-    /// `vec` the vectors alone, `mat` any matrix, `g` before `sampler` and `vec4` any of the three texel
-    /// types; each has the same binding throughout one signature. `[float]` is optional; `const` requires a
-    /// constant expression. The first signature that matches applies.
+    /// The signatures, in the notation of the specification. `genType` and similar types match a scalar and
+    /// its vectors, `vec` the vectors alone, `mat` any matrix, `g` before `sampler` and `vec4` any of the
+    /// three texel types; each has the same binding throughout one signature. `[float]` is optional; `const`
+    /// requires a constant expression. The first signature that matches applies.
     signatures: &'static [&'static str],
     /// The value for constants.
     constant: ConstantFunction,
     wgsl: Wgsl,
-    /// The definitions that replace the function where the last bits must not depend on the implementation: one for
-    /// each number of arguments. Empty for functions that all implementations compute alike.
+    /// The definitions that replace the function where the last bits must not depend on the implementation:
+    /// one for each number of arguments. Empty for functions that all implementations compute alike.
     exact: &'static [ExactDefinition],
 }
 
@@ -165,13 +165,13 @@ impl BuiltIn {
         (self == Self::Modf).then_some(1)
     }
 
-    /// Whether it reads a texture; such calls are not constant expressions (§4.3.3).
+    /// Whether the function reads a texture; such calls are not constant expressions (§4.3.3).
     pub fn is_texture(self) -> bool {
         // The table lists the texture functions in a row.
         self >= Self::TextureSize && self <= Self::TextureProjGradOffset
     }
 
-    /// Whether it is a derivative, which uses the neighbors in the pixel's quad.
+    /// Whether the function is a derivative, which uses the neighbors in the pixel's quad.
     pub fn is_derivative(self) -> bool {
         matches!(self, Self::DFdx | Self::DFdy | Self::Fwidth)
     }

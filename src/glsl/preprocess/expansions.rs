@@ -19,7 +19,7 @@ pub struct Expansions {
 #[derive(Debug, Clone)]
 struct Definition {
     name: String,
-    /// The span from its name to the end of its replacement.
+    /// The span from the macro's name to the end of the replacement.
     extent: Span,
 }
 

@@ -14,7 +14,7 @@ pub(super) struct PpToken {
     /// Whether blanks or a comment precede it: `F (x)` defines an object-like macro, `F(x)` a function-like
     /// one.
     pub(super) spaced: bool,
-    /// Whether it is a macro's name in that macro's own expansion, and must never be expanded.
+    /// Whether the token is a macro's name in that macro's own expansion, and must never be expanded.
     pub(super) no_expand: bool,
 }
 
@@ -25,7 +25,7 @@ pub struct ControlComment {
     pub at: Span,
     /// Whether only comments precede it in the file.
     pub first: bool,
-    /// Whether it is alone on its line.
+    /// Whether the comment is alone on its line.
     pub alone: bool,
 }
 

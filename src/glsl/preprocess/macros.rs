@@ -30,7 +30,7 @@ pub(super) struct Macro {
 /// The replacement of a macro.
 #[derive(Debug, Clone)]
 pub(super) enum Body {
-    /// The tokens of its definition; `parameter[i]` is the index of the parameter that token `i` names, if
+    /// The tokens of the definition; `parameter[i]` is the index of the parameter that token `i` names, if
     /// any.
     Tokens {
         tokens: Rc<[PpToken]>,

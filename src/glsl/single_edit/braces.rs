@@ -15,7 +15,7 @@ const MAX_OF_A_KIND: usize = 40;
 
 /// An open block.
 struct OpenBlock {
-    /// The index of its `{`.
+    /// The index of the `{`.
     index: usize,
     /// The indentation of the line of its `{`.
     indent: usize,

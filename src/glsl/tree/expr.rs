@@ -14,7 +14,7 @@ pub struct Expr {
     /// The type of the value. Operands have exactly the types that the specification requires: every
     /// conversion is an explicit constructor.
     pub ty: Type,
-    /// Whether it is a constant expression (§4.3.3), which [`Tree::value`](super::Tree::value) evaluates.
+    /// Whether this is a constant expression (§4.3.3), which [`Tree::value`](super::Tree::value) evaluates.
     pub constant: bool,
     /// The place in the source text.
     pub at: Place,
@@ -56,7 +56,7 @@ pub enum ExprKind {
     Step {
         /// The operator.
         op: StepOp,
-        /// Whether it is the postfix form `x++`, whose value is that before the step.
+        /// Whether this is the postfix form `x++`, whose value is that before the step.
         postfix: bool,
         /// An lvalue; its indices are evaluated once.
         target: ExprId,

@@ -29,7 +29,7 @@ pub struct Function {
     pub parameters: Vec<VariableId>,
     /// None if it is declared but not defined; then it is never called.
     pub body: Option<Block>,
-    /// The place of its name in the definition, otherwise in the first prototype.
+    /// The place of the function's name in the definition, otherwise in the first prototype.
     pub at: Place,
 }
 
@@ -49,7 +49,7 @@ pub struct Variable {
     pub initializer: Option<ExprId>,
     /// The value of a constant.
     pub value: Option<Constant>,
-    /// The place of its name; `None` for built-in variables.
+    /// The place of the variable's name; `None` for built-in variables.
     pub at: Option<Place>,
 }
 
@@ -264,7 +264,7 @@ impl StatementKind {
         }
     }
 
-    /// Whether it contains other statements.
+    /// Whether the statement contains other statements.
     pub fn is_compound(&self) -> bool {
         matches!(
             self,

@@ -53,7 +53,7 @@ pub struct Sampler {
     pub texel: Scalar,
     /// The texture's shape.
     pub shape: SamplerShape,
-    /// Whether it compares depths (`sampler2DShadow`).
+    /// Whether the sampler compares depths (`sampler2DShadow`).
     pub shadow: bool,
 }
 
@@ -92,7 +92,7 @@ pub struct Struct {
     pub name: String,
     /// The members, at least one.
     pub members: Vec<Member>,
-    /// The place of its name, or of the keyword `struct`.
+    /// The place of the structure's name, or of the keyword `struct`.
     pub at: Place,
 }
 
@@ -103,7 +103,7 @@ pub struct Member {
     pub name: String,
     /// The type.
     pub ty: Type,
-    /// The place of its name.
+    /// The place of the member's name.
     pub at: Place,
 }
 
@@ -166,7 +166,7 @@ impl Scalar {
         }
     }
 
-    /// The prefix of its vector types' names: `i` in `ivec3`.
+    /// The prefix of the names of vector types with such components: `i` in `ivec3`.
     pub fn vector_prefix(self) -> &'static str {
         match self {
             Self::Bool => "b",

@@ -40,11 +40,13 @@ impl<'a> Origins<'a> {
 /// The possible origins of a value over all control flow.
 #[derive(Debug, Default)]
 pub(super) struct Origin {
-    unknown: bool,
-    rounded: bool,
+    /// Whether some origin is unknown.
+    is_unknown: bool,
+    /// Whether the value may result from arithmetic that rounds.
+    may_be_rounded: bool,
     /// Whether the rounded value is a sum or difference, which may miss zero.
-    cancelled: bool,
-    /// Constants that it may equal without rounding.
+    is_cancelled: bool,
+    /// The constants that the value may equal without rounding.
     exact_values: Vec<f64>,
     /// Variables that pass the value on unchanged.
     aliases: HashSet<VariableId>,
@@ -56,24 +58,24 @@ impl Origin {
         let mut pending = vec![(expr, 1.0)];
         for _ in 0..MAX_EXPRS {
             match pending.pop() {
-                Some((expr, sign)) if !origin.unknown => origin.follow(grid, expr, sign, &mut pending),
+                Some((expr, sign)) if !origin.is_unknown => origin.follow(grid, expr, sign, &mut pending),
                 _ => return origin,
             }
         }
-        origin.unknown = true;
+        origin.is_unknown = true;
         origin
     }
 
-    /// Whether it is known to result from arithmetic that rounds.
+    /// Whether the value is known to result from arithmetic that rounds.
     pub(super) fn is_rounded(&self) -> bool {
-        self.rounded && !self.unknown
+        self.may_be_rounded && !self.is_unknown
     }
 
     pub(super) fn is_cancelled(&self) -> bool {
-        self.cancelled
+        self.is_cancelled
     }
 
-    /// Whether it may equal this constant without rounding.
+    /// Whether the value may equal this constant without rounding.
     pub(super) fn may_be_exactly(&self, value: f64) -> bool {
         self.exact_values.contains(&value)
     }
@@ -107,13 +109,13 @@ impl Origin {
     }
 
     fn mark_rounded(&mut self) {
-        self.rounded = true;
+        self.may_be_rounded = true;
     }
 
     /// Marks a sum or difference that rounds.
     fn mark_cancelled(&mut self) {
         self.mark_rounded();
-        self.cancelled = true;
+        self.is_cancelled = true;
     }
 
     fn follow(&mut self, grid: &Grid, expr: ExprId, sign: f64, pending: &mut Vec<(ExprId, f64)>) {
@@ -161,7 +163,7 @@ impl Origin {
                 if let Type::FLOAT = tree[arguments[0]].ty {
                     pending.push((arguments[0], sign));
                 } else if tree[arguments[0]].ty.component_count() != Some(1) {
-                    self.unknown = true;
+                    self.is_unknown = true;
                 }
             }
             // One component may be another's sentinel: a vector is followed only if all of its components
@@ -171,7 +173,7 @@ impl Origin {
             {
                 pending.push((*base, sign));
             }
-            _ => self.unknown = true,
+            _ => self.is_unknown = true,
         }
     }
 
@@ -188,11 +190,11 @@ impl Origin {
         }
         let definitions = grid.program.definitions(variable);
         if definitions.len() > MAX_EXPRS {
-            self.unknown = true;
+            self.is_unknown = true;
             return;
         }
         // A function cannot know whether its argument is exact, so its comparison is usually justified.
-        self.unknown |= matches!(tree[variable].kind, VariableKind::Parameter(_))
+        self.is_unknown |= matches!(tree[variable].kind, VariableKind::Parameter(_))
             && definitions != [Definition::External];
         if definitions.is_empty() && matches!(tree[variable].kind, VariableKind::Local | VariableKind::Global)
         {
@@ -203,7 +205,7 @@ impl Origin {
             Definition::Value(value) => tree.value(*value).is_none() && grid.contains(*value),
             _ => false,
         };
-        self.unknown |= definitions.len() > 1 && definitions.iter().any(exact);
+        self.is_unknown |= definitions.len() > 1 && definitions.iter().any(exact);
         for definition in definitions {
             match definition {
                 Definition::Value(value) => pending.push((*value, sign)),
@@ -217,7 +219,7 @@ impl Origin {
                             self.mark_cancelled();
                         }
                     }
-                    _ => self.unknown = true,
+                    _ => self.is_unknown = true,
                 },
             }
         }
@@ -268,7 +270,7 @@ impl Origin {
             | B::Atan
             | B::Asin
             | B::Acos => self.mark_rounded(),
-            _ => self.unknown = true,
+            _ => self.is_unknown = true,
         }
     }
 }

@@ -37,8 +37,9 @@ pub(super) struct Flow {
     pub(super) falls_off: bool,
     /// Whether the output color is unassigned on all paths to the end.
     pub(super) never_colors: bool,
-    /// The global variables read and assigned.
+    /// The accesses that read global variables, with their expressions.
     pub(super) global_reads: Vec<(Access, ExprId)>,
+    /// The parts of global variables that are assigned.
     pub(super) global_writes: BTreeMap<VariableId, Parts>,
 }
 
