@@ -22,13 +22,13 @@ use toyproof_image::{Frame, Image, Input, InputType};
 /// Why a browser rendered nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum BrowserFailure {
-    /// It rejects the shader with this message.
+    /// Chromium rejects the shader with this message.
     #[error("Chromium cannot render the shader: {0}")]
     Refused(String),
-    /// It did not respond in time.
+    /// Chromium did not respond in time.
     #[error("Chromium did not answer within {:.1} s", .0.as_secs_f64())]
     Timeout(Duration),
-    /// It could not be started, or communication with it failed.
+    /// Chromium could not be started, or communication failed.
     #[error("cannot run Chromium: {0}")]
     Disconnected(String),
 }
@@ -52,6 +52,8 @@ pub struct Chromium {
 
 /// Time limit for the start of the browser, in addition to that of a shader.
 const START_TIMEOUT: Duration = Duration::from_secs(60);
+
+/// The page that renders shaders.
 const PAGE_HTML: &str = include_str!("browser.html");
 
 /// Finds an installed browser.
@@ -212,8 +214,11 @@ struct BrowserConnection {
 
 /// Chromium communicates on file descriptors 3 and 4, which this shell script redirects.
 const LAUNCH_SCRIPT: &str = r#"exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null 2>/dev/null"#;
+
 /// Time limit for removing the profile of a browser that has exited.
 const PROFILE_REMOVAL_TIMEOUT: Duration = Duration::from_secs(3);
+
+/// The time between two checks of something that is waited for.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 impl BrowserConnection {

@@ -18,13 +18,13 @@ pub struct Driver {
     pub name: String,
     /// The driver's name and version, as it reports them.
     pub version: String,
-    /// Whether it runs on the CPU.
+    /// Whether the device runs on the CPU.
     pub software: bool,
     /// Whether float32 textures can be filtered linearly.
     pub float32_filterable: bool,
     /// The float controls for 32 bits, by their Vulkan names: `DenormFlushToZero`, `RoundingModeRTE`, …
     pub float_controls: Vec<String>,
-    /// Whether it terminates long loops; `None` if that could not be measured.
+    /// Whether the device truncates long loops; `None` if that could not be measured.
     pub loop_cap: Option<LoopCap>,
 }
 

@@ -108,7 +108,7 @@ pub enum ShaderArtifact {
 }
 
 impl ShaderArtifact {
-    /// Whether row 0 of its target is the top of the image.
+    /// Whether row 0 of the target is the top of the image.
     pub(super) fn is_upside_down(&self) -> bool {
         matches!(self, Self::Wgsl(hosted) if hosted.upside_down)
     }

@@ -68,7 +68,7 @@ type CellValue = fn(&Row) -> Option<f64>;
 
 /// A heat map of a report.
 struct Map {
-    /// The name of its file, without an extension.
+    /// The name of the chart's file, without an extension.
     file: &'static str,
     title: &'static str,
     kind: Kind,

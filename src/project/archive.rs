@@ -59,8 +59,9 @@ pub struct Entry {
 pub struct Archive<R> {
     input: R,
     entries: Vec<Entry>,
-    /// The number of files and folders that its directory names, as far as it was read.
+    /// The number of files and folders that the archive's directory names, as far as it was read.
     count: usize,
+    /// Whether the directory names more files and folders than were read.
     is_cut: bool,
 }
 
@@ -313,9 +314,9 @@ fn checksum(bytes: &[u8]) -> u32 {
 /// Whether a file of an archive can be run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// It is a plain file.
+    /// A plain file.
     Plain,
-    /// It is a program.
+    /// A program.
     Executable,
 }
 

@@ -275,10 +275,16 @@ fn decimal(number: &DeInteger) -> Option<String> {
     Some(value.to_string())
 }
 
-/// The keys of `project.toml` and of its tables that are known; others are copied to the JSON only if
-/// `format` says that the file was imported.
+// The keys of `project.toml` and of its tables that are known; others are copied to the JSON only if `format`
+// says that the file was imported.
+
+/// The known keys at the top level.
 const KEYS: [&str; 7] = ["ver", "info", "flags", "pass", "renderpass", "format", "wrapper"];
+
+/// The known keys of a pass.
 const PASS_KEYS: [&str; 6] = ["tab", "inputs", "outputs", "name", "description", "type"];
+
+/// The known keys of an input.
 const INPUT_KEYS: [&str; 11] = [
     "channel",
     "source",
@@ -292,6 +298,8 @@ const INPUT_KEYS: [&str; 11] = [
     "published",
     "name",
 ];
+
+/// The known keys of a sampler.
 const SAMPLER_KEYS: [&str; 5] = ["filter", "wrap", "vflip", "srgb", "internal"];
 
 fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic>) -> Option<Project> {

@@ -15,7 +15,7 @@ use crate::project::Project;
 pub struct Rendering {
     /// The order of the passes, and their inputs.
     pub graph: Graph,
-    /// The passes of the graph, in its order: their indices in [`Project::passes`].
+    /// The indices of the graph's passes in [`Project::passes`], in the order of the graph.
     pub passes: Vec<usize>,
     /// The textures that do not change.
     pub media: Vec<Texture>,
@@ -30,7 +30,7 @@ pub struct MissingMedium {
     pub source: Source,
     /// Whether a texture with the same properties takes its place; otherwise the channel is black.
     pub has_stand_in: bool,
-    /// The passes that read it, each with the number of its channel.
+    /// The passes that read the texture, each with the number of the channel.
     pub readers: Vec<(PassKind, usize)>,
 }
 

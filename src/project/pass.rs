@@ -46,7 +46,7 @@ pub enum Buffer {
 /// A pass: its kind, its code and its inputs.
 #[derive(Debug, Clone)]
 pub struct Pass {
-    /// What it renders.
+    /// What the pass renders.
     pub kind: PassKind,
     /// The text, without Common.
     pub file: FileId,
@@ -59,7 +59,7 @@ pub struct Pass {
 pub struct Input {
     /// What is read.
     pub source: Source,
-    /// How it is sampled.
+    /// How the input is sampled.
     pub sampler: Sampler,
     /// Where it stands in the project's JSON or TOML, or `None` if it is assumed.
     pub span: Option<Span>,

@@ -41,7 +41,7 @@ pub struct Axis {
     pub label: &'static str,
     /// The quantity with its definition, as the title of a chart's axis.
     pub axis_title: &'static str,
-    /// The kind of its cases.
+    /// The kind of the axis's cases.
     pub kind: Kind,
     /// The steps in order.
     pub steps: Vec<Step>,

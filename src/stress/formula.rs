@@ -133,7 +133,7 @@ float scaled(vec3 o, vec3 d, vec3 c, float r, float tMin) {
 pub const FORMULAS: [Formula; 6] = [UNIT, TEXTBOOK, HALF_B, GEOMETRIC, RECENTERED, SCALED];
 
 impl Formula {
-    /// The name of its GLSL function.
+    /// The name of the formula's GLSL function.
     #[must_use]
     pub fn function(&self) -> &'static str {
         if self.name == HALF_B.name {
@@ -153,11 +153,11 @@ pub struct Subject {
     pub kind: Kind,
     /// A shader: it reads the texels of a case from channels 0 to 2, and returns the result as a color.
     pub text: String,
-    /// Whether it is also meaningful in f64.
+    /// Whether the subject is also meaningful in f64.
     pub in_f64: bool,
-    /// The interpretation of its color.
+    /// The interpretation of the shader's color.
     pub reading: Reading,
-    /// The options of its language.
+    /// The options of the shader's language.
     pub options: glsl::Options,
 }
 
@@ -274,7 +274,7 @@ struct Strategy {
     start: &'static str,
     /// The minimum accepted t.
     t_min: &'static str,
-    /// Whether the surface itself is tested.
+    /// Whether the surface that the ray starts from is tested, too.
     tests_own: bool,
 }
 

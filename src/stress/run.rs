@@ -18,7 +18,7 @@ const FRAME_WIDTH: usize = 512;
 /// The reason why a subject could not be run.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// The shader made for it does not compile.
+    /// The shader made for the subject does not compile.
     #[error("{}", first_message(.0))]
     Invalid(Vec<Diagnostic>),
     /// The evaluator failed.

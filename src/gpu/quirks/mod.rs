@@ -21,7 +21,7 @@ pub enum DriverKind {
 }
 
 impl DriverKind {
-    /// A substring of its adapters' names.
+    /// A substring of the names of the driver's adapters.
     pub fn adapter_name(self) -> &'static str {
         match self {
             Self::Lavapipe => "llvmpipe",

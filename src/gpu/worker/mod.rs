@@ -49,10 +49,13 @@ enum PlainCode {
 /// shaders at 256×144, compiling took 5.3 s with and 3.2 s without them, and rendering 1.3 and 2.2 s: both
 /// are equal at 88,000 pixels.
 const MAX_PLAIN_PIXELS: u64 = 320 * 240;
+
 /// Minimum time limit for the start of a driver: a busy machine needs a second or two.
 const START_TIMEOUT: Duration = Duration::from_secs(10);
+
 /// Environment variable that controls the code generation of Mesa's software driver.
 const COMPILER_FLAGS: &str = "GALLIVM_PERF";
+
 /// The value of the result that a job has.
 macro_rules! result {
     ($output:expr, $result:pat => $value:expr) => {

@@ -37,7 +37,7 @@ fn detach(command: &mut Command) {
 /// A running worker process.
 #[derive(Debug)]
 pub(super) struct Process {
-    /// Whether it is Mesa's software driver without LLVM's optimizations.
+    /// Whether the process runs Mesa's software driver without LLVM's optimizations.
     pub(super) is_plain: bool,
     child: Child,
     pub(super) requests: ChildStdin,

@@ -41,6 +41,7 @@ fn text_width<'a>(texts: impl IntoIterator<Item = &'a str>, size: i32) -> i32 {
 
 /// Formats a tick label: `0.01`, `100`, `10⁻⁵`, `2·10⁻⁵`.
 pub(crate) fn tick(value: f64) -> String {
+    // Powers of ten have rounded logarithms, which may be just below an integer.
     let exponent = libm::log10(value * (1.0 + 1e-9)).floor() as i32;
     let mantissa = value / libm::exp10(f64::from(exponent));
     if (-3..=3).contains(&exponent) {

@@ -18,9 +18,9 @@ pub struct Point {
     pub y: f64,
     /// The name, which the legend lists for points on the Pareto front.
     pub name: String,
-    /// The index of its group.
+    /// The index of the point's group.
     pub group: usize,
-    /// Whether it is on the Pareto front: no other point has both smaller x and smaller y.
+    /// Whether the point is on the Pareto front: no other point has both smaller x and smaller y.
     pub on_front: bool,
 }
 
@@ -41,13 +41,16 @@ pub struct Scatter {
     pub reference_lines: Vec<(f64, String)>,
 }
 
+// Sizes in pixels.
+
 const SIZE: (u32, u32) = (1280, 760);
 const FONT_SIZE: i32 = 19;
 const TITLE_SIZE: i32 = 26;
-/// The length of tick marks, in pixels.
 const TICK_LENGTH: i32 = 5;
 const LINE_HEIGHT: i32 = 26;
-/// Distinguishable with color-vision deficiency: Okabe and Ito, “Color Universal Design” (2008).
+
+/// The colors of groups, distinguishable with color-vision deficiency: Okabe and Ito, “Color Universal
+/// Design” (2008).
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),

@@ -119,7 +119,7 @@ pub(super) enum Backend {
 /// A shader prepared for the evaluator and for GPUs.
 #[derive(Debug)]
 pub(super) struct Shader {
-    /// The formula that replaces its ray–sphere intersection; `None` for its own.
+    /// The formula that replaces the shader's ray–sphere intersection; `None` for the shader's own.
     pub(super) formula: Option<&'static str>,
     checked: Checked,
     program: Program,

@@ -68,7 +68,7 @@ impl ReadError {
         }
     }
 
-    /// What is wrong with it.
+    /// What is wrong with the file.
     #[must_use]
     pub fn reason(&self) -> String {
         match self {

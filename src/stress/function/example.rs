@@ -155,7 +155,7 @@ fn simplest_failing(
     Ok(best)
 }
 
-/// The length of its numbers as text.
+/// The length of the numbers of a case as text.
 fn text_length(ray_sphere: &RaySphere) -> usize {
     let numbers = ray_sphere
         .o

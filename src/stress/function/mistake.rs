@@ -115,7 +115,8 @@ mistakes! {
 /// The name of the mistake whose formula never hits anything from outside.
 const RADIUS_ADDED: &str = "radius-added";
 
-/// Reported for mistakes that show only with directions that are not unit vectors.
+// Mistakes that show only with directions that are not unit vectors.
+
 const UNIT: Mistake = Mistake {
     name: "unit-direction-only",
     description: "assumes a = 1: its results are right only for directions of length 1",

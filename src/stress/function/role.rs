@@ -115,7 +115,7 @@ impl Role {
         }
     }
 
-    /// Whether it is the sphere or part of it.
+    /// Whether the role is the sphere or a part of the sphere.
     pub(super) fn is_of_sphere(self) -> bool {
         matches!(self, Self::Center | Self::Radius | Self::Sphere)
     }
@@ -194,7 +194,7 @@ pub(super) fn leaves(tree: &Tree, path: &str, ty: Type, struct_name: &str) -> Ve
 }
 
 impl Leaf {
-    /// The last name of its path, in lowercase without underscores.
+    /// The last name of the path, in lowercase without underscores.
     fn normalized_name(&self) -> String {
         let last = self.path.rsplit('.').next().unwrap_or_default();
         last.to_lowercase().replace('_', "")
@@ -204,7 +204,7 @@ impl Leaf {
         role.fits(self.ty) && role.has_name(&self.normalized_name())
     }
 
-    /// Whether it may be a position, and not a color or a normal.
+    /// Whether the value may be a position, and not a color or a normal.
     fn is_spatial(&self) -> bool {
         let normalized_name = self.normalized_name();
         let other = [
@@ -215,7 +215,7 @@ impl Leaf {
             && normalized_name != "n"
     }
 
-    /// Whether its name is that of a normal: planes and disks have one, spheres do not.
+    /// Whether the name is that of a normal: planes and disks have a normal, spheres do not.
     fn is_normal(&self) -> bool {
         let normalized_name = self.normalized_name();
         self.ty == Type::vector(Scalar::Float, 3)

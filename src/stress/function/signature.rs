@@ -16,12 +16,13 @@ use crate::case::RaySphere;
 pub struct Signature {
     /// The name.
     pub name: String,
-    /// The names and types of its parameters.
+    /// The names and types of the parameters.
     parameters: Vec<(String, String)>,
     /// The return type; `None` for void.
     returns: Option<String>,
     /// The inputs: paths and roles.
     pub(super) inputs: Vec<(String, Role)>,
+    /// The outputs.
     pub(super) outputs: Vec<Output>,
     /// Whether the shader adds the square of a radius to anything.
     pub(super) adds_squared_radius: bool,
