@@ -28,7 +28,7 @@ pub(crate) struct GraphFile {
     /// The language of the passes, as `--to` names it.
     language: String,
     uniforms: Uniforms,
-    /// In the order in which they are rendered; the image is last.
+    /// The passes in the order in which they are rendered; the image is last.
     passes: Vec<PassEntry>,
 }
 
@@ -51,7 +51,7 @@ struct PassEntry {
     /// `image`, or `buffer-a` to `buffer-d`.
     target: String,
     format: String,
-    /// The content of the target before the first frame. It is never cleared afterward.
+    /// The content of the target before the first frame, which is never cleared afterward.
     initial: Initial,
     /// Whether mipmaps of the target are made after the pass.
     mipmaps: bool,
@@ -68,7 +68,7 @@ enum Initial {
 /// What a channel of a pass reads, and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InputEntry {
-    /// What it reads.
+    /// What the channel reads.
     #[serde(flatten)]
     pub(crate) source: SourceEntry,
     #[serde(with = "FilterName")]
@@ -95,7 +95,7 @@ pub(crate) enum SourceEntry {
     },
     /// A texture that does not change, or that comes from a camera or the like.
     Media {
-        /// What it is: a texture, a cube map and so on.
+        /// The type of the medium: a texture, a cube map and so on.
         #[serde(rename = "type")]
         kind: String,
         /// The site's id.

@@ -17,11 +17,11 @@ const NAGA: &str = "30.0.1";
 pub enum ProofStatus {
     /// No proof was requested.
     NotRequested,
-    /// It is proved.
+    /// The conversion is proved.
     Proved(ShaderProof),
     /// All passes are proved.
     ProvedPasses(PassesProof),
-    /// It is not proved, for this reason.
+    /// The conversion is not proved, for this reason.
     NotProved(String),
 }
 

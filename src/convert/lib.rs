@@ -150,13 +150,13 @@ pub enum WgslError {
 /// Why a shader could not be converted.
 #[derive(Debug, Error)]
 pub enum ConvertError {
-    /// It takes too long to compile.
+    /// The shader takes too long to compile.
     #[error(transparent)]
     Overdue(#[from] Overdue),
     /// naga or its worker failed.
     #[error(transparent)]
     Worker(#[from] gpu::Failure),
-    /// It cannot be written as WGSL for this kind of host, and naga only writes for the plain one.
+    /// The shader cannot be written as WGSL for this kind of host, and naga only writes for the plain one.
     #[error(transparent)]
     Unwritable(WgslError),
 }

@@ -14,7 +14,7 @@ use toyproof_translate::backend::{Target, roundtrip, spirv};
 /// Why a tool did not accept a file.
 #[derive(Debug, Error)]
 pub enum ToolError {
-    /// It rejects the file with this message.
+    /// The tool rejects the file with this message.
     #[error("{tool} rejects the output: {message}")]
     Refused {
         /// The tool.
@@ -22,7 +22,7 @@ pub enum ToolError {
         /// The first error message.
         message: String,
     },
-    /// The file could not be written for it.
+    /// The file could not be written for the tool.
     #[error("cannot write a temporary file for {tool}: {error}")]
     Unwritable {
         /// The tool.
@@ -30,7 +30,7 @@ pub enum ToolError {
         /// The system's error.
         error: io::Error,
     },
-    /// It could not be run, or its output could not be read.
+    /// The tool could not be run, or its output could not be read.
     #[error("cannot run {tool}: {error}")]
     NotRun {
         /// The tool.
@@ -38,7 +38,7 @@ pub enum ToolError {
         /// The system's error.
         error: io::Error,
     },
-    /// The length of its output is not a multiple of four bytes.
+    /// The length of the tool's output is not a multiple of four bytes.
     #[error("the length of the output of {0} is not a multiple of four bytes")]
     PartialWord(&'static str),
 }
@@ -183,6 +183,8 @@ impl Tool {
 
 /// The time limit of a tool.
 const TIME_LIMIT: Duration = Duration::from_secs(60);
+
+/// The time between two checks whether a tool has ended.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
 /// Runs a tool until it ends or exceeds `TIME_LIMIT`.

@@ -27,7 +27,7 @@ impl KeySet {
 pub struct Keys {
     /// The keys that are held down.
     pub held: KeySet,
-    /// Those that were pressed since the previous frame.
+    /// The keys that were pressed since the previous frame.
     pub pressed: KeySet,
     /// The keys that have been pressed an odd number of times.
     pub toggled: KeySet,

@@ -35,7 +35,8 @@ impl Texture {
         }
     }
 
-    /// Whether it has this size, one level, and all its texels, which may be false after reading from a file.
+    /// Whether the texture has this size, one level, and all texels, which may be false after reading from a
+    /// file.
     pub fn is_whole(&self, size: [u32; 2]) -> bool {
         match self {
             Self::Single(levels) => {

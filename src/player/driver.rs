@@ -15,8 +15,8 @@ pub trait Driver: fmt::Debug + Send {
 
     /// Renders a frame, and passes the bands of [`Frame::bands`] to `on_band`, one after the other; the time
     /// spent in `on_band` does not count as rendering. `checks_loops` receives the result and the rendering
-    /// time, and returns whether to check for loops that the driver truncated; it may return false if no pixel
-    /// runs more than [`Self::safe_iterations`] iterations.
+    /// time, and returns whether to check for loops that the driver truncated; it may return false if no
+    /// pixel runs more than [`Self::safe_iterations`] iterations.
     ///
     /// # Errors
     /// Why there is no image: [`DriverFailure::Invalid`] also for a shader that nests deeper than
@@ -124,6 +124,6 @@ impl Default for ChannelSampling {
 pub enum Readback {
     /// What a pass rendered last.
     Last(Target),
-    /// The other texture of a buffer, which its pass renders next.
+    /// The other texture of a buffer, which the buffer's pass renders next.
     Other(usize),
 }

@@ -60,7 +60,7 @@ pub struct Player<R: Renderer> {
     size: Option<[u32; 2]>,
 }
 
-/// The two textures of a buffer. One of them is absent while it is rendered.
+/// The two textures of a buffer. A texture is absent while it is rendered.
 #[derive(Debug)]
 struct Buffer<T> {
     textures: [Option<T>; 2],

@@ -43,7 +43,7 @@ pub enum Sampler {
 }
 
 impl Sampler {
-    /// Whether it provides random numbers for lights and surfaces.
+    /// Whether the sampler provides random numbers for lights and surfaces.
     pub fn is_stochastic(self) -> bool {
         !matches!(self, Self::Center | Self::SineHash)
     }

@@ -41,10 +41,10 @@ pub enum PatternKind {
 /// The coordinates of a pattern.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Space {
-    /// Those of the scene: surfaces move through the pattern.
+    /// The coordinates of the scene: surfaces move through the pattern.
     World,
-    /// Relative to [`Shape::origin`](super::Shape::origin), along the surface's own axes: the pattern moves
-    /// with the surface. In planes, and in the faces of boxes, the coordinate across them is 0.
+    /// Coordinates relative to [`Shape::origin`](super::Shape::origin), along the surface's own axes: the
+    /// pattern moves with the surface. In planes, and in the faces of boxes, the coordinate across them is 0.
     Object {
         /// The directions of x, y and z: a right-handed orthonormal basis.
         axes: [Point; 3],
@@ -146,7 +146,7 @@ pub enum Background {
 /// A light without falloff, invisible to rays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// The position of its center.
+    /// The position of the light's center.
     pub position: Point,
     /// The color.
     pub color: Color,

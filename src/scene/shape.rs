@@ -160,7 +160,7 @@ impl Quadric {
 }
 
 impl Shape {
-    /// Whether it encloses a volume.
+    /// Whether the shape encloses a volume.
     pub fn is_closed(&self) -> bool {
         match self {
             Self::Sphere { .. } | Self::Box(_) => true,
@@ -169,8 +169,9 @@ impl Shape {
         }
     }
 
-    /// Returns the origin of its own coordinates: the center of a sphere or a quadric, the end of a quadric
-    /// that begins there, the point of a plane, and the corner of a box with the smallest coordinates.
+    /// Returns the origin of the shape's own coordinates: the center of a sphere or a quadric, the end of a
+    /// quadric that begins there, the point of a plane, and the corner of a box with the smallest
+    /// coordinates.
     pub fn origin(&self) -> Point {
         match *self {
             Self::Sphere { center, .. } => center,
@@ -256,7 +257,7 @@ pub struct Scatter {
 pub struct ScatterObjects {
     /// The scatter.
     pub scatter: Scatter,
-    /// The indices of its spheres in [`super::Scene::objects`].
+    /// The indices of the scatter's spheres in [`super::Scene::objects`].
     pub objects: Range<usize>,
 }
 

@@ -8,9 +8,12 @@ use crate::transfer::tone_map;
 /// Side of an adaptive tile in pixels: large enough that its error is estimated from hundreds of values,
 /// small enough that empty sky does not share the cost of a silhouette.
 pub(super) const ADAPTIVE_TILE_SIDE: u32 = 16;
+
 /// Initial number of samples in each of the two independent sets of a tile, whose difference estimates the
-/// error. It is doubled until the error is small enough or [`MAX_SAMPLES_PER_SET`] is reached.
+/// error. The number is doubled until the error is small enough or [`MAX_SAMPLES_PER_SET`] is reached.
 const INITIAL_SAMPLES_PER_SET: u32 = 8;
+
+/// Largest number of samples in each of the two sets.
 const MAX_SAMPLES_PER_SET: u32 = 1 << 15;
 
 /// The cost of an adaptively sampled image.

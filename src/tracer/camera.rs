@@ -17,8 +17,9 @@ pub(super) struct Camera<T: Real> {
     projection: ScreenProjection<T>,
     width: T,
     height: T,
-    /// The positions on the screen of the centers of the columns of pixels, and of the rows.
+    /// The positions on the screen of the centers of the columns of pixels.
     columns: Vec<T>,
+    /// The positions on the screen of the centers of the rows of pixels.
     rows: Vec<T>,
 }
 

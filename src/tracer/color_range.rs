@@ -5,8 +5,10 @@ use crate::sampler::Sample;
 use crate::tracer::Tracer;
 use crate::transfer::tone_map;
 
-/// Offsets and smallest t of the representative policies, as fractions of the scene's largest offset.
+/// Offsets of the representative policies, as fractions of the scene's largest offset.
 const OFFSETS: [f64; 3] = [0.0, 0.1, 1.0];
+
+/// Smallest t of the representative policies, as fractions of the scene's largest offset.
 const T_MINS: [f64; 2] = [0.0, 1.0];
 
 /// Iterates over representative policies that cover the accepted range.
@@ -221,10 +223,10 @@ fn usual_lengths(max_offset: f64) -> Vec<f64> {
     let mut lengths = vec![0.0];
     for decade in (0..DENSE_DECADES + SPARSE_DECADES).rev() {
         let unit = 10f64.powi(exponent - decade);
-        let all = decade < DENSE_DECADES;
+        let is_dense = decade < DENSE_DECADES;
         let factors = USUAL_MANTISSAS
             .into_iter()
-            .filter(|&factor| all || factor == 1.0 || factor == 5.0);
+            .filter(|&factor| is_dense || factor == 1.0 || factor == 5.0);
         lengths.extend(factors.map(|factor| factor * unit));
     }
     lengths.retain(|&length| length < max_offset);

@@ -69,8 +69,7 @@ impl<T: Real> FirstHit<T> {
 }
 
 /// Completes the unit vectors w to orthonormal bases: a = normalize(up × w), b = w × a, where up is y, or x
-/// if
-/// |w.y| > 0.9.
+/// if |w.y| > 0.9.
 #[inline(always)]
 fn tangent_basis<T: Real, S: Lanes<T>>(simd: S, w: Wide3<T, S>) -> [Wide3<T, S>; 2] {
     let is_steep = Wide::splat(simd, T::from_f64(0.9)).less(w.1.abs());

@@ -12,8 +12,9 @@ use crate::spheres::PACKET_RAYS;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     pub(super) pixel: [u32; 2],
-    /// Index of the sample in its pixel, from 0 to `count` − 1.
+    /// Index of the sample in the pixel, from 0 to `count` − 1.
     pub(super) index: u32,
+    /// Number of samples of the pixel.
     pub(super) count: u32,
     /// Number of the set; samples of different sets are independent.
     pub(super) set: u32,
@@ -69,6 +70,7 @@ impl SampleStream {
             Sampler::Center => Self::Center,
             Sampler::SineHash => Self::SineHash(index),
             Sampler::Independent => {
+                // A pixel has at most 2¹⁶ samples, so that sets do not overlap.
                 let index = index.wrapping_add(set.wrapping_mul(1 << 17));
                 Self::Independent(pcg(x.wrapping_add(pcg(y.wrapping_add(pcg(index))))))
             }

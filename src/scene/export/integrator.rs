@@ -8,10 +8,15 @@ use crate::Object;
 /// A mirrored ray, offset from its surface.
 const MIRRORED: &str = "Ray(«ReflectedOrigin: hit.point + «ReflectionOffset: 0.001» * side», \
      «ReflectedDirection: reflect(ray.direction, hit.normal)»)";
+
 /// Mirrors tint what they reflect.
 const TINTED: &str = "«MirrorStatement: throughput *= hit.color;»";
+
 const PRIMARY_RAY: &str = "«PrimaryRay: Ray ray = Ray(origin, direction);»";
+
 const BACKGROUND: &str = "background(«BackgroundDirection: ray.direction»)";
+
+/// The normal on the side of the ray's origin.
 const SIDE: &str = "vec3 side = faceforward(hit.normal, ray.direction, hit.normal);";
 
 impl Parts<'_> {

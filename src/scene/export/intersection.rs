@@ -46,13 +46,13 @@ impl Parts<'_> {
         pieces
     }
 
-    /// Returns the loop over one kind of surfaces, which keeps the nearest hit; `own` is the surface that was
-    /// hit.
-    fn nearest(&self, kind: &str, all: &str, own: &str, normal: &str) -> String {
+    /// Returns the loop over one kind of surfaces, which keeps the nearest hit; `surface` is the surface
+    /// that was hit.
+    fn nearest(&self, kind: &str, all: &str, surface: &str, normal: &str) -> String {
         let count = all.to_uppercase();
         let color = match self.patterns {
-            Patterns::None if kind == "Sphere" => format!("«SphereColor: {own}.color»"),
-            patterns => patterns.color(own, "hit.point", "hit.normal"),
+            Patterns::None if kind == "Sphere" => format!("«SphereColor: {surface}.color»"),
+            patterns => patterns.color(surface, "hit.point", "hit.normal"),
         };
         let (first, count) = if kind == "Sphere" {
             ("«FirstSphere: 0»", format!("«SphereCount: {count}»"))
@@ -61,7 +61,7 @@ impl Parts<'_> {
         };
         let mut copied = String::new();
         for property in self.properties() {
-            let _ = writeln!(copied, "            hit.{0} = {own}.{0};", property.name);
+            let _ = writeln!(copied, "            hit.{0} = {surface}.{0};", property.name);
         }
         if self.traces_paths && kind == "Sphere" {
             copied += "            hit.sphere = i;\n";
@@ -69,7 +69,7 @@ impl Parts<'_> {
         let intersect_call = if kind == "Grid" {
             "        Sphere sphere;\n        float t = intersectGrid(ray, grids[i], sphere);\n".to_owned()
         } else {
-            format!("        float t = intersect{kind}(ray, {own});\n")
+            format!("        float t = intersect{kind}(ray, {surface});\n")
         };
         format!(
             "    for (int i = {first}; i < {count}; i++) {{\n{intersect_call}        if («IsNearer: t < hit.t») {{\n            \

@@ -21,6 +21,8 @@ pub(super) enum Kind {
 
 /// The models with a BRDF.
 pub(super) const REFLECTIVE: [Kind; 4] = [Kind::Lambert, Kind::Diffuse, Kind::Glossy, Kind::Disney];
+
+/// The models that refract rays.
 pub(super) const GLASS: [Kind; 2] = [Kind::Glass, Kind::Schlick];
 
 impl Kind {
@@ -44,7 +46,7 @@ impl Kind {
         }
     }
 
-    /// Returns the name of its constant in the shader.
+    /// Returns the name of the kind's constant in the shader.
     pub(super) fn glsl_name(self) -> &'static str {
         match self {
             Self::Facing => "FACING",

@@ -13,9 +13,9 @@ pub(super) enum Patterns {
     Mixed {
         checkers: bool,
         stripes: bool,
-        /// Some are in the coordinates of their surface.
+        /// Whether some patterns are in the coordinates of their surfaces.
         own_space: bool,
-        /// Some of these are on boxes.
+        /// Whether some of the patterns in the coordinates of surfaces are on boxes.
         on_faces: bool,
     },
 }

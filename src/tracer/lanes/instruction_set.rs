@@ -102,8 +102,10 @@ mod aarch64 {
     }
 }
 
-/// Bit i for lane i, as an unsigned integer per lane.
+/// Bit i for lane i, as an integer of 32 bits per lane.
 const LANE_BITS_32: [u32; MAX_LANES] = lane_bits();
+
+/// Bit i for lane i, as an integer of 64 bits per lane.
 const LANE_BITS_64: [u64; MAX_LANES] = {
     let (bits, mut wide, mut at) = (lane_bits(), [0; MAX_LANES], 0);
     while at < MAX_LANES {

@@ -115,8 +115,9 @@ pub(super) struct Quadric<T: Real> {
     origin: T::Vec3,
     /// Directions of the local axes.
     axes: [T::Vec3; 3],
-    /// Local unit of length in scene units, and its reciprocal.
+    /// Local unit of length, in scene units.
     unit: T,
+    /// Reciprocal of `unit`.
     inverse_unit: T,
     q: T::Vec3,
     g: T,

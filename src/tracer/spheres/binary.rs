@@ -51,11 +51,11 @@ struct Item {
 /// A set of spheres.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// The place of its first sphere in the order of the tree.
+    /// The place of the first sphere in the order of the tree.
     first: u32,
     count: u32,
     half_area: f32,
-    /// The index of the first of its two halves, which are next to each other; 0 for a leaf.
+    /// The index of the first of the two halves, which are next to each other; 0 for a leaf.
     halves: u32,
 }
 

@@ -12,8 +12,9 @@ pub(super) struct Block<T> {
     pub(super) center: [Eight<T>; 3],
     /// The reciprocal of each sphere's unit of length, a power of two in scene units.
     pub(super) inverse_unit: Eight<T>,
-    /// (radius/unit)², in [1, 4)
+    /// (radius/unit)², in [1, 4).
     pub(super) radius2: Eight<T>,
+    /// The numbers of the spheres.
     pub(super) numbers: [u32; BLOCK_SIZE],
 }
 
@@ -24,6 +25,7 @@ pub(super) struct Reach<T> {
     /// Distance from the center, along each axis, within which a ray may pass that [`super::discriminant`]
     /// reports as a hit: slightly more than the radius. See [`margin`].
     pub(super) reach: Eight<T>,
+    /// Number of spheres.
     pub(super) count: usize,
 }
 
@@ -38,6 +40,7 @@ pub(super) struct Reach<T> {
 /// box at (side − o)/d, with a relative error of 4 u. Therefore t at the sides needs a relative margin of
 /// (4 + 2) u, and the radius one of (5 + 2 + 4) u. Both get 32 u.
 pub(super) fn margin<T: Real>() -> T {
+    // 32 u.
     T::from_f64(16.0) * T::epsilon()
 }
 

@@ -117,8 +117,9 @@ struct RayTraversal<'a, T, S: Lanes<T>> {
     a: Wide<T, S>,
     inverse_a: Wide<T, S>,
     t_min: Wide<T, S>,
-    /// t of the nearest hit so far and its sphere, or the upper bound of the query.
+    /// t of the nearest hit so far, or the upper bound of the query.
     t: T,
+    /// Number of the nearest sphere so far.
     number: u32,
 }
 
@@ -252,8 +253,9 @@ impl<'a, T: Real, S: Lanes<T>> RayTraversal<'a, T, S> {
 struct RayBoxes<T, S: Lanes<T>> {
     simd: S,
     is_negative: [bool; 3],
-    /// The reciprocal direction for entry and exit sides, each with the conservative margin.
+    /// The reciprocal direction for entry sides, with the conservative margin.
     inverse_near: Wide3<T, S>,
+    /// The reciprocal direction for exit sides, with the conservative margin.
     inverse_far: Wide3<T, S>,
 }
 

@@ -12,7 +12,8 @@ use crate::spheres::{LaneHits, LaneRays};
 #[derive(Debug)]
 pub(super) struct Points<T, S: Lanes<T>> {
     pub(super) point: Wide3<T, S>,
-    /// Of unit length. It points outward, or on an open surface toward the side of the incoming ray.
+    /// The normal, of unit length: it points outward, or on an open surface toward the side of the incoming
+    /// ray.
     pub(super) normal: Wide3<T, S>,
     pub(super) color: Wide3<T, S>,
     /// The surface, encoded by [`Real::tag`].

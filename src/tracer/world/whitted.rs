@@ -35,16 +35,16 @@ impl<T: Real, S: Lanes<T>> Branches<T, S> {
 
 /// The shadow rays from points to a light.
 struct LightRays<T, S: Lanes<T>> {
-    /// From the points, or from the origins of the rays, by the policy.
+    /// The direction to the light from the points, or from the origins of the rays, by the policy.
     direction: Wide3<T, S>,
-    /// Of the direction and the normal.
+    /// The cosine of the angle between the direction and the normal.
     cosine: Wide<T, S>,
     rays: LaneRays<T, S>,
     /// The lengths of the rays.
     distance: Wide<T, S>,
 }
 
-/// The refracted rays that are traced later. Those of a sample form a stack with at most one ray for each
+/// The refracted rays that are traced later. The rays of a sample form a stack with at most one ray for each
 /// number of segments: a ray that splits comes back to its refracted part when all longer ones are done.
 pub(super) struct DeferredRays<T, S: Lanes<T>> {
     /// By the number of segments of the ray that was split, with the lanes that have one.
