@@ -38,8 +38,8 @@ pub fn iterations_of_edited(iterations: u32, least: u32) -> u32 {
     iterations.saturating_mul(ITERATION_FACTOR).max(least)
 }
 
-/// The largest number of loop iterations of a pixel of an edited shader whose whole image is evaluated: pixels
-/// that were not tried may need more.
+/// The largest number of loop iterations of a pixel of an edited shader whose whole image is evaluated:
+/// pixels that were not tried may need more.
 #[must_use]
 pub fn iterations_of_image(iterations: u32) -> u32 {
     iterations_of_edited(iterations, MIN_IMAGE_ITERATIONS)

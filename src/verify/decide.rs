@@ -204,8 +204,8 @@ pub enum Means {
         within: f64,
         /// The number of pixels that were compared.
         pixels: u64,
-        /// The number of sets of random numbers that the shader was evaluated with; `None` if only its one image
-        /// was compared.
+        /// The number of sets of random numbers that the shader was evaluated with; `None` if only its one
+        /// image was compared.
         replicates: Option<usize>,
         /// The ratio of the variances, where it exceeds `MAX_VARIANCE_RATIO`.
         variance: Option<f64>,

@@ -35,8 +35,8 @@ const PERTURBED_TIME_FACTOR: u32 = 64;
 pub struct Evaluator<'a> {
     program: &'a Program,
     frame: &'a Frame,
-    /// The frame with what earlier frames render in double precision; `None` for a frame that does not depend on
-    /// earlier ones.
+    /// The frame with what earlier frames render in double precision; `None` for a frame that does not depend
+    /// on earlier ones.
     double_frame: Option<&'a Frame>,
     /// The largest number of loop iterations of a pixel.
     max_iterations: u32,

@@ -30,8 +30,8 @@ pub(super) struct Plan {
 /// A frame in which shaders are checked.
 pub(super) struct PlannedFrame {
     pub(super) inputs: FrameInputs,
-    /// The inputs with loaded channels, in their size or the default one; a scene or a reference image may set
-    /// another size.
+    /// The inputs with loaded channels, in their size or the default one; a scene or a reference image may
+    /// set another size.
     pub(super) frame: Frame,
 }
 

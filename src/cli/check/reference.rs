@@ -27,8 +27,8 @@ pub(in crate::cli) struct SceneOfShader {
 
 /// Finds the scenes of shaders.
 pub(in crate::cli) struct Scenes {
-    /// The path and the text, or the error, of the scene that `--scene` names. The file may be a pipe, so it is
-    /// read once.
+    /// The path and the text, or the error, of the scene that `--scene` names. The file may be a pipe, so it
+    /// is read once.
     named: Option<(PathBuf, Result<File, String>)>,
 }
 

@@ -9,8 +9,8 @@ use toyproof_image::Frame;
 use toyproof_scene::Scene;
 use toyproof_verify::{Conditioning, Expected, ReferenceKind};
 
-/// The largest number of scenes in each frame that the cache holds, the most recently used. The shaders of one
-/// scene usually follow each other.
+/// The largest number of scenes in each frame that the cache holds, the most recently used. The shaders of
+/// one scene usually follow each other.
 const MAX_CACHED_SCENES: usize = 8;
 
 /// The largest size of the scenes that the cache holds, if there are several.

@@ -20,8 +20,8 @@ pub(super) struct Submission {
     pub(super) name: String,
     /// The path of the shader's images without the suffixes of file names; `None` without `--out`.
     pub(super) output_stem: Option<PathBuf>,
-    /// A hash of everything that the record depends on; `None` if the shader's files cannot be read, or without
-    /// `--out`.
+    /// A hash of everything that the record depends on; `None` if the shader's files cannot be read, or
+    /// without `--out`.
     pub(super) key: Option<String>,
     /// The size of the text in bytes, where there is a key.
     pub(super) bytes: u64,

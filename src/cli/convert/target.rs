@@ -68,7 +68,8 @@ impl To {
         self.target().map_or("lowered", Target::name)
     }
 
-    /// Returns whether a file with the extension of this language may contain `written`: lowered output is GLSL.
+    /// Returns whether a file with the extension of this language may contain `written`: lowered output is
+    /// GLSL.
     fn may_contain(self, written: Self) -> bool {
         self == written || (self, written) == (Self::Glsl, Self::Lowered)
     }

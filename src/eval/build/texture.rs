@@ -131,8 +131,8 @@ impl Builder<'_> {
         if self.writer.borrow().defs[level.0 as usize] == ValueDef::Float(0.0_f64.to_bits()) {
             return self.filtered(lookup, at, sizes, self.word(0));
         }
-        // The last level is the binary logarithm of the longer side: the exponent of that float, which follows
-        // 23 bits of fraction and has a bias of 127.
+        // The last level is the binary logarithm of the longer side: the exponent of that float, which
+        // follows 23 bits of fraction and has a bias of 127.
         let longer = self.unary(O::FromInt, self.binary(O::MaxInt, sizes[0], sizes[1]));
         let exponent = self.binary(O::ShiftRightUint, self.unary(O::ToBits, longer), self.word(23));
         let last = self.binary(O::SubWord, exponent, self.word(127));

@@ -481,8 +481,8 @@ impl Triggers {
         Some(self.list[at].fact)
     }
 
-    /// Returns the first trigger in a section of the list whose `outer` is below a bound, within the range of a
-    /// tree node.
+    /// Returns the first trigger in a section of the list whose `outer` is below a bound, within the range of
+    /// a tree node.
     fn find(
         &self,
         node: usize,

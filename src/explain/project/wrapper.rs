@@ -24,8 +24,8 @@ pub(super) fn suffix(body: &str, position: Option<&str>) -> String {
 /// The parameter with the place of the pixel.
 pub(super) const POSITION: &str = "toyproofPosition";
 
-/// Checks a text that takes the place of a shader's, followed by a new entry point; `None` if that is no valid
-/// shader. With an empty `suffix`, `mainImage` stays the entry point.
+/// Checks a text that takes the place of a shader's, followed by a new entry point; `None` if that is no
+/// valid shader. With an empty `suffix`, `mainImage` stays the entry point.
 pub(super) fn with_suffix(shader: &Checked, text: &str, suffix: &str) -> Option<Checked> {
     let mut files = Files::default();
     let file = files.add(File::new("<pass>", format!("{text}{suffix}")));

@@ -57,8 +57,8 @@ const MIN_EDGE_PIXELS: u64 = 24;
 const MIN_EFFECTIVE_SAMPLES: f64 = 2.0;
 
 /// The largest sum of squared distances to the means within the pixels, as a share of the sum of those to the
-/// colors at the pixels' centers. For n samples it is 1/(n + 1); where a color is wrong for another reason, both sums are
-/// equal.
+/// colors at the pixels' centers. For n samples it is 1/(n + 1); where a color is wrong for another reason,
+/// both sums are equal.
 const MAX_UNEXPLAINED: f64 = 0.4;
 
 /// The smallest share of edge pixels with an intermediate color.

@@ -58,8 +58,8 @@ struct Sample {
 /// The largest level of a color component in an image of 8 bits. Colors are distinguished by such levels.
 const LEVELS: f64 = 255.0;
 
-/// The smallest number of levels that a usual curve must change and explain. Such a curve has no parameter, so
-/// that four levels agree by accident with a probability of less than 10⁻⁸.
+/// The smallest number of levels that a usual curve must change and explain. Such a curve has no parameter,
+/// so that four levels agree by accident with a probability of less than 10⁻⁸.
 const MIN_LEVELS_OF_USUAL: usize = 4;
 
 /// The smallest change of a level that counts.

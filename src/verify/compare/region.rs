@@ -18,8 +18,8 @@ pub struct Regions {
     pub count: u64,
     /// The largest region; of equal ones the first, bottom row first.
     pub largest: Option<Region>,
-    /// The largest compact region, an area and not a line: it contains a block of 3×3 pixels, or has at least as
-    /// many and fills half of its rectangle, as a small disk does.
+    /// The largest compact region, an area and not a line: it contains a block of 3×3 pixels, or has at least
+    /// as many and fills half of its rectangle, as a small disk does.
     pub largest_compact: Option<Region>,
 }
 

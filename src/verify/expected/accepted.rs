@@ -31,8 +31,8 @@ pub(super) struct AcceptedColors {
 pub struct MarchDependence {
     /// The pixels that change with the number of steps, the largest distance or the length of the steps.
     pub pixels: Share,
-    /// The limits of marches on which some of these pixels depend, alone or together, by the places where loops
-    /// compare with them, in the order of the text.
+    /// The limits of marches on which some of these pixels depend, alone or together, by the places where
+    /// loops compare with them, in the order of the text.
     pub limits: Vec<Span>,
 }
 

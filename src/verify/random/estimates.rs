@@ -38,8 +38,8 @@ const MAX_PATHS: u32 = 1 << 17;
 /// The largest number of pixels of a replicate.
 const MAX_PIXELS: u32 = 1 << 15;
 
-/// The largest number of pixels of a replicate of a shader: seventeen replicates take about as long as an image
-/// of 640×360.
+/// The largest number of pixels of a replicate of a shader: seventeen replicates take about as long as an
+/// image of 640×360.
 const MAX_PIXELS_OF_SHADERS: u32 = 1 << 14;
 
 /// A reference whose pixels may depend on random numbers. Colors are those of pixels; means are those of a

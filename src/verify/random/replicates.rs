@@ -26,8 +26,8 @@ const WEIGHT_REPLICATES: usize = 4;
 /// The largest mean of samples: above it, the inverse of a tone map has no precision left.
 const MAX_SAMPLE_MEAN: f64 = 1e4;
 
-/// The share of the reference's random pixels that must change, or the reseeding had no effect. Most pixels do
-/// not change if a rare event decides, such as a direction that hits a lamp.
+/// The share of the reference's random pixels that must change, or the reseeding had no effect. Most pixels
+/// do not change if a rare event decides, such as a direction that hits a lamp.
 pub(crate) const MIN_CHANGED_SHARE: f64 = 0.1;
 
 /// The largest ratio of the squared distances from the reference of a shader with other random numbers and
