@@ -8,6 +8,7 @@ use toyproof_eval::{Event, EventKind, TraceSchema, TraceValue};
 use toyproof_explain::departure;
 use toyproof_explain::trail::Trail;
 use toyproof_glsl::tree::{Scalar, Tree, Type};
+use toyproof_verify::NumberType;
 use toyproof_verify::debug::{Explanation, Step, digits};
 
 use super::departure::Departure;
@@ -283,8 +284,8 @@ fn trail_lines(trail: &[TrailStep]) -> String {
             step.frame,
             step.pass,
             format!("({x}, {y})"),
-            step.f32[component].digits(true),
-            step.f64[component].digits(false)
+            step.f32[component].digits(NumberType::Single),
+            step.f64[component].digits(NumberType::Double)
         );
     }
     text
@@ -325,7 +326,7 @@ impl Serialize for Component {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match *self {
             Self::Float(value) if value.is_finite() => serializer.serialize_f64(value),
-            Self::Float(value) => serializer.serialize_str(&digits(value, false)),
+            Self::Float(value) => serializer.serialize_str(&digits(value, NumberType::Double)),
             Self::Int(value) => serializer.serialize_i32(value),
             Self::Uint(value) => serializer.serialize_u32(value),
             Self::Bool(value) => serializer.serialize_bool(value),
@@ -335,9 +336,9 @@ impl Serialize for Component {
 
 impl Component {
     /// Formats the value: an f32 with enough digits to identify it, an f64 with ten.
-    fn digits(self, single: bool) -> String {
+    fn digits(self, number_type: NumberType) -> String {
         match self {
-            Self::Float(value) => digits(value, single),
+            Self::Float(value) => digits(value, number_type),
             Self::Int(value) => value.to_string(),
             Self::Uint(value) => format!("{value}u"),
             Self::Bool(value) => value.to_string(),
@@ -410,11 +411,14 @@ impl PixelTrace {
         let [width, height] = self.size;
         let mut text = format!("{}, pixel ({x}, {y}) of {width}×{height}\n", self.shader);
         if let Some(expected) = self.expected {
-            let expected = expected.map(|part| part.digits(false)).join(", ");
+            let expected = expected.map(|part| part.digits(NumberType::Double)).join(", ");
             let _ = writeln!(text, "  expected color     ({expected})");
         }
-        for (name, color, single) in [("f32", self.f32, true), ("f64", self.f64, false)] {
-            let color = color.map(|color| color.map(|part| part.digits(single)).join(", "));
+        for (name, color, number_type) in [
+            ("f32", self.f32, NumberType::Single),
+            ("f64", self.f64, NumberType::Double),
+        ] {
+            let color = color.map(|color| color.map(|part| part.digits(number_type)).join(", "));
             let color = color.map_or_else(|| "discarded".to_owned(), |color| format!("({color})"));
             let _ = writeln!(text, "  color in {name}       {color}");
         }
@@ -546,7 +550,10 @@ impl TraceStep {
         };
         let (single, double) = (&single[worst], &double[worst]);
         let component = &self.components[worst];
-        let (single, double) = (single.digits(true), double.digits(false));
+        let (single, double) = (
+            single.digits(NumberType::Single),
+            double.digits(NumberType::Double),
+        );
         let what = match &self.name {
             Some(name) => format!("{name}{component}"),
             None => format!("`{}`{component}", self.text),
@@ -599,11 +606,12 @@ impl Writer {
         }
         for &at in &shown {
             let component = &line.components[at];
-            let digits = |values: &Option<Vec<Component>>, single| {
+            let digits = |values: &Option<Vec<Component>>, number_type| {
                 let value = values.as_ref().and_then(|values| values.get(at));
-                value.map_or_else(|| "-".to_owned(), |value| value.digits(single))
+                value.map_or_else(|| "-".to_owned(), |value| value.digits(number_type))
             };
-            let (single, double) = (digits(&line.f32, true), digits(&line.f64, false));
+            let single = digits(&line.f32, NumberType::Single);
+            let double = digits(&line.f64, NumberType::Double);
             let pair =
                 |values: &Option<Vec<Component>>| values.as_ref().and_then(|values| values.get(at).copied());
             let distance = match (pair(&line.f32), pair(&line.f64)) {
@@ -626,7 +634,7 @@ impl Writer {
     /// Writes a value that is the same in f32 and f64, on one line.
     fn write_equal(&mut self, indent: &str, name: &str, line: &TraceStep, mark: &str) {
         let values = line.f32.iter().flatten();
-        let values: Vec<_> = values.map(|value| value.digits(true)).collect();
+        let values: Vec<_> = values.map(|value| value.digits(NumberType::Single)).collect();
         let values = match &values[..] {
             [value] => value.clone(),
             values => format!("({})", values.join(", ")),

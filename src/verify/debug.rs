@@ -10,6 +10,7 @@ use toyproof_eval_native::Program;
 use toyproof_image::Frame;
 
 use crate::compare::SEEN;
+use crate::expected::NumberType;
 
 /// The execution traces of a pixel in f32 and in f64.
 #[derive(Debug, Clone)]
@@ -275,13 +276,15 @@ fn with_positions<'a>(
 /// the 24 bits of an f32 are left.
 pub const BOUND: f64 = 1e-3;
 
-/// Returns the first step where f32 and f64 diverge. `flushed` includes differences that arise because f32
-/// flushes tiny numbers to zero, which hardly ever matters.
-fn first_divergence(schema: &TraceSchema, steps: &[Step], flushed: bool) -> Option<usize> {
-    steps.iter().position(|step| diverges(schema, step, flushed))
+/// Returns the first step where f32 and f64 diverge. `includes_flushed` is whether differences count that
+/// arise because f32 flushes tiny numbers to zero, which hardly ever matters.
+fn first_divergence(schema: &TraceSchema, steps: &[Step], includes_flushed: bool) -> Option<usize> {
+    steps
+        .iter()
+        .position(|step| diverges(schema, step, includes_flushed))
 }
 
-fn diverges(schema: &TraceSchema, step: &Step, flushed: bool) -> bool {
+fn diverges(schema: &TraceSchema, step: &Step, includes_flushed: bool) -> bool {
     if step.single.is_none() || step.double.is_none() {
         return true;
     }
@@ -300,7 +303,8 @@ fn diverges(schema: &TraceSchema, step: &Step, flushed: bool) -> bool {
             _ => {}
         }
     }
-    most == f64::INFINITY || most > BOUND * scale && (flushed || scale > f64::from(f32::MIN_POSITIVE))
+    most == f64::INFINITY
+        || most > BOUND * scale && (includes_flushed || scale > f64::from(f32::MIN_POSITIVE))
 }
 
 // The cause of a visible difference between f32 and f64.
@@ -362,15 +366,17 @@ fn color_distance(single: &ExecutionTrace, double: &ExecutionTrace) -> f64 {
     }
 }
 
-/// Formats a number: with the digits that distinguish an f32 from its neighbors if `single`, else with ten.
+/// Formats a number: an f32 with the digits that distinguish it from its neighbors, an f64 with ten.
 #[must_use]
-pub fn digits(value: f64, single: bool) -> String {
+pub fn digits(value: f64, number_type: NumberType) -> String {
     match value {
         _ if value.is_nan() => "NaN".to_owned(),
         f64::INFINITY => "inf".to_owned(),
         f64::NEG_INFINITY => "-inf".to_owned(),
-        _ if single => shortest(value as f32),
-        _ => ten_digits(value),
+        _ => match number_type {
+            NumberType::Single => shortest(value as f32),
+            NumberType::Double => ten_digits(value),
+        },
     }
 }
 
@@ -406,8 +412,8 @@ mod tests {
 
     #[test]
     fn numbers_are_formatted_for_people() {
-        let single = |value: f64| digits(value, true);
-        let double = |value: f64| digits(value, false);
+        let single = |value: f64| digits(value, NumberType::Single);
+        let double = |value: f64| digits(value, NumberType::Double);
         assert_eq!(single(f64::from(0.1f32)), "0.1");
         assert_eq!(single(-36.0), "-36");
         assert_eq!(single(f64::from(1.5e-20f32)), "1.5e-20");

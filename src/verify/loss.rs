@@ -12,6 +12,7 @@ use toyproof_image::{Frame, Image};
 use crate::bounds::MAX_TRACED_ITERATIONS;
 use crate::compare::{CheckResult, spread};
 use crate::debug::{Explanation, digits, explain_within};
+use crate::expected::NumberType;
 
 /// The largest number of differing pixels that are explained to find the cause.
 const MAX_EXPLAINED_PIXELS: usize = 5;
@@ -80,7 +81,7 @@ impl NotFinite {
         let explained = explain_within(program, frame, [x, y], MAX_TRACED_ITERATIONS, Some(deadline)).ok()?;
         let step = explained.not_finite.map(|at| &explained.steps[at])?;
         let value = step.single.iter().flatten().find_map(|value| match value {
-            TraceValue::Float(value) if !value.is_finite() => Some(digits(*value, true)),
+            TraceValue::Float(value) if !value.is_finite() => Some(digits(*value, NumberType::Single)),
             _ => None,
         });
         let message = format!(
@@ -113,12 +114,12 @@ fn diagnostic(explanation: &Explanation<'_>, [x, y]: [u32; 2]) -> Option<(Span, 
             )
         }
         Some((TraceValue::Float(single), TraceValue::Float(double)))
-            if digits(single, true) != digits(double, false) =>
+            if digits(single, NumberType::Single) != digits(double, NumberType::Double) =>
         {
             format!(
                 "float32 loses precision here: {at} this is {}, but {} in double precision",
-                digits(single, true),
-                digits(double, false)
+                digits(single, NumberType::Single),
+                digits(double, NumberType::Double)
             )
         }
         _ => format!("float32 and double precision diverge here, {at}"),

@@ -1,6 +1,6 @@
-//! The number type whose rounding decides pixels of a reference.
+//! The number types in which shaders and references are evaluated.
 
-/// The number type whose rounding is simulated.
+/// A number type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberType {
     /// f64.
