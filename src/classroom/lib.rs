@@ -1,9 +1,10 @@
-//! What a teacher needs beyond the check of one shader: assignments, submissions of a class, autograders, and
-//! the similarity of shaders.
+//! What a teacher needs beyond the check of one shader: assignments, tests of functions, submissions of a
+//! class, autograders, and the similarity of shaders.
 //!
 //! # Parts
 //!
 //! - [`assignment`]: the requirements on the shaders of a class, in one TOML file
+//! - [`function_test`]: tests of single functions, in assignments, files of their own and comments
 //! - [`collect`]: the submissions of a class, from the downloads of a learning management system
 //! - [`autograder`]: the archive of an autograder for Gradescope
 //! - [`similar`]: similarity of shaders by their trees
@@ -26,5 +27,6 @@
 pub mod assignment;
 pub mod autograder;
 pub mod collect;
+pub mod function_test;
 pub mod shards;
 pub mod similar;

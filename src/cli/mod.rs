@@ -35,6 +35,7 @@ mod shell;
 mod similar;
 mod stress;
 mod terminal;
+mod test;
 mod trade;
 
 use std::ffi::OsString;
@@ -100,6 +101,7 @@ Exit code: 0 on success, 1 if a shader is at fault or images differ, 2 for any o
 #[derive(Debug, Subcommand)]
 enum Command {
     Check(check::Args),
+    Test(test::Args),
     Merge(check::MergeArgs),
     Collect(collect::Args),
     Render(render::Args),
@@ -193,6 +195,7 @@ impl Command {
     fn run(&self, terminal: &Terminal) -> Result<Exit, CliError> {
         match self {
             Self::Check(args) => check::run(args, terminal),
+            Self::Test(args) => test::run(args, terminal),
             Self::Merge(args) => check::merge(args, terminal),
             Self::Collect(args) => collect::run(args, terminal),
             Self::Render(args) => render::run(args, terminal),

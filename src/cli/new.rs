@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use toyproof_classroom::assignment::{FILE_NAME, Model, Subject};
+use toyproof_classroom::assignment::{FILE_NAME, Model};
+use toyproof_classroom::function_test::Subject;
 use toyproof_diagnostic::path_name;
 use toyproof_image as image;
 use toyproof_project::files;

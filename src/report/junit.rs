@@ -1,4 +1,4 @@
-//! `junit.xml`: a test case per shader, for continuous integration.
+//! `junit.xml`: a test case per shader or per test of a function, for continuous integration.
 
 use std::io::{self, Write};
 
@@ -15,16 +15,39 @@ use super::{Hints, Record, details};
 /// # Errors
 /// The file cannot be written.
 pub fn junit(records: &[Record], hints: Hints, out: &mut dyn Write) -> io::Result<()> {
+    let cases: Vec<_> = records.iter().map(|record| test_case(record, hints)).collect();
+    test_suite("toyproof check", &cases, out)
+}
+
+/// A test case of a suite.
+#[derive(Debug, Clone)]
+pub struct TestCase {
+    /// What was tested.
+    pub name: String,
+    /// The group of the test.
+    pub class: String,
+    /// How long it took.
+    pub seconds: f64,
+    /// The result.
+    pub status: TestStatus,
+    /// The kind of the fault.
+    pub kind: String,
+    /// The fault, in one sentence.
+    pub message: String,
+    /// Everything known about it.
+    pub details: String,
+}
+
+/// Writes a suite of test cases. Characters that XML 1.0 forbids are removed.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn test_suite(name: &str, cases: &[TestCase], out: &mut dyn Write) -> io::Result<()> {
     // The totals precede the test cases.
-    let count = |status| {
-        let statuses = records.iter().map(Status::new);
-        statuses.filter(|found| *found == status).count().to_string()
-    };
-    let [failures, errors, skipped] = [Status::Failure, Status::Error, Status::Skipped].map(count);
-    let tests = records.len().to_string();
-    let seconds = records
-        .iter()
-        .fold(0.0, |sum, record| sum + record.seconds.total());
+    let count = |status| cases.iter().filter(|case| case.status == status).count().to_string();
+    let [failures, errors, skipped] = [TestStatus::Failure, TestStatus::Error, TestStatus::Skipped].map(count);
+    let tests = cases.len().to_string();
+    let seconds = cases.iter().fold(0.0, |sum, case| sum + case.seconds);
     let time = format!("{seconds:.3}");
     let counts = [
         ("tests", tests.as_str()),
@@ -39,15 +62,13 @@ pub fn junit(records: &[Record], hints: Hints, out: &mut dyn Write) -> io::Resul
         .create_element("testsuites")
         .with_attribute(("name", "toyproof"));
     suites.with_attributes(counts).write_inner_content(|writer| {
-        let suite = writer
-            .create_element("testsuite")
-            .with_attribute(("name", "toyproof check"));
+        let suite = writer.create_element("testsuite").with_attribute(("name", name));
         let suite = suite
             .with_attributes(counts)
             .with_attribute(("skipped", skipped.as_str()));
         suite.write_inner_content(|writer| {
-            for record in records {
-                write_test_case(&record.clone().redacted(hints), writer)?;
+            for case in cases {
+                write_test_case(case, writer)?;
             }
             Ok(())
         })?;
@@ -58,14 +79,18 @@ pub fn junit(records: &[Record], hints: Hints, out: &mut dyn Write) -> io::Resul
 
 /// The status of a test case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Status {
+pub enum TestStatus {
+    /// It passed.
     Passed,
+    /// What is tested is wrong.
     Failure,
+    /// It could not be tested.
     Error,
+    /// Nothing was compared.
     Skipped,
 }
 
-impl Status {
+impl TestStatus {
     fn new(record: &Record) -> Self {
         match Self::from(record.verdict) {
             Self::Passed if !record.faults().is_empty() => Self::Failure,
@@ -74,7 +99,7 @@ impl Status {
     }
 }
 
-impl From<Verdict> for Status {
+impl From<Verdict> for TestStatus {
     /// If nothing was compared, the test was skipped.
     fn from(verdict: Verdict) -> Self {
         match verdict {
@@ -86,31 +111,44 @@ impl From<Verdict> for Status {
     }
 }
 
-fn write_test_case(record: &Record, writer: &mut Writer<impl Write>) -> io::Result<()> {
-    let details = xml_text(&details(record));
-    let name = xml_text(&record.shader);
-    let class = xml_text(record.compared_with().unwrap_or("no reference"));
-    let time = format!("{:.3}", record.seconds.total());
-    let case = writer.create_element("testcase").with_attributes([
+/// The test case of a record, as far as the hints permit.
+fn test_case(record: &Record, hints: Hints) -> TestCase {
+    let status = TestStatus::new(record);
+    let redacted = record.clone().redacted(hints);
+    let (kind, message) = match (TestStatus::from(record.verdict), redacted.faults().into_iter().next()) {
+        (TestStatus::Passed, Some((kind, sentence))) => (kind.to_owned(), sentence),
+        _ => (record.verdict.to_string(), redacted.reason_and_lateness()),
+    };
+    TestCase {
+        name: record.shader.clone(),
+        class: record.compared_with().unwrap_or("no reference").to_owned(),
+        seconds: record.seconds.total(),
+        status,
+        kind,
+        message,
+        details: details(&redacted),
+    }
+}
+
+fn write_test_case(case: &TestCase, writer: &mut Writer<impl Write>) -> io::Result<()> {
+    let [details, name, class, message, kind] =
+        [&case.details, &case.name, &case.class, &case.message, &case.kind].map(|text| xml_text(text));
+    let time = format!("{:.3}", case.seconds);
+    let element = writer.create_element("testcase").with_attributes([
         ("name", name.as_str()),
         ("classname", &class),
         ("time", &time),
     ]);
-    case.write_inner_content(|writer| {
-        let element = match Status::new(record) {
-            Status::Passed => "system-out",
-            Status::Failure => "failure",
-            Status::Error => "error",
-            Status::Skipped => "skipped",
+    element.write_inner_content(|writer| {
+        let element = match case.status {
+            TestStatus::Passed => "system-out",
+            TestStatus::Failure => "failure",
+            TestStatus::Error => "error",
+            TestStatus::Skipped => "skipped",
         };
         let element = writer.create_element(element);
-        let (kind, message) = match (Status::from(record.verdict), record.faults().into_iter().next()) {
-            (Status::Passed, Some((kind, sentence))) => (kind.to_owned(), sentence),
-            _ => (record.verdict.to_string(), record.reason_and_lateness()),
-        };
-        let message = xml_text(&message);
-        let element = match Status::new(record) {
-            Status::Passed => element,
+        let element = match case.status {
+            TestStatus::Passed => element,
             _ => element.with_attributes([("message", message.as_str()), ("type", &kind)]),
         };
         element.write_text_content(BytesText::new(&details))?;

@@ -47,7 +47,7 @@ pub use html::{
     Exhibit, Gallery, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, PARTS, html, html_index, html_part, part_name,
     subsample,
 };
-pub use junit::junit;
+pub use junit::{TestCase, TestStatus, junit, test_suite};
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{
     Alternative, DialectRecord, FrameResult, Mistake, Position, Record, Report, SCHEMA, Seconds,

@@ -217,7 +217,8 @@ impl<'r, 't> Table<'r, 't> {
         self.reject(located.span, format!("`{key}` {problem}, found {found}"), "");
     }
 
-    fn reject_form(&self, span: Span, message: String, help: &str) {
+    /// Reports a value that does not have the form that it must have; `help` may be empty.
+    pub fn reject_form(&self, span: Span, message: String, help: &str) {
         self.reader
             .report(self.reader.format.form_code, span, message, help);
     }
@@ -276,6 +277,18 @@ impl<'r, 't> Table<'r, 't> {
                 None
             }
         }
+    }
+
+    /// Returns the strings of an optional list, each with its place; none if the key is missing or its value
+    /// has another type, which is reported.
+    pub fn strings(&mut self, key: &'static str) -> Vec<Located<String>> {
+        let strings = self.optional::<Vec<(String, Range<usize>)>>(key);
+        let strings = strings.map_or_else(Vec::new, |strings| strings.value);
+        let located = strings.into_iter().map(|(value, bytes)| Located {
+            value,
+            span: self.reader.span(bytes),
+        });
+        located.collect()
     }
 
     /// Returns the value of a key; `None` if it is missing or has another type, which is reported.

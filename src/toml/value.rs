@@ -136,6 +136,16 @@ impl Value for String {
     }
 }
 
+/// A string and the bytes of its place.
+impl Value for (String, Range<usize>) {
+    const EXPECTED: &'static str = String::EXPECTED;
+    const EXAMPLE: &'static str = String::EXAMPLE;
+
+    fn read(value: &Spanned<DeValue>) -> Result<Self, Mismatch> {
+        Ok((String::read(value)?, value.span()))
+    }
+}
+
 /// A number, a Boolean, or a list of these: a value whose type the file does not determine.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Literal {
@@ -193,6 +203,7 @@ macro_rules! lists_of_any_length {
 lists_of_any_length! {
     f64: "a list of numbers", "[1.0, 2.0]";
     String: "a list of strings", "[\"name\"]";
+    (String, Range<usize>): "a list of strings", "[\"name\"]";
     Literal: "a list of values", "[[0.0, 0.0, 4.0], 1.5]";
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use toyproof::classroom::assignment::Assignment;
+use toyproof::classroom::function_test::TestFile;
 use toyproof::diagnostic::{Code, Deadline, Diagnostic, File, FileId, Files, human};
 use toyproof::explain;
 use toyproof::glsl::{self, Checked};
@@ -122,6 +123,11 @@ fn diagnostics_of(example: &Example) -> (Vec<Diagnostic>, Files) {
             let file = files.add(File::new("script.toml", example.text));
             let script = project::parse_script(&files, file);
             (script.err().unwrap_or_default().into(), files)
+        }
+        "toml test" => {
+            let file = files.add(File::new("disk.test.toml", example.text));
+            let tests = TestFile::parse(&files, file, Path::new("glsl"));
+            (tests.err().unwrap_or_default().into(), files)
         }
         "toml assignment" => {
             let file = files.add(File::new("assignment.toml", example.text));

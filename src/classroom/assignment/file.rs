@@ -6,13 +6,11 @@ use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_project::{PassKind, Tab};
 use toyproof_report::{Rubric, optional_points};
-use toyproof_toml::{Format, Literal, Located, Table};
+use toyproof_toml::{Format, Located, Table};
 use toyproof_verify::{Difference, UnknownDifference};
 
-use super::{
-    Assignment, DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, MAX_FRAMES, Reference,
-    Rules,
-};
+use super::{Assignment, MAX_FRAMES, Reference, Rules};
+use crate::function_test::{FunctionTest, function, is_identifier, reject_second};
 
 static FORMAT: Format = Format {
     form_code: Code::AssignmentSyntax,
@@ -58,8 +56,7 @@ impl Assignment {
             document.tables("function", |table| {
                 let test = function(table);
                 if functions.iter().any(|other| other.name == test.name) && table.is_valid() {
-                    let message = format!("there are two tests of `{}`", test.name);
-                    table.reject(table.span(), message, "move its cases to the first test");
+                    reject_second(table, &test.name);
                 }
                 functions.push(test);
             });
@@ -288,95 +285,4 @@ fn names(table: &mut Table, key: &'static str) -> Vec<String> {
         );
     }
     value
-}
-
-fn is_identifier(name: &str) -> bool {
-    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    name.chars().all(is_part) && name.starts_with(|c: char| !c.is_ascii_digit())
-}
-
-/// The largest number of cases of a test.
-const MAX_CASES: usize = 256;
-
-const EXAMPLE_CASE: &str = "arguments = [[0.0, 0.0, 4.0], 1.5]";
-
-fn function(table: &mut Table) -> FunctionTest {
-    let name = table.required::<String>("name");
-    if let Some(name) = &name
-        && !is_identifier(&name.value)
-    {
-        table.reject_value("name", name, "must be the name of a function");
-    }
-    let points = optional_points(table);
-    let source = table.choice("cases", "source of cases", &[("stress", ())]);
-    let mut listed = Vec::new();
-    table.tables("case", |table| {
-        if listed.len() == MAX_CASES {
-            let message = format!("a function has at most {MAX_CASES} cases");
-            table.reject(table.span(), message, "remove this one");
-        }
-        listed.push(case(table));
-    });
-    let cases = if let Some(source) = &source {
-        if !listed.is_empty() {
-            let help = "remove `cases`, or all [[function.case]]";
-            table.reject(source.span, "`cases` cannot be used with [[function.case]]", help);
-        }
-        FunctionCases::Stress
-    } else {
-        if listed.is_empty() && table.is_valid() {
-            let help =
-                format!("add [[function.case]] with `{EXAMPLE_CASE}` and `result`, or `cases = \"stress\"`");
-            table.reject(table.span(), "the function has no cases", &help);
-        }
-        FunctionCases::Listed(listed)
-    };
-    FunctionTest {
-        name: name.map_or_else(String::new, |name| name.value),
-        points,
-        cases,
-    }
-}
-
-fn case(table: &mut Table) -> FunctionCase {
-    let arguments = table.required::<Vec<Literal>>("arguments");
-    if let Some(arguments) = &arguments
-        && !arguments.value.iter().all(is_float)
-    {
-        table.reject_value(
-            "arguments",
-            arguments,
-            "must have finite numbers that float32 can hold",
-        );
-    }
-    let result = table.optional::<Literal>("result");
-    let outputs = table.optional::<Vec<Literal>>("outputs");
-    if result.is_none() && outputs.is_none() && table.is_valid() {
-        let help = "add `result = 2.5`, or `outputs = [2.5]` for `out` parameters";
-        table.reject(
-            table.span(),
-            "the case has neither a `result` nor `outputs`",
-            help,
-        );
-    }
-    let tolerance = table.optional::<f64>("tolerance");
-    if let Some(tolerance) = &tolerance
-        && !(0.0..f64::INFINITY).contains(&tolerance.value)
-    {
-        table.reject_value("tolerance", tolerance, "must be finite and at least 0");
-    }
-    FunctionCase {
-        arguments: arguments.map_or_else(Vec::new, |arguments| arguments.value),
-        result: result.map(|result| result.value),
-        outputs: outputs.map(|outputs| outputs.value),
-        tolerance: tolerance.map_or(DEFAULT_CASE_TOLERANCE, |tolerance| tolerance.value),
-    }
-}
-
-fn is_float(literal: &Literal) -> bool {
-    match literal {
-        Literal::Number { value, .. } => (*value as f32).is_finite(),
-        Literal::Boolean(_) => true,
-        Literal::List(list) => list.iter().all(is_float),
-    }
 }

@@ -17,11 +17,10 @@
 //! # Parts
 //!
 //! - `file`: reads the TOML file of an assignment; `template` writes a new one.
-//! - `rules`, `function`: check what the image does not show.
+//! - `rules`: checks the text; [`crate::function_test`] tests its functions.
 //! - `sample`: a test of a function of a model solution, for a new assignment.
 
 mod file;
-mod function;
 mod rules;
 mod sample;
 mod template;
@@ -32,9 +31,9 @@ use toyproof_image::FrameInputs;
 use toyproof_report::{FunctionRecord, Rubric, RulesRecord};
 use toyproof_verify::Difference;
 
-pub use self::function::{DEFAULT_CASE_TOLERANCE, FunctionCase, FunctionCases, FunctionTest, Subject};
 pub use self::rules::Rules;
 pub use self::template::Model;
+use crate::function_test::{FunctionTest, Subject};
 
 /// The name of an assignment's file, which is used for the shaders of its folder.
 pub const FILE_NAME: &str = "assignment.toml";

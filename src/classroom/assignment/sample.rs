@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use toyproof_glsl::tree::{Direction, Function, Item, Scalar, Tree, Type, VariableKind};
 use toyproof_toml::Literal;
 
-use super::function::{Call, FunctionCase, Subject, parts, text};
+use crate::function_test::{Call, ListedCall, Subject, literal_text, parts};
 
 /// The components of sample arguments, repeated cyclically.
 const COMPONENTS: [f64; 4] = [1.0, 0.5, 0.25, 2.0];
@@ -43,20 +43,19 @@ fn test(tree: &Tree, function: &Function, subject: &Subject) -> Option<String> {
     if arguments.is_empty() {
         return None;
     }
-    let case = FunctionCase {
+    let call = ListedCall {
+        at: None,
         arguments,
         result: Some(zero),
         outputs: None,
-        tolerance: 0.0,
+        tolerance: None,
     };
-    let cases = [case];
-    let results = Call::new(tree, function, &cases)?
-        .evaluate(&cases, subject)
-        .ok()?;
-    let [case] = cases;
-    let mut result = results.into_iter().next()?.into_iter().map(rounded);
+    let calls = [call];
+    let result = Call::new(tree, function, &calls, None)?.first_result(&calls, subject)?;
+    let [call] = calls;
+    let mut result = result.into_iter().map(rounded);
     let result = literal(tree, function.return_type, &mut result)?;
-    let arguments: Vec<_> = case.arguments.iter().map(text).collect();
+    let arguments: Vec<_> = call.arguments.iter().map(literal_text).collect();
     let mut table = String::new();
     let _ = write!(
         table,
@@ -69,7 +68,7 @@ fn test(tree: &Tree, function: &Function, subject: &Subject) -> Option<String> {
          # result = {}\n",
         function.name,
         arguments.join(", "),
-        text(&result)
+        literal_text(&result)
     );
     Some(table)
 }

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
 use toyproof_image::FrameInputs;
 
-use super::function::Subject;
 use super::sample::sample;
+use crate::function_test::Subject;
 
 /// The size of the frames of an assignment from a shader, in pixels.
 const SIZE: [u32; 2] = [320, 180];

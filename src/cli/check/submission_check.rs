@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use toyproof_classroom::assignment::Subject;
+use toyproof_classroom::function_test::Subject;
 use toyproof_diagnostic::{Files, Severity};
 use toyproof_explain::repair::{Donors, SearchOptions};
 use toyproof_explain::{self as explain, Options};

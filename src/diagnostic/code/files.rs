@@ -206,6 +206,47 @@ macro_rules! files {
     /// ```
     ScriptValue "E0510" "A script of the mouse and the keyboard with an invalid value",
 
+    /// The file is not valid TOML, or has a key or a value that tests do not have; or a test in a line, as in
+    /// `tests` and in the comments of a shader, has another form than `f(x) == y`. [Tests of
+    /// functions](function-tests.md) lists the forms and the keys.
+    ///
+    /// Wrong:
+    ///
+    /// ```toml test
+    /// [[function]]
+    /// name = "disk"
+    /// test = "disk(vec2(0.0)) == -1.0"
+    /// ```
+    ///
+    /// Right:
+    ///
+    /// ```toml test
+    /// [[function]]
+    /// name = "disk"
+    /// tests = ["disk(vec2(0.0)) == -1.0"]
+    /// ```
+    TestSyntax "E0511" "A test of a function with a syntax error",
+
+    /// A test compares values of the same type, or a vector with a number for all of its components, and its
+    /// variables take values of their types. Tolerances are at least 0. A test file has at least one test, and
+    /// the shader that it names exists.
+    ///
+    /// Wrong:
+    ///
+    /// ```toml test
+    /// [[function]]
+    /// name = "disk"
+    /// ```
+    ///
+    /// Right:
+    ///
+    /// ```toml test
+    /// [[function]]
+    /// name = "disk"
+    /// tests = ["disk(vec2(0.0)) == -1.0"]
+    /// ```
+    TestValue "E0512" "A test of a function with an invalid value",
+
     /// The shader is correct: toyproof checked it. naga rejected toyproof's translation of it. Please report
     /// this with the shader.
     NagaParse "E0900" "An internal error: naga cannot parse the translated shader",
