@@ -129,8 +129,8 @@ static COURSE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
 
 /// The scenes of the course by their names, in order.
 fn course_scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
-    // The other TOML files are those of projects, in folders.
-    let is_scene = |name: &&str| !name.contains('/');
+    // The other TOML files are those of projects, in folders, and the tests of functions.
+    let is_scene = |stem: &&str| !stem.contains('/') && !stem.ends_with(".test");
     course_files().filter_map(move |(name, text)| {
         let stem = name.strip_suffix(".toml").filter(is_scene)?;
         Some((stem, text))
@@ -138,7 +138,7 @@ fn course_scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
 }
 
 /// All files of the course, sorted by name: shaders (`NN-name.glsl`, or the files of a project in the folder
-/// `NN-name`) and their scenes (`NN-name.toml`).
+/// `NN-name`), their scenes (`NN-name.toml`) and the tests of their functions (`NN-name.test.toml`).
 fn course_files() -> impl Iterator<Item = (&'static str, &'static str)> {
     let projects = COURSE.dirs().flat_map(Dir::files);
     let mut files: Vec<_> = COURSE

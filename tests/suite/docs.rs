@@ -126,6 +126,7 @@ fn tutorial_files(folder: &Path) {
     for (path, text) in [
         ("mine.glsl", block(student, "float intersect(")),
         ("far.toml", block(student, "screen_distance")),
+        ("disk.glsl", block("docs/guide/function-tests.md", "@test disk")),
         ("additions.toml", block(lecturer, "[rules]")),
         ("download/Anna Smith_1_assignsubmission_file/torus.glsl", half),
         ("download/Bo Lee_2_assignsubmission_file/my torus.glsl", large),

@@ -37,6 +37,7 @@ mod exported;
 mod fair_verdicts;
 mod fairness;
 mod fault_names;
+mod function_tests;
 mod fuzzed;
 mod generated;
 mod glslang;

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! EXPRESSION is one of GLSL, which the front end checks. Comparisons, `+-`, `for` and `after` count only
-//! outside of parentheses. A variable without a set has that of the next one.
+//! outside of parentheses. A variable without a set has that of the next one, which also has its type.
 
 use std::ops::Range;
 
@@ -91,7 +91,7 @@ impl Comparison {
 /// A variable that takes several values.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Variable {
-    /// `None` if it follows from a call.
+    /// `None` if it follows from a call; several variables may share it.
     pub(super) ty: Option<Snippet>,
     pub(super) name: Snippet,
     pub(super) set: Set,
@@ -498,7 +498,10 @@ impl Parser<'_> {
             let is_name = words.clone().all(|index| self.tokens[index].kind == Kind::Word);
             let at = |index: usize| self.snippet(&(index..index + 1));
             let declared = match words.len() {
-                1 if is_name => (None, at(words.start)),
+                1 if is_name => {
+                    let ty = pending.last().and_then(|(ty, _)| ty.clone());
+                    (ty, at(words.start))
+                }
                 2 if is_name => (Some(at(words.start)), at(words.start + 1)),
                 _ => return self.error(self.bytes(&part), "expected a variable after `for`", HELP),
             };
@@ -605,7 +608,7 @@ mod tests {
         let names: Vec<_> = test.variables.iter().map(|one| one.name.text()).collect();
         assert_eq!(names, ["x", "y"]);
         assert_eq!(test.after.unwrap().text(), "makeScene()");
-        assert!(test.variables[0].ty.is_some() && test.variables[1].ty.is_none());
+        assert_eq!(test.variables[0].ty, test.variables[1].ty);
         assert_eq!(test.variables[0].set, test.variables[1].set);
     }
 

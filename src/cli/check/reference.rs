@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, LazyLock};
 
+use toyproof_classroom::function_test::is_test_file;
 use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_explain::whole_image::OtherScenes;
 use toyproof_project::files::{self, Input, InputSource, OutsideLink, ReadError};
@@ -210,6 +211,7 @@ pub(super) fn other_scenes(named: Option<&Path>) -> OtherScenes {
             .flatten()
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+            .filter(|path| !is_test_file(path))
             .collect();
         paths.sort_unstable();
         let neighbors = paths.into_iter().take(MAX_NEIGHBORS).filter_map(|path| {
@@ -233,7 +235,7 @@ pub(super) fn unused_scene(shader: &Path) -> Option<PathBuf> {
         .filter_map(|entry| Some(entry.ok()?.path()));
     let is_scene = |path: &PathBuf| {
         let is_toml = path.extension().is_some_and(|extension| extension == "toml");
-        is_toml && files::read_text(path).is_ok_and(|text| parse_scene(text).is_ok())
+        is_toml && !is_test_file(path) && files::read_text(path).is_ok_and(|text| parse_scene(text).is_ok())
     };
     let mut scenes = paths.filter(is_scene);
     let only = scenes.next()?;
