@@ -8,7 +8,10 @@ use toyproof_diagnostic::nearest;
 
 /// The commands, each in one group.
 const GROUPS: [(&str, &[&str]); 6] = [
-    ("Shaders", &["check", "test", "run", "debug", "convert", "compare"]),
+    (
+        "Shaders",
+        &["check", "test", "run", "debug", "convert", "compare"],
+    ),
     ("Scenes", &["scenes", "render"]),
     ("Classes", &["new", "collect", "similar", "merge", "gradescope"]),
     ("Projects", &["import", "export"]),

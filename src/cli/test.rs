@@ -126,7 +126,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         terminal.note(&format!("results: {}", path_name(&folder.join(JUNIT))));
     }
     for test in report.tests().filter(|test| !test.is_passed()) {
-        exit = exit.max(if test.is_error() { Exit::Error } else { Exit::ShaderFault });
+        exit = exit.max(if test.is_error() {
+            Exit::Error
+        } else {
+            Exit::ShaderFault
+        });
     }
     Ok(exit)
 }
@@ -185,17 +189,28 @@ fn shader_of(path: &Path) -> Result<PathBuf, CliError> {
         return Ok(shader);
     }
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    let stem = name.as_deref().and_then(|name| name.get(..name.len().checked_sub(SUFFIX.len())?));
+    let stem = name
+        .as_deref()
+        .and_then(|name| name.get(..name.len().checked_sub(SUFFIX.len())?));
     let stem = stem.filter(|_| is_test_file(path));
     let beside = stem.and_then(|stem| {
         let project = folder(path).join(stem);
         let shaders = ["glsl", "frag", "fs", "shadertoy", "json"];
-        let mut shaders = shaders.map(|extension| folder(path).join(format!("{stem}.{extension}"))).into_iter();
-        shaders.find(|path| path.is_file()).or_else(|| files::is_project(&project).then_some(project))
+        let mut shaders = shaders
+            .map(|extension| folder(path).join(format!("{stem}.{extension}")))
+            .into_iter();
+        shaders
+            .find(|path| path.is_file())
+            .or_else(|| files::is_project(&project).then_some(project))
     });
     beside.ok_or_else(|| {
-        CliError::new(format_args!("{} names no shader, and there is none beside it", path_name(path)))
-            .with_help("add `shader = \"mine.glsl\"` at the top of the file, or name the shader on the command line")
+        CliError::new(format_args!(
+            "{} names no shader, and there is none beside it",
+            path_name(path)
+        ))
+        .with_help(
+            "add `shader = \"mine.glsl\"` at the top of the file, or name the shader on the command line",
+        )
     })
 }
 
@@ -304,15 +319,28 @@ fn summarize(report: &TestReport, untested: &[String], terminal: &Terminal) {
     let passed = report.tests().filter(|test| test.is_passed()).count() as u64;
     let errors = report.tests().filter(|test| test.is_error()).count() as u64;
     let mut counts = Vec::new();
-    for (count, word) in [(passed, "passed"), (all - passed - errors, "failed"), (errors, "invalid")] {
+    for (count, word) in [
+        (passed, "passed"),
+        (all - passed - errors, "failed"),
+        (errors, "invalid"),
+    ] {
         if count > 0 {
             counts.push(format!("{} {word}", grouped(count)));
         }
     }
-    terminal.note(&format!("\n{} {}: {}", grouped(all), plural(all, "test", "tests"), counts.join(", ")));
+    terminal.note(&format!(
+        "\n{} {}: {}",
+        grouped(all),
+        plural(all, "test", "tests"),
+        counts.join(", ")
+    ));
     if !untested.is_empty() {
         let count = untested.len() as u64;
-        terminal.note(&format!("{} {} no tests", grouped(count), plural(count, "shader has", "shaders have")));
+        terminal.note(&format!(
+            "{} {} no tests",
+            grouped(count),
+            plural(count, "shader has", "shaders have")
+        ));
     }
 }
 

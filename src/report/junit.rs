@@ -44,8 +44,15 @@ pub struct TestCase {
 /// The file cannot be written.
 pub fn test_suite(name: &str, cases: &[TestCase], out: &mut dyn Write) -> io::Result<()> {
     // The totals precede the test cases.
-    let count = |status| cases.iter().filter(|case| case.status == status).count().to_string();
-    let [failures, errors, skipped] = [TestStatus::Failure, TestStatus::Error, TestStatus::Skipped].map(count);
+    let count = |status| {
+        cases
+            .iter()
+            .filter(|case| case.status == status)
+            .count()
+            .to_string()
+    };
+    let [failures, errors, skipped] =
+        [TestStatus::Failure, TestStatus::Error, TestStatus::Skipped].map(count);
     let tests = cases.len().to_string();
     let seconds = cases.iter().fold(0.0, |sum, case| sum + case.seconds);
     let time = format!("{seconds:.3}");
@@ -115,7 +122,10 @@ impl From<Verdict> for TestStatus {
 fn test_case(record: &Record, hints: Hints) -> TestCase {
     let status = TestStatus::new(record);
     let redacted = record.clone().redacted(hints);
-    let (kind, message) = match (TestStatus::from(record.verdict), redacted.faults().into_iter().next()) {
+    let (kind, message) = match (
+        TestStatus::from(record.verdict),
+        redacted.faults().into_iter().next(),
+    ) {
         (TestStatus::Passed, Some((kind, sentence))) => (kind.to_owned(), sentence),
         _ => (record.verdict.to_string(), redacted.reason_and_lateness()),
     };

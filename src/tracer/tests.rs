@@ -162,7 +162,9 @@ fn f32_and_f64_agree_to_f32_accuracy() {
 fn exercise(name: &str, size: [u32; 2]) -> Scene {
     let is_match = |path: &PathBuf| {
         let stem = path.file_stem().unwrap().to_str().unwrap();
-        stem.starts_with(name) && !stem.ends_with(".test") && path.extension().is_some_and(|extension| extension == "toml")
+        stem.starts_with(name)
+            && !stem.ends_with(".test")
+            && path.extension().is_some_and(|extension| extension == "toml")
     };
     let mut paths = fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../glsl"))
         .unwrap()

@@ -125,7 +125,10 @@ fn a_result_may_be_wrong_in_float32_only() {
     let shader = "// @test lost(x) == x for x in [0, 1]\nfloat lost(float x) { return (x + 1e7) - 1e7; }\n";
     let wrong = run(shader);
     assert_eq!(wrong.code, 1, "{wrong:?}");
-    assert!(wrong.stdout.contains("        in float32 only: lost(x) is "), "{wrong:?}");
+    assert!(
+        wrong.stdout.contains("        in float32 only: lost(x) is "),
+        "{wrong:?}"
+    );
     let folder = folder(&[("a.glsl", &format!("{shader}{MAIN}"))]);
     for (precision, code) in [("f32", 1), ("f64", 0), ("both", 1)] {
         let run = test(folder.path(), &["a.glsl", "--precision", precision]);
@@ -217,12 +220,16 @@ fn a_shader_without_tests_and_one_that_does_not_compile_are_reported() {
     let folder = folder(&[
         ("none.glsl", MAIN),
         ("invalid.glsl", "// @test 1 == 1\nfloat f( { }\n"),
-        ("alone.test.toml", "[[function]]\nname = \"f\"\ntests = [\"f(1.0) == 1.0\"]\n"),
+        (
+            "alone.test.toml",
+            "[[function]]\nname = \"f\"\ntests = [\"f(1.0) == 1.0\"]\n",
+        ),
     ]);
     let none = test(folder.path(), &["none.glsl"]);
     assert_eq!(none.code, 2, "{none:?}");
     assert!(
-        none.stderr.starts_with("error: none.glsl has no tests\nhelp: write a comment"),
+        none.stderr
+            .starts_with("error: none.glsl has no tests\nhelp: write a comment"),
         "{none:?}"
     );
     let invalid = test(folder.path(), &["invalid.glsl"]);
@@ -276,7 +283,10 @@ fn a_file_tests_several_shaders() {
     ];
     assert_eq!(statuses, expected);
     let message = &shaders[1]["tests"][0]["message"];
-    assert_eq!(message, "there is no function `disk`; expected `float disk(vec2)`");
+    assert_eq!(
+        message,
+        "there is no function `disk`; expected `float disk(vec2)`"
+    );
     assert_eq!(shaders[2]["tests"][2]["line"], 3);
     let xml = fs::read_to_string(folder.path().join("results/junit.xml")).unwrap();
     let document = roxmltree::Document::parse(&xml).unwrap();
@@ -294,7 +304,10 @@ fn a_file_tests_several_shaders() {
 fn an_assignment_has_the_same_tests() {
     let solution = "float disk(vec2 p) { return length(p) - 1.0; }\n\
                     void mainImage(out vec4 c, in vec2 p) { c = vec4(disk(p / iResolution.xy)); }\n";
-    let wrong = solution.replace("disk(vec2 p) { return length(p)", "disk(vec2 p) { return length(p + 0.25)");
+    let wrong = solution.replace(
+        "disk(vec2 p) { return length(p)",
+        "disk(vec2 p) { return length(p + 0.25)",
+    );
     let assignment = "reference = \"solution.glsl\"\n[[frame]]\nsize = [16, 9]\n[[function]]\nname = \"disk\"\npoints = 2\n\
                       tests = [\"disk(p) == disk(-p) for p in [-1, 1]\", \"disk(vec2(3, 4)) == 4\"]\n";
     let folder = folder(&[
@@ -303,24 +316,58 @@ fn an_assignment_has_the_same_tests() {
         ("hw/a.glsl", solution),
         ("hw/b.glsl", &wrong),
     ]);
-    let arguments = ["check", "hw", "--assignment", "assignment.toml", "--device", "cpu", "--search", "0"];
+    let arguments = [
+        "check",
+        "hw",
+        "--assignment",
+        "assignment.toml",
+        "--device",
+        "cpu",
+        "--search",
+        "0",
+    ];
     let run = toyproof(folder.path(), &[&arguments[..], &["--format", "json"]].concat());
     let report: Value = serde_json::from_str(&run.stdout).unwrap();
     let function = |index: usize| &report["shaders"][index]["functions"][0];
-    assert_eq!((&function(0)["passed"], &function(0)["cases"]), (&true.into(), &2.into()));
-    assert_eq!((&function(1)["passed"], &function(1)["right"]), (&false.into(), &0.into()));
+    assert_eq!(
+        (&function(0)["passed"], &function(0)["cases"]),
+        (&true.into(), &2.into())
+    );
+    assert_eq!(
+        (&function(1)["passed"], &function(1)["right"]),
+        (&false.into(), &0.into())
+    );
     let message = function(1)["message"].as_str().unwrap();
-    assert!(message.starts_with("disk(p) is ") && message.contains(" at p = "), "{message}");
+    assert!(
+        message.starts_with("disk(p) is ") && message.contains(" at p = "),
+        "{message}"
+    );
 }
 
 /// A mistake planted in each exercise: what is replaced, and by what.
 const MISTAKES: [(&str, &str, &str); 33] = [
     ("01-sampling", "vec2 d = p - center", "vec2 d = p + center"),
-    ("01-sampling", "ring * ring * ring - q.x * q.x * q.y * q.y * q.y", "ring * ring * ring - q.x * q.y * q.y * q.y"),
-    ("01-sampling", "heart(p, vec2(0.35, 0.08), 0.25) < 0.0", "heart(p, vec2(0.35, 0.08), 0.25) > 0.0"),
+    (
+        "01-sampling",
+        "ring * ring * ring - q.x * q.x * q.y * q.y * q.y",
+        "ring * ring * ring - q.x * q.y * q.y * q.y",
+    ),
+    (
+        "01-sampling",
+        "heart(p, vec2(0.35, 0.08), 0.25) < 0.0",
+        "heart(p, vec2(0.35, 0.08), 0.25) > 0.0",
+    ),
     ("02-sphere", "float t = -b - root", "float t = -b + root"),
-    ("02-sphere", "normalize(vec3(x, y, SCREEN_DEPTH))", "vec3(x, y, SCREEN_DEPTH)"),
-    ("03-shading", "max(dot(normal, toLight), 0.0)", "dot(normal, toLight)"),
+    (
+        "02-sphere",
+        "normalize(vec3(x, y, SCREEN_DEPTH))",
+        "vec3(x, y, SCREEN_DEPTH)",
+    ),
+    (
+        "03-shading",
+        "max(dot(normal, toLight), 0.0)",
+        "dot(normal, toLight)",
+    ),
     ("03-shading", "vec3 sum = AMBIENT", "vec3 sum = vec3(0.0)"),
     ("04-many-objects", "if (t < hit.t)", "if (t > hit.t)"),
     ("04-many-objects", "< distance) {", "< NO_HIT) {"),
@@ -334,20 +381,52 @@ const MISTAKES: [(&str, &str, &str); 33] = [
     ("08-disney", "square(square(m)) * m", "square(square(m))"),
     ("08-disney", "(1.0 - m.metallic)", "1.0"),
     ("08-disney", "mix(1.0, grazing, fV)", "mix(1.0, grazing, fL)"),
-    ("09-soft-shadows", "1.0 - cosine * cosine, 0.0));\n    float phi", "1.0 - cosine, 0.0));\n    float phi"),
+    (
+        "09-soft-shadows",
+        "1.0 - cosine * cosine, 0.0));\n    float phi",
+        "1.0 - cosine, 0.0));\n    float phi",
+    ),
     ("09-soft-shadows", "< distance) {", "< NO_HIT) {"),
-    ("10-quadrics", "-0.5 * radius * radius / height", "-radius * radius / height"),
+    (
+        "10-quadrics",
+        "-0.5 * radius * radius / height",
+        "-radius * radius / height",
+    ),
     ("10-quadrics", "z1 <= quadric.high", "z1 <= 1000.0"),
     ("10-quadrics", "vec3(0.0, 0.0, quadric.g)", "vec3(0.0)"),
-    ("11-animation", "(1.0 - c) * dot(axis, v) * axis", "dot(axis, v) * axis"),
+    (
+        "11-animation",
+        "(1.0 - c) * dot(axis, v) * axis",
+        "dot(axis, v) * axis",
+    ),
     ("11-animation", "pivot + rotate(p - pivot", "rotate(p - pivot"),
     ("12-whitted", "(cosine + eta * beyond)", "(cosine + beyond)"),
-    ("12-whitted", "floor(point.x) + floor(point.z)", "floor(point.x + point.z)"),
-    ("13-importance-sampling", "1.0 / (1.0 + ratio * ratio)", "1.0 / (1.0 + ratio)"),
-    ("13-importance-sampling", "coneDepth(point, emitter) * float(EMITTERS)", "coneDepth(point, emitter)"),
+    (
+        "12-whitted",
+        "floor(point.x) + floor(point.z)",
+        "floor(point.x + point.z)",
+    ),
+    (
+        "13-importance-sampling",
+        "1.0 / (1.0 + ratio * ratio)",
+        "1.0 / (1.0 + ratio)",
+    ),
+    (
+        "13-importance-sampling",
+        "coneDepth(point, emitter) * float(EMITTERS)",
+        "coneDepth(point, emitter)",
+    ),
     ("14-accelerator", "SPACING - 2.0 * radius", "SPACING"),
-    ("14-accelerator", "next.x < next.y && next.x < next.z", "next.x < next.y"),
-    ("15-parallel-rays", "0.5 * WIDTH * vec3(x, y, 0.0)", "WIDTH * vec3(x, y, 0.0)"),
+    (
+        "14-accelerator",
+        "next.x < next.y && next.x < next.z",
+        "next.x < next.y",
+    ),
+    (
+        "15-parallel-rays",
+        "0.5 * WIDTH * vec3(x, y, 0.0)",
+        "WIDTH * vec3(x, y, 0.0)",
+    ),
 ];
 
 #[test]
@@ -361,7 +440,10 @@ fn each_exercise_passes_its_tests() {
         let path = entry.unwrap().path();
         let stem = path.file_stem().unwrap().to_str().unwrap();
         if path.is_dir() || path.extension().is_some_and(|extension| extension == "glsl") {
-            assert!(run.stdout.contains(&format!("course/{stem}.test.toml:")), "{stem}: {run:?}");
+            assert!(
+                run.stdout.contains(&format!("course/{stem}.test.toml:")),
+                "{stem}: {run:?}"
+            );
         }
     }
 }

@@ -222,7 +222,11 @@ fn tokens(snippet: &Snippet, inside: bool) -> Result<Vec<Token>, SyntaxError> {
                 }
                 _ => {
                     let message = format!("`{c}` closes no bracket");
-                    return Err(error(start..at, message, "remove it, or open the bracket before it"));
+                    return Err(error(
+                        start..at,
+                        message,
+                        "remove it, or open the bracket before it",
+                    ));
                 }
             }
             continue;
@@ -239,7 +243,10 @@ fn tokens(snippet: &Snippet, inside: bool) -> Result<Vec<Token>, SyntaxError> {
             Kind::Operator
         };
         if open.is_empty() || inside {
-            tokens.push(Token { kind, range: start..at });
+            tokens.push(Token {
+                kind,
+                range: start..at,
+            });
         }
     }
     match open.pop() {
@@ -329,7 +336,10 @@ impl Parser<'_> {
         // A word after an operand is no GLSL, so that a variable may have this name.
         let is_operand = |index: usize| self.tokens[index].kind != Kind::Operator;
         let after = all.clone().skip(1).find(|&index| {
-            let is_word_next = self.tokens.get(index + 1).is_some_and(|next| next.kind == Kind::Word);
+            let is_word_next = self
+                .tokens
+                .get(index + 1)
+                .is_some_and(|next| next.kind == Kind::Word);
             self.is(index, "after") && is_operand(index - 1) && is_word_next
         });
         let end = after.unwrap_or(all.end);
@@ -414,7 +424,9 @@ impl Parser<'_> {
                 "write two tests, a range such as `f(x) in [0, 1]`, or parentheses around a condition",
             );
         }
-        let logical = all.clone().find(|&index| ["&&", "||", "^^", "?"].iter().any(|op| self.is(index, op)));
+        let logical = all
+            .clone()
+            .find(|&index| ["&&", "||", "^^", "?"].iter().any(|op| self.is(index, op)));
         if let Some(logical) = logical {
             return self.error(
                 self.bytes(&(logical..logical + 1)),
@@ -469,11 +481,13 @@ impl Parser<'_> {
         let text = self.snippet(&tokens).text().to_owned();
         let bars: Vec<_> = tokens.clone().filter(|&index| self.is(index, "|")).collect();
         match bars[..] {
-            [first, last] if first == tokens.start && last + 1 == tokens.end && first + 1 < last => Ok(Side {
-                expression: self.snippet(&(first + 1..last)),
-                is_length: true,
-                text,
-            }),
+            [first, last] if first == tokens.start && last + 1 == tokens.end && first + 1 < last => {
+                Ok(Side {
+                    expression: self.snippet(&(first + 1..last)),
+                    is_length: true,
+                    text,
+                })
+            }
             [first, ..] if first == tokens.start => self.error(
                 bytes,
                 "bars must enclose all of one side of a comparison",
@@ -507,7 +521,9 @@ impl Parser<'_> {
             };
             let is_taken = |name: &str| {
                 let known = variables.iter().map(|variable: &Variable| &variable.name);
-                known.chain(pending.iter().map(|(_, name)| name)).any(|known| known.text() == name)
+                known
+                    .chain(pending.iter().map(|(_, name)| name))
+                    .any(|known| known.text() == name)
             };
             if is_taken(declared.1.text()) {
                 let message = format!("there are two variables `{}`", declared.1.text());
@@ -598,13 +614,17 @@ mod tests {
 
     #[test]
     fn comparisons_are_split_outside_of_parentheses() {
-        let test = parse("f(a < b ? 1. : 2.) == -g(x, y) + 1.0 +- 1e-6 for vec3 x, y in [-1, 1] after makeScene()");
+        let test =
+            parse("f(a < b ? 1. : 2.) == -g(x, y) + 1.0 +- 1e-6 for vec3 x, y in [-1, 1] after makeScene()");
         let test = test.unwrap();
         assert_eq!(test.left.text, "f(a < b ? 1. : 2.)");
         let Relation::Compare(Comparison::Equal, right) = &test.relation else {
             panic!("{test:?}");
         };
-        assert_eq!((right.text.as_str(), test.tolerance), ("-g(x, y) + 1.0", Some(1e-6)));
+        assert_eq!(
+            (right.text.as_str(), test.tolerance),
+            ("-g(x, y) + 1.0", Some(1e-6))
+        );
         let names: Vec<_> = test.variables.iter().map(|one| one.name.text()).collect();
         assert_eq!(names, ["x", "y"]);
         assert_eq!(test.after.unwrap().text(), "makeScene()");
@@ -646,18 +666,34 @@ mod tests {
             ("f(x) == 2 for x", "x", "the variable `x` has no values"),
             ("f(x) == 2 for", "", "expected a variable after `for`"),
             ("f(x) == 2 for x in 3", "3", "expected values after `in`"),
-            ("f(x) == 2 for x in [1]", "[1]", "an interval has two ends, found 1"),
+            (
+                "f(x) == 2 for x in [1]",
+                "[1]",
+                "an interval has two ends, found 1",
+            ),
             ("f(x) == 2 for x in [1, ]", "[1, ]", "a value is missing"),
             ("f(x) == 2 for x, x in [1, 2]", "x", "there are two variables `x`"),
             ("f(x) in {1, 2}", "{1, 2}", "a range is an interval"),
-            ("f(x) is increasng for x in [0, 1]", "is increasng", "unknown property `is increasng`"),
-            ("|a| + |b| == 1", "|a| + |b|", "bars must enclose all of one side of a comparison"),
+            (
+                "f(x) is increasng for x in [0, 1]",
+                "is increasng",
+                "unknown property `is increasng`",
+            ),
+            (
+                "|a| + |b| == 1",
+                "|a| + |b|",
+                "bars must enclose all of one side of a comparison",
+            ),
             (
                 "f(x) is decreasing",
                 "f(x) is decreasing",
                 "what is increasing or decreasing depends on one variable in an interval",
             ),
-            ("f(x) == 1 after g() for x in [0, 1]", "for", "`for` must stand before `after`"),
+            (
+                "f(x) == 1 after g() for x in [0, 1]",
+                "for",
+                "`for` must stand before `after`",
+            ),
         ] {
             assert_eq!(parse(text), Err((at.to_owned(), message.to_owned())), "{text}");
         }

@@ -36,7 +36,11 @@ pub fn comment_tests(subject: &Subject) -> Result<Vec<FunctionTest>, Vec<Diagnos
             Ok(assertion) => tests.push(test(assertion, subject)),
             Err(error) => {
                 let found = Diagnostic::new(Code::TestSyntax, error.message).at(error.at);
-                errors.push(if error.help.is_empty() { found } else { found.help(error.help) });
+                errors.push(if error.help.is_empty() {
+                    found
+                } else {
+                    found.help(error.help)
+                });
             }
         }
     }
@@ -66,11 +70,15 @@ fn line_comments(text: &str) -> Vec<(usize, &str)> {
         let rest = &text[next..];
         if rest.starts_with("//") {
             let start = next + 2;
-            let end = text[start..].find(['\n', '\r']).map_or(text.len(), |end| start + end);
+            let end = text[start..]
+                .find(['\n', '\r'])
+                .map_or(text.len(), |end| start + end);
             comments.push((start, &text[start..end]));
             at = end;
         } else if rest.starts_with("/*") {
-            at = text[next + 2..].find("*/").map_or(text.len(), |end| next + 2 + end + 2);
+            at = text[next + 2..]
+                .find("*/")
+                .map_or(text.len(), |end| next + 2 + end + 2);
         } else {
             at = next + 1;
         }
@@ -87,6 +95,10 @@ mod tests {
         let text = "a / b; // one\n/* // two\n*/ c(); //three\r\n/* /* */ // four";
         let found: Vec<_> = line_comments(text).into_iter().map(|(_, text)| text).collect();
         assert_eq!(found, [" one", "three", " four"]);
-        assert!(line_comments(text).iter().all(|(at, found)| text[*at..].starts_with(found)));
+        assert!(
+            line_comments(text)
+                .iter()
+                .all(|(at, found)| text[*at..].starts_with(found))
+        );
     }
 }

@@ -43,7 +43,9 @@ impl Evaluation {
         let floats: Vec<String> = self.components.iter().flat_map(floats).collect();
         let rows = floats.len().div_ceil(3).max(1);
         if rows.saturating_mul(self.cases) > (width * height) as usize {
-            return Err(TestError::Shader("the values of the test are too large".to_owned()));
+            return Err(TestError::Shader(
+                "the values of the test are too large".to_owned(),
+            ));
         }
         let mut text = self.declarations.clone();
         text.push("void mainImage(out vec4 tpColor, in vec2 tpPlace) {\n");

@@ -98,7 +98,9 @@ pub(crate) fn function(table: &mut Table) -> FunctionTest {
         ("both", Precision::Both),
     ];
     let precision = table.choice("precision", "precision", &precisions);
-    let after = table.optional::<String>("after").map(|after| snippet(table, &after));
+    let after = table
+        .optional::<String>("after")
+        .map(|after| snippet(table, &after));
     let source = table.choice("cases", "source of cases", &[("stress", ())]);
     let assertions = assertions(table);
     let mut listed = Vec::new();
@@ -147,7 +149,11 @@ pub(crate) fn is_identifier(name: &str) -> bool {
 fn snippet(table: &Table, string: &Located<String>) -> Snippet {
     let mut span = string.span;
     let written = table.excerpt(span);
-    let quoted = |quote: char| written.strip_prefix(quote).and_then(|rest| rest.strip_suffix(quote));
+    let quoted = |quote: char| {
+        written
+            .strip_prefix(quote)
+            .and_then(|rest| rest.strip_suffix(quote))
+    };
     let inside = quoted('"').or_else(|| quoted('\''));
     let is_verbatim = inside == Some(string.value.as_str());
     if is_verbatim {

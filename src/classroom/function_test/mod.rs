@@ -53,8 +53,8 @@ use toyproof_toml::Literal;
 
 pub use self::assertion::Assertion;
 pub use self::comment::comment_tests;
-pub(crate) use self::file::{function, is_identifier, reject_second};
 pub use self::file::{SUFFIX, TestFile, is_test_file};
+pub(crate) use self::file::{function, is_identifier, reject_second};
 pub(crate) use self::listed::Call;
 pub use self::report::{ShaderTests, TestRecord, TestReport};
 pub use self::source::Snippet;

@@ -108,7 +108,9 @@ impl TestRecord {
         Self {
             test: "the shader compiles".to_owned(),
             status: Self::FAILED,
-            message: errors.first().map_or_else(String::new, |first| first.message.clone()),
+            message: errors
+                .first()
+                .map_or_else(String::new, |first| first.message.clone()),
             diagnostics: errors.iter().map(|error| json(error, files)).collect(),
             ..Self::at(errors.first().and_then(|first| first.span), files)
         }

@@ -147,7 +147,9 @@ impl SampledTest<'_> {
             text.push(");\n");
         }
         self.push_after(&mut text);
-        text.push("}\nvoid mainImage(out vec4 tpColor, in vec2 tpPlace) { tpTyped(); tpColor = vec4(0.0); }\n");
+        text.push(
+            "}\nvoid mainImage(out vec4 tpColor, in vec2 tpPlace) { tpTyped(); tpColor = vec4(0.0); }\n",
+        );
         let text = text.after_shader(self.subject);
         let mut files = Files::default();
         let file = files.add(File::new("<test>", text.text()));
@@ -162,7 +164,9 @@ impl SampledTest<'_> {
         }
         let tree = &checked.tree;
         let others = self.others();
-        let snippets = [&assertion.left.expression].into_iter().chain(others.iter().copied());
+        let snippets = [&assertion.left.expression]
+            .into_iter()
+            .chain(others.iter().copied());
         let mut sides = Vec::new();
         for ((index, snippet), &ty) in snippets.enumerate().zip(of_sides) {
             let path = side_name(index);
@@ -241,12 +245,18 @@ impl SampledTest<'_> {
     ) -> Result<Vec<Component>, TestError> {
         let tree = &checked.tree;
         let name = variable.name.text();
-        let declared = tree.functions.iter().find(|(_, function)| function.name == "tpTyped");
+        let declared = tree
+            .functions
+            .iter()
+            .find(|(_, function)| function.name == "tpTyped");
         let body = declared.and_then(|(_, function)| function.body.as_ref());
-        let mut declared = body.into_iter().flatten().filter_map(|statement| match statement.kind {
-            StatementKind::Declare(id) => Some(tree[id].ty),
-            _ => None,
-        });
+        let mut declared = body
+            .into_iter()
+            .flatten()
+            .filter_map(|statement| match statement.kind {
+                StatementKind::Declare(id) => Some(tree[id].ty),
+                _ => None,
+            });
         let ty = declared.nth(index).unwrap_or(Type::Error);
         let type_name = tree.type_name(ty);
         let (values, is_interval): (Vec<_>, _) = match &variable.set {
@@ -303,7 +313,11 @@ impl SampledTest<'_> {
             }
             Relation::Increases | Relation::Decreases if left.len() != 1 || !is_ordered(*left_type) => {
                 let message = format!("only a number is increasing or decreasing, found `{left_name}`");
-                return Err(self.error(left_at, message, "test each component: `f(x).x is increasing for …`"));
+                return Err(self.error(
+                    left_at,
+                    message,
+                    "test each component: `f(x).x is increasing for …`",
+                ));
             }
             Relation::Compare(Comparison::Equal | Comparison::Unequal, _) | Relation::Holds => {}
             _ if !is_ordered(*left_type) => {
@@ -315,15 +329,23 @@ impl SampledTest<'_> {
         for (other, (_, ty)) in self.others().into_iter().zip(&sides[1..]) {
             // A number stands for all components.
             let fits = |from: Type, from_text: &Snippet, to: Type| {
-                let is_integer = from_text.text().trim_start_matches(['-', '+']).bytes().all(|b| b.is_ascii_digit());
-                let same_scalar = from.scalar() == to.scalar() || (is_integer && to.scalar() != Some(Scalar::Bool));
+                let is_integer = from_text
+                    .text()
+                    .trim_start_matches(['-', '+'])
+                    .bytes()
+                    .all(|b| b.is_ascii_digit());
+                let same_scalar =
+                    from.scalar() == to.scalar() || (is_integer && to.scalar() != Some(Scalar::Bool));
                 matches!(from, Type::Scalar(_)) && is_vector(to) && same_scalar
             };
             let left_text = &assertion.left.expression;
             if ty != left_type && !fits(*ty, other, *left_type) && !fits(*left_type, left_text, *ty) {
                 return Err(self.error(
                     other.at(),
-                    format!("a value of type `{left_name}` is compared with one of type `{}`", tree.type_name(*ty)),
+                    format!(
+                        "a value of type `{left_name}` is compared with one of type `{}`",
+                        tree.type_name(*ty)
+                    ),
                     "compare values of the same type, or a vector with a number for all of its components",
                 ));
             }
@@ -345,7 +367,11 @@ impl SampledTest<'_> {
             1 => SAMPLES + 1,
             _ => SAMPLES,
         };
-        let limit = if sampled == 0 { MAX_COMBINATIONS } else { MAX_COMBINATIONS / 64 };
+        let limit = if sampled == 0 {
+            MAX_COMBINATIONS
+        } else {
+            MAX_COMBINATIONS / 64
+        };
         if combinations > limit {
             let message = format!(
                 "the lists of values have {} combinations; a test has at most {limit}",
@@ -381,7 +407,13 @@ impl SampledTest<'_> {
                         count => format!("tpSampled(tpSample, {}, {count})", first_component + component),
                     });
                     let sampled: Vec<_> = sampled.collect();
-                    text.push(&sample(variable.name.text(), index, ty, components, &sampled.join(", ")));
+                    text.push(&sample(
+                        variable.name.text(),
+                        index,
+                        ty,
+                        components,
+                        &sampled.join(", "),
+                    ));
                     first_component += components.len();
                 }
                 Set::List(values) => {
@@ -394,7 +426,11 @@ impl SampledTest<'_> {
                         ));
                         // Only numbers are converted, such as `1` to a float.
                         let is_scalar = components.len() == 1 && components[0].path == variable.name.text();
-                        text.push(&if is_scalar { format!("{ty}(") } else { "(".to_owned() });
+                        text.push(&if is_scalar {
+                            format!("{ty}(")
+                        } else {
+                            "(".to_owned()
+                        });
                         text.push_snippet(value);
                         text.push(");\n");
                     }
@@ -407,7 +443,11 @@ impl SampledTest<'_> {
         for ((index, snippet), ty) in snippets.enumerate().zip(&typed.types) {
             let is_length = self.side(index).is_some_and(|side| side.is_length);
             let call = if is_length { "tpLength(" } else { "(" };
-            text.push(&format!("    {} {} = {call}", tree.type_name(*ty), side_name(index)));
+            text.push(&format!(
+                "    {} {} = {call}",
+                tree.type_name(*ty),
+                side_name(index)
+            ));
             text.push_snippet(snippet);
             text.push(");\n");
         }
@@ -426,7 +466,11 @@ impl SampledTest<'_> {
 
     /// Compares the values of all cases.
     fn run(&self, typed: &Typed, values: &Values) -> Run {
-        let cases: Vec<Sample> = values.cases.iter().map(|values| Sample::new(typed, values)).collect();
+        let cases: Vec<Sample> = values
+            .cases
+            .iter()
+            .map(|values| Sample::new(typed, values))
+            .collect();
         let is_monotone = matches!(self.assertion.relation, Relation::Increases | Relation::Decreases);
         let wrong: Vec<usize> = if is_monotone {
             let rises = self.assertion.relation == Relation::Increases;
@@ -437,10 +481,16 @@ impl SampledTest<'_> {
                 !(fall <= margin(before, tolerance))
             };
             let pairs = cases.windows(2).enumerate();
-            pairs.filter(|(_, pair)| is_wrong(pair)).map(|(index, _)| index).collect()
+            pairs
+                .filter(|(_, pair)| is_wrong(pair))
+                .map(|(index, _)| index)
+                .collect()
         } else {
             let indexed = cases.iter().enumerate();
-            indexed.filter(|(_, case)| !self.holds(typed, case)).map(|(index, _)| index).collect()
+            indexed
+                .filter(|(_, case)| !self.holds(typed, case))
+                .map(|(index, _)| index)
+                .collect()
         };
         let message = wrong.first().map_or_else(String::new, |&first| {
             let mut message = match &cases[first..] {
@@ -466,17 +516,28 @@ impl SampledTest<'_> {
     fn holds(&self, typed: &Typed, case: &Sample) -> bool {
         let right = |side: usize, index: usize| {
             let values = case.right[side];
-            if values.len() == 1 { values[0] } else { values[index] }
+            if values.len() == 1 {
+                values[0]
+            } else {
+                values[index]
+            }
         };
         let tolerance = self.assertion.tolerance;
-        let count = case.right.iter().map(|values| values.len()).fold(case.left.len(), usize::max);
+        let count = case
+            .right
+            .iter()
+            .map(|values| values.len())
+            .fold(case.left.len(), usize::max);
         let component = |index: usize| {
             let (left, scalar) = match case.left {
                 [only] => (*only, typed.left[0].scalar),
                 all => (all[index], typed.left[index].scalar),
             };
             // Integers are exact, unless a tolerance is given.
-            let of_right = typed.right.first().map(|side| side[index.min(side.len() - 1)].scalar);
+            let of_right = typed
+                .right
+                .first()
+                .map(|side| side[index.min(side.len() - 1)].scalar);
             let is_float = [Some(scalar), of_right].contains(&Some(Scalar::Float));
             let of_equality = tolerance.unwrap_or(if is_float { DEFAULT_TOLERANCE } else { 0.0 });
             let of_order = tolerance.unwrap_or(0.0);
@@ -539,7 +600,12 @@ impl SampledTest<'_> {
 
     /// The values of the variables, for a message.
     fn place(&self, typed: &Typed, case: &Sample) -> String {
-        let named = self.assertion.variables.iter().zip(&typed.variables).zip(&case.variables);
+        let named = self
+            .assertion
+            .variables
+            .iter()
+            .zip(&typed.variables)
+            .zip(&case.variables);
         let named = named.map(|((variable, components), found)| {
             format!("{} = {}", variable.name.text(), values(found, components))
         });
@@ -604,7 +670,11 @@ fn interval(text: &mut GeneratedText, index: usize, ty: &str, ends: [&Snippet; 2
 /// Declares a variable with a value in its interval, at numbers from 0 to 1.
 fn sample(name: &str, index: usize, ty: &str, components: &[Component], sampled: &str) -> String {
     let count = components.len();
-    let float = if count == 1 { "float".to_owned() } else { format!("vec{count}") };
+    let float = if count == 1 {
+        "float".to_owned()
+    } else {
+        format!("vec{count}")
+    };
     let (low, high) = (format!("tpLow{index}"), format!("tpHigh{index}"));
     match components.first().map(|component| component.scalar) {
         Some(Scalar::Int | Scalar::Uint) => format!(
@@ -616,12 +686,18 @@ fn sample(name: &str, index: usize, ty: &str, components: &[Component], sampled:
 
 /// The types of the first expressions that are statements of `tpTyped`.
 fn statement_types(tree: &Tree, count: usize) -> Vec<Type> {
-    let function = tree.functions.iter().find(|(_, function)| function.name == "tpTyped");
+    let function = tree
+        .functions
+        .iter()
+        .find(|(_, function)| function.name == "tpTyped");
     let body = function.and_then(|(_, function)| function.body.as_ref());
-    let types = body.into_iter().flatten().filter_map(|statement| match statement.kind {
-        StatementKind::Expression(id) => Some(tree[id].ty),
-        _ => None,
-    });
+    let types = body
+        .into_iter()
+        .flatten()
+        .filter_map(|statement| match statement.kind {
+            StatementKind::Expression(id) => Some(tree[id].ty),
+            _ => None,
+        });
     types.take(count).collect()
 }
 
@@ -653,7 +729,10 @@ fn argument_places<'t>(text: &'t str, name: &str) -> Vec<(&'t str, usize, usize)
                 break;
             }
         }
-        let found = arguments.iter().enumerate().filter(|(_, argument)| **argument == name);
+        let found = arguments
+            .iter()
+            .enumerate()
+            .filter(|(_, argument)| **argument == name);
         places.extend(found.map(|(position, _)| (function, position, arguments.len())));
     }
     places
