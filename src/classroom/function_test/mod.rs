@@ -24,9 +24,11 @@
 //!
 //! # Parts
 //!
-//! - `assertion`: the grammar of a test in one line, such as `|normalAt(p)| == 1 for p in [-2, 2]`.
+//! - `assertion`: the grammar of a test in one line, such as `|normalAt(p)| == 1 for p in [-2, 2]`, and its
+//!   `tokens`.
 //! - `file`: the TOML of tests, of test files and of assignments; `comment`: the tests in a shader's comments.
-//! - `listed`: the listed calls of a function; `sampled`: an assertion, for all sampled values of its variables.
+//! - `listed`: the listed calls of a function; `typed`: the types of an assertion; `sampled`: its values, for
+//!   all samples of its variables.
 //! - `evaluation`: evaluates a generated `mainImage` after the shader; `source`: maps its places to those of
 //!   the author.
 //! - `value`: values of any type as components, and how they are compared.
@@ -40,6 +42,8 @@ mod listed;
 mod report;
 mod sampled;
 mod source;
+mod tokens;
+mod typed;
 mod value;
 
 use std::time::Duration;
