@@ -457,7 +457,7 @@ impl Parser<'_> {
         }
         let inside = self.whole.part(bytes.start + 1, bytes.end - 1);
         let parser = Parser {
-            tokens: tokens(&inside, false)?,
+            tokens: super::tokens::tokens(&inside, false)?,
             whole: &inside,
         };
         let parts = parser.split(0..parser.tokens.len());

@@ -60,7 +60,7 @@ pub use self::comment::comment_tests;
 pub use self::file::{SUFFIX, TestFile, is_test_file};
 pub(crate) use self::file::{function, is_identifier, reject_second};
 pub(crate) use self::listed::Call;
-pub use self::report::{ShaderTests, TestRecord, TestReport};
+pub use self::report::{RunRecord, ShaderTests, TestRecord, TestReport};
 pub use self::source::Snippet;
 pub(crate) use self::value::{literal_text, parts};
 
