@@ -6,7 +6,8 @@
 //! - [`assignment`]: the requirements on the shaders of a class, in one TOML file
 //! - [`function_test`]: tests of single functions, in assignments, files of their own and comments
 //! - [`collect`]: the submissions of a class, from the downloads of a learning management system
-//! - [`autograder`]: the archive of an autograder for Gradescope
+//! - [`autograder`]: autograders for grading platforms
+//! - [`gradebook`]: marks in the tables of learning management systems
 //! - [`similar`]: similarity of shaders by their trees
 //! - [`shards`]: the parts of a large batch
 //!
@@ -28,5 +29,6 @@ pub mod assignment;
 pub mod autograder;
 pub mod collect;
 pub mod function_test;
+pub mod gradebook;
 pub mod shards;
 pub mod similar;

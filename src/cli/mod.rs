@@ -10,6 +10,7 @@
 //! - `terminal`: all output to the terminal.
 //! - `error`: the error that ends a command, which is printed here.
 
+mod autograder;
 mod check;
 mod collect;
 mod compare;
@@ -18,7 +19,7 @@ mod debug;
 mod doctor;
 mod error;
 mod explain;
-mod gradescope;
+mod gradebook;
 mod help;
 mod inputs;
 mod names;
@@ -115,7 +116,8 @@ enum Command {
     Export(render::ExportArgs),
     Import(project::ImportArgs),
     New(new::Args),
-    Gradescope(gradescope::Args),
+    Autograder(autograder::Args),
+    Gradebook(gradebook::Args),
     Similar(similar::Args),
     Scenes(scenes::Args),
     Doctor(doctor::Args),
@@ -209,7 +211,8 @@ impl Command {
             Self::Export(args) => render::export(args, terminal),
             Self::Import(args) => project::import(args, terminal),
             Self::New(args) => new::run(args, terminal),
-            Self::Gradescope(args) => gradescope::run(args, terminal),
+            Self::Autograder(args) => autograder::run(args, terminal),
+            Self::Gradebook(args) => gradebook::run(args, terminal),
             Self::Similar(args) => Ok(similar::run(args, terminal)),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),

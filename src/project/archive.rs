@@ -1,5 +1,5 @@
 //! Zip archives, as PKWARE's APPNOTE 6.3.10 describes them: read from untrusted sources, and written for
-//! Gradescope.
+//! autograders.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 

@@ -48,7 +48,7 @@ impl Record {
 mod tests {
     use super::*;
     use crate::repair::samples::{repaired, suspected};
-    use crate::{Report, Rubric, Thumbnails, csv, gradescope, junit, sarif, written};
+    use crate::{Report, Rubric, csv, junit, sarif, written};
 
     /// Every text format of a record with these hints.
     fn formats(record: Record, hints: Hints) -> Vec<String> {
@@ -59,7 +59,6 @@ mod tests {
             written(|out| csv(records, &Some(rubric.clone()).into(), out)),
             written(|out| junit(records, hints, out)),
             written(|out| sarif(records, out)),
-            written(|out| gradescope(records, &rubric, hints, &Thumbnails::default(), out)),
             written(|out| report.json(out)),
         ]
     }
@@ -69,11 +68,6 @@ mod tests {
         for text in formats(repaired(), Hints::Line) {
             assert!(!text.contains("b - c") && !text.contains("2.0"), "{text}");
         }
-        let gradescope = &formats(repaired(), Hints::Line)[3];
-        assert!(
-            gradescope.contains("fix: an edit of line 2; then all"),
-            "{gradescope}"
-        );
         let junit = &formats(suspected(), Hints::Line)[1];
         assert!(junit.contains("suspect lines: 4, 2"), "{junit}");
     }
@@ -93,10 +87,5 @@ mod tests {
     fn with_all_hints_nothing_is_removed() {
         let record = repaired().redacted(Hints::Fix);
         assert_eq!(record.fix, repaired().fix);
-        let gradescope = &formats(repaired(), Hints::Fix)[3];
-        assert!(
-            gradescope.contains("replace `b + c` with `b - c`"),
-            "{gradescope}"
-        );
     }
 }

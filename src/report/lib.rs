@@ -3,8 +3,9 @@
 //! # Parts
 //!
 //! - `record`: the record of a check, and the report of all records of a run.
-//! - `terminal`, `csv`, `junit`, `sarif`, `gradescope`, `html`: the formats; `verdict.schema.json` is that of
+//! - `terminal`, `csv`, `junit`, `sarif`, `html`: the formats; `verdict.schema.json` is that of
 //!   `verdict.json`. `html` is one page that needs no network.
+//! - [`platform`]: the results of autograders, and the files that grading platforms run.
 //! - `hints`: redacts the hints that a report gives to the author of a wrong shader.
 //! - `rubric`: the marks of a shader; `class`: the table of a class.
 //! - `frames`: one record of all frames of an assignment.
@@ -17,11 +18,11 @@ mod departure;
 mod earlier;
 mod explanation;
 mod frames;
-mod gradescope;
 mod growth;
 mod hints;
 mod html;
 mod junit;
+pub mod platform;
 mod reason;
 mod record;
 mod repair;
@@ -30,6 +31,7 @@ mod rubrics;
 mod sarif;
 mod submitted;
 mod terminal;
+mod thumbnails;
 mod trace;
 mod unused;
 
@@ -40,7 +42,6 @@ pub use departure::{Departure, MissingValue, UnknownValue};
 pub use earlier::{Change, Earlier};
 pub use explanation::{Explanation, explain, explanations};
 pub use frames::{CheckedFrame, FrameRecord};
-pub use gradescope::{Thumbnails, gradescope};
 pub use growth::{CauseName, GrowthFrame, GrowthRecord};
 pub use hints::Hints;
 pub use html::{
@@ -59,6 +60,7 @@ pub use sarif::sarif;
 pub use submitted::{Late, StudentSubmission};
 pub use terminal::{Detail, Layout, Tally, lines, place};
 use terminal::{details, plain};
+pub use thumbnails::Thumbnails;
 pub use trace::{PixelTrace, TracedPixel};
 
 /// The text that a report writes, in tests.

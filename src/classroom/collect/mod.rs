@@ -12,5 +12,5 @@ mod download;
 pub mod naming;
 pub mod roster;
 pub mod storage;
-mod students;
+pub(crate) mod students;
 pub mod text;

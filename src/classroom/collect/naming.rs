@@ -26,6 +26,16 @@ pub struct Student {
     pub id: Option<String>,
 }
 
+impl Student {
+    /// The name, and the number in parentheses.
+    pub(crate) fn described(&self) -> String {
+        match &self.id {
+            Some(id) => format!("{} ({id})", self.name),
+            None => self.name.clone(),
+        }
+    }
+}
+
 /// The student of a file, by its path in the download, which is not empty: what the system wrote into the
 /// name of the file, of its archive or of its folder, else the folder, else the file's name without its
 /// extension.

@@ -51,14 +51,14 @@ impl Students {
         students
     }
 
-    /// Adds a student. `keys` are all numbers or names in downloads, and the first is shown; `name` is the
-    /// name to show.
-    fn add(&mut self, mut keys: Vec<String>, mut name: String) {
+    /// Adds a student; returns false for one without a name or a number. `keys` are all numbers or names in
+    /// downloads, and the first is shown; `name` is the name to show.
+    pub(crate) fn add(&mut self, mut keys: Vec<String>, mut name: String) -> bool {
         keys.retain(|key| !key.is_empty());
         let mut id = keys.first().cloned();
         if name.is_empty() {
             let Some(only) = id.take() else {
-                return;
+                return false;
             };
             name = only;
         }
@@ -72,6 +72,16 @@ impl Students {
             self.places.entry(known).or_default().push(place);
         }
         self.listed.push(Student { name, id });
+        true
+    }
+
+    /// The place in the list of the only student with this number, or else with this name.
+    pub(crate) fn place(&self, student: &Student) -> Option<usize> {
+        let number = student.id.as_ref().and_then(|id| self.places.get(&key(id)));
+        match (number.map(Vec::as_slice), self.places.get(&key(&student.name)).map(Vec::as_slice)) {
+            (Some(&[place]), _) | (_, Some(&[place])) => Some(place),
+            _ => None,
+        }
     }
 
     /// The listed students.
@@ -114,7 +124,7 @@ impl Students {
 }
 
 /// The columns of a table of students.
-struct Columns {
+pub(crate) struct Columns {
     numbers: Vec<usize>,
     name: Option<usize>,
     given_name: Option<usize>,
@@ -123,7 +133,7 @@ struct Columns {
 
 impl Columns {
     /// The columns that a row names; `None` if it names no student's name.
-    fn from_header(row: &[String]) -> Option<Self> {
+    pub(crate) fn from_header(row: &[String]) -> Option<Self> {
         let names: Vec<String> = row.iter().map(|cell| cell.to_lowercase()).collect();
         let first = |known: &[&str]| names.iter().position(|name| known.contains(&name.as_str()));
         let is_number = |name: &str| {
@@ -150,7 +160,7 @@ impl Columns {
         has_name.then_some(columns)
     }
 
-    fn numbers(&self, row: &[String]) -> Vec<String> {
+    pub(crate) fn numbers(&self, row: &[String]) -> Vec<String> {
         let cells = self.numbers.iter().filter_map(|&at| row.get(at));
         // Moodle writes `Participant 1234`, and 1234 into the names of folders.
         cells
@@ -158,7 +168,7 @@ impl Columns {
             .collect()
     }
 
-    fn name(&self, row: &[String]) -> String {
+    pub(crate) fn name(&self, row: &[String]) -> String {
         let cell = |at: Option<usize>| at.and_then(|at| row.get(at)).map_or("", String::as_str);
         match cell(self.name) {
             "" => format!("{} {}", cell(self.given_name), cell(self.surname))
@@ -184,7 +194,7 @@ fn rows(text: &str, separator: u8) -> Vec<Vec<String>> {
 }
 
 /// The separator of a table: the one that is in all rows, else the one that is in most of them.
-fn separator(text: &str) -> u8 {
+pub(crate) fn separator(text: &str) -> u8 {
     let several = |separator: &u8| {
         let rows = rows(text, *separator);
         rows.iter().filter(|row| row.len() > 1).count()

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use toyproof_explain::repair::DEFAULT_BUDGET;
 use toyproof_report::Hints;
+use toyproof_report::platform::Platform;
 use toyproof_verify::Difference;
 
 use super::options::{BatchOptions, CheckFormat, CheckOptions, Options, PlanOptions, TaskInputs};
 use super::shard::Shard;
+use crate::cli::autograder::platform;
 use crate::cli::inputs::{DriverArgs, FrameArgs, LanguageArgs, parse_number};
 use crate::cli::reference::ReferenceArgs;
 
@@ -85,13 +87,16 @@ pub(in crate::cli) struct Args {
     /// List the verdicts that differ from an earlier report: a folder that --out wrote, or its verdict.json
     #[arg(long, value_name = "OLD", conflicts_with = "shard", help_heading = "Reports")]
     pub(super) compare: Option<PathBuf>,
-    /// A rubric (.toml): points for compiling and for each check, for report.csv and Gradescope's
-    /// results.json
+    /// A rubric (.toml): points for compiling and for each check, for report.csv and results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
+    /// The grading platform that reads results.json
+    #[arg(long, value_name = "PLATFORM", value_parser = platform(), default_value = "gradescope",
+          requires = "out", help_heading = "Reports")]
+    autograder: &'static Platform,
     /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
     ///
-    /// Students' reports are junit.xml and Gradescope's results.json. If this option is given, it applies to
+    /// Students' reports are junit.xml and results.json. If this option is given, it applies to
     /// all reports and to the terminal. results.jsonl, which --resume reads, always has everything.
     #[arg(long, value_enum, value_name = "HINTS", help_heading = "Reports")]
     hints: Option<HintLevel>,
@@ -173,6 +178,7 @@ impl Args {
                 searches_again: self.search > 0.0 && self.shard.is_none(),
                 teachers_hints: hints(Hints::Fix),
                 students_hints: hints(Hints::Line),
+                platform: self.autograder,
             },
         }
     }

@@ -316,14 +316,7 @@ impl<'a> Batch<'a> {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
             let written = options.shard.is_some()
-                || reports::write(
-                    &report,
-                    &reported,
-                    &rubrics,
-                    options.students_hints,
-                    out,
-                    terminal,
-                );
+                || reports::write(&report, &reported, &rubrics, options, out, terminal);
             match is_there {
                 Ok(()) if written => terminal.note(&match options.shard {
                     None => format!("report: {}", path_name(&out.join("report.html"))),

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use toyproof_image::FrameInputs;
 use toyproof_report::Hints;
+use toyproof_report::platform::Platform;
 use toyproof_verify::Difference;
 
 use super::shard::Shard;
@@ -69,6 +70,8 @@ pub(super) struct BatchOptions {
     pub(super) teachers_hints: Hints,
     /// The hints in reports for students.
     pub(super) students_hints: Hints,
+    /// The grading platform that reads the marks of a student.
+    pub(super) platform: &'static Platform,
 }
 
 /// The format of standard output.

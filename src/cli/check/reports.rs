@@ -7,12 +7,13 @@ use std::time::SystemTime;
 use toyproof_diagnostic::path_name;
 use toyproof_image::output;
 use toyproof_report::{
-    ClassTable, Hints, MAX_PAGE_SHADERS, PARTS, Report, Rubrics, csv, gradescope, html, html_index,
-    html_part, junit, part_name, sarif,
+    ClassTable, MAX_PAGE_SHADERS, PARTS, Report, Rubrics, csv, html, html_index, html_part, junit, part_name,
+    sarif,
 };
 use toyproof_verify::contain::{Part, contain};
 
 use super::images::{gallery, thumbnails};
+use super::options::BatchOptions;
 use super::submission::Submission;
 use crate::cli::Terminal;
 
@@ -30,15 +31,16 @@ pub(super) const REPORT_NAMES: [&str; 7] = [
 /// Writes the reports into the folder; returns false on failure. The submissions are those of the report's
 /// records, in the same order. `results.json` is written only with a rubric of all shaders and unless they
 /// are those of several students, and `class.csv` only for a class. Students read `junit.xml` and
-/// `results.json`, which show the `hints`.
+/// `results.json`, which show the hints for them.
 pub(super) fn write(
     report: &Report,
     submissions: &[&Submission],
     rubrics: &Rubrics,
-    hints: Hints,
+    options: &BatchOptions,
     out: &Path,
     terminal: &Terminal,
 ) -> bool {
+    let hints = options.students_hints;
     let [page, table, class, tests, log, marks, verdicts] = REPORT_NAMES;
     let records = report.shaders();
     let date = SystemTime::now();
@@ -56,7 +58,8 @@ pub(super) fn write(
     folder.write(log, |file| sarif(records, file));
     match rubrics.common() {
         Some(rubric) if !are_of_several_students(submissions) => folder.write(marks, |file| {
-            gradescope(records, rubric, hints, &thumbnails(submissions, rubric), file)
+            let images = thumbnails(submissions, rubric);
+            options.platform.write_results(records, rubric, hints, &images, file)
         }),
         _ => {
             folder.remove(marks);
