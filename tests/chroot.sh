@@ -79,10 +79,20 @@ step 'toyproof/bin/toyproof check course/04-many-objects.glsl --device lavapipe 
 machine gradescope 'toyproof_*_amd64.deb'
 step 'dpkg -i toyproof_*.deb && toyproof scenes --write course'
 step 'toyproof new assignment many --from course/04-many-objects.toml'
-step 'toyproof gradescope many -o autograder.zip && dpkg -r toyproof'
+step 'toyproof autograder gradescope many -o autograder.zip && dpkg -r toyproof'
 mkdir -p "$root/autograder/source"
 python3 -m zipfile -e "$root/root/autograder.zip" "$root/autograder/source"
 cp "$root/autograder/source/run_autograder" "$root/autograder"
 chmod +x "$root/autograder/run_autograder"
 step 'sh /autograder/source/setup.sh'
 python3 "$(dirname "$0")/gradescope.py" "$root" "$root/root/course/04-many-objects.glsl"
+
+# The other platforms, whose machines have Python and make.
+machine autograders 'toyproof_*_amd64.deb'
+step 'dpkg -i toyproof_*.deb && toyproof scenes --write course'
+step 'toyproof new assignment many --from course/04-many-objects.toml'
+for platform in prairielearn autolab coderunner classroom50; do
+    step "toyproof autograder $platform many -o $platform"
+done
+step 'dpkg -r toyproof && apt-get update && apt-get install -y --no-install-recommends make python3'
+python3 "$(dirname "$0")/autograders.py" "$root" "$root/root/course/04-many-objects.glsl"

@@ -1,14 +1,16 @@
-//! The archive for Gradescope, unpacked and run as Gradescope does.
+//! Autograders, unpacked and run as their platforms do.
 
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
+use std::time::{Duration, SystemTime};
 
 use flate2::read::DeflateDecoder;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::program::toyproof;
+use crate::requirements::require_program;
 use crate::support::SPHERE;
 
 const ASSIGNMENT: &str = "scene = \"scenes/sphere.toml\"\n[[frame]]\nsize = [64, 36]\n\
@@ -48,9 +50,9 @@ fn unpack(archive: &[u8], folder: &Path) {
     assert!(rest.starts_with(b"PK\x01\x02"));
 }
 
-/// An unpacked autograder that runs this program.
+/// An unpacked autograder for Gradescope that runs this program.
 #[cfg(unix)]
-struct Autograder {
+struct Gradescope {
     /// What is `/autograder` on Gradescope's machines.
     root: PathBuf,
     /// Its script, with that folder.
@@ -58,10 +60,11 @@ struct Autograder {
 }
 
 #[cfg(unix)]
-impl Autograder {
+impl Gradescope {
     /// Packs the assignment in a folder, and unpacks the archive there.
     fn new(folder: &Path) -> Self {
         let arguments = [
+            "autograder",
             "gradescope",
             "task",
             "--program",
@@ -106,7 +109,7 @@ impl Autograder {
 #[test]
 fn submissions_get_marks() {
     let folder = assignment();
-    let autograder = Autograder::new(folder.path());
+    let autograder = Gradescope::new(folder.path());
     let right = SPHERE.shader;
     let wrong = right.replace("sphere.radius * sphere.radius", "sphere.radius");
     let invalid = right.replace("float disc", "flaot disc");
@@ -187,7 +190,7 @@ fn submissions_get_marks() {
 #[test]
 fn the_rubric_sets_which_images_students_see() {
     let folder = assignment();
-    let autograder = Autograder::new(folder.path());
+    let autograder = Gradescope::new(folder.path());
     for (choice, images) in [("all", 3), ("rendered", 1), ("none", 0)] {
         let rubric = format!("[rubric]\nimages = \"{choice}\"\n[rubric.compiles]");
         let text = ASSIGNMENT.replace("[rubric.compiles]", &rubric);
@@ -206,7 +209,7 @@ fn assignments_that_cannot_be_packed_are_rejected() {
         fs::write(folder.join("task/assignment.toml"), assignment).unwrap();
         let run = toyproof(
             folder,
-            &["gradescope", "task/assignment.toml", "--program", program],
+            &["autograder", "gradescope", "task/assignment.toml", "--program", program],
         );
         assert!(run.code == 2 && run.stderr.contains(error), "{}", run.stderr);
         assert!(!folder.join("autograder.zip").exists());
@@ -243,6 +246,7 @@ fn the_folder_of_a_project_is_packed_as_a_reference() {
     let text = ASSIGNMENT.replace("scene = \"scenes/sphere.toml\"", "reference = \"solution\"");
     fs::write(folder.join("task/assignment.toml"), text).unwrap();
     let arguments = [
+        "autograder",
         "gradescope",
         "task",
         "--program",
@@ -261,4 +265,282 @@ fn the_folder_of_a_project_is_packed_as_a_reference() {
         SPHERE.shader
     );
     assert!(!packed.join("notes.txt").exists());
+}
+
+/// An autograder in a folder, made with this program.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn packed(platform: &str) -> tempfile::TempDir {
+    let folder = assignment();
+    let run = toyproof(folder.path(), &["autograder", platform, "task", "-o", "out"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("to use it: "), "{}", run.stderr);
+    folder
+}
+
+/// Runs a command in a folder, with no more of the environment than a platform has.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn bare(folder: &Path, program: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Output {
+    let mut command = Command::new(program);
+    command.args(arguments).current_dir(folder).env_clear();
+    command.env("PATH", "/usr/local/bin:/usr/bin:/bin").envs(environment.iter().copied());
+    command.output().unwrap()
+}
+
+/// Submissions with the share of their points: a right one, a wrong one, one that does not compile, one that
+/// is late, and an empty one. Platforms know how late a submission is, so its marks are those of others.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn submissions() -> [(&'static str, Option<String>, f64); 5] {
+    let right = SPHERE.shader;
+    let wrong = right.replace("sphere.radius * sphere.radius", "sphere.radius");
+    let invalid = right.replace("float disc", "flaot disc");
+    [
+        ("right", Some(right.to_owned()), 1.0),
+        ("wrong", Some(wrong), 0.2),
+        ("invalid", Some(invalid), 0.0),
+        ("late", Some(right.to_owned()), 1.0),
+        ("empty", None, 0.0),
+    ]
+}
+
+/// Writes a submission as `shader.glsl` into a new folder; a late one is of the year 2096.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn submit(folder: &Path, name: &str, text: Option<&str>) {
+    let _ = fs::remove_dir_all(folder);
+    fs::create_dir_all(folder).unwrap();
+    let Some(text) = text else { return };
+    let path = folder.join("shader.glsl");
+    fs::write(&path, text).unwrap();
+    if name == "late" {
+        let file = fs::File::options().write(true).open(path).unwrap();
+        file.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(4_000_000_000)).unwrap();
+    }
+}
+
+/// Copies a folder, with the permissions of its files.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn copy(from: &Path, to: &Path) {
+    let copied = Command::new("cp").arg("-R").args([from, to]).status().unwrap();
+    assert!(copied.success());
+}
+
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+#[test]
+fn prairielearn_reads_results() {
+    let folder = packed("prairielearn");
+    let (question, grade) = (folder.path().join("out"), folder.path().join("grade"));
+    let info: Value = serde_json::from_slice(&fs::read(question.join("info.json")).unwrap()).unwrap();
+    assert_eq!((&info["title"], &info["gradingMethod"]), (&json!("task"), &json!("External")));
+    assert!(question.join("question.html").is_file());
+    fs::create_dir(&grade).unwrap();
+    copy(&question.join("tests"), &grade.join("tests"));
+    let entry = info["externalGradingOptions"]["entrypoint"].as_str().unwrap();
+    let entry = grade.join(entry.strip_prefix("/grade/").unwrap());
+    let script = fs::read_to_string(&entry).unwrap();
+    fs::write(&entry, script.replace("/grade", grade.to_str().unwrap())).unwrap();
+    for (name, text, share) in submissions() {
+        submit(&grade.join("student"), name, text.as_deref());
+        let run = bare(folder.path(), entry.to_str().unwrap(), &[], &[]);
+        assert!(run.status.success(), "{run:?}");
+        let results: Value =
+            serde_json::from_slice(&fs::read(grade.join("results/results.json")).unwrap()).unwrap();
+        assert_eq!(results["score"], share, "{name}: {results:#}");
+        assert_eq!(results["gradable"], share > 0.0, "{name}: {results:#}");
+        let images = results["images"].as_array().unwrap().len();
+        assert_eq!(images, if share > 0.0 { 3 } else { 0 }, "{name}");
+        assert_eq!(results["tests"].as_array().unwrap().len(), 3);
+        assert!(results["output"].as_str().unwrap().contains(": "), "{name}: {results:#}");
+    }
+    fs::write(grade.join("tests/toyproof"), "not a program").unwrap();
+    assert!(bare(folder.path(), entry.to_str().unwrap(), &[], &[]).status.success());
+    let results: Value =
+        serde_json::from_slice(&fs::read(grade.join("results/results.json")).unwrap()).unwrap();
+    assert_eq!(results["gradable"], false);
+    assert!(results["format_errors"][0].as_str().unwrap().starts_with("The autograder failed"));
+}
+
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+#[test]
+fn autolab_reads_the_last_line() {
+    if !require_program("make") {
+        return;
+    }
+    let folder = packed("autolab");
+    let instance = folder.path().join("instance");
+    let mut grade = |name: &str, text: Option<&str>| {
+        submit(&instance, name, text);
+        // A handin is a file, if only an empty one.
+        if text.is_none() {
+            fs::write(instance.join("shader.glsl"), "").unwrap();
+        }
+        for (from, to) in [("autograde-Makefile", "Makefile"), ("autograde.tar", "autograde.tar")] {
+            fs::copy(folder.path().join("out").join(from), instance.join(to)).unwrap();
+        }
+        let run = bare(&instance, "make", &[], &[]);
+        assert!(run.status.success(), "{run:?}");
+        String::from_utf8(run.stdout).unwrap()
+    };
+    for (name, text, share) in submissions() {
+        let output = grade(name, text.as_deref());
+        let mut lines = output.lines().rev().map(serde_json::from_str::<Value>);
+        let scores = lines.next().unwrap().unwrap_or_else(|error| panic!("{name}: {error}: {output}"));
+        let shown = lines.next().unwrap().unwrap();
+        let sum = ["compiles", "algorithm", "precision"].map(|key| scores["scores"][key].as_f64().unwrap());
+        assert!((sum.iter().sum::<f64>() - 10.0 * share).abs() < 1e-9, "{name}: {output}");
+        assert_eq!(shown["_presentation"], "semantic");
+        assert_eq!(shown["Points"]["algorithm"]["passed"], share == 1.0, "{name}: {output}");
+    }
+    let archive = folder.path().join("out/autograde.tar");
+    let listed = bare(folder.path(), "tar", &["-tvf", archive.to_str().unwrap()], &[]);
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    assert!(listed.contains("toyproof/assignment/scenes/sphere.toml"), "{listed}");
+    // Without the program, the last line has no scores.
+    fs::create_dir_all(folder.path().join("broken/toyproof")).unwrap();
+    let broken = bare(
+        folder.path(),
+        "sh",
+        &["-c", "cd broken && tar -xf ../out/autograde.tar && rm toyproof/toyproof && tar -cf ../out/autograde.tar toyproof"],
+        &[],
+    );
+    assert!(broken.status.success(), "{broken:?}");
+    let output = grade("right", Some(SPHERE.shader));
+    assert!(output.starts_with("The autograder failed") && !output.contains("scores"), "{output}");
+}
+
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+#[test]
+fn coderunner_reads_standard_output() {
+    if !require_program("python3") {
+        return;
+    }
+    let folder = packed("coderunner");
+    let template = fs::read_to_string(folder.path().join("out/template.py")).unwrap();
+    let sandbox = folder.path().join("sandbox");
+    // What Twig replaces, with its escaping for Python.
+    let expand = |answer: &str, attachments: &str| {
+        let escaped = answer.replace('\\', "\\\\").replace('"', "\\\"");
+        let expanded = template.replace("{{ STUDENT_ANSWER | e('py') }}", &escaped);
+        expanded.replace("{{ ATTACHMENTS | e('py') }}", attachments)
+    };
+    let run = |program: &str| {
+        fs::write(sandbox.join("prog.py"), program).unwrap();
+        fs::copy(folder.path().join("out/toyproof.zip"), sandbox.join("toyproof.zip")).unwrap();
+        let run = bare(&sandbox, "python3", &["prog.py"], &[]);
+        assert!(run.status.success() && run.stderr.is_empty(), "{run:?}");
+        String::from_utf8(run.stdout).unwrap()
+    };
+    for (name, text, share) in submissions() {
+        submit(&sandbox, name, None);
+        // A backslash and quotes in a comment have to survive.
+        let answer = text.map(|text| format!("{text}// \"\\n\"\"\"\n"));
+        let output = run(&expand(answer.as_deref().unwrap_or_default(), ""));
+        let results: Value = serde_json::from_str(&output).unwrap_or_else(|error| panic!("{name}: {error}: {output}"));
+        assert_eq!(results["fraction"], share, "{name}: {results:#}");
+        assert_eq!(results["testresults"].as_array().unwrap().len(), 4);
+        let images = results["epiloguehtml"].as_str().unwrap().matches("<img ").count();
+        assert_eq!(images, if share > 0.0 { 3 } else { 0 }, "{name}");
+    }
+    submit(&sandbox, "attached", Some(SPHERE.shader));
+    let results: Value = serde_json::from_str(&run(&expand("", "shader.glsl"))).unwrap();
+    assert_eq!(results["fraction"], 1.0, "{results:#}");
+}
+
+/// `schemas/result-v1.schema.json` of Classroom 50, for one submission.
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+fn classroom50_schema() -> Value {
+    let (text, count) = (json!({ "type": "string", "minLength": 1 }), json!({ "type": "integer", "minimum": 0 }));
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "required": ["schema", "classroom", "assignment", "assignment_type", "owner", "submission", "commit", "release",
+                     "review", "datetime", "score", "max-score", "tests"],
+        "properties": {
+            "schema": { "const": "classroom50/result/v1" },
+            "classroom": { "const": "graphics" },
+            "assignment": { "const": "sphere" },
+            "assignment_type": { "enum": ["individual", "group"] },
+            "owner": { "const": "anna" },
+            "submission": { "type": "string", "pattern": "^submit/" },
+            "commit": text, "release": text, "review": text,
+            "datetime": { "type": "string",
+                          "pattern": "^[0-9]{4}-[0-9]{2}-[0-9]{2}T([01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9]Z$" },
+            "score": count, "max-score": count,
+            "tests": { "type": "array", "items": {
+                "type": "object",
+                "required": ["test-name", "passed", "score", "max-score"],
+                "properties": { "test-name": text, "passed": { "type": "boolean" }, "score": count, "max-score": count },
+            } },
+        },
+    })
+}
+
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+#[test]
+fn classroom50_reads_results() {
+    if !require_program("python3") {
+        return;
+    }
+    let folder = packed("classroom50");
+    let bundle = folder.path().join("out/autograder");
+    assert!(!bundle.join("toyproof").exists(), "it is larger than a bundle may be");
+    let script = fs::read_to_string(bundle.join("autograder.py")).unwrap();
+    let checkout = folder.path().join("checkout");
+    let grade = |script: &str| {
+        fs::write(bundle.join("autograder.py"), script).unwrap();
+        bare(
+            &checkout,
+            "python3",
+            &[bundle.join("autograder.py").to_str().unwrap()],
+            &[
+                ("CLASSROOM", "graphics"),
+                ("ASSIGNMENT", "sphere"),
+                ("SUBMISSION_TAG", "submit/2026-11-01T10-00-00Z-a1b2c3d"),
+                ("USERNAME", "anna"),
+                ("COMMIT_URL", "https://example.org/commit/1"),
+                ("RELEASE_URL", "https://example.org/releases/1"),
+            ],
+        )
+    };
+    submit(&checkout, "right", Some(SPHERE.shader));
+    let run = grade(&script);
+    let error = String::from_utf8(run.stderr).unwrap();
+    assert!(!run.status.success() && error.contains("has no PROGRAM_URL"), "{error}");
+    let at = |file: &str| {
+        let url = format!("PROGRAM_URL = \"file://{}\"", folder.path().join(file).display());
+        script.replace("PROGRAM_URL = \"\"", &url)
+    };
+    let run = grade(&at("task/assignment.toml"));
+    let error = String::from_utf8(run.stderr).unwrap();
+    assert!(!run.status.success() && error.contains("is not the toyproof with which"), "{error}");
+    let schema = jsonschema::validator_for(&classroom50_schema()).unwrap();
+    for (name, text, share) in submissions() {
+        submit(&checkout, name, text.as_deref());
+        let run = grade(&at("out/toyproof"));
+        assert!(run.status.success(), "{name}: {run:?}");
+        let result: Value = serde_json::from_slice(&fs::read(checkout.join("result.json")).unwrap()).unwrap();
+        let errors: Vec<_> = schema.iter_errors(&result).map(|error| error.to_string()).collect();
+        assert!(errors.is_empty(), "{name}: {errors:?}");
+        for key in classroom50_schema()["required"].as_array().unwrap() {
+            let mut without = result.clone();
+            without.as_object_mut().unwrap().remove(key.as_str().unwrap());
+            assert!(!schema.is_valid(&without), "{key}");
+        }
+        let score = result["score"].as_f64().unwrap() / result["max-score"].as_f64().unwrap();
+        assert!((score - share).abs() < 1e-9, "{name}: {result:#}");
+        let body = fs::read_to_string(checkout.join("release-body.md")).unwrap();
+        assert!(body.lines().all(|line| line.starts_with("    ")), "{body}");
+    }
+    // A program that fails is an error of the autograder.
+    fs::write(bundle.join("toyproof"), "not a program").unwrap();
+    assert!(!grade(&script).status.success());
+}
+
+#[test]
+fn platforms_and_outputs_are_checked() {
+    let folder = assignment();
+    let folder = folder.path();
+    let run = toyproof(folder, &["autograder", "prairylearn", "task"]);
+    assert!(run.code == 2 && run.stderr.contains("'prairielearn'"), "{}", run.stderr);
+    let run = toyproof(folder, &["autograder", "autolab", "task", "--program", "program", "-o", "program"]);
+    assert!(run.code == 2 && run.stderr.contains("program is a file"), "{}", run.stderr);
+    assert!(run.stderr.contains("help: name a folder, or an archive that ends in .zip"), "{}", run.stderr);
 }

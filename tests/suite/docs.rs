@@ -79,6 +79,10 @@ fn block(page: &str, text: &str) -> String {
         .text
 }
 
+/// What Canvas exports of the class.
+const GRADEBOOK: &str = "Student,ID,SIS User ID,SIS Login ID,Section,torus (4711)\n    Points Possible,,,,,10.00\n\
+                         \"Lee, Bo\",8,S8,bo,A,\n\"Smith, Anna\",7,S7,anna,A,\n\"Student, Test\",99,,test,A,\n";
+
 /// A class of two assignments, as the page on submissions describes it, and what Moodle lets teachers
 /// download.
 fn class_files(folder: &Path) {
@@ -92,6 +96,7 @@ fn class_files(folder: &Path) {
         ("class.toml", block(page, "[[assignment]]")),
         ("late.toml", format!("{points}{}", block(page, "percent_per_day"))),
         ("objects-task/assignment.toml", objects.to_owned()),
+        ("canvas.csv", GRADEBOOK.to_owned()),
         ("objects-task/scene.toml", read("glsl/04-many-objects.toml")),
         ("moodle/Anna S_7_assignsubmission_file/torus.glsl", torus),
         ("moodle/Anna S_7_assignsubmission_file/objects.glsl", wrong),

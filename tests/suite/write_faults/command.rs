@@ -154,8 +154,9 @@ pub(super) const COMMANDS: &[Tested] = &[
     Tested {
         setup: &[&["new", "assignment", "assignment", "--from", "right.toml"]],
         ..tested(
-            "gradescope",
+            "autograder",
             &[
+                "autograder",
                 "gradescope",
                 "assignment",
                 "--program",
