@@ -76,10 +76,15 @@ impl Marks {
             *counted = counted.min(points);
         }
         match (has_students, marks.0.is_empty()) {
-            (false, _) => Err("no shader has a student\nhelp: collect the submissions with `toyproof collect`, or \
+            (false, _) => Err(
+                "no shader has a student\nhelp: collect the submissions with `toyproof collect`, or \
                                check them with --class"
-                .to_owned()),
-            (_, true) => Err("no shader has points\nhelp: check with an assignment that gives points, or with --rubric".to_owned()),
+                    .to_owned(),
+            ),
+            (_, true) => Err(
+                "no shader has points\nhelp: check with an assignment that gives points, or with --rubric"
+                    .to_owned(),
+            ),
             _ => Ok(marks),
         }
     }
@@ -89,7 +94,12 @@ impl Marks {
     ///
     /// # Errors
     /// The assignment, the column or the columns of students are not there.
-    pub fn fill(&self, table: &str, assignment: Option<&str>, column: Option<&str>) -> Result<Filled, String> {
+    pub fn fill(
+        &self,
+        table: &str,
+        assignment: Option<&str>,
+        column: Option<&str>,
+    ) -> Result<Filled, String> {
         let mut table = Table::parse(table)?;
         let assignments = self.select(assignment)?;
         let mut filled = Filled {
@@ -141,7 +151,6 @@ struct Table {
     /// A line `sep=;` of Excel before the table, with its end.
     first_line: String,
     rows: Vec<Vec<String>>,
-    columns: Columns,
     students: Students,
     /// The rows of the students.
     places: Vec<usize>,
@@ -155,14 +164,16 @@ impl Table {
         let text = &text[first_line.len()..];
         let separator = separator(text);
         let rows = rows(text, separator);
-        let header = rows.first().map(|row| row.iter().map(|cell| cell.trim().to_owned()).collect::<Vec<_>>());
+        let header = rows
+            .first()
+            .map(|row| row.iter().map(|cell| cell.trim().to_owned()).collect::<Vec<_>>());
         let columns = header.and_then(|header| Columns::from_header(&header)).ok_or(
             "the first row does not name a column of students\nhelp: export the table again, in English, without changes",
         )?;
         let mut students = Students::default();
         let mut places = Vec::new();
         for (at, row) in rows.iter().enumerate().skip(1) {
-            // The row of Canvas with the maximum of points is none of a student.
+            // The row of Canvas with the maximum of points does not belong to a student.
             if row.first().is_some_and(|cell| cell.contains(MAXIMUM_ROW)) {
                 continue;
             }
@@ -174,7 +185,6 @@ impl Table {
             separator,
             first_line: first_line.to_owned(),
             rows,
-            columns,
             students,
             places,
         })
@@ -197,10 +207,16 @@ impl Table {
                     "one column cannot have the points of several assignments\nhelp: choose one with --assignment: {names}"
                 ));
             };
-            let at = header.iter().position(|cell| cell.trim() == name).or_else(|| find(name));
+            let at = header
+                .iter()
+                .position(|cell| cell.trim() == name)
+                .or_else(|| find(name));
             let at = at.ok_or_else(|| {
                 let near = nearest(name, header.iter().map(String::as_str));
-                let help = near.map_or_else(|| format!("its columns are {}", columns()), |near| format!("did you mean `{near}`?"));
+                let help = near.map_or_else(
+                    || format!("its columns are {}", columns()),
+                    |near| format!("did you mean `{near}`?"),
+                );
                 format!("there is no column {name}\nhelp: {help}")
             })?;
             return Ok(vec![(assigned, at)]);
@@ -228,7 +244,11 @@ impl Table {
             };
             return Err(format!("no column has the name of an assignment\nhelp: {help}"));
         }
-        warnings.extend(without.iter().map(|(name, _)| format!("there is no column for {name}")));
+        warnings.extend(
+            without
+                .iter()
+                .map(|(name, _)| format!("there is no column for {name}")),
+        );
         Ok(targets)
     }
 
@@ -238,7 +258,10 @@ impl Table {
         let mut by_row: BTreeMap<usize, Vec<(&Student, f64)>> = BTreeMap::new();
         for (student, &points) in &assigned.points {
             match self.students.place(student) {
-                Some(place) => by_row.entry(self.places[place]).or_default().push((student, points)),
+                Some(place) => by_row
+                    .entry(self.places[place])
+                    .or_default()
+                    .push((student, points)),
                 None => filled.warnings.push(format!(
                     "{} is not in the table, or several students are: enter {points} points by hand",
                     student.described()
@@ -264,7 +287,9 @@ impl Table {
     /// Warns if the table states another maximum of points than the assignment.
     fn check_maximum(&self, of: f64, column: usize, warnings: &mut Vec<String>) {
         let header = &self.rows[0];
-        let beside = header.iter().position(|cell| MAXIMUM_COLUMNS.contains(&cell.trim().to_lowercase().as_str()));
+        let beside = header
+            .iter()
+            .position(|cell| MAXIMUM_COLUMNS.contains(&cell.trim().to_lowercase().as_str()));
         let is_maximum = |row: &&Vec<String>| row.first().is_some_and(|cell| cell.contains(MAXIMUM_ROW));
         let stated = match beside {
             Some(beside) => self.places.first().and_then(|&row| self.rows[row].get(beside)),
@@ -287,7 +312,9 @@ impl Table {
             .flexible(true)
             .from_writer(self.first_line.clone().into_bytes());
         for row in &self.rows {
-            writer.write_record(row).expect("memory can be written, and rows have any length");
+            writer
+                .write_record(row)
+                .expect("memory can be written, and rows have any length");
         }
         let bytes = writer.into_inner().expect("memory can be written");
         String::from_utf8(bytes).expect("all cells are texts")
@@ -299,10 +326,14 @@ impl Table {
 fn is_column_of(cell: &str, name: &str) -> bool {
     let (cell, name) = (cell.trim().to_lowercase(), name.trim().to_lowercase());
     let without_number = match cell.strip_suffix(')').and_then(|cell| cell.rsplit_once(" (")) {
-        Some((title, number)) if number == "real" || number.bytes().all(|byte| byte.is_ascii_digit()) => title,
+        Some((title, number)) if number == "real" || number.bytes().all(|byte| byte.is_ascii_digit()) => {
+            title
+        }
         _ => &cell,
     };
-    let title = without_number.strip_prefix("assignment: ").unwrap_or(without_number);
+    let title = without_number
+        .strip_prefix("assignment: ")
+        .unwrap_or(without_number);
     title.trim() == name || cell == name
 }
 
@@ -315,7 +346,9 @@ fn rows(text: &str, separator: u8) -> Vec<Vec<String>> {
         .from_reader(text.as_bytes());
     // The text is UTF-8 and rows may have any length, so no record is an error.
     let records = reader.records().flatten();
-    records.map(|record| record.iter().map(str::to_owned).collect()).collect()
+    records
+        .map(|record| record.iter().map(str::to_owned).collect())
+        .collect()
 }
 
 #[cfg(test)]
@@ -328,7 +361,12 @@ mod tests {
         b/a.glsl,2.25,10,torus,\"Lee, Bo\",8\r\n\
         c,0,5,objects,'=Mai,\r\n";
 
-    fn fill(report: &str, table: &str, assignment: Option<&str>, column: Option<&str>) -> Result<Filled, String> {
+    fn fill(
+        report: &str,
+        table: &str,
+        assignment: Option<&str>,
+        column: Option<&str>,
+    ) -> Result<Filled, String> {
         Marks::parse(report)?.fill(table, assignment, column)
     }
 
@@ -346,7 +384,12 @@ mod tests {
              Participant 9,Bo Lee,b@x.org,Submitted,2.25,10.00,-,\r\n\
              Participant 10,Cy Dee,c@x.org,-,,10.00,-,\r\n"
         );
-        assert_eq!((filled.count, filled.warnings.len()), (2, 0), "{:?}", filled.warnings);
+        assert_eq!(
+            (filled.count, filled.warnings.len()),
+            (2, 0),
+            "{:?}",
+            filled.warnings
+        );
         let error = fill(REPORT, table, None, None).unwrap_err();
         assert_eq!(
             error,
@@ -375,14 +418,17 @@ mod tests {
         );
         assert_eq!(
             filled.warnings,
-            ["objects (4712): the maximum of the table is 6 points, and the assignment's 5; points are not converted"]
+            [
+                "objects (4712): the maximum of the table is 6 points, and the assignment's 5; points are not converted"
+            ]
         );
         assert_eq!(filled.count, 3);
     }
 
     #[test]
     fn the_gradebook_of_moodle_is_read_with_its_separator() {
-        let table = "sep=;\nFirst name;Last name;ID number;Assignment: torus (Real)\nAnna;Smith;7;-\nBo;Lee;;-\n";
+        let table =
+            "sep=;\nFirst name;Last name;ID number;Assignment: torus (Real)\nAnna;Smith;7;-\nBo;Lee;;-\n";
         let filled = fill(REPORT, table, None, None).unwrap();
         assert_eq!(
             filled.text,
@@ -392,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn students_that_cannot_be_told_apart_are_reported_and_not_graded() {
+    fn students_of_one_name_are_reported_and_not_graded() {
         let table = "Identifier,Full name,Grade\nParticipant 1,Bo Lee,\nParticipant 2,Bo Lee,\n";
         let filled = fill(REPORT, table, Some("torus"), None).unwrap();
         assert_eq!(filled.count, 0);
@@ -416,15 +462,69 @@ mod tests {
     fn each_error_has_a_way_out() {
         let table = "Full name,Mark\nAnna Smith,\n";
         for (report, table, assignment, column, error) in [
-            ("a,b\n", table, None, None, "there is no column student\nhelp: name the folder that `toyproof check --out` wrote"),
-            ("points,max_points,assignment,student,id\n1,1,,,\n", table, None, None, "no shader has a student\nhelp: collect"),
-            ("points,max_points,assignment,student,id\n,,,Bo,\n", table, None, None, "no shader has points\nhelp: check"),
-            (REPORT, "Name of it,Mark\n", None, None, "the first row does not name a column of students\nhelp: export"),
-            (REPORT, "", None, None, "the first row does not name a column of students"),
-            (REPORT, table, Some("tours"), None, "there is no assignment tours\nhelp: did you mean `torus`?"),
-            (REPORT, table, Some("torus"), Some("Marks"), "there is no column Marks\nhelp: did you mean `Mark`?"),
-            (REPORT, table, None, Some("Mark"), "one column cannot have the points of several assignments\nhelp: choose one"),
-            (REPORT, table, Some("torus"), None, "no column has the name of an assignment\nhelp: name its column with --column: `Full name`, `Mark`"),
+            (
+                "a,b\n",
+                table,
+                None,
+                None,
+                "there is no column student\nhelp: name the folder that `toyproof check --out` wrote",
+            ),
+            (
+                "points,max_points,assignment,student,id\n1,1,,,\n",
+                table,
+                None,
+                None,
+                "no shader has a student\nhelp: collect",
+            ),
+            (
+                "points,max_points,assignment,student,id\n,,,Bo,\n",
+                table,
+                None,
+                None,
+                "no shader has points\nhelp: check",
+            ),
+            (
+                REPORT,
+                "Name of it,Mark\n",
+                None,
+                None,
+                "the first row does not name a column of students\nhelp: export",
+            ),
+            (
+                REPORT,
+                "",
+                None,
+                None,
+                "the first row does not name a column of students",
+            ),
+            (
+                REPORT,
+                table,
+                Some("tours"),
+                None,
+                "there is no assignment tours\nhelp: did you mean `torus`?",
+            ),
+            (
+                REPORT,
+                table,
+                Some("torus"),
+                Some("Marks"),
+                "there is no column Marks\nhelp: did you mean `Mark`?",
+            ),
+            (
+                REPORT,
+                table,
+                None,
+                Some("Mark"),
+                "one column cannot have the points of several assignments\nhelp: choose one",
+            ),
+            (
+                REPORT,
+                table,
+                Some("torus"),
+                None,
+                "no column has the name of an assignment\nhelp: name its column with --column: `Full name`, `Mark`",
+            ),
         ] {
             let found = fill(report, table, assignment, column).unwrap_err();
             assert!(found.starts_with(error), "{found}");

@@ -44,12 +44,18 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let marks = Marks::parse(&read(&report)?).map_err(in_file(&report))?;
     let table = read(&args.table)?;
     let (assignment, column) = (args.assignment.as_deref(), args.column.as_deref());
-    let filled = marks.fill(&table, assignment, column).map_err(in_file(&args.table))?;
+    let filled = marks
+        .fill(&table, assignment, column)
+        .map_err(in_file(&args.table))?;
     for warning in &filled.warnings {
         terminal.warn(warning);
     }
     terminal.write(&args.output, filled.text.as_bytes())?;
-    let count = format!("{} {}", grouped(filled.count), plural(filled.count, "mark", "marks"));
+    let count = format!(
+        "{} {}",
+        grouped(filled.count),
+        plural(filled.count, "mark", "marks")
+    );
     terminal.confirm(&args.output, &count);
     Ok(Exit::Success)
 }

@@ -13,7 +13,10 @@ const GROUPS: [(&str, &[&str]); 6] = [
         &["check", "test", "run", "debug", "convert", "compare"],
     ),
     ("Scenes", &["scenes", "render"]),
-    ("Classes", &["new", "collect", "similar", "merge", "gradebook", "autograder"]),
+    (
+        "Classes",
+        &["new", "collect", "similar", "merge", "gradebook", "autograder"],
+    ),
     ("Projects", &["import", "export"]),
     ("Measurements", &["trade", "stress"]),
     ("Help", &["explain", "doctor", "completions", "man"]),

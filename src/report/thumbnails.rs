@@ -34,7 +34,10 @@ impl Thumbnails {
 
     /// The images as URLs, each with its caption, which names the shader if there are several.
     pub(super) fn urls(&self) -> Vec<(String, String)> {
-        let images = self.0.iter().flat_map(|of| of.images.iter().map(move |image| (&of.shader, image)));
+        let images = self
+            .0
+            .iter()
+            .flat_map(|of| of.images.iter().map(move |image| (&of.shader, image)));
         images
             .map(|(shader, (caption, png))| match self.0.len() {
                 1 => ((*caption).to_owned(), url(png)),

@@ -209,7 +209,13 @@ fn assignments_that_cannot_be_packed_are_rejected() {
         fs::write(folder.join("task/assignment.toml"), assignment).unwrap();
         let run = toyproof(
             folder,
-            &["autograder", "gradescope", "task/assignment.toml", "--program", program],
+            &[
+                "autograder",
+                "gradescope",
+                "task/assignment.toml",
+                "--program",
+                program,
+            ],
         );
         assert!(run.code == 2 && run.stderr.contains(error), "{}", run.stderr);
         assert!(!folder.join("autograder.zip").exists());
@@ -282,7 +288,9 @@ fn packed(platform: &str) -> tempfile::TempDir {
 fn bare(folder: &Path, program: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Output {
     let mut command = Command::new(program);
     command.args(arguments).current_dir(folder).env_clear();
-    command.env("PATH", "/usr/local/bin:/usr/bin:/bin").envs(environment.iter().copied());
+    command
+        .env("PATH", "/usr/local/bin:/usr/bin:/bin")
+        .envs(environment.iter().copied());
     command.output().unwrap()
 }
 
@@ -312,7 +320,8 @@ fn submit(folder: &Path, name: &str, text: Option<&str>) {
     fs::write(&path, text).unwrap();
     if name == "late" {
         let file = fs::File::options().write(true).open(path).unwrap();
-        file.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(4_000_000_000)).unwrap();
+        file.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(4_000_000_000))
+            .unwrap();
     }
 }
 
@@ -329,14 +338,21 @@ fn prairielearn_reads_results() {
     let folder = packed("prairielearn");
     let (question, grade) = (folder.path().join("out"), folder.path().join("grade"));
     let info: Value = serde_json::from_slice(&fs::read(question.join("info.json")).unwrap()).unwrap();
-    assert_eq!((&info["title"], &info["gradingMethod"]), (&json!("task"), &json!("External")));
+    assert_eq!(
+        (&info["title"], &info["gradingMethod"]),
+        (&json!("task"), &json!("External"))
+    );
     assert!(question.join("question.html").is_file());
     fs::create_dir(&grade).unwrap();
     copy(&question.join("tests"), &grade.join("tests"));
     let entry = info["externalGradingOptions"]["entrypoint"].as_str().unwrap();
     let entry = grade.join(entry.strip_prefix("/grade/").unwrap());
     let script = fs::read_to_string(&entry).unwrap();
-    fs::write(&entry, script.replace("/grade", grade.to_str().unwrap())).unwrap();
+    fs::write(
+        &entry,
+        script.replace("/grade/", &format!("{}/", grade.display())),
+    )
+    .unwrap();
     for (name, text, share) in submissions() {
         submit(&grade.join("student"), name, text.as_deref());
         let run = bare(folder.path(), entry.to_str().unwrap(), &[], &[]);
@@ -348,14 +364,26 @@ fn prairielearn_reads_results() {
         let images = results["images"].as_array().unwrap().len();
         assert_eq!(images, if share > 0.0 { 3 } else { 0 }, "{name}");
         assert_eq!(results["tests"].as_array().unwrap().len(), 3);
-        assert!(results["output"].as_str().unwrap().contains(": "), "{name}: {results:#}");
+        assert!(
+            results["output"].as_str().unwrap().contains(": "),
+            "{name}: {results:#}"
+        );
     }
     fs::write(grade.join("tests/toyproof"), "not a program").unwrap();
-    assert!(bare(folder.path(), entry.to_str().unwrap(), &[], &[]).status.success());
+    assert!(
+        bare(folder.path(), entry.to_str().unwrap(), &[], &[])
+            .status
+            .success()
+    );
     let results: Value =
         serde_json::from_slice(&fs::read(grade.join("results/results.json")).unwrap()).unwrap();
     assert_eq!(results["gradable"], false);
-    assert!(results["format_errors"][0].as_str().unwrap().starts_with("The autograder failed"));
+    assert!(
+        results["format_errors"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("The autograder failed")
+    );
 }
 
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
@@ -372,7 +400,10 @@ fn autolab_reads_the_last_line() {
         if text.is_none() {
             fs::write(instance.join("shader.glsl"), "").unwrap();
         }
-        for (from, to) in [("autograde-Makefile", "Makefile"), ("autograde.tar", "autograde.tar")] {
+        for (from, to) in [
+            ("autograde-Makefile", "Makefile"),
+            ("autograde.tar", "autograde.tar"),
+        ] {
             fs::copy(folder.path().join("out").join(from), instance.join(to)).unwrap();
         }
         let run = bare(&instance, "make", &[], &[]);
@@ -382,28 +413,47 @@ fn autolab_reads_the_last_line() {
     for (name, text, share) in submissions() {
         let output = grade(name, text.as_deref());
         let mut lines = output.lines().rev().map(serde_json::from_str::<Value>);
-        let scores = lines.next().unwrap().unwrap_or_else(|error| panic!("{name}: {error}: {output}"));
+        let scores = lines
+            .next()
+            .unwrap()
+            .unwrap_or_else(|error| panic!("{name}: {error}: {output}"));
         let shown = lines.next().unwrap().unwrap();
         let sum = ["compiles", "algorithm", "precision"].map(|key| scores["scores"][key].as_f64().unwrap());
-        assert!((sum.iter().sum::<f64>() - 10.0 * share).abs() < 1e-9, "{name}: {output}");
+        assert!(
+            (sum.iter().sum::<f64>() - 10.0 * share).abs() < 1e-9,
+            "{name}: {output}"
+        );
         assert_eq!(shown["_presentation"], "semantic");
-        assert_eq!(shown["Points"]["algorithm"]["passed"], share == 1.0, "{name}: {output}");
+        assert_eq!(
+            shown["Points"]["algorithm"]["passed"],
+            share == 1.0,
+            "{name}: {output}"
+        );
     }
     let archive = folder.path().join("out/autograde.tar");
     let listed = bare(folder.path(), "tar", &["-tvf", archive.to_str().unwrap()], &[]);
     let listed = String::from_utf8(listed.stdout).unwrap();
-    assert!(listed.contains("toyproof/assignment/scenes/sphere.toml"), "{listed}");
+    assert!(
+        listed.contains("toyproof/assignment/scenes/sphere.toml"),
+        "{listed}"
+    );
     // Without the program, the last line has no scores.
     fs::create_dir_all(folder.path().join("broken/toyproof")).unwrap();
     let broken = bare(
         folder.path(),
         "sh",
-        &["-c", "cd broken && tar -xf ../out/autograde.tar && rm toyproof/toyproof && tar -cf ../out/autograde.tar toyproof"],
+        &[
+            "-c",
+            "cd broken && tar -xf ../out/autograde.tar && rm toyproof/toyproof && tar -cf ../out/autograde.tar toyproof",
+        ],
         &[],
     );
     assert!(broken.status.success(), "{broken:?}");
     let output = grade("right", Some(SPHERE.shader));
-    assert!(output.starts_with("The autograder failed") && !output.contains("scores"), "{output}");
+    assert!(
+        output.starts_with("The autograder failed") && !output.contains("scores"),
+        "{output}"
+    );
 }
 
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
@@ -423,7 +473,11 @@ fn coderunner_reads_standard_output() {
     };
     let run = |program: &str| {
         fs::write(sandbox.join("prog.py"), program).unwrap();
-        fs::copy(folder.path().join("out/toyproof.zip"), sandbox.join("toyproof.zip")).unwrap();
+        fs::copy(
+            folder.path().join("out/toyproof.zip"),
+            sandbox.join("toyproof.zip"),
+        )
+        .unwrap();
         let run = bare(&sandbox, "python3", &["prog.py"], &[]);
         assert!(run.status.success() && run.stderr.is_empty(), "{run:?}");
         String::from_utf8(run.stdout).unwrap()
@@ -433,7 +487,8 @@ fn coderunner_reads_standard_output() {
         // A backslash and quotes in a comment have to survive.
         let answer = text.map(|text| format!("{text}// \"\\n\"\"\"\n"));
         let output = run(&expand(answer.as_deref().unwrap_or_default(), ""));
-        let results: Value = serde_json::from_str(&output).unwrap_or_else(|error| panic!("{name}: {error}: {output}"));
+        let results: Value =
+            serde_json::from_str(&output).unwrap_or_else(|error| panic!("{name}: {error}: {output}"));
         assert_eq!(results["fraction"], share, "{name}: {results:#}");
         assert_eq!(results["testresults"].as_array().unwrap().len(), 4);
         let images = results["epiloguehtml"].as_str().unwrap().matches("<img ").count();
@@ -447,7 +502,10 @@ fn coderunner_reads_standard_output() {
 /// `schemas/result-v1.schema.json` of Classroom 50, for one submission.
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 fn classroom50_schema() -> Value {
-    let (text, count) = (json!({ "type": "string", "minLength": 1 }), json!({ "type": "integer", "minimum": 0 }));
+    let (text, count) = (
+        json!({ "type": "string", "minLength": 1 }),
+        json!({ "type": "integer", "minimum": 0 }),
+    );
     json!({
         "type": "object",
         "additionalProperties": false,
@@ -481,7 +539,10 @@ fn classroom50_reads_results() {
     }
     let folder = packed("classroom50");
     let bundle = folder.path().join("out/autograder");
-    assert!(!bundle.join("toyproof").exists(), "it is larger than a bundle may be");
+    assert!(
+        !bundle.join("toyproof").exists(),
+        "it is larger than a bundle may be"
+    );
     let script = fs::read_to_string(bundle.join("autograder.py")).unwrap();
     let checkout = folder.path().join("checkout");
     let grade = |script: &str| {
@@ -503,21 +564,30 @@ fn classroom50_reads_results() {
     submit(&checkout, "right", Some(SPHERE.shader));
     let run = grade(&script);
     let error = String::from_utf8(run.stderr).unwrap();
-    assert!(!run.status.success() && error.contains("has no PROGRAM_URL"), "{error}");
+    assert!(
+        !run.status.success() && error.contains("has no PROGRAM_URL"),
+        "{error}"
+    );
     let at = |file: &str| {
         let url = format!("PROGRAM_URL = \"file://{}\"", folder.path().join(file).display());
         script.replace("PROGRAM_URL = \"\"", &url)
     };
     let run = grade(&at("task/assignment.toml"));
     let error = String::from_utf8(run.stderr).unwrap();
-    assert!(!run.status.success() && error.contains("is not the toyproof with which"), "{error}");
+    assert!(
+        !run.status.success() && error.contains("is not the toyproof with which"),
+        "{error}"
+    );
     let schema = jsonschema::validator_for(&classroom50_schema()).unwrap();
     for (name, text, share) in submissions() {
         submit(&checkout, name, text.as_deref());
         let run = grade(&at("out/toyproof"));
         assert!(run.status.success(), "{name}: {run:?}");
         let result: Value = serde_json::from_slice(&fs::read(checkout.join("result.json")).unwrap()).unwrap();
-        let errors: Vec<_> = schema.iter_errors(&result).map(|error| error.to_string()).collect();
+        let errors: Vec<_> = schema
+            .iter_errors(&result)
+            .map(|error| error.to_string())
+            .collect();
         assert!(errors.is_empty(), "{name}: {errors:?}");
         for key in classroom50_schema()["required"].as_array().unwrap() {
             let mut without = result.clone();
@@ -539,8 +609,32 @@ fn platforms_and_outputs_are_checked() {
     let folder = assignment();
     let folder = folder.path();
     let run = toyproof(folder, &["autograder", "prairylearn", "task"]);
-    assert!(run.code == 2 && run.stderr.contains("'prairielearn'"), "{}", run.stderr);
-    let run = toyproof(folder, &["autograder", "autolab", "task", "--program", "program", "-o", "program"]);
-    assert!(run.code == 2 && run.stderr.contains("program is a file"), "{}", run.stderr);
-    assert!(run.stderr.contains("help: name a folder, or an archive that ends in .zip"), "{}", run.stderr);
+    assert!(
+        run.code == 2 && run.stderr.contains("'prairielearn'"),
+        "{}",
+        run.stderr
+    );
+    let run = toyproof(
+        folder,
+        &[
+            "autograder",
+            "autolab",
+            "task",
+            "--program",
+            "program",
+            "-o",
+            "program",
+        ],
+    );
+    assert!(
+        run.code == 2 && run.stderr.contains("program is a file"),
+        "{}",
+        run.stderr
+    );
+    assert!(
+        run.stderr
+            .contains("help: name a folder, or an archive that ends in .zip"),
+        "{}",
+        run.stderr
+    );
 }

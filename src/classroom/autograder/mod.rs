@@ -57,8 +57,16 @@ impl Autograder {
             name: &name,
             program: &program_bytes,
         };
-        let mut files: Vec<_> = platform.files(&task).into_iter().map(AutograderFile::from).collect();
-        let mut kit: Vec<_> = platform.kit_files().into_iter().map(AutograderFile::from).collect();
+        let mut files: Vec<_> = platform
+            .files(&task)
+            .into_iter()
+            .map(AutograderFile::from)
+            .collect();
+        let mut kit: Vec<_> = platform
+            .kit_files()
+            .into_iter()
+            .map(AutograderFile::from)
+            .collect();
         kit.extend(assignment_files(path, assignment)?);
         match platform.program {
             Some(path) => files.push(AutograderFile::program(path, program_bytes)),
@@ -68,7 +76,9 @@ impl Autograder {
             Kit::Folder(folder) => files.extend(kit.into_iter().map(|file| file.inside(folder))),
             Kit::Tar(path) => {
                 let kit: Vec<_> = kit.into_iter().map(|file| file.inside("toyproof/")).collect();
-                let packed = kit.iter().map(|file| (file.path.clone(), file.is_executable, &file.bytes[..]));
+                let packed = kit
+                    .iter()
+                    .map(|file| (file.path.clone(), file.is_executable, &file.bytes[..]));
                 let bytes = tar::pack(&packed.collect::<Vec<_>>())?;
                 files.push(AutograderFile::plain(path.to_owned(), bytes));
             }
@@ -147,13 +157,19 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 fn assignment_name(path: &Path) -> String {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let folder = absolute.parent().and_then(Path::file_name);
-    folder.map_or_else(|| "assignment".to_owned(), |name| name.to_string_lossy().into_owned())
+    folder.map_or_else(
+        || "assignment".to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }
 
 /// The file of an assignment at `path`, and the files that it names.
 fn assignment_files(path: &Path, assignment: &Assignment) -> Result<Vec<AutograderFile>, String> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut files = vec![AutograderFile::plain(format!("assignment/{FILE_NAME}"), read(path)?)];
+    let mut files = vec![AutograderFile::plain(
+        format!("assignment/{FILE_NAME}"),
+        read(path)?,
+    )];
     for named in named_files(assignment) {
         let inside = named.strip_prefix(folder).unwrap_or(&named);
         let is_inside = inside

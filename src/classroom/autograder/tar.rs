@@ -24,12 +24,16 @@ fn header(path: &str, is_executable: bool, bytes: usize) -> Result<[u8; BLOCK], 
     let mut header = [0; BLOCK];
     let mut put = |at: usize, text: &[u8]| header[at..at + text.len()].copy_from_slice(text);
     // The name has 100 bytes, and the folders before it 155 others.
-    let splits = path.match_indices('/').map(|(at, _)| (&path[..at], &path[at + 1..]));
+    let splits = path
+        .match_indices('/')
+        .map(|(at, _)| (&path[..at], &path[at + 1..]));
     let fitting = [("", path)].into_iter().chain(splits);
     let (folders, name) = fitting
         .into_iter()
         .find(|(folders, name)| folders.len() <= 155 && name.len() <= 100)
-        .ok_or_else(|| format!("{path} is too long a path for a tar archive\nhelp: shorten the names of its folders"))?;
+        .ok_or_else(|| {
+            format!("{path} is too long a path for a tar archive\nhelp: shorten the names of its folders")
+        })?;
     put(0, name.as_bytes());
     put(100, if is_executable { b"0000755\0" } else { b"0000644\0" });
     put(108, b"0000000\0");

@@ -77,11 +77,11 @@ impl Students {
 
     /// The place in the list of the only student with this number, or else with this name.
     pub(crate) fn place(&self, student: &Student) -> Option<usize> {
-        let number = student.id.as_ref().and_then(|id| self.places.get(&key(id)));
-        match (number.map(Vec::as_slice), self.places.get(&key(&student.name)).map(Vec::as_slice)) {
-            (Some(&[place]), _) | (_, Some(&[place])) => Some(place),
-            _ => None,
-        }
+        let number = student.id.as_deref().map(key);
+        let keys = number.into_iter().chain(name_keys(&student.name));
+        let mut places = keys.filter_map(|key| self.places.get(&key));
+        let only = places.find_map(|places| <[usize; 1]>::try_from(&places[..]).ok());
+        only.map(|[place]| place)
     }
 
     /// The listed students.

@@ -59,7 +59,9 @@ pub(super) fn write(
     match rubrics.common() {
         Some(rubric) if !are_of_several_students(submissions) => folder.write(marks, |file| {
             let images = thumbnails(submissions, rubric);
-            options.platform.write_results(records, rubric, hints, &images, file)
+            options
+                .platform
+                .write_results(records, rubric, hints, &images, file)
         }),
         _ => {
             folder.remove(marks);

@@ -47,7 +47,11 @@ fn results(graded: &Graded, out: &mut dyn Write) -> io::Result<()> {
         scores.insert(mark.name.to_string(), mark.points.into());
     }
     let presentation = json!({ "_presentation": "semantic", "stages": ["Points"], "Points": shown });
-    writeln!(out, "\n{presentation}\n{}", json!({ "scores": Value::from(scores) }))
+    writeln!(
+        out,
+        "\n{presentation}\n{}",
+        json!({ "scores": Value::from(scores) })
+    )
 }
 
 #[cfg(test)]
@@ -95,7 +99,10 @@ pub(super) mod tests {
             right.lines().last().unwrap(),
             "{\"scores\":{\"algorithm\":6.0,\"compiles\":2.0,\"precision\":2.0}}"
         );
-        assert!(right.starts_with("correct: it is correct\n\ncompiles: 2 of 2\n  the shader compiles\n"), "{right}");
+        assert!(
+            right.starts_with("correct: it is correct\n\ncompiles: 2 of 2\n  the shader compiles\n"),
+            "{right}"
+        );
         let several = text(&[correct(), invalid()]);
         assert!(several.contains("invalid: compiles: 0 of 2"), "{several}");
         assert_eq!(

@@ -24,7 +24,10 @@ pub(super) static PLATFORM: Platform = Platform {
 };
 
 fn files(task: &Task) -> Vec<PlatformFile> {
-    let hash: String = Sha256::digest(task.program).iter().map(|byte| format!("{byte:02x}")).collect();
+    let hash: String = Sha256::digest(task.program)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
     let script = include_str!("classroom50/autograder.py").replace("@SHA256@", &hash);
     vec![PlatformFile::plain("autograder/autograder.py", script)]
 }
@@ -115,14 +118,23 @@ pub(super) mod tests {
     #[test]
     fn scores_are_hundredths_of_points_and_add_up() {
         let results = json("classroom50", &[correct()]);
-        assert_eq!((&results["score"], &results["max-score"]), (&json!(1000), &json!(1000)));
+        assert_eq!(
+            (&results["score"], &results["max-score"]),
+            (&json!(1000), &json!(1000))
+        );
         let test = json!({"test-name": "algorithm", "passed": true, "score": 600, "max-score": 600,
                           "output": results["tests"][1]["output"]});
         assert_eq!(results["tests"][1], test);
         let several = json("classroom50", &[correct(), invalid()]);
         assert_eq!(several["score"], 0);
         let tests = several["tests"].as_array().unwrap();
-        assert_eq!(tests.iter().map(|test| test["score"].as_u64().unwrap()).sum::<u64>(), 0);
+        assert_eq!(
+            tests
+                .iter()
+                .map(|test| test["score"].as_u64().unwrap())
+                .sum::<u64>(),
+            0
+        );
         assert_eq!(tests.len(), 3);
     }
 }

@@ -22,7 +22,10 @@ pub(super) static PLATFORM: Platform = Platform {
 };
 
 fn files(_: &Task) -> Vec<PlatformFile> {
-    vec![PlatformFile::plain("template.py", include_str!("coderunner/template.py"))]
+    vec![PlatformFile::plain(
+        "template.py",
+        include_str!("coderunner/template.py"),
+    )]
 }
 
 #[derive(Serialize)]
@@ -41,7 +44,12 @@ fn results(graded: &Graded, out: &mut dyn Write) -> io::Result<()> {
     let rows = graded.tests.iter().map(|mark| {
         let points = format!("{} of {}", mark.points, mark.of);
         let is_correct = u8::from(mark.points == mark.of);
-        [json!(is_correct), json!(mark.name), json!(points), json!(mark.why)]
+        [
+            json!(is_correct),
+            json!(mark.name),
+            json!(points),
+            json!(mark.why),
+        ]
     });
     let text = Text(&graded.text).to_string().replace('\n', "<br>");
     let results = Results {
@@ -88,7 +96,10 @@ pub(super) mod tests {
     fn the_fraction_is_that_of_the_points_and_texts_of_html_are_escaped() {
         let results = json("coderunner", &[correct()]);
         assert_eq!(results["fraction"], 1.0);
-        assert_eq!(results["testresults"][0], json!(["iscorrect", "Part", "Points", "Reason"]));
+        assert_eq!(
+            results["testresults"][0],
+            json!(["iscorrect", "Part", "Points", "Reason"])
+        );
         let row = results["testresults"][2].as_array().unwrap();
         assert_eq!(row[..3], [json!(1), json!("algorithm"), json!("6 of 6")]);
         let mut hostile = invalid();

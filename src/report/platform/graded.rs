@@ -30,7 +30,9 @@ impl<'a> Graded<'a> {
                 plain(&Tally::new(records).summary())
             ),
         };
-        let marks = records.iter().map(|record| rubric.marks(&record.clone().redacted(hints)));
+        let marks = records
+            .iter()
+            .map(|record| rubric.marks(&record.clone().redacted(hints)));
         let marks: Vec<Vec<Mark>> = marks.collect();
         let counted = (0..records.len()).min_by(|&a, &b| points(&marks[a]).total_cmp(&points(&marks[b])));
         let tests = records.iter().zip(&marks).flat_map(|(record, marks)| {

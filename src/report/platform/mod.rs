@@ -93,9 +93,8 @@ impl PlatformFile {
     }
 }
 
-/// What students are told if the check itself fails.
-const FAILED: &str =
-    "The autograder failed, so your submission was not graded. Please inform your teacher.";
+/// What students read if the check itself fails.
+const FAILED: &str = "The autograder failed, so your submission was not graded. Please inform your teacher.";
 
 impl Platform {
     /// The platform of this name.
@@ -146,12 +145,12 @@ mod tests {
     use std::collections::BTreeSet;
 
     use serde_json::Value;
+    use toyproof_verify::Verdict;
 
     use super::*;
     use crate::record::samples::{correct, every_verdict, invalid, record};
     use crate::repair::samples::{repaired, suspected};
     use crate::written;
-    use toyproof_verify::Verdict;
 
     /// The documented formats of the results.
     const SCHEMAS: [(&str, fn() -> Value); 5] = [
@@ -180,7 +179,8 @@ mod tests {
         }
         let lines: Vec<&str> = text.lines().collect();
         let last = lines[lines.len() - 2..].iter();
-        last.map(|line| serde_json::from_str::<Value>(line).unwrap()).collect()
+        last.map(|line| serde_json::from_str::<Value>(line).unwrap())
+            .collect()
     }
 
     fn images() -> Thumbnails {
@@ -200,7 +200,10 @@ mod tests {
                 let mut without = value.clone();
                 let object = without.pointer_mut(&pointer).and_then(Value::as_object_mut);
                 if let Some(object) = object {
-                    assert!(object.remove(key).is_some(), "{pointer}/{key} is required and missing");
+                    assert!(
+                        object.remove(key).is_some(),
+                        "{pointer}/{key} is required and missing"
+                    );
                     if validator.is_valid(&without) {
                         accepted.insert(format!("{pointer}/{key}"));
                     }
@@ -236,20 +239,29 @@ mod tests {
             let validator = jsonschema::validator_for(&schema).unwrap();
             for records in &all {
                 let json = json(name, records);
-                let errors: Vec<_> = validator.iter_errors(&json).map(|error| error.to_string()).collect();
+                let errors: Vec<_> = validator
+                    .iter_errors(&json)
+                    .map(|error| error.to_string())
+                    .collect();
                 assert!(errors.is_empty(), "{name}: {errors:?}\n{json:#}");
             }
             let json = json(name, &[correct()]);
             assert_eq!(not_required(&schema, &json), BTreeSet::new(), "{name}");
         }
-        assert_eq!(SCHEMAS.map(|(name, _)| name), PLATFORMS.map(|platform| platform.name));
+        assert_eq!(
+            SCHEMAS.map(|(name, _)| name),
+            PLATFORMS.map(|platform| platform.name)
+        );
     }
 
     #[test]
     fn no_platform_shows_more_than_the_hints_permit() {
         for (name, _) in SCHEMAS {
             let shown = |record, hints| results(name, &[record], hints, &Thumbnails::default());
-            assert!(shown(repaired(), Hints::Fix).contains("replace `b + c` with `b - c`"), "{name}");
+            assert!(
+                shown(repaired(), Hints::Fix).contains("replace `b + c` with `b - c`"),
+                "{name}"
+            );
             let lines = shown(repaired(), Hints::Line);
             assert!(lines.contains("fix: an edit of line 2; then all"), "{lines}");
             assert!(!lines.contains("b - c") && !lines.contains("2.0"), "{lines}");
@@ -265,15 +277,25 @@ mod tests {
     #[test]
     fn a_failure_is_stated_in_the_same_format() {
         for platform in PLATFORMS {
-            let failure = platform.kit_files().into_iter().find(|file| file.path == "failure");
+            let failure = platform
+                .kit_files()
+                .into_iter()
+                .find(|file| file.path == "failure");
             let failure = failure.map(|file| file.text).unwrap_or_default();
-            assert_eq!(failure.contains(FAILED), platform.name != "classroom50", "{failure}");
+            assert_eq!(
+                failure.contains(FAILED),
+                platform.name != "classroom50",
+                "{failure}"
+            );
             let Some((_, schema)) = SCHEMAS.iter().find(|(name, _)| *name == platform.name) else {
                 panic!("{} has no schema", platform.name);
             };
             // What is not JSON, the platforms report as an error of the autograder.
             if let Ok(json) = serde_json::from_str(&failure) {
-                assert!(jsonschema::validator_for(&schema()).unwrap().is_valid(&json), "{failure}");
+                assert!(
+                    jsonschema::validator_for(&schema()).unwrap().is_valid(&json),
+                    "{failure}"
+                );
             }
         }
     }

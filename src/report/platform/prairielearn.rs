@@ -88,7 +88,8 @@ struct Test<'a> {
     message: &'a str,
 }
 
-/// Writes `results.json`. A shader that does not compile is no attempt, as the platform recommends.
+/// Writes `results.json`. A shader that does not compile does not count as an attempt, as the platform
+/// recommends.
 fn results(graded: &Graded, out: &mut dyn Write) -> io::Result<()> {
     let images = graded.images.urls().into_iter();
     let results = Results {
@@ -118,11 +119,11 @@ fn results(graded: &Graded, out: &mut dyn Write) -> io::Result<()> {
 #[cfg(test)]
 pub(super) mod tests {
     use serde_json::{Value, json};
+    use toyproof_verify::Verdict;
 
     use super::super::tests::json;
     use super::*;
     use crate::record::samples::{correct, invalid, record};
-    use toyproof_verify::Verdict;
 
     /// The results as the page documents them, and the keys that its elements read.
     pub(in crate::platform) fn schema() -> Value {
@@ -166,7 +167,10 @@ pub(super) mod tests {
     #[test]
     fn only_a_shader_that_compiles_is_an_attempt() {
         let results = json("prairielearn", &[correct()]);
-        assert_eq!((&results["gradable"], &results["score"]), (&json!(true), &json!(1.0)));
+        assert_eq!(
+            (&results["gradable"], &results["score"]),
+            (&json!(true), &json!(1.0))
+        );
         assert_eq!(results["images"][0]["label"], "your image");
         assert_eq!(results["tests"][1]["points"], 6.0);
         for (verdict, gradable) in [
@@ -175,10 +179,17 @@ pub(super) mod tests {
             (Verdict::Missing, false),
             (Verdict::Error, false),
         ] {
-            assert_eq!(json("prairielearn", &[record(verdict)])["gradable"], gradable, "{verdict}");
+            assert_eq!(
+                json("prairielearn", &[record(verdict)])["gradable"],
+                gradable,
+                "{verdict}"
+            );
         }
         let results = json("prairielearn", &[correct(), invalid()]);
-        assert_eq!((&results["gradable"], &results["score"]), (&json!(false), &json!(0.0)));
+        assert_eq!(
+            (&results["gradable"], &results["score"]),
+            (&json!(false), &json!(0.0))
+        );
         let validator = jsonschema::validator_for(&schema()).unwrap();
         let mut without = json("prairielearn", &[correct()]);
         without.as_object_mut().unwrap().remove("score");
@@ -218,7 +229,10 @@ pub(super) mod tests {
             serde_json::from_str::<Value>(&files[0].text).unwrap()
         };
         let json = info("soft \"shadows\"");
-        assert!(jsonschema::validator_for(&schema).unwrap().is_valid(&json), "{json:#}");
+        assert!(
+            jsonschema::validator_for(&schema).unwrap().is_valid(&json),
+            "{json:#}"
+        );
         assert_ne!(json["uuid"], info("shadows")["uuid"]);
     }
 }
