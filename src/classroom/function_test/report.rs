@@ -120,7 +120,7 @@ impl TestRecord {
     #[must_use]
     pub fn unreadable(errors: &[Diagnostic], files: &Files) -> Self {
         Self {
-            test: "the tests are valid".to_owned(),
+            test: "tests in comments".to_owned(),
             status: Self::ERROR,
             ..Self::invalid(errors, files)
         }
