@@ -118,7 +118,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     }
     if args.format == Format::Json {
         terminal.stream(|out| report.json(out))?;
-    } else {
+    } else if report.tests().next().is_some() {
         summarize(&report, &untested, terminal);
     }
     if let Some(folder) = &args.out {
