@@ -77,8 +77,9 @@ impl From<PrecisionArg> for Precision {
     }
 }
 
-/// The names of the files in the folder of `--out`.
+/// The name of the report for programs in the folder of `--out`.
 const TESTS: &str = "tests.json";
+/// The name of the report for continuous integration in the folder of `--out`.
 const JUNIT: &str = "junit.xml";
 
 /// A shader, and where its tests are.

@@ -82,7 +82,7 @@ pub struct FunctionTest {
     pub precision: Option<Precision>,
     /// What is evaluated before each call, such as `makeScene()`.
     pub after: Option<Snippet>,
-    /// The calls.
+    /// The calls of the function.
     pub cases: FunctionCases,
 }
 
@@ -134,9 +134,9 @@ pub struct ListedCall {
 pub struct Subject<'a> {
     /// The shader.
     pub checked: &'a Checked,
-    /// Its files.
+    /// The files of the shader.
     pub files: &'a Files,
-    /// Its text.
+    /// The text of the shader.
     pub text: &'a str,
     /// Whether the language is lenient.
     pub lenient: bool,
@@ -169,7 +169,7 @@ pub struct TestResult {
     pub name: String,
     /// Where it is written.
     pub at: Option<Span>,
-    /// Its evaluations, or the reason why there are none.
+    /// The evaluations, or the reason why there are none.
     pub runs: Result<Vec<Run>, TestError>,
 }
 

@@ -21,7 +21,7 @@ pub struct TestReport {
 pub struct ShaderTests {
     /// The shader's name.
     pub shader: String,
-    /// Its tests.
+    /// The tests of the shader.
     pub tests: Vec<TestRecord>,
 }
 
