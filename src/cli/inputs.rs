@@ -334,10 +334,6 @@ fn parse_uniform(text: &str) -> Result<UniformValue, String> {
 }
 
 impl LanguageArgs {
-    pub(super) fn is_lenient(&self) -> bool {
-        self.lenient
-    }
-
     pub(super) fn options(&self, deadline: Deadline) -> glsl::Options {
         let dialect = match self.dialect {
             Some(DialectChoice::Given(dialect)) => Some(dialect),

@@ -242,7 +242,6 @@ fn from_shader(args: &AssignmentArgs, terminal: &Terminal) -> Result<NewFiles, C
         checked,
         files: &shader.files,
         text: shader.text(checked),
-        lenient: args.language.is_lenient(),
         timeout: args.timeout,
     };
     let model = Model::Shader(&subject);

@@ -252,7 +252,6 @@ impl Args {
             checked,
             files: &shader.files,
             text: shader.text(checked),
-            lenient: self.language.is_lenient(),
             timeout: self.timeout,
         };
         if matches!(task.tests, Source::Own) {

@@ -24,6 +24,7 @@ mod cycles;
 mod debug;
 mod derivatives;
 mod diagnostics;
+mod dialects;
 mod docs;
 #[cfg(unix)]
 mod driver_start;

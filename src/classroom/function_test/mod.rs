@@ -16,7 +16,7 @@
 //! let file = files.add(File::new("disk.glsl", text));
 //! let checked = check(&files, file, &Options::default()).unwrap();
 //! let timeout = Duration::from_secs(10);
-//! let subject = Subject { checked: &checked, files: &files, text, lenient: false, timeout };
+//! let subject = Subject { checked: &checked, files: &files, text, timeout };
 //! for test in comment_tests(&subject).unwrap() {
 //!     assert!(test.results(&subject, Precision::Both).iter().all(|result| result.is_passed()));
 //! }
@@ -138,8 +138,6 @@ pub struct Subject<'a> {
     pub files: &'a Files,
     /// The text of the shader.
     pub text: &'a str,
-    /// Whether the language is lenient.
-    pub lenient: bool,
     /// The time limit of a test.
     pub timeout: Duration,
 }
@@ -147,11 +145,8 @@ pub struct Subject<'a> {
 impl Subject<'_> {
     fn options(&self) -> glsl::Options {
         glsl::Options {
-            lenient: self.lenient,
-            channels: self.checked.channels.map(Some),
-            sampling: self.checked.sampling,
             deadline: Deadline::after(self.timeout),
-            ..glsl::Options::default()
+            ..self.checked.options()
         }
     }
 

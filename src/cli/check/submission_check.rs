@@ -66,7 +66,6 @@ impl Checker<'_> {
                 checked,
                 files: &shader.files,
                 text: shader.text(checked),
-                lenient: self.options.language.is_lenient(),
                 timeout: self.options.driver.timeout(),
             });
             let subject = subject.filter(|_| record.verdict.is_compiled());
