@@ -129,7 +129,7 @@ impl Marks {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("the assignments are {}", list(names)),
         };
-        Err(format!("there is no assignment {name}\nhelp: {help}"))
+        Err(format!("the marks have no assignment {name}\nhelp: {help}"))
     }
 }
 
@@ -502,7 +502,7 @@ mod tests {
                 table,
                 Some("tours"),
                 None,
-                "there is no assignment tours\nhelp: did you mean `torus`?",
+                "the marks have no assignment tours\nhelp: did you mean `torus`?",
             ),
             (
                 REPORT,
