@@ -264,7 +264,7 @@ mod tests {
             );
             let lines = shown(repaired(), Hints::Line);
             assert!(lines.contains("fix: an edit of line 2; then all"), "{lines}");
-            assert!(!lines.contains("b - c") && !lines.contains("2.0"), "{lines}");
+            assert!(!lines.contains("b - c") && !lines.contains("`2.0`"), "{lines}");
             for record in [repaired, suspected] {
                 let text = shown(record(), Hints::None);
                 for part in ["operator", "line 2", "4, 2", "b + c", "explain"] {
