@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::{Graded, Kit, Platform, PlatformFile, Task, write_json};
+use super::{Graded, Kit, Platform, PlatformFile, Task, hex, write_json};
 use crate::rubric::Mark;
 
 pub(super) static PLATFORM: Platform = Platform {
@@ -24,10 +24,7 @@ pub(super) static PLATFORM: Platform = Platform {
 };
 
 fn files(task: &Task) -> Vec<PlatformFile> {
-    let hash: String = Sha256::digest(task.program)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
+    let hash = hex(&Sha256::digest(task.program));
     let script = include_str!("classroom50/autograder.py").replace("@SHA256@", &hash);
     vec![PlatformFile::plain("autograder/autograder.py", script)]
 }
@@ -45,7 +42,8 @@ struct Results<'a> {
 #[derive(Serialize)]
 #[serde(rename_all = "kebab-case")]
 struct Test<'a> {
-    test_name: &'a str,
+    #[serde(rename = "test-name")]
+    name: &'a str,
     passed: bool,
     score: u64,
     max_score: u64,
@@ -68,7 +66,7 @@ fn results(graded: &Graded, out: &mut dyn Write) -> io::Result<()> {
 impl<'a> Test<'a> {
     fn new(mark: &'a Mark) -> Self {
         Self {
-            test_name: &mark.name,
+            name: &mark.name,
             passed: mark.points == mark.of,
             score: hundredths(mark.points),
             max_score: hundredths(mark.of),

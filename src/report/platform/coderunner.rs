@@ -1,4 +1,4 @@
-//! CodeRunner, a type of questions of Moodle:
+//! `CodeRunner`, a type of questions of Moodle:
 //! <https://github.com/trampgeek/moodle-qtype_coderunner/blob/master/docs/index.md#combinator-template-grading>
 
 use std::io::{self, Write};
@@ -33,7 +33,7 @@ struct Results {
     /// The share of the points.
     fraction: f64,
     prologuehtml: String,
-    /// The rows of a table; the first names the columns. CodeRunner escapes the cells.
+    /// The rows of a table; the first names the columns. `CodeRunner` escapes the cells.
     testresults: Vec<[Value; 4]>,
     epiloguehtml: String,
 }

@@ -134,6 +134,15 @@ impl Platform {
     }
 }
 
+/// Bytes as hexadecimal digits.
+fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write as _;
+    bytes.iter().fold(String::new(), |mut digits, byte| {
+        let _ = write!(digits, "{byte:02x}");
+        digits
+    })
+}
+
 /// Writes JSON on several lines.
 fn write_json(value: &impl serde::Serialize, out: &mut dyn Write) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, value)?;
@@ -152,8 +161,10 @@ mod tests {
     use crate::repair::samples::{repaired, suspected};
     use crate::written;
 
+    type Schema = fn() -> Value;
+
     /// The documented formats of the results.
-    const SCHEMAS: [(&str, fn() -> Value); 5] = [
+    const SCHEMAS: [(&str, Schema); 5] = [
         ("gradescope", gradescope::tests::schema),
         ("classroom50", classroom50::tests::schema),
         ("prairielearn", prairielearn::tests::schema),

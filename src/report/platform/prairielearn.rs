@@ -1,4 +1,4 @@
-//! PrairieLearn: <https://docs.prairielearn.com/externalGrading/>
+//! `PrairieLearn`: <https://docs.prairielearn.com/externalGrading/>
 //!
 //! The elements of the page escape all texts but the errors of the format, which are therefore fixed.
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
-use super::{Graded, Kit, Platform, PlatformFile, Task, write_json};
+use super::{Graded, Kit, Platform, PlatformFile, Task, hex, write_json};
 
 pub(super) static PLATFORM: Platform = Platform {
     name: "prairielearn",
@@ -55,7 +55,7 @@ fn uuid(name: &str) -> String {
     let mut bytes: [u8; 16] = std::array::from_fn(|at| hash[at]);
     bytes[6] = bytes[6] & 0x0f | 0x80;
     bytes[8] = bytes[8] & 0x3f | 0x80;
-    let digits: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+    let digits = hex(&bytes);
     let ends = [0, 8, 12, 16, 20, 32];
     let parts: Vec<_> = ends.windows(2).map(|pair| &digits[pair[0]..pair[1]]).collect();
     parts.join("-")
