@@ -9,6 +9,17 @@ use crate::reporting::push_limited;
 use crate::token::Symbol;
 use crate::tree::{BuiltInVariable, ExprId, Place, Scalar, Type, Variable, VariableId, VariableKind};
 
+/// The initializer of a variable.
+#[derive(Debug)]
+pub(crate) enum Initializer {
+    Expression(ExprId),
+    /// `{…}`, with at least one item.
+    List {
+        items: Vec<Initializer>,
+        at: Place,
+    },
+}
+
 /// One declarator: a name with its own array sizes and initializer.
 #[derive(Debug)]
 pub(crate) struct Declarator {

@@ -3,7 +3,7 @@
 use toyproof_diagnostic::{Code, plural};
 
 use super::{Checker, Entity};
-use crate::dialect::InputValue;
+use crate::dialect::{Bound, InputValue};
 use crate::tree::{
     BinaryOp, BuiltInVariable, Constructor, Direction, ExprId, ExprKind, Function, FunctionId, Input, Item,
     Literal, Place, Scalar, Statement, StatementKind, Swizzle, Type, UnaryOp, Value, Variable, VariableId,
@@ -20,15 +20,6 @@ const MAX_DRAW_BUFFERS: u32 = 4;
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC3: Type = Type::Vector(Scalar::Float, 3);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
-
-/// The value of a uniform or varying.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Bound {
-    /// An input of the host.
-    Input(InputValue),
-    /// A constant of this type, by its components.
-    Value(Type, Vec<f64>),
-}
 
 impl Checker<'_> {
     /// Declares `gl_FragColor` and `gl_FragData`, where the text uses them.

@@ -2,20 +2,9 @@
 
 use toyproof_diagnostic::{Code, plural};
 
-use super::Checker;
+use super::{Checker, Initializer};
 use crate::reporting::given;
-use crate::tree::{Constructor, ExprId, Place, Scalar, Type};
-
-/// The initializer of a variable.
-#[derive(Debug)]
-pub(crate) enum Initializer {
-    Expression(ExprId),
-    /// `{…}`, with at least one item.
-    List {
-        items: Vec<Initializer>,
-        at: Place,
-    },
-}
+use crate::tree::{Constructor, ExprId, Scalar, Type};
 
 impl Checker<'_> {
     /// The type that an initializer gives a variable of `dimensions` array dimensions.

@@ -24,17 +24,15 @@ use std::collections::{HashMap, HashSet};
 
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Fix, IN_MACRO};
 
-pub(crate) use self::declare::{Declarator, Qualifiers, Storage};
+pub(crate) use self::declare::{Declarator, Initializer, Qualifiers, Storage};
 use self::function::Context;
 pub(crate) use self::function::Parameter;
-use self::host::Bound;
-pub(crate) use self::initializer::Initializer;
 pub(crate) use self::prelude::Channels;
 use self::scope::{Entity, Scopes, UnknownName};
 pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
-use crate::dialect::{Dialect, Language, Wrapping};
+use crate::dialect::{Bound, Dialect, Language, Wrapping};
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
 use crate::preprocess::PreprocessorOutput;

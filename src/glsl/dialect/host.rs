@@ -60,6 +60,15 @@ pub(crate) enum InputValue {
     Constant(&'static [f64]),
 }
 
+/// The value of a uniform or varying.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Bound {
+    /// An input of the host.
+    Input(InputValue),
+    /// A constant of this type, by its components.
+    Value(Type, Vec<f64>),
+}
+
 impl InputValue {
     /// Its type.
     pub(crate) fn ty(self) -> Type {

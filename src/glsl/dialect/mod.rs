@@ -6,7 +6,7 @@ mod host;
 mod language;
 
 pub use self::host::Dialect;
-pub(crate) use self::host::InputValue;
+pub(crate) use self::host::{Bound, InputValue};
 pub(crate) use self::language::Language;
 pub use self::language::Version;
 
