@@ -18,8 +18,8 @@ use std::ops::Range;
 
 use toyproof_diagnostic::{Span, nearest};
 
-use super::Snippet;
-use super::tokens::{Kind, Token, tokens};
+use super::source::Snippet;
+use super::tokens::{Kind, SyntaxError, Token, tokens};
 
 /// A comparison of expressions, for all values of its variables.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,14 +105,6 @@ pub(super) enum Set {
     Interval(Snippet, Snippet),
     /// These, at least one.
     List(Vec<Snippet>),
-}
-
-/// An error in the syntax of a test.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct SyntaxError {
-    pub(super) at: Span,
-    pub(super) message: String,
-    pub(super) help: String,
 }
 
 impl Assertion {

@@ -2,7 +2,10 @@
 
 use toyproof_diagnostic::{Code, Diagnostic, Span};
 
-use super::{Assertion, FunctionCases, FunctionTest, MAX_TESTS, Snippet, Subject};
+use super::assertion::Assertion;
+use super::source::Snippet;
+use super::subject::Subject;
+use super::test::{FunctionCases, FunctionTest, MAX_TESTS};
 
 const MARK: &str = "@test";
 

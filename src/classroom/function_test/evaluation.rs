@@ -5,9 +5,11 @@ use toyproof_glsl::tree::Scalar;
 use toyproof_image::Frame;
 use toyproof_stress::{RunError, ShaderRunner};
 
+use super::result::TestError;
 use super::source::GeneratedText;
+use super::subject::Subject;
+use super::test::Precision;
 use super::value::Component;
-use super::{Precision, Subject, TestError};
 
 /// Statements that are evaluated for each case, and the components of their results.
 #[derive(Debug, Clone)]

@@ -7,7 +7,9 @@ use toyproof_project::files;
 use toyproof_report::optional_points;
 use toyproof_toml::{Format, Literal, Located, Table};
 
-use super::{Assertion, FunctionCases, FunctionTest, ListedCall, MAX_TESTS, Precision, Snippet};
+use super::assertion::Assertion;
+use super::source::Snippet;
+use super::test::{FunctionCases, FunctionTest, ListedCall, MAX_TESTS, Precision};
 
 /// The end of the name of a test file that lies beside its shader: `disk.test.toml` beside `disk.glsl`.
 pub const SUFFIX: &str = ".test.toml";

@@ -5,12 +5,12 @@ use toyproof_glsl::tree::{Direction, Function, Scalar, Tree, Type, VariableKind}
 use toyproof_toml::Literal;
 
 use super::evaluation::{Evaluation, Values};
-use super::source::GeneratedText;
+use super::result::{Run, TestError, TestResult};
+use super::source::{GeneratedText, Snippet};
+use super::subject::Subject;
+use super::test::{DEFAULT_TOLERANCE, FunctionTest, ListedCall, Precision};
 use super::value::{
     Component, agrees, components, expression, fits, flatten, likely_type, literal_text, numbers, prototype,
-};
-use super::{
-    DEFAULT_TOLERANCE, FunctionTest, ListedCall, Precision, Run, Snippet, Subject, TestError, TestResult,
 };
 
 impl ListedCall {

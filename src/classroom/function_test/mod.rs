@@ -24,6 +24,7 @@
 //!
 //! # Parts
 //!
+//! - `test`: the tests of a function; `subject`: the shader; `result`: the result of a test.
 //! - `assertion`: the grammar of a test in one line, such as `|normalAt(p)| == 1 for p in [-2, 2]`, and its
 //!   `tokens`.
 //! - `file`: the TOML of tests, of test files and of assignments; `comment`: the tests in a shader's comments.
@@ -40,20 +41,17 @@ mod evaluation;
 mod file;
 mod listed;
 mod report;
+mod result;
 mod sampled;
 mod source;
+mod subject;
+mod test;
 mod tokens;
 mod typed;
 mod value;
 
-use std::time::Duration;
-
-use toyproof_diagnostic::{Deadline, Diagnostic, Files, Span};
-use toyproof_glsl::tree::Function;
-use toyproof_glsl::{self as glsl, Checked};
 use toyproof_report::FunctionRecord;
 use toyproof_stress::function::{RoleMap, Signature, test_typical};
-use toyproof_toml::Literal;
 
 pub use self::assertion::Assertion;
 pub use self::comment::comment_tests;
@@ -61,173 +59,11 @@ pub use self::file::{SUFFIX, TestFile, is_test_file};
 pub(crate) use self::file::{function, is_identifier, reject_second};
 pub(crate) use self::listed::Call;
 pub use self::report::{RunRecord, ShaderTests, TestRecord, TestReport};
+pub use self::result::{Run, TestError, TestResult};
 pub use self::source::Snippet;
+pub use self::subject::Subject;
+pub use self::test::{DEFAULT_TOLERANCE, FunctionCases, FunctionTest, ListedCall, MAX_TESTS, Precision};
 pub(crate) use self::value::{literal_text, parts};
-
-/// The largest difference of a component of floats, unless a test states another: expected results are
-/// written with a few digits.
-pub const DEFAULT_TOLERANCE: f64 = 1e-4;
-
-/// The largest number of tests in the comments of one shader, and of listed calls of one function.
-pub const MAX_TESTS: usize = 256;
-
-/// The tests of a function.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FunctionTest {
-    /// The function's name.
-    pub name: String,
-    /// The points for a function that passes all tests, ≥ 0.
-    pub points: f64,
-    /// The precision of the evaluation; `None` for that of the command.
-    pub precision: Option<Precision>,
-    /// What is evaluated before each call, such as `makeScene()`.
-    pub after: Option<Snippet>,
-    /// The calls of the function.
-    pub cases: FunctionCases,
-}
-
-/// The number types in which a function is evaluated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// Float32.
-    Single,
-    /// Double precision.
-    Double,
-    /// One after the other.
-    Both,
-}
-
-/// The calls of a test.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FunctionCases {
-    /// Calls and assertions, at least one of both.
-    Written {
-        /// Calls with given arguments.
-        listed: Vec<ListedCall>,
-        /// Comparisons of expressions.
-        assertions: Vec<Assertion>,
-    },
-    /// The rays and spheres of [`toyproof_stress`] of typical size, for a function that
-    /// intersects a ray with a sphere, whatever its signature.
-    Stress,
-}
-
-/// A call of a function.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ListedCall {
-    /// Where it is written.
-    pub at: Option<Span>,
-    /// The values of the parameters that are not `out`. Lists represent vectors, matrices, arrays and
-    /// structures.
-    pub arguments: Vec<Literal>,
-    /// The expected result, if it is compared.
-    pub result: Option<Literal>,
-    /// The expected values of the `out` and `inout` parameters, if they are compared.
-    pub outputs: Option<Vec<Literal>>,
-    /// The largest difference of a component from the expected value, relative to values above 1; by
-    /// default [`DEFAULT_TOLERANCE`] for floats, and 0 for integers.
-    pub tolerance: Option<f64>,
-}
-
-/// A shader whose functions are tested.
-#[derive(Debug, Clone, Copy)]
-pub struct Subject<'a> {
-    /// The shader.
-    pub checked: &'a Checked,
-    /// The files of the shader.
-    pub files: &'a Files,
-    /// The text of the shader.
-    pub text: &'a str,
-    /// The time limit of a test.
-    pub timeout: Duration,
-}
-
-impl Subject<'_> {
-    fn options(&self) -> glsl::Options {
-        glsl::Options {
-            deadline: Deadline::after(self.timeout),
-            ..self.checked.options()
-        }
-    }
-
-    /// The definitions of all functions of that name.
-    fn functions<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s Function> {
-        let functions = self.checked.tree.functions.iter().map(|(_, function)| function);
-        functions.filter(move |function| function.name == name && function.body.is_some())
-    }
-}
-
-/// The result of one test.
-#[derive(Debug, Clone)]
-pub struct TestResult {
-    /// The test as it is written, or the call.
-    pub name: String,
-    /// Where it is written.
-    pub at: Option<Span>,
-    /// The evaluations, or the reason why there are none.
-    pub runs: Result<Vec<Run>, TestError>,
-}
-
-/// The evaluation of a test in one number type.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// Whether the number type is f32; else it is f64.
-    pub is_single: bool,
-    /// The number of calls with different values.
-    pub samples: u64,
-    /// The number of wrong ones.
-    pub wrong: u64,
-    /// The first wrong result in one sentence; empty if there is none.
-    pub message: String,
-}
-
-/// The reason why a test has no result.
-#[derive(Debug, Clone)]
-pub enum TestError {
-    /// The shader's fault: the function is missing, has another signature, or does not end.
-    Shader(String),
-    /// The test is invalid, or does not fit the shader.
-    Test(Vec<Diagnostic>),
-}
-
-impl TestError {
-    /// The reason in one sentence.
-    #[must_use]
-    pub fn message(&self) -> String {
-        match self {
-            Self::Shader(message) => message.clone(),
-            Self::Test(diagnostics) => diagnostics
-                .first()
-                .map_or_else(String::new, |first| first.message.clone()),
-        }
-    }
-}
-
-impl TestResult {
-    /// Whether the test was evaluated, and no call is wrong.
-    #[must_use]
-    pub fn is_passed(&self) -> bool {
-        let runs = self.runs.as_ref();
-        runs.is_ok_and(|runs| runs.iter().all(|run| run.wrong == 0))
-    }
-
-    /// The fault in one sentence; empty if there is none. A result that is wrong in both number types is that
-    /// of f64.
-    #[must_use]
-    pub fn message(&self) -> String {
-        let runs = match &self.runs {
-            Ok(runs) => runs,
-            Err(error) => return error.message(),
-        };
-        let wrong: Vec<_> = runs.iter().filter(|run| run.wrong > 0).collect();
-        match wrong[..] {
-            [only] if runs.len() > 1 && only.is_single => format!("in float32 only: {}", only.message),
-            [only] if runs.len() > 1 => format!("in double precision only: {}", only.message),
-            [.., run] => run.message.clone(),
-            [] => String::new(),
-        }
-    }
-}
 
 impl FunctionTest {
     /// The record of a shader that does not compile.

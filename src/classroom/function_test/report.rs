@@ -6,7 +6,7 @@ use serde::Serialize;
 use toyproof_diagnostic::{Diagnostic, Files, Json, Span, json};
 use toyproof_report::{TestCase, TestStatus, test_suite};
 
-use super::{Run, TestError, TestResult};
+use super::result::{Run, TestError, TestResult};
 
 /// The results of all shaders of a command.
 #[derive(Debug, Clone, Serialize)]

@@ -5,10 +5,12 @@ use toyproof_glsl::tree::Scalar;
 
 use super::assertion::{Assertion, Comparison, Relation, Set};
 use super::evaluation::{Evaluation, Values};
-use super::source::GeneratedText;
+use super::result::{Run, TestError};
+use super::source::{GeneratedText, Snippet};
+use super::subject::Subject;
+use super::test::{DEFAULT_TOLERANCE, Precision};
 use super::typed::{SampledTest, Typed, side_name};
 use super::value::{Component, agrees, margin, numbers};
-use super::{DEFAULT_TOLERANCE, Precision, Run, Snippet, Subject, TestError};
 
 /// The number of values of variables in intervals; of a single component there is one more, so that the
 /// intervals between them are exact in f32.

@@ -4,7 +4,7 @@
 use toyproof_diagnostic::{Diagnostic, Span};
 use toyproof_stress::function::with_main;
 
-use super::Subject;
+use super::subject::Subject;
 
 /// A part of a text that the author of a test wrote.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,8 +2,17 @@
 
 use std::ops::Range;
 
-use super::Snippet;
-use super::assertion::SyntaxError;
+use toyproof_diagnostic::Span;
+
+use super::source::Snippet;
+
+/// An error in the syntax of a test.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct SyntaxError {
+    pub(super) at: Span,
+    pub(super) message: String,
+    pub(super) help: String,
+}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {

@@ -5,9 +5,10 @@ use toyproof_glsl::tree::{Scalar, StatementKind, Tree, Type};
 use toyproof_glsl::{self as glsl, Checked};
 
 use super::assertion::{Assertion, Comparison, Relation, Set, Side, Variable};
-use super::source::GeneratedText;
+use super::result::TestError;
+use super::source::{GeneratedText, Snippet};
+use super::subject::Subject;
 use super::value::{Component, components};
-use super::{Snippet, Subject, TestError};
 
 /// An assertion about a shader.
 pub(super) struct SampledTest<'a> {

@@ -3,7 +3,7 @@
 use toyproof_diagnostic::Code;
 
 use super::scope::Entity;
-use super::{Checker, Initializer, Size, Specifier, is_desktop_conversion};
+use super::{Checker, Size, Specifier, is_desktop_conversion};
 use crate::keywords::Keyword;
 use crate::reporting::push_limited;
 use crate::token::Symbol;
