@@ -206,7 +206,7 @@ fn shader_of(path: &Path) -> Result<PathBuf, CliError> {
     });
     beside.ok_or_else(|| {
         CliError::new(format_args!(
-            "{} names no shader, and there is none beside it",
+            "{} names no shader, and no shader is beside it",
             path_name(path)
         ))
         .with_help(

@@ -89,19 +89,21 @@ pub(crate) struct Interner {
 impl Default for Interner {
     /// The words of GLSL ES 3.00.
     fn default() -> Self {
-        Self::new(Version::Es300)
+        Self::new(Version::Es300, false)
     }
 }
 
 impl Interner {
     /// The words of a version. Those of desktop GLSL are nearly those of GLSL ES 3.00.
-    pub(crate) fn new(version: Version) -> Self {
+    /// `is_lenient` adds the keywords and types of GLSL ES 3.00 to those of GLSL ES 1.00.
+    pub(crate) fn new(version: Version, is_lenient: bool) -> Self {
         let mut interner = Self {
             symbols: HashMap::new(),
             texts: Vec::new(),
         };
         let lists = |words: &str, word: &str| words.split_whitespace().any(|listed| listed == word);
         let class = |word: &str, class| match version {
+            _ if is_lenient => class,
             Version::Es100 if lists(NOT_IN_ES_100, word) => Word::Name,
             Version::Desktop(_) if version.is_first_generation() && word.starts_with("uvec") => Word::Name,
             Version::Desktop(_) if version.is_first_generation() && matches!(word, "uint" | "case") => {
@@ -125,7 +127,7 @@ impl Interner {
         for (name, ty) in built_in_types() {
             interner.add(&name, class(&name, Word::Type(ty)));
         }
-        let reserved = if version == Version::Es100 {
+        let reserved = if version == Version::Es100 && !is_lenient {
             RESERVED_IN_ES_100
         } else {
             RESERVED

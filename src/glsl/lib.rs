@@ -281,7 +281,7 @@ struct Text {
 fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, PreprocessorOutput) {
     let declared = preprocess::declared_version(files, file);
     let read = |dialect| {
-        let wrapping = Wrapping::new(dialect, declared);
+        let wrapping = Wrapping::new(dialect, declared, options.lenient);
         let text = preprocess::preprocess(files, file, options.stage, wrapping, &options.deadline);
         (wrapping, text)
     };

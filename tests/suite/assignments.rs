@@ -148,7 +148,7 @@ fn the_images_and_the_command_are_those_of_the_wrong_frame() {
     assert_eq!(run.code, 1, "{run:?}");
     assert!(
         run.stdout.contains(
-            "help: toyproof debug hw/mai.glsl --pixel 13,15 --reference task/solution.glsl --size 48x36 --time 2"
+            "help: toyproof debug hw/mai.glsl --pixel 25,8 --reference task/solution.glsl --size 48x36 --time 2"
         ),
         "{run:?}"
     );

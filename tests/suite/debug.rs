@@ -181,7 +181,7 @@ fn a_wrong_value_is_shown_beside_that_of_the_reference_of_an_assignment() {
     assert!(human.contains("pixel (20, 9) of 32×18"), "{human}");
     let wrong = "  wrong value        line 3: `7.0 * uv.x - iTime` is 6.972 at (20, 9)";
     assert!(human.contains(wrong), "{human}");
-    let missing = "from `7.0 * uv.x + iTime` in line 3 of the reference";
+    let missing = "`7.0 * uv.x + iTime` is 8.972 at (20, 9) in line 3 of the reference";
     assert!(human.contains(missing), "{human}");
     let json: Value = serde_json::from_str(&debug(&["--format", "json"])).unwrap();
     let value = json["departure"]["missing"]["value"][0].as_f64().unwrap();

@@ -66,7 +66,10 @@ fn diagnostics_of(example: &Example) -> (Vec<Diagnostic>, Files) {
     let mut files = Files::default();
     match example.language {
         "glsl" => {
-            let rest = if example.text.contains("mainImage") {
+            let rest = if ["mainImage", "void main("]
+                .iter()
+                .any(|name| example.text.contains(name))
+            {
                 ""
             } else {
                 MAIN_IMAGE

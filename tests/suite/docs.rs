@@ -132,6 +132,10 @@ fn tutorial_files(folder: &Path) {
         ("mine.glsl", block(student, "float intersect(")),
         ("far.toml", block(student, "screen_distance")),
         ("disk.glsl", block("docs/guide/function-tests.md", "@test disk")),
+        (
+            "waves.frag",
+            block("docs/guide/dialects.md", "uniform float speed"),
+        ),
         ("additions.toml", block(lecturer, "[rules]")),
         ("download/Anna Smith_1_assignsubmission_file/torus.glsl", half),
         ("download/Bo Lee_2_assignsubmission_file/my torus.glsl", large),

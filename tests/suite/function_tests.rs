@@ -255,7 +255,7 @@ fn a_shader_without_tests_and_one_that_does_not_compile_are_reported() {
     assert!(invalid.stderr.contains("invalid.glsl:2:"), "{invalid:?}");
     let alone = test(folder.path(), &["alone.test.toml"]);
     assert_eq!(alone.code, 2, "{alone:?}");
-    let expected = "error: alone.test.toml names no shader, and there is none beside it\nhelp: add `shader";
+    let expected = "error: alone.test.toml names no shader, and no shader is beside it\nhelp: add `shader";
     assert!(alone.stderr.starts_with(expected), "{alone:?}");
     let missing = test(folder.path(), &["missing.glsl"]);
     assert_eq!(missing.code, 2, "{missing:?}");

@@ -215,7 +215,8 @@ macro_rules! files {
     /// ```toml test
     /// [[function]]
     /// name = "disk"
-    /// test = "disk(vec2(0.0)) == -1.0"
+    /// tests = ["disk(vec2(0.0)) == -1.0"]
+    /// tolerence = 1e-3
     /// ```
     ///
     /// Right:
@@ -224,6 +225,7 @@ macro_rules! files {
     /// [[function]]
     /// name = "disk"
     /// tests = ["disk(vec2(0.0)) == -1.0"]
+    /// tolerance = 1e-3
     /// ```
     TestSyntax "E0511" "A test of a function with a syntax error",
 

@@ -220,7 +220,7 @@ macro_rules! rules {
 
     /// A page with WebGL compiles a shader without `#version` as GLSL ES 1.00, which has no operators on bits,
     /// no remainder `%`, no suffixes of numbers, and no arrays as values. Begin the shader with
-    /// `#version 300 es`, for which the page must use WebGL 2, or do without: `mod` on floats for `%`.
+    /// `#version 300 es`, for which the page must use WebGL 2, or write it otherwise: `mod` on floats for `%`.
     ///
     /// Wrong:
     ///

@@ -9,9 +9,9 @@ use crate::tree::{BinaryOp, BuiltIn, ExprId, Place, Scalar, Type, UnaryOp};
 impl Checker<'_> {
     /// Reports that GLSL ES 1.00 has no such feature.
     fn check_not_es_100(&mut self, has_feature: bool, feature: &str, at: Place) {
-        if has_feature && self.language.version == Version::Es100 {
+        if has_feature && !self.language.is_lenient && self.language.version == Version::Es100 {
             let message = format!("{feature} is not in GLSL ES 1.00");
-            let help = "begin the shader with `#version 300 es`, or do without";
+            let help = "begin the shader with `#version 300 es`, or write it otherwise";
             self.report(Code::NotInVersion.at(at, message).help(help));
         }
     }
@@ -25,13 +25,13 @@ impl Checker<'_> {
 
     /// Reports that a version of the first generation has no such feature.
     fn check_second_generation(&mut self, has_feature: bool, feature: &str, at: Place) {
-        if has_feature && self.language.version.is_first_generation() {
+        if has_feature && !self.language.is_lenient && self.language.version.is_first_generation() {
             let needed = match self.language.version {
                 Version::Es100 => "300 es",
                 _ => "130",
             };
             let message = format!("{feature} is not in {}", self.language.version.name());
-            let help = format!("begin the shader with `#version {needed}`, or do without");
+            let help = format!("begin the shader with `#version {needed}`, or write it otherwise");
             self.report(Code::NotInVersion.at(at, message).help(help));
         }
     }

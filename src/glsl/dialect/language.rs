@@ -130,7 +130,8 @@ impl Version {
     }
 
     /// Whether it is of the first generation, whose integers only count: they have no bits, and no functions.
-    pub(crate) fn is_first_generation(self) -> bool {
+    #[must_use]
+    pub fn is_first_generation(self) -> bool {
         match self {
             Self::Es100 => true,
             Self::Desktop(number) => number < STAGE_IO,
@@ -229,7 +230,7 @@ impl Language {
 
     /// Whether it has a built-in function.
     pub(crate) fn has(self, function: BuiltIn) -> bool {
-        if !self.version.is_first_generation() {
+        if self.is_lenient || !self.version.is_first_generation() {
             return true;
         }
         let is_of_desktop = self.version.is_desktop_since(IMPLICIT_CONVERSIONS)

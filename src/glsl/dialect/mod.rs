@@ -15,16 +15,22 @@ pub use self::language::Version;
 pub(crate) struct Wrapping {
     pub(crate) dialect: Dialect,
     pub(crate) version: Version,
+    /// Whether the words of GLSL ES 3.00 are accepted in GLSL ES 1.00, too.
+    pub(crate) is_lenient: bool,
 }
 
 impl Wrapping {
     /// `declared` is the version in the text. Without one, a page with WebGL compiles GLSL ES 1.00.
-    pub(crate) fn new(dialect: Dialect, declared: Option<Version>) -> Self {
+    pub(crate) fn new(dialect: Dialect, declared: Option<Version>, is_lenient: bool) -> Self {
         let version = if dialect.calls_main_image() {
             Version::Es300
         } else {
             declared.unwrap_or(Version::Es100)
         };
-        Self { dialect, version }
+        Self {
+            dialect,
+            version,
+            is_lenient,
+        }
     }
 }

@@ -59,7 +59,7 @@ impl Macro {
     pub(super) fn predefined(
         file: FileId,
         stage: Stage,
-        Wrapping { dialect, version }: Wrapping,
+        Wrapping { dialect, version, .. }: Wrapping,
         interner: &mut Interner,
     ) -> HashMap<Symbol, Self> {
         let at = Place::plain(Span::new(file, 0, 0));

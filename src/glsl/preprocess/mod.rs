@@ -265,7 +265,7 @@ struct Preprocessor<'a> {
 
 impl<'a> Preprocessor<'a> {
     fn new(files: &'a Files, file: FileId, stage: Stage, wrapping: Wrapping) -> Self {
-        let mut interner = Interner::new(wrapping.version);
+        let mut interner = Interner::new(wrapping.version, wrapping.is_lenient);
         let macros = Macro::predefined(file, stage, wrapping, &mut interner);
         let text = files.get(file).text();
         Self {

@@ -11,7 +11,7 @@ fn expand(text: &str) -> String {
         &files,
         file,
         Stage::Image,
-        Wrapping::new(Dialect::ShaderToy, None),
+        Wrapping::new(Dialect::ShaderToy, None, false),
         &Deadline::default(),
     );
     if let Some(first) = result.diagnostics.first() {
@@ -96,7 +96,7 @@ fn messages_on_parameter_lists() {
             &files,
             file,
             Stage::Image,
-            Wrapping::new(Dialect::ShaderToy, None),
+            Wrapping::new(Dialect::ShaderToy, None, false),
             &Deadline::default(),
         );
         assert_eq!(result.diagnostics[0].message, wanted, "{text}");
@@ -201,7 +201,7 @@ fn tokens_keep_their_use_and_spelling() {
         &files,
         file,
         Stage::Image,
-        Wrapping::new(Dialect::ShaderToy, None),
+        Wrapping::new(Dialect::ShaderToy, None, false),
         &Deadline::default(),
     );
     let reported: Vec<_> = result.tokens[..7]

@@ -245,7 +245,7 @@ fn every_stage_stops_at_its_deadline() {
 
     let mut files = Files::default();
     let file = files.add(File::new("a", text.as_str()));
-    let wrapping = Wrapping::new(Dialect::ShaderToy, None);
+    let wrapping = Wrapping::new(Dialect::ShaderToy, None, false);
     let whole = preprocess::preprocess(&files, file, Stage::Image, wrapping, &in_time.deadline);
     let begun = preprocess::preprocess(&files, file, Stage::Image, wrapping, &over);
     assert!(begun.tokens.len() < whole.tokens.len());

@@ -1,5 +1,5 @@
 //! `CodeRunner`, a type of questions of Moodle:
-//! <https://github.com/trampgeek/moodle-qtype_coderunner/blob/master/docs/index.md#combinator-template-grading>
+//! <https://coderunner.org.nz/> (documentation, section “Combinator-template grading”)
 
 use std::io::{self, Write};
 

@@ -1,6 +1,6 @@
 //! Sample records for the tests of the formats.
 
-use toyproof_diagnostic::{self as diagnostic, File, Files, Severity};
+use toyproof_diagnostic::{self as diagnostic, Code, File, Files, Severity};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::CheckSummary;
 
@@ -46,7 +46,7 @@ pub(crate) fn invalid() -> Record {
     let mut record = record(Verdict::Invalid);
     record.diagnostics.push(diagnostic::Json {
         severity: Severity::Error,
-        code: "E0301".to_owned(),
+        code: Code::Mismatch.to_string(),
         message: "unknown name".to_owned(),
         file: Some("a.glsl".to_owned()),
         line: Some(2),
