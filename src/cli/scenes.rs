@@ -130,7 +130,7 @@ static COURSE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
 /// The scenes of the course by their names, in order.
 fn course_scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
     // The other TOML files are those of projects, in folders, and the tests of functions.
-    let is_scene = |stem: &&str| !stem.contains('/') && !stem.ends_with(".test");
+    let is_scene = |stem: &&str| !stem.contains('/') && stem.strip_suffix(".test").is_none();
     course_files().filter_map(move |(name, text)| {
         let stem = name.strip_suffix(".toml").filter(is_scene)?;
         Some((stem, text))

@@ -139,7 +139,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
 /// The shaders that the arguments name, with their tests.
 fn tasks(args: &Args, terminal: &Terminal) -> Result<Vec<Task>, CliError> {
     let is_toml = |path: &&PathBuf| {
-        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        let extension = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
         extension.is_some_and(|extension| extension == "toml") && !path.is_dir()
     };
     let (test_files, shaders): (Vec<_>, Vec<_>) = args.inputs.iter().partition(is_toml);

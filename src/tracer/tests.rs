@@ -163,7 +163,7 @@ fn exercise(name: &str, size: [u32; 2]) -> Scene {
     let is_match = |path: &PathBuf| {
         let stem = path.file_stem().unwrap().to_str().unwrap();
         stem.starts_with(name)
-            && !stem.ends_with(".test")
+            && stem.strip_suffix(".test").is_none()
             && path.extension().is_some_and(|extension| extension == "toml")
     };
     let mut paths = fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../glsl"))

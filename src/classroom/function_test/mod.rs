@@ -33,7 +33,7 @@
 //! - `evaluation`: evaluates a generated `mainImage` after the shader; `source`: maps its places to those of
 //!   the author.
 //! - `value`: values of any type as components, and how they are compared.
-//! - `report`: the results as JSON and JUnit.
+//! - `report`: the results as JSON and `JUnit`.
 
 mod assertion;
 mod comment;

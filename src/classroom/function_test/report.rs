@@ -1,4 +1,4 @@
-//! The results of tests as JSON and JUnit.
+//! The results of tests as JSON and `JUnit`.
 
 use std::io::{self, Write};
 
@@ -221,7 +221,7 @@ impl TestReport {
         out.write_all(b"\n")
     }
 
-    /// Writes the report as JUnit: a test case for each test.
+    /// Writes the report as `JUnit`: a test case for each test.
     ///
     /// # Errors
     /// The output cannot be written.

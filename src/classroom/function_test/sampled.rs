@@ -97,7 +97,7 @@ impl SampledTest<'_> {
                 "the lists of values have {} combinations; a test has at most {limit}",
                 grouped(combinations as u64)
             );
-            return Err(self.error(self.assertion.at(), message, "write several tests"));
+            return Err(Self::error(self.assertion.at(), message, "write several tests"));
         }
         Ok(Sampling {
             combinations,
@@ -198,7 +198,8 @@ impl SampledTest<'_> {
             let is_wrong = |pair: &[Sample]| {
                 let (before, after) = (pair[0].left[0], pair[1].left[0]);
                 let fall = if rises { before - after } else { after - before };
-                !(fall <= margin(before, tolerance))
+                // NaN neither rises nor falls.
+                fall.is_nan() || fall > margin(before, tolerance)
             };
             let pairs = cases.windows(2).enumerate();
             pairs
@@ -220,7 +221,7 @@ impl SampledTest<'_> {
             };
             if wrong.len() > 1 {
                 let (wrong, all) = (grouped(wrong.len() as u64), grouped(cases.len() as u64));
-                message += &format!(" (wrong for {wrong} of {all} values)");
+                message = format!("{message} (wrong for {wrong} of {all} values)");
             }
             message
         });

@@ -30,7 +30,7 @@ pub(super) struct Typed {
 }
 
 impl SampledTest<'_> {
-    pub(super) fn error(&self, at: Span, message: impl Into<String>, help: &str) -> TestError {
+    pub(super) fn error(at: Span, message: impl Into<String>, help: &str) -> TestError {
         TestError::Test(vec![Diagnostic::new(Code::TestValue, message).at(at).help(help)])
     }
 
@@ -100,7 +100,7 @@ impl SampledTest<'_> {
         let mut of_ends = of_ends.iter().copied();
         let mut variables = Vec::new();
         for (index, variable) in assertion.variables.iter().enumerate() {
-            variables.push(self.variable(&checked, index, variable, &mut of_ends)?);
+            variables.push(Self::variable(&checked, index, variable, &mut of_ends)?);
         }
         let tree = &checked.tree;
         let others = self.others();
@@ -125,12 +125,12 @@ impl SampledTest<'_> {
                     format!("a value of type `{name}` cannot be compared")
                 };
                 let help = "compare numbers, vectors, matrices, structures or arrays of up to 256 elements";
-                return Err(self.error(snippet.at(), message, help));
+                return Err(Self::error(snippet.at(), message, help));
             };
             sides.push((found, if is_length { Type::FLOAT } else { ty }));
         }
         if sides.len() != 1 + others.len() {
-            return Err(self.error(assertion.at(), "the test cannot be checked", ""));
+            return Err(Self::error(assertion.at(), "the test cannot be checked", ""));
         }
         self.check_sides(tree, &sides)?;
         let (mut sides, types): (Vec<_>, Vec<_>) = sides.into_iter().unzip();
@@ -177,7 +177,6 @@ impl SampledTest<'_> {
 
     /// The components of a variable, whose values must be of its type.
     fn variable(
-        &self,
         checked: &Checked,
         index: usize,
         variable: &Variable,
@@ -208,7 +207,7 @@ impl SampledTest<'_> {
             _ => false,
         };
         if is_interval && !is_numeric {
-            return Err(self.error(
+            return Err(Self::error(
                 variable.name.at(),
                 format!("`{name}` of type `{type_name}` has no interval"),
                 "list its values: `for ray in {Ray(vec3(0.0), vec3(0.0, 0.0, -1.0))}`; the type is that of \
@@ -220,7 +219,7 @@ impl SampledTest<'_> {
             let is_scalar = matches!(found, Type::Scalar(scalar) if scalar != Scalar::Bool);
             let converts = is_scalar && is_numeric && (is_interval || matches!(ty, Type::Scalar(_)));
             if found != ty && !converts {
-                return Err(self.error(
+                return Err(Self::error(
                     value.at(),
                     format!(
                         "`{name}` is of type `{type_name}`, and this value of type `{}`",
@@ -232,7 +231,7 @@ impl SampledTest<'_> {
             }
         }
         components(tree, ty, name)
-            .ok_or_else(|| self.error(variable.name.at(), format!("`{name}` has no values"), ""))
+            .ok_or_else(|| Self::error(variable.name.at(), format!("`{name}` has no values"), ""))
     }
 
     /// Checks that the sides can be compared.
@@ -245,7 +244,7 @@ impl SampledTest<'_> {
         let is_ordered = |ty: Type| is_vector(ty) && ty.scalar() != Some(Scalar::Bool);
         match &assertion.relation {
             Relation::Holds if *left_type != Type::BOOL => {
-                return Err(self.error(
+                return Err(Self::error(
                     left_at,
                     format!("the test compares nothing: its expression is of type `{left_name}`"),
                     "add a comparison, such as `== 2.0`",
@@ -253,7 +252,7 @@ impl SampledTest<'_> {
             }
             Relation::Increases | Relation::Decreases if left.len() != 1 || !is_ordered(*left_type) => {
                 let message = format!("only a number is increasing or decreasing, found `{left_name}`");
-                return Err(self.error(
+                return Err(Self::error(
                     left_at,
                     message,
                     "test each component: `f(x).x is increasing for …`",
@@ -262,7 +261,7 @@ impl SampledTest<'_> {
             Relation::Compare(Comparison::Equal | Comparison::Unequal, _) | Relation::Holds => {}
             _ if !is_ordered(*left_type) => {
                 let message = format!("values of type `{left_name}` have no order");
-                return Err(self.error(left_at, message, "compare numbers or vectors"));
+                return Err(Self::error(left_at, message, "compare numbers or vectors"));
             }
             _ => {}
         }
@@ -280,7 +279,7 @@ impl SampledTest<'_> {
             };
             let left_text = &assertion.left.expression;
             if ty != left_type && !fits(*ty, other, *left_type) && !fits(*left_type, left_text, *ty) {
-                return Err(self.error(
+                return Err(Self::error(
                     other.at(),
                     format!(
                         "a value of type `{left_name}` is compared with one of type `{}`",

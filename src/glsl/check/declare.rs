@@ -314,14 +314,13 @@ impl Checker<'_> {
             None if global => VariableKind::Global,
             None => VariableKind::Local,
             Some((Storage::Uniform, _)) if global => VariableKind::Uniform,
-            Some((Storage::Varying, _)) if global => VariableKind::Varying,
             Some((Storage::In | Storage::Out, at)) if global && !self.language.version.has_stage_io() => {
                 let message = "in GLSL ES 1.00, only a parameter can be `in` or `out`";
                 let help = "write `varying` for an input, and `gl_FragColor` for the color; or begin with `#version 300 es`";
                 self.report(Code::BadQualifier.at(at, message).help(help));
                 VariableKind::Global
             }
-            Some((Storage::In, _)) if global => VariableKind::Varying,
+            Some((Storage::In | Storage::Varying, _)) if global => VariableKind::Varying,
             Some((Storage::Out, _)) if global => VariableKind::Output,
             Some((storage, at)) => {
                 let message = match storage {
