@@ -1,7 +1,7 @@
 //! Grading platforms: the files that each runs for a submission, and the results that it reads.
 //!
 //! A platform is one file, with its row of [`PLATFORMS`]. They share the rest: `grade.sh` collects a
-//! submission and checks it with `--autograder`, and a [`Graded`] has the marks of its shaders.
+//! submission and checks it with `--autograder`, and a `Graded` has the marks of its shaders.
 
 mod autolab;
 mod classroom50;
