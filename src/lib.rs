@@ -39,7 +39,7 @@
 //! | `stress` | numerical stability of ray–surface intersection, and tests of an author's own function |
 //! | `lab` | measurements of accuracy against time, and charts |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
-//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, autograders; with `classroom`, assignments and tests of functions |
+//! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, autograders; with `classroom`, assignments |
 //! | `cli` | the command line |
 //!
 //! # Example

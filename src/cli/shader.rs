@@ -5,8 +5,9 @@ use std::fmt;
 use std::path::{Component, Path, PathBuf};
 
 use toyproof_diagnostic::{
-    Deadline, Diagnostic, Diagnostics, FileId, Files, Severity, grouped, path_name, plural,
+    Code, Deadline, Diagnostic, Diagnostics, FileId, Files, Severity, grouped, nearest, path_name, plural,
 };
+use toyproof_glsl::tree::VariableKind;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
 use toyproof_project::CompiledProject;
@@ -36,6 +37,34 @@ pub(super) struct Shader {
 pub(super) enum Content {
     Shader(Box<Checked>),
     Project(CompiledProject),
+}
+
+impl Content {
+    /// The trees of all passes.
+    fn trees(&self) -> Vec<&Checked> {
+        match self {
+            Self::Shader(checked) => vec![checked.as_ref()],
+            Self::Project(project) => project.checked.iter().collect(),
+        }
+    }
+}
+
+/// The warnings about values of uniforms that no pass declares.
+fn undeclared_uniforms(trees: &[&Checked], options: &glsl::Options) -> Vec<Diagnostic> {
+    let variables = || trees.iter().flat_map(|checked| checked.tree.variables.iter());
+    let uniforms = || variables().filter(|(_, variable)| variable.kind == VariableKind::Uniform);
+    let names = || uniforms().map(|(_, variable)| variable.name.as_str());
+    let undeclared = options.uniforms.iter().map(|value| value.name.as_str());
+    let undeclared = undeclared.filter(|&name| names().all(|declared| declared != name));
+    let warnings = undeclared.map(|name| {
+        let message = format!("the shader declares no uniform `{name}`, whose value is given");
+        let warning = Diagnostic::new(Code::UndeclaredUniform, message);
+        match nearest(name, names()) {
+            Some(near) => warning.help(format!("did you mean `{near}`?")),
+            None => warning,
+        }
+    });
+    warnings.collect()
 }
 
 /// Why a shader cannot be used.
@@ -99,6 +128,11 @@ impl Shader {
             Ok(found) => {
                 let options = language.options(deadline);
                 let content = read(found, &mut files, &mut lints, &mut has_passes, &options);
+                if let Ok(content) = &content {
+                    lints
+                        .warnings
+                        .extend(undeclared_uniforms(&content.trees(), &options));
+                }
                 let denied = denied(&mut lints.warnings, language.denied());
                 let content = match content {
                     Ok(_) if !denied.is_empty() => Err(Unusable::Invalid(denied)),
@@ -170,11 +204,7 @@ impl Shader {
 
     /// The trees of all passes; empty for a shader that cannot be used.
     pub(super) fn trees(&self) -> Vec<&Checked> {
-        match &self.content {
-            Ok(Content::Shader(checked)) => vec![checked.as_ref()],
-            Ok(Content::Project(project)) => project.checked.iter().collect(),
-            Err(_) => Vec::new(),
-        }
+        self.content.as_ref().map_or_else(|_| Vec::new(), Content::trees)
     }
 
     /// The shader's source text.

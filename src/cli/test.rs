@@ -1,12 +1,13 @@
 //! `toyproof test`: tests of single functions.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::ValueEnum;
 use toyproof_classroom::function_test::{
-    FunctionTest, Precision, SUFFIX, ShaderTests, Subject, TestFile, TestRecord, TestReport, comment_tests,
-    is_test_file,
+    FunctionTest, Precision, SUFFIX, ShaderTests, Subject, TestError, TestFile, TestRecord, TestReport,
+    comment_tests, is_test_file,
 };
 use toyproof_diagnostic::{Deadline, File, Files, grouped, path_name, plural};
 use toyproof_image::output;
@@ -139,7 +140,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
 /// The shaders that the arguments name, with their tests.
 fn tasks(args: &Args, terminal: &Terminal) -> Result<Vec<Task>, CliError> {
     let is_toml = |path: &&PathBuf| {
-        let extension = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+        let extension = path.extension().map(OsStr::to_ascii_lowercase);
         extension.is_some_and(|extension| extension == "toml") && !path.is_dir()
     };
     let (test_files, shaders): (Vec<_>, Vec<_>) = args.inputs.iter().partition(is_toml);
@@ -196,10 +197,8 @@ fn shader_of(path: &Path) -> Result<PathBuf, CliError> {
     let stem = stem.filter(|_| is_test_file(path));
     let beside = stem.and_then(|stem| {
         let project = folder(path).join(stem);
-        let shaders = ["glsl", "frag", "fs", "shadertoy", "json"];
-        let mut shaders = shaders
-            .map(|extension| folder(path).join(format!("{stem}.{extension}")))
-            .into_iter();
+        let extensions = files::EXTENSIONS.into_iter().chain(["json"]);
+        let mut shaders = extensions.map(|extension| folder(path).join(format!("{stem}.{extension}")));
         shaders
             .find(|path| path.is_file())
             .or_else(|| files::is_project(&project).then_some(project))
@@ -267,7 +266,7 @@ impl Args {
         for test in &tests {
             for result in test.results(&subject, self.precision.into()) {
                 records.push(TestRecord::new(&test.name, &result, &shader.files));
-                if let Err(toyproof_classroom::function_test::TestError::Test(errors)) = &result.runs {
+                if let Err(TestError::Test(errors)) = &result.runs {
                     terminal.diagnostics(errors, &shader.files);
                 }
             }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::dialect::Version;
+use crate::dialect::{Language, Version};
 use crate::token::{Symbol, named};
 use crate::tree::{Sampler, SamplerShape, Scalar, Type};
 
@@ -89,14 +89,17 @@ pub(crate) struct Interner {
 impl Default for Interner {
     /// The words of GLSL ES 3.00.
     fn default() -> Self {
-        Self::new(Version::Es300, false)
+        Self::new(Language {
+            version: Version::Es300,
+            is_lenient: false,
+        })
     }
 }
 
 impl Interner {
     /// The words of a version. Those of desktop GLSL are nearly those of GLSL ES 3.00.
-    /// `is_lenient` adds the keywords and types of GLSL ES 3.00 to those of GLSL ES 1.00.
-    pub(crate) fn new(version: Version, is_lenient: bool) -> Self {
+    /// If lenient, GLSL ES 1.00 has the keywords and types of GLSL ES 3.00, too.
+    pub(crate) fn new(Language { version, is_lenient }: Language) -> Self {
         let mut interner = Self {
             symbols: HashMap::new(),
             texts: Vec::new(),
@@ -105,11 +108,15 @@ impl Interner {
         let class = |word: &str, class| match version {
             _ if is_lenient => class,
             Version::Es100 if lists(NOT_IN_ES_100, word) => Word::Name,
-            Version::Desktop(_) if version.is_first_generation() && word.starts_with("uvec") => Word::Name,
-            Version::Desktop(_) if version.is_first_generation() && matches!(word, "uint" | "case") => {
+            Version::Desktop(_) if !version.has_integer_operations() && word.starts_with("uvec") => {
                 Word::Name
             }
-            Version::Desktop(_) if version.is_first_generation() && matches!(word, "switch" | "default") => {
+            Version::Desktop(_) if !version.has_integer_operations() && matches!(word, "uint" | "case") => {
+                Word::Name
+            }
+            Version::Desktop(_)
+                if !version.has_integer_operations() && matches!(word, "switch" | "default") =>
+            {
                 Word::Reserved
             }
             Version::Es100 if lists(RESERVED_IN_ES_100, word) => Word::Reserved,

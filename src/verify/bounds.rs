@@ -15,7 +15,7 @@ const ITERATION_FACTOR: u32 = 8;
 pub const MIN_IMAGE_ITERATIONS: u32 = 1 << 17;
 
 /// The number of loop iterations after which a pixel of a mutant, of a variant of a reference or of a shader
-/// with other random numbers is given up: so many take seconds.
+/// with other random numbers is not evaluated further: so many take seconds.
 pub const MAX_ITERATIONS: u32 = 1 << 22;
 
 /// The number of loop iterations after which a pixel is not traced: recording its values takes seconds.

@@ -132,6 +132,21 @@ fn a_uniform_without_a_value_and_another_dialect_are_reported() {
         malformed.code == 2 && malformed.stderr.contains("such as color=1,0,0.5"),
         "{malformed:?}"
     );
+    let misspelled = in_folder(&[
+        "check",
+        "book.frag",
+        "--uniform",
+        "sped=2",
+        "--size",
+        "8x8",
+        "--device",
+        "cpu",
+    ]);
+    let warning = "the shader declares no uniform `sped`, whose value is given";
+    assert!(
+        misspelled.stderr.contains(warning) && misspelled.stderr.contains("did you mean `speed`?"),
+        "{misspelled:?}"
+    );
     let verbose = in_folder(&["check", "desktop.frag", "--size", "8x8", "--device", "cpu", "-v"]);
     assert!(
         verbose.stdout.contains("dialect: WebGL, GLSL 3.30"),

@@ -10,7 +10,7 @@ use toyproof_toml::{Format, Located, Table};
 use toyproof_verify::{Difference, UnknownDifference};
 
 use super::{Assignment, MAX_FRAMES, Reference, Rules};
-use crate::function_test::{FunctionTest, function, is_identifier, reject_second};
+use crate::function_test::{FunctionTest, function_tests, is_identifier};
 
 static FORMAT: Format = Format {
     form_code: Code::AssignmentSyntax,
@@ -52,14 +52,7 @@ impl Assignment {
             }
             let rubric = document.table("rubric", Rubric::read);
             let rules = document.table("rules", rules);
-            let mut functions: Vec<FunctionTest> = Vec::new();
-            document.tables("function", |table| {
-                let test = function(table);
-                if functions.iter().any(|other| other.name == test.name) && table.is_valid() {
-                    reject_second(table, &test.name);
-                }
-                functions.push(test);
-            });
+            let functions = function_tests(document);
             document.reject_key(
                 "deadline",
                 "a deadline belongs to a class, not to an assignment",

@@ -56,14 +56,7 @@ impl TestFile {
                 }
                 path
             });
-            let mut functions: Vec<FunctionTest> = Vec::new();
-            document.tables("function", |table| {
-                let test = function(table);
-                if functions.iter().any(|other| other.name == test.name) && table.is_valid() {
-                    reject_second(table, &test.name);
-                }
-                functions.push(test);
-            });
+            let functions = function_tests(document);
             document.report_unknown_keys();
             if functions.is_empty() && document.is_valid() {
                 document.reject(
@@ -77,16 +70,24 @@ impl TestFile {
     }
 }
 
-/// Reports that there is already a table for a function.
-pub(crate) fn reject_second(table: &Table, name: &str) {
-    let message = format!("there are two tests of `{name}`");
-    table.reject(table.span(), message, "move its cases to the first test");
+/// Reads the tables of functions, one for each.
+pub(crate) fn function_tests(document: &mut Table) -> Vec<FunctionTest> {
+    let mut functions: Vec<FunctionTest> = Vec::new();
+    document.tables("function", |table| {
+        let test = function(table);
+        if functions.iter().any(|other| other.name == test.name) && table.is_valid() {
+            let message = format!("there are two tests of `{}`", test.name);
+            table.reject(table.span(), message, "move its cases to the first test");
+        }
+        functions.push(test);
+    });
+    functions
 }
 
 const EXAMPLE_CASE: &str = "arguments = [[0.0, 0.0, 4.0], 1.5]";
 
 /// Reads the table of a function.
-pub(crate) fn function(table: &mut Table) -> FunctionTest {
+fn function(table: &mut Table) -> FunctionTest {
     let name = table.required::<String>("name");
     if let Some(name) = &name
         && !is_identifier(&name.value)

@@ -56,7 +56,7 @@ use toyproof_stress::function::{RoleMap, Signature, test_typical};
 pub use self::assertion::Assertion;
 pub use self::comment::comment_tests;
 pub use self::file::{SUFFIX, TestFile, is_test_file};
-pub(crate) use self::file::{function, is_identifier, reject_second};
+pub(crate) use self::file::{function_tests, is_identifier};
 pub(crate) use self::listed::Call;
 pub use self::report::{RunRecord, ShaderTests, TestRecord, TestReport};
 pub use self::result::{Run, TestError, TestResult};

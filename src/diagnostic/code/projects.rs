@@ -311,5 +311,9 @@ macro_rules! projects {
     /// }
     /// ```
     BeyondAppendixA "W0031" "A loop or an index that WebGL 1 refuses",
+
+    /// `--uniform NAME=VALUE` sets a uniform that the shader declares, such as `uniform float speed;`. The
+    /// shader declares no uniform of this name, so the value has no effect: the name may be misspelled.
+    UndeclaredUniform "W0032" "A value of a uniform that the shader does not declare",
     } };
 }

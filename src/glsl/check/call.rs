@@ -454,7 +454,7 @@ impl Checker<'_> {
         self.push_constructor(Constructor::Array, ty, arguments, at)
     }
 
-    fn push_constructor(
+    pub(super) fn push_constructor(
         &mut self,
         constructor: Constructor,
         ty: Type,

@@ -1,5 +1,7 @@
 //! What a host adds to a shader: the values of the inputs that it sets, and the call of `main`.
 
+use std::ops::RangeInclusive;
+
 use toyproof_diagnostic::{Code, plural};
 
 use super::{Checker, Entity};
@@ -20,6 +22,16 @@ const MAX_DRAW_BUFFERS: u32 = 4;
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC3: Type = Type::Vector(Scalar::Float, 3);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
+
+/// The values of a scalar that are integers; `None` for floats.
+fn scalar_range(scalar: Scalar) -> Option<RangeInclusive<f64>> {
+    match scalar {
+        Scalar::Bool => Some(0.0..=1.0),
+        Scalar::Int => Some(f64::from(i32::MIN)..=f64::from(i32::MAX)),
+        Scalar::Uint => Some(0.0..=f64::from(u32::MAX)),
+        Scalar::Float => None,
+    }
+}
 
 impl Checker<'_> {
     /// Declares `gl_FragColor` and `gl_FragData`, where the text uses them.
@@ -88,17 +100,31 @@ impl Checker<'_> {
         };
         let (ty, at) = (*ty, *at);
         let components = ty.component_count().map_or(0, usize::from);
-        if components == given.components.len() {
-            self.bound
-                .insert(variable, Bound::Value(ty, given.components.clone()));
-        } else if let Some(at) = at {
-            let count = given.components.len();
-            let message = format!(
-                "the value of the uniform `{name}` has {count} {}, but it is {}",
-                plural(count as u64, "component", "components"),
-                self.quoted_type(ty)
-            );
-            self.error(Code::BadType, at, message);
+        let count = given.components.len();
+        let problem = if components != count {
+            Some(format!(
+                "has {count} {}",
+                plural(count as u64, "component", "components")
+            ))
+        } else {
+            let range = scalar_range(ty.scalar().unwrap_or(Scalar::Float));
+            let fits = |component: &f64| match &range {
+                Some(range) => range.contains(component) && component.fract() == 0.0,
+                None => true,
+            };
+            let other = given.components.iter().find(|component| !fits(component));
+            other.map(|component| format!("has the component {component}"))
+        };
+        match (problem, at) {
+            (Some(problem), Some(at)) => {
+                let ty = self.quoted_type(ty);
+                let message = format!("the value of the uniform `{name}` {problem}, but it is {ty}");
+                self.error(Code::BadType, at, message);
+            }
+            _ => {
+                let value = Bound::Value(ty, given.components.clone());
+                self.bound.insert(variable, value);
+            }
         }
         true
     }
@@ -152,8 +178,8 @@ impl Checker<'_> {
                 let literals: Vec<ExprId> = literals.collect();
                 match (ty, &literals[..]) {
                     (Type::Scalar(_), &[only]) => only,
-                    (Type::Matrix { .. }, _) => self.constructed(Constructor::Matrix, literals, ty, at),
-                    _ => self.constructed(Constructor::Vector, literals, ty, at),
+                    (Type::Matrix { .. }, _) => self.push_constructor(Constructor::Matrix, ty, literals, at),
+                    _ => self.vector(literals, ty, at),
                 }
             }
         }
@@ -169,17 +195,7 @@ impl Checker<'_> {
             }
             InputValue::Float(input) => {
                 let integer = self.input(VariableKind::Input(input), at);
-                let constructor = Constructor::Scalar;
-                let arguments = vec![integer];
-                self.push(
-                    ExprKind::Construct {
-                        constructor,
-                        arguments,
-                    },
-                    Type::FLOAT,
-                    false,
-                    at,
-                )
+                self.push_constructor(Constructor::Scalar, Type::FLOAT, vec![integer], at)
             }
             InputValue::Mouse => {
                 let mouse = self.host_input(InputValue::First(Input::Mouse, 2), at);
@@ -201,7 +217,7 @@ impl Checker<'_> {
                 let centered = self.operation(BinaryOp::Subtract, quad, half, VEC2, at);
                 let [width, height] = [0, 1].map(|component| {
                     let resolution = self.input(VariableKind::Input(Input::Resolution), at);
-                    self.component(resolution, component, at)
+                    self.components(resolution, &[component], at)
                 });
                 let aspect = self.operation(BinaryOp::Divide, width, height, Type::FLOAT, at);
                 let one = self.number(1.0, at);
@@ -226,16 +242,15 @@ impl Checker<'_> {
         }
     }
 
+    /// The first components of a vector.
     fn first(&mut self, vector: ExprId, size: u8, at: Place) -> ExprId {
-        let components: Vec<u8> = (0..size).collect();
-        let components = Swizzle::new(&components).expect("at most four components");
-        let kind = ExprKind::Swizzle { vector, components };
-        self.push(kind, Type::vector(Scalar::Float, size), false, at)
+        self.components(vector, &[0, 1, 2, 3][..usize::from(size)], at)
     }
 
-    fn component(&mut self, vector: ExprId, component: u8, at: Place) -> ExprId {
-        let components = Swizzle::new(&[component]).expect("one component");
-        self.push(ExprKind::Swizzle { vector, components }, Type::FLOAT, false, at)
+    fn components(&mut self, vector: ExprId, components: &[u8], at: Place) -> ExprId {
+        let components = Swizzle::new(components).expect("the table names one to four components");
+        let ty = Type::vector(Scalar::Float, components.size());
+        self.push(ExprKind::Swizzle { vector, components }, ty, false, at)
     }
 
     fn over_resolution(&mut self, left: ExprId, at: Place) -> ExprId {
@@ -273,22 +288,7 @@ impl Checker<'_> {
     }
 
     fn vector(&mut self, arguments: Vec<ExprId>, ty: Type, at: Place) -> ExprId {
-        self.constructed(Constructor::Vector, arguments, ty, at)
-    }
-
-    pub(super) fn constructed(
-        &mut self,
-        constructor: Constructor,
-        arguments: Vec<ExprId>,
-        ty: Type,
-        at: Place,
-    ) -> ExprId {
-        let constant = arguments.iter().all(|&argument| self.tree[argument].constant);
-        let kind = ExprKind::Construct {
-            constructor,
-            arguments,
-        };
-        self.push(kind, ty, constant, at)
+        self.push_constructor(Constructor::Vector, ty, arguments, at)
     }
 
     /// The entry point of a host that runs `main`: a function that calls it, and returns its color.

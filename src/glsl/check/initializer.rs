@@ -70,6 +70,6 @@ impl Checker<'_> {
             Type::Matrix { .. } => Constructor::Matrix,
             _ => Constructor::Vector,
         };
-        self.constructed(constructor, values, ty, at)
+        self.push_constructor(constructor, ty, values, at)
     }
 }

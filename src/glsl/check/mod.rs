@@ -103,10 +103,7 @@ impl<'a> Checker<'a> {
             lacks_names: text.lacks_names,
             // The last token is `End`, which may be lines below the last visible token.
             end: text.tokens.iter().rev().take(2).next_back().map(|token| token.at),
-            language: Language {
-                version: wrapping.version,
-                is_lenient: options.lenient,
-            },
+            language: wrapping.language,
             dialect: wrapping.dialect,
             stage: options.stage,
             bound: HashMap::new(),

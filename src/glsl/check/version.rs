@@ -1,4 +1,4 @@
-//! Rules that only some versions of GLSL have. Where a version lacks a feature, the message names both.
+//! Rules that only some versions of GLSL have.
 
 use toyproof_diagnostic::Code;
 
@@ -7,53 +7,47 @@ use crate::dialect::Version;
 use crate::tree::{BinaryOp, BuiltIn, ExprId, Place, Scalar, Type, UnaryOp};
 
 impl Checker<'_> {
-    /// Reports that GLSL ES 1.00 has no such feature.
-    fn check_not_es_100(&mut self, has_feature: bool, feature: &str, at: Place) {
-        if has_feature && !self.language.is_lenient && self.language.version == Version::Es100 {
-            let message = format!("{feature} is not in GLSL ES 1.00");
-            let help = "begin the shader with `#version 300 es`, or write it otherwise";
-            self.report(Code::NotInVersion.at(at, message).help(help));
-        }
+    /// Reports a feature that the version of the text does not have.
+    fn report_missing(&mut self, feature: &str, at: Place) {
+        let version = self.language.version;
+        let next = if version == Version::Es100 {
+            "300 es"
+        } else {
+            "130"
+        };
+        let message = format!("{feature} is not in {}", version.name());
+        let help = format!("begin the shader with `#version {next}`, or write it otherwise");
+        self.report(Code::NotInVersion.at(at, message).help(help));
     }
 
     /// Checks the suffix of a number: GLSL ES 1.00 has none (§4.1.3 there).
     pub(crate) fn check_suffix(&mut self, text: &str, at: Place) {
         let is_hexadecimal = text.starts_with("0x") || text.starts_with("0X");
         let has_suffix = text.ends_with(['u', 'U']) || (!is_hexadecimal && text.ends_with(['f', 'F']));
-        self.check_not_es_100(has_suffix, "the suffix of a number", at);
-    }
-
-    /// Reports that a version of the first generation has no such feature.
-    fn check_second_generation(&mut self, has_feature: bool, feature: &str, at: Place) {
-        if has_feature && !self.language.is_lenient && self.language.version.is_first_generation() {
-            let needed = match self.language.version {
-                Version::Es100 => "300 es",
-                _ => "130",
-            };
-            let message = format!("{feature} is not in {}", self.language.version.name());
-            let help = format!("begin the shader with `#version {needed}`, or write it otherwise");
-            self.report(Code::NotInVersion.at(at, message).help(help));
+        if has_suffix && self.language.is_es_100() {
+            self.report_missing("the suffix of a number", at);
         }
     }
 
     /// Checks the arguments of a built-in function: in GLSL ES 1.00, those of numbers take floats.
     pub(super) fn check_float_arguments(&mut self, function: BuiltIn, arguments: &[ExprId], at: Place) {
+        if !self.language.is_es_100() {
+            return;
+        }
         let takes_floats = matches!(
             function,
             BuiltIn::Abs | BuiltIn::Sign | BuiltIn::Min | BuiltIn::Max | BuiltIn::Clamp | BuiltIn::Mix
         );
-        let types = self.types(arguments);
-        let is_other = types
-            .iter()
-            .any(|ty| !matches!(ty.scalar(), Some(Scalar::Float) | None));
-        let feature = format!("`{}` of integers or `bool`", function.name());
-        self.check_not_es_100(takes_floats && is_other, &feature, at);
+        let is_other = |ty: &Type| !matches!(ty.scalar(), Some(Scalar::Float) | None);
+        if takes_floats && self.types(arguments).iter().any(is_other) {
+            self.report_missing(&format!("`{}` of integers or `bool`", function.name()), at);
+        }
     }
 
-    /// Checks an operator: the first generation reserves those of bits, and the remainder (§5.1 of GLSL ES
-    /// 1.00).
+    /// Checks an operator: those of bits, and the remainder, are reserved before GLSL ES 3.00 and GLSL 1.30
+    /// (§5.1 of GLSL ES 1.00).
     pub(super) fn check_operator(&mut self, op: BinaryOp, at: Place) {
-        let is_reserved = matches!(
+        let is_integer_operator = matches!(
             op,
             BinaryOp::Remainder
                 | BinaryOp::BitAnd
@@ -62,16 +56,22 @@ impl Checker<'_> {
                 | BinaryOp::ShiftLeft
                 | BinaryOp::ShiftRight
         );
-        self.check_second_generation(is_reserved, &format!("the operator `{}`", op.symbol()), at);
+        if is_integer_operator && !self.language.has_integer_operations() {
+            self.report_missing(&format!("the operator `{}`", op.symbol()), at);
+        }
     }
 
-    /// Checks `~x`, which the first generation reserves.
+    /// Checks `~x`, which is reserved like the operators of [`Self::check_operator`].
     pub(super) fn check_complement(&mut self, op: UnaryOp, at: Place) {
-        self.check_second_generation(op == UnaryOp::BitNot, "the operator `~`", at);
+        if op == UnaryOp::BitNot && !self.language.has_integer_operations() {
+            self.report_missing("the operator `~`", at);
+        }
     }
 
     /// Checks the use of an array as a value: GLSL ES 1.00 has only its elements (§5.7 there).
     pub(super) fn check_whole_array(&mut self, ty: Type, use_of: &str, at: Place) {
-        self.check_not_es_100(matches!(ty, Type::Array(_)), &format!("{use_of} of an array"), at);
+        if matches!(ty, Type::Array(_)) && self.language.is_es_100() {
+            self.report_missing(&format!("{use_of} of an array"), at);
+        }
     }
 }

@@ -278,19 +278,15 @@ impl Dialect {
 
     /// The values of an input that the host sets; `None` if it has no such input.
     pub(crate) fn input(self, name: &str) -> Option<&'static [InputValue]> {
+        let own = self.host().inputs.iter();
         // Shaders of a host that runs `main` often come from another one.
-        let others = HOSTS.iter().filter(|_| !self.calls_main_image());
-        let others = others
-            .flat_map(|host| host.inputs)
-            .filter(|(_, values)| !matches!(values, [Constant(_)]));
-        let common = SHADERTOY
+        let others = HOSTS
             .iter()
-            .chain(VARYINGS)
-            .filter(|_| !self.calls_main_image());
-        let all = self.host().inputs.iter().chain(common).chain(others);
-        all.into_iter()
-            .find(|(input, _)| *input == name)
-            .map(|(_, values)| *values)
+            .filter(|host| !host.calls_main_image)
+            .flat_map(|host| host.inputs);
+        let common = SHADERTOY.iter().chain(VARYINGS).chain(others);
+        let mut all = own.chain(common.filter(|_| !self.calls_main_image()));
+        all.find(|(input, _)| *input == name).map(|(_, values)| *values)
     }
 
     /// The dialect of a shader with a function `main` in which these names occur: the host most of whose

@@ -23,6 +23,8 @@ const IMPLICIT_CONVERSIONS: u16 = 120;
 const UNIFORM_DEFAULTS: u16 = 120;
 /// The first desktop version in which `in` and `out` replace `varying`.
 const STAGE_IO: u16 = 130;
+/// The first desktop version in which integers have remainders and bits.
+const INTEGER_OPERATIONS: u16 = 130;
 /// The first desktop version in which an `int` becomes a `uint` where one is expected.
 const UNSIGNED_CONVERSIONS: u16 = 400;
 /// The first desktop version in which `sample` is a keyword.
@@ -129,13 +131,13 @@ impl Version {
         !matches!(self, Self::Desktop(_))
     }
 
-    /// Whether it is of the first generation, whose integers only count: they have no bits, and no functions.
+    /// Whether integers have remainders, bits and functions, and `switch`.
     #[must_use]
-    pub fn is_first_generation(self) -> bool {
+    pub fn has_integer_operations(self) -> bool {
         match self {
-            Self::Es100 => true,
-            Self::Desktop(number) => number < STAGE_IO,
-            Self::Es300 | Self::Es310 | Self::Es320 => false,
+            Self::Es100 => false,
+            Self::Es300 | Self::Es310 | Self::Es320 => true,
+            Self::Desktop(number) => number >= INTEGER_OPERATIONS,
         }
     }
 
@@ -174,6 +176,16 @@ impl Version {
 }
 
 impl Language {
+    /// Whether it is GLSL ES 1.00 without the features of later versions.
+    pub(crate) fn is_es_100(self) -> bool {
+        self.version == Version::Es100 && !self.is_lenient
+    }
+
+    /// Whether integers have remainders, bits and functions, and `switch`.
+    pub(crate) fn has_integer_operations(self) -> bool {
+        self.is_lenient || self.version.has_integer_operations()
+    }
+
     /// Whether integers become floats where these are expected.
     pub(crate) fn converts_implicitly(self) -> bool {
         self.is_lenient || self.version.is_desktop_since(IMPLICIT_CONVERSIONS)
@@ -230,7 +242,7 @@ impl Language {
 
     /// Whether it has a built-in function.
     pub(crate) fn has(self, function: BuiltIn) -> bool {
-        if self.is_lenient || !self.version.is_first_generation() {
+        if self.has_integer_operations() {
             return true;
         }
         let is_of_desktop = self.version.is_desktop_since(IMPLICIT_CONVERSIONS)

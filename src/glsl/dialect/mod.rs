@@ -10,13 +10,11 @@ pub(crate) use self::host::{Bound, InputValue};
 pub(crate) use self::language::Language;
 pub use self::language::Version;
 
-/// The host of a text, and its version of the language.
+/// The host of a text, and its language.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Wrapping {
     pub(crate) dialect: Dialect,
-    pub(crate) version: Version,
-    /// Whether the words of GLSL ES 3.00 are accepted in GLSL ES 1.00, too.
-    pub(crate) is_lenient: bool,
+    pub(crate) language: Language,
 }
 
 impl Wrapping {
@@ -29,8 +27,7 @@ impl Wrapping {
         };
         Self {
             dialect,
-            version,
-            is_lenient,
+            language: Language { version, is_lenient },
         }
     }
 }

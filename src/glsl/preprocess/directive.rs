@@ -178,7 +178,7 @@ impl Preprocessor<'_> {
             let help = "write `#extension NAME : BEHAVIOR`, where BEHAVIOR is `require`, `enable`, `warn` or `disable`";
             return Err(Box::new(diagnostic.help(help)));
         };
-        let version = self.wrapping.version;
+        let version = self.wrapping.language.version;
         if version == Version::Es100 && EXTENSIONS_OF_WEBGL_1.contains(&name) {
             return Ok(());
         }

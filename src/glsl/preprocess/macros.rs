@@ -59,7 +59,7 @@ impl Macro {
     pub(super) fn predefined(
         file: FileId,
         stage: Stage,
-        Wrapping { dialect, version, .. }: Wrapping,
+        Wrapping { dialect, language }: Wrapping,
         interner: &mut Interner,
     ) -> HashMap<Symbol, Self> {
         let at = Place::plain(Span::new(file, 0, 0));
@@ -75,6 +75,7 @@ impl Macro {
                 parameter: [None].into(),
             }
         };
+        let version = language.version;
         let (one, number) = (number("1"), number(&version.number().to_string()));
         let has_host = dialect.calls_main_image() && stage != Stage::Common;
         // Whether it exists, and whether it is one of the language's.

@@ -162,8 +162,12 @@ impl PreprocessorOutput {
 
 /// The version that `#version` in front of a text selects.
 pub(crate) fn declared_version(files: &Files, file: FileId) -> Option<Version> {
+    let text = files.get(file).text();
+    if !text.contains("version") {
+        return None;
+    }
     let mut interner = Interner::default();
-    let mut lexer = Lexer::new(file, files.get(file).text());
+    let mut lexer = Lexer::new(file, text);
     let mut ignored = Vec::new();
     let mut next = || lexer.next(&mut interner, &mut ignored).kind;
     let first = std::iter::repeat_with(&mut next).find(|&kind| kind != TokenKind::Newline);
@@ -265,7 +269,7 @@ struct Preprocessor<'a> {
 
 impl<'a> Preprocessor<'a> {
     fn new(files: &'a Files, file: FileId, stage: Stage, wrapping: Wrapping) -> Self {
-        let mut interner = Interner::new(wrapping.version, wrapping.is_lenient);
+        let mut interner = Interner::new(wrapping.language);
         let macros = Macro::predefined(file, stage, wrapping, &mut interner);
         let text = files.get(file).text();
         Self {

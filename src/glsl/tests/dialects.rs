@@ -101,6 +101,10 @@ fn the_author_sets_other_uniforms() {
     }));
     // An edited text is checked alike.
     assert!(read(text, &checked.options()).is_ok());
+    options.uniforms[1].components[0] = 1.5;
+    let errors = read(text, &options).unwrap_err();
+    assert!(errors[0].contains("`count` has the component 1.5"), "{errors:?}");
+    options.uniforms[1].components[0] = -3.0;
     options.uniforms[0].components.pop();
     let errors = read(text, &options).unwrap_err();
     assert!(errors[0].contains("`tint` has 2 components"), "{errors:?}");

@@ -1,7 +1,5 @@
 //! Autograders: what a grading platform runs for each submission, made of an assignment and the program.
 
-mod tar;
-
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -76,11 +74,8 @@ impl Autograder {
             Kit::Folder(folder) => files.extend(kit.into_iter().map(|file| file.inside(folder))),
             Kit::Tar(path) => {
                 let kit: Vec<_> = kit.into_iter().map(|file| file.inside("toyproof/")).collect();
-                let packed = kit
-                    .iter()
-                    .map(|file| (file.path.clone(), file.is_executable, &file.bytes[..]));
-                let bytes = tar::pack(&packed.collect::<Vec<_>>())?;
-                files.push(AutograderFile::plain(path.to_owned(), bytes));
+                let archive = tar(&kit).map_err(|error| error.to_string())?;
+                files.push(AutograderFile::plain(path.to_owned(), archive));
             }
             Kit::Zip(path) => files.push(AutograderFile::plain(path.to_owned(), zip(&kit)?)),
         }
@@ -135,6 +130,18 @@ impl AutograderFile {
             ..self
         }
     }
+}
+
+/// Packs files as a tar archive. The same files give the same bytes, since no times are stored.
+fn tar(files: &[AutograderFile]) -> io::Result<Vec<u8>> {
+    let mut archive = tar::Builder::new(Vec::new());
+    for file in files {
+        let mut header = tar::Header::new_gnu();
+        header.set_size(file.bytes.len() as u64);
+        header.set_mode(if file.is_executable { 0o755 } else { 0o644 });
+        archive.append_data(&mut header, &file.path, &file.bytes[..])?;
+    }
+    archive.into_inner()
 }
 
 fn zip(files: &[AutograderFile]) -> Result<Vec<u8>, String> {
