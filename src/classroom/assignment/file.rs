@@ -10,7 +10,7 @@ use toyproof_toml::{Format, Located, Table};
 use toyproof_verify::{Difference, UnknownDifference};
 
 use super::{Assignment, MAX_FRAMES, Reference, Rules};
-use crate::function_test::{FunctionTest, function_tests, is_identifier};
+use crate::function_test::{function_tests, is_identifier};
 
 static FORMAT: Format = Format {
     form_code: Code::AssignmentSyntax,

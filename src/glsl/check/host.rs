@@ -1,7 +1,5 @@
 //! What a host adds to a shader: the values of the inputs that it sets, and the call of `main`.
 
-use std::ops::RangeInclusive;
-
 use toyproof_diagnostic::{Code, plural};
 
 use super::{Checker, Entity};
@@ -23,14 +21,22 @@ const VEC2: Type = Type::Vector(Scalar::Float, 2);
 const VEC3: Type = Type::Vector(Scalar::Float, 3);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
 
-/// The values of a scalar that are integers; `None` for floats.
-fn scalar_range(scalar: Scalar) -> Option<RangeInclusive<f64>> {
-    match scalar {
-        Scalar::Bool => Some(0.0..=1.0),
-        Scalar::Int => Some(f64::from(i32::MIN)..=f64::from(i32::MAX)),
-        Scalar::Uint => Some(0.0..=f64::from(u32::MAX)),
-        Scalar::Float => None,
+/// Why these components are no value of a type; `None` if they are one.
+fn misfit(ty: Type, components: &[f64]) -> Option<String> {
+    let count = components.len();
+    if ty.component_count().map(usize::from) != Some(count) {
+        let noun = plural(count as u64, "component", "components");
+        return Some(format!("has {count} {noun}"));
     }
+    let integers = match ty.scalar() {
+        Some(Scalar::Bool) => 0.0..=1.0,
+        Some(Scalar::Int) => f64::from(i32::MIN)..=f64::from(i32::MAX),
+        Some(Scalar::Uint) => 0.0..=f64::from(u32::MAX),
+        Some(Scalar::Float) | None => return None,
+    };
+    let is_other = |component: &&f64| component.fract() != 0.0 || !integers.contains(component);
+    let other = components.iter().find(is_other)?;
+    Some(format!("has the component {other}"))
 }
 
 impl Checker<'_> {
@@ -99,32 +105,13 @@ impl Checker<'_> {
             return false;
         };
         let (ty, at) = (*ty, *at);
-        let components = ty.component_count().map_or(0, usize::from);
-        let count = given.components.len();
-        let problem = if components != count {
-            Some(format!(
-                "has {count} {}",
-                plural(count as u64, "component", "components")
-            ))
+        if let (Some(problem), Some(at)) = (misfit(ty, &given.components), at) {
+            let ty = self.quoted_type(ty);
+            let message = format!("the value of the uniform `{name}` {problem}, but it is {ty}");
+            self.error(Code::BadType, at, message);
         } else {
-            let range = scalar_range(ty.scalar().unwrap_or(Scalar::Float));
-            let fits = |component: &f64| match &range {
-                Some(range) => range.contains(component) && component.fract() == 0.0,
-                None => true,
-            };
-            let other = given.components.iter().find(|component| !fits(component));
-            other.map(|component| format!("has the component {component}"))
-        };
-        match (problem, at) {
-            (Some(problem), Some(at)) => {
-                let ty = self.quoted_type(ty);
-                let message = format!("the value of the uniform `{name}` {problem}, but it is {ty}");
-                self.error(Code::BadType, at, message);
-            }
-            _ => {
-                let value = Bound::Value(ty, given.components.clone());
-                self.bound.insert(variable, value);
-            }
+            let value = Bound::Value(ty, given.components.clone());
+            self.bound.insert(variable, value);
         }
         true
     }
