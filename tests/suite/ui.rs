@@ -7,14 +7,17 @@ use std::path::{Path, PathBuf};
 
 use expect_test::expect_file;
 use toyproof::diagnostic::{File, Files, human};
-use toyproof::glsl::{Options, check, with_single_edit};
+use toyproof::glsl::{Dialect, Options, check, with_single_edit};
 
 /// Everything that is reported of a shader, as a terminal shows it.
 fn messages(path: &Path) -> String {
     let mut files = Files::default();
     let name = path.file_name().unwrap().to_str().unwrap();
     let file = files.add(File::new(name, fs::read_to_string(path).unwrap()));
-    let options = Options::default();
+    let options = Options {
+        dialect: Some(Dialect::ShaderToy),
+        ..Options::default()
+    };
     match check(&files, file, &options) {
         Ok(checked) => panic!("{name} is accepted, with {:?}", checked.warnings),
         Err(errors) => with_single_edit(&files, file, errors, &options)

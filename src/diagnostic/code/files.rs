@@ -216,7 +216,7 @@ macro_rules! files {
     /// [[function]]
     /// name = "disk"
     /// tests = ["disk(vec2(0.0)) == -1.0"]
-    /// tolerence = 1e-3
+    /// precison = "f32"
     /// ```
     ///
     /// Right:
@@ -225,7 +225,7 @@ macro_rules! files {
     /// [[function]]
     /// name = "disk"
     /// tests = ["disk(vec2(0.0)) == -1.0"]
-    /// tolerance = 1e-3
+    /// precision = "f32"
     /// ```
     TestSyntax "E0511" "A test of a function with a syntax error",
 

@@ -455,7 +455,7 @@ mod tests {
         );
         assert!(html.contains("<strong>Or:</strong> line 2: remove"), "{html}");
         assert_eq!(html.matches("href=\"#x-wrong-operator\"").count(), 1, "{html}");
-        assert_eq!(html.matches("href=\"#x-wrong-number\"").count(), 1, "{html}");
+        assert_eq!(html.matches("href=\"#x-two-mistakes\"").count(), 1, "{html}");
         assert!(html.contains("data-fixed=\"7\""), "{html}");
         assert!(html.contains("return <mark>b + c</mark>;"), "{html}");
         assert!(!html.contains("Suspect"), "{html}");

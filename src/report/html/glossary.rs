@@ -136,7 +136,7 @@ mod tests {
         }
         assert!(!html.contains("id=\"x-E0302\""));
         let fixed = Glossary::new(&[repaired()]).html();
-        for id in ["wrong-operator", "wrong-number"] {
+        for id in ["wrong-operator", "two-mistakes"] {
             assert!(fixed.contains(&format!("id=\"x-{id}\"")), "{id}");
         }
         let links = glossary.mistake_links("E0100+E0200").unwrap();

@@ -78,7 +78,7 @@ fn the_fix_has_the_keys_that_programs_read() {
         serde_json::json!(rest),
         serde_json::json!(["wrong-operator", "wrong", 14_400, 14_400])
     );
-    assert_eq!(fix["alternatives"][0]["id"], "wrong-number");
+    assert_eq!(fix["alternatives"][0]["id"], "two-mistakes");
     assert_eq!(fix["alternatives"][0]["edits"].as_array().unwrap().len(), 2);
     let suspect = &json["suspects"][0];
     assert_eq!((&suspect["line"], &suspect["score"]), (&4.into(), &0.5.into()));

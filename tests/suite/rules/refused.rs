@@ -1,7 +1,7 @@
 //! Programs that break a rule have an error on the line where it is broken, and nowhere else.
 
 use toyproof::diagnostic::{File, Files, Severity, short};
-use toyproof::glsl::{Options, check};
+use toyproof::glsl::{Dialect, Options, check};
 
 use super::{Expectation, Program, programs};
 
@@ -9,7 +9,11 @@ use super::{Expectation, Program, programs};
 fn wrong(program: &Program, code: Option<&str>, lines: &[usize]) -> Option<String> {
     let mut files = Files::default();
     let file = files.add(File::new("s", program.text.as_str()));
-    let Err(reported) = check(&files, file, &Options::default()) else {
+    let options = Options {
+        dialect: Some(Dialect::ShaderToy),
+        ..Options::default()
+    };
+    let Err(reported) = check(&files, file, &options) else {
         return Some("is accepted".to_owned());
     };
     let errors = reported
