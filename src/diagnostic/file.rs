@@ -18,8 +18,17 @@ pub struct File {
     /// The text with control characters masked, if it contains any.
     display_text: Option<String>,
     line_starts: Vec<usize>,
-    /// The parts of a joined file, each with the byte at which it starts.
-    parts: Vec<(FileId, u32)>,
+    /// The parts of a joined file, in order.
+    parts: Vec<Part>,
+}
+
+/// A part of a joined file.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// The byte of the joined file at which it starts.
+    start: u32,
+    /// The bytes of another file that it consists of.
+    source: Span,
 }
 
 /// A position: line and column from 1, columns in characters.
@@ -125,17 +134,26 @@ impl Files {
     /// Adds a file that consists of others, each beginning on a new line. Spans in it are reported as spans
     /// of those files.
     pub fn join(&mut self, name: impl AsRef<str>, parts: &[FileId]) -> FileId {
+        let whole = |&file: &FileId| Span::new(file, 0, self.get(file).text().len() as u32);
+        let sources: Vec<Span> = parts.iter().map(whole).collect();
+        self.join_parts(name, &sources, "\n")
+    }
+
+    /// Adds a file that consists of parts of others, with a separator between them. Spans in it are reported
+    /// as spans of those files.
+    pub fn join_parts(&mut self, name: impl AsRef<str>, sources: &[Span], separator: &str) -> FileId {
         let mut text = String::new();
-        let mut starts = Vec::with_capacity(parts.len());
-        for &part in parts {
-            if !starts.is_empty() {
-                text.push('\n');
+        let mut parts = Vec::with_capacity(sources.len());
+        for &source in sources {
+            if !parts.is_empty() {
+                text += separator;
             }
-            starts.push((part, text.len() as u32));
-            text += self.get(part).text();
+            let start = text.len() as u32;
+            parts.push(Part { start, source });
+            text += self.text(source);
         }
         let mut file = File::new(name, text);
-        file.parts = starts;
+        file.parts = parts;
         self.add(file)
     }
 
@@ -143,13 +161,13 @@ impl Files {
     /// to the end of that part.
     pub fn origin(&self, span: Span) -> Span {
         let parts = &self.get(span.file).parts;
-        let after = parts.partition_point(|&(_, start)| start <= span.start);
-        let Some(&(file, start)) = after.checked_sub(1).and_then(|at| parts.get(at)) else {
+        let after = parts.partition_point(|part| part.start <= span.start);
+        let Some(Part { start, source }) = after.checked_sub(1).and_then(|at| parts.get(at)) else {
             return span;
         };
-        let end = self.get(file).text().len() as u32;
-        let within = |byte: u32| (byte - start).min(end);
-        Span::new(file, within(span.start), within(span.end))
+        let within = |byte: u32| (source.start + (byte - start)).min(source.end);
+        // A part may come from a joined file, too.
+        self.origin(Span::new(source.file, within(span.start), within(span.end)))
     }
 
     /// The name of the file that a span is in.
@@ -332,6 +350,11 @@ mod tests {
         let across = Span::new(joined, at("b"), at("e"));
         assert_eq!(files.origin(across), Span::new(first, 2, 4));
         assert_eq!(files.end_position(across), Position { line: 2, column: 3 });
+        let nested = files.join_parts("nested", &[Span::new(joined, 2, 6), Span::new(first, 0, 1)], "");
+        assert_eq!(files.get(nested).text(), "bc\nda");
+        assert_eq!(files.origin(Span::new(nested, 0, 2)), Span::new(first, 2, 4));
+        assert_eq!(files.origin(Span::new(nested, 3, 4)), Span::new(second, 0, 1));
+        assert_eq!(files.origin(Span::new(nested, 4, 5)), Span::new(first, 0, 1));
         let empty = files.join("empty", &[]);
         assert_eq!(files.origin(Span::new(empty, 0, 0)), Span::new(empty, 0, 0));
     }

@@ -84,7 +84,7 @@ pub mod tree;
 use std::collections::HashSet;
 
 pub use dialect::{Dialect, Version};
-pub use preprocess::{ControlComment, Expansions};
+pub use preprocess::{ControlComment, Expansions, ReadInclude, with_includes};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
@@ -102,6 +102,9 @@ use self::preprocess::PreprocessorOutput;
 /// `[i]`, of commas and of `else if` do not count.
 pub const MAX_NESTING: usize = 256;
 
+/// The function that is called with [`Options::calls_added_main`].
+pub const ADDED_MAIN: &str = "toyproofMain";
+
 /// Options of a check.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
@@ -115,6 +118,9 @@ pub struct Options {
     pub uniforms: Vec<UniformValue>,
     /// The tab of a project that the text is.
     pub stage: Stage,
+    /// Calls [`ADDED_MAIN`], which has the form of `mainImage`, instead of the function that the host calls: for
+    /// a shader to which code was added that calls its functions.
+    pub calls_added_main: bool,
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
     /// `sampler2D`, or the shape that the first lookup that does not fit a `sampler2D` requires.
     pub channels: [Option<SamplerShape>; 4],
@@ -123,6 +129,17 @@ pub struct Options {
     /// When the check must end. Lints get a quarter of the time for themselves; lints that take longer are
     /// skipped.
     pub deadline: Deadline,
+}
+
+impl Options {
+    /// Adds the values of uniforms that have none.
+    pub fn add_uniforms(&mut self, values: &[UniformValue]) {
+        for value in values {
+            if self.uniforms.iter().all(|given| given.name != value.name) {
+                self.uniforms.push(value.clone());
+            }
+        }
+    }
 }
 
 /// The value of a uniform.
@@ -175,6 +192,7 @@ impl Checked {
             dialect: Some(self.dialect),
             uniforms: self.uniforms.clone(),
             stage: self.stage,
+            calls_added_main: false,
             channels: self.channels.map(Some),
             sampling: self.sampling,
             deadline: Deadline::default(),

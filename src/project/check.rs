@@ -5,6 +5,7 @@ use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked, Options, Stage};
 use toyproof_lint::{Lints, lint};
 
+use crate::files::IncludeFolders;
 use crate::pass::{Pass, PassKind, SourceType, Tab};
 use crate::project::Project;
 
@@ -37,14 +38,32 @@ const LINT_TIME_SHARE: u32 = 4;
 /// # Errors
 /// The diagnostics of all tabs, if one of them has an error; those about Common are reported once.
 pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<CheckedProject, Diagnostics> {
+    check_with_includes(project, None, files, options)
+}
+
+/// Checks a project as [`check`] does, with the files that its tabs include.
+pub(crate) fn check_with_includes(
+    project: &Project,
+    includes: Option<&IncludeFolders>,
+    files: &mut Files,
+    options: &Options,
+) -> Result<CheckedProject, Diagnostics> {
+    let mut options = options.clone();
+    options.add_uniforms(&project.uniforms);
+    let options = &options;
     let mut reported = UniqueDiagnostics::default();
     let mut is_valid = true;
+    let include = |files: &mut Files, file: FileId, options: &Options| match includes {
+        Some(includes) => includes.include(files, file, options),
+        None => Ok(file),
+    };
     if let Some(common) = project.common {
         let options = Options {
             stage: Stage::Common,
             ..options.clone()
         };
-        if let Err(errors) = glsl::check_declarations(files, common, &options) {
+        let common = include(files, common, &options);
+        if let Err(errors) = common.and_then(|common| glsl::check_declarations(files, common, &options)) {
             is_valid = false;
             reported.add(files, errors);
         }
@@ -58,6 +77,14 @@ pub fn check(project: &Project, files: &mut Files, options: &Options) -> Result<
             ..options.clone()
         };
         let file = joined(project, pass, files);
+        let file = match include(files, file, &options) {
+            Ok(file) => file,
+            Err(errors) => {
+                is_valid = false;
+                reported.add(files, errors);
+                continue;
+            }
+        };
         match glsl::check(files, file, &options) {
             Ok(checked) => {
                 let lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));

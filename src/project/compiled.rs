@@ -7,8 +7,8 @@ use toyproof_glsl::{Checked, Options};
 use toyproof_image as image;
 use toyproof_lint::Lints;
 
-use crate::check::check;
-use crate::files::project_image;
+use crate::check::check_with_includes;
+use crate::files::{IncludeFolders, project_image};
 use crate::graph::{Rendering, UnsupportedPass};
 use crate::pass::PassKind;
 use crate::project::Project;
@@ -27,10 +27,11 @@ impl CompiledProject {
     /// those of the image, with the warnings about all tabs.
     ///
     /// # Errors
-    /// An image cannot be read, or one of the tabs is invalid.
+    /// An image or an included file cannot be read, or one of the tabs is invalid.
     pub fn compile(
         mut project: Project,
         folder: Option<&Path>,
+        includes: Option<&IncludeFolders>,
         files: &mut Files,
         options: &Options,
     ) -> Result<(Self, Lints), Diagnostics> {
@@ -41,7 +42,7 @@ impl CompiledProject {
             });
             added.map_err(|errors| Diagnostics::new(errors, files))?;
         }
-        let passes = check(&project, files, options)?;
+        let passes = check_with_includes(&project, includes, files, options)?;
         let mut lints = Lints::default();
         let mut checked = Vec::with_capacity(passes.passes.len());
         for pass in passes.passes {

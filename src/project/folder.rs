@@ -6,8 +6,9 @@ use std::collections::HashMap;
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest, one_of};
-use toyproof_glsl::{Filter, Wrap};
+use toyproof_glsl::{Filter, UniformValue, Wrap};
 
+use crate::declared::components;
 use crate::format::{Format, Wrapper};
 use crate::json;
 use crate::media;
@@ -302,10 +303,39 @@ const INPUT_KEYS: [&str; 11] = [
 /// The known keys of a sampler.
 const SAMPLER_KEYS: [&str; 5] = ["filter", "wrap", "vflip", "srgb", "internal"];
 
+/// Removes the table of the values of uniforms, which the site does not have.
+fn take_uniforms(root: &mut Node, errors: &mut Vec<Diagnostic>) -> Vec<UniformValue> {
+    let Some(members) = root.members_mut() else {
+        return Vec::new();
+    };
+    let is_table = |member: &Member| member.key == "uniforms" && member.node.is_object();
+    let Some(at) = members.iter().position(is_table) else {
+        return Vec::new();
+    };
+    let mut table = members.remove(at).node;
+    let mut uniforms = Vec::new();
+    for Member { key, node } in table.members_mut().into_iter().flatten() {
+        match components(node) {
+            Some(components) => uniforms.push(UniformValue {
+                name: key.clone(),
+                components,
+            }),
+            None => {
+                let found = node.describe();
+                errors.push(node.error(format!(
+                    "`{key}` must be a number, true, false or a list of numbers, found {found}"
+                )));
+            }
+        }
+    }
+    uniforms
+}
+
 fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic>) -> Option<Project> {
     let format = take_choice(&mut root, "format", &Format::NAMES, errors);
     let wrappers = [("array", Wrapper::Array), ("Shader", Wrapper::Shader)];
     let wrapper = take_choice(&mut root, "wrapper", &wrappers, errors).unwrap_or(Wrapper::None);
+    let uniforms = take_uniforms(&mut root, errors);
     let completes = format.is_none();
     let format = format.unwrap_or(Format::Page);
     if completes {
@@ -351,6 +381,7 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
         knows_inputs,
         common,
         passes,
+        uniforms,
         images: HashMap::new(),
         document: Document {
             root,

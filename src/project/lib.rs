@@ -28,6 +28,7 @@
 //! - `json`, `folder`: the two forms of a project, which are inverse.
 //! - `read`: a tree of values as a project.
 //! - `media`: the ids of the site's built-in media.
+//! - `declared`: what hosts declare outside of the language: headers of ISF, `#iUniform`.
 //! - `check`: compiles every tab with Common in front, and Common alone.
 //! - `lint`: warnings about inputs.
 //! - `graph`: what renders the image.
@@ -36,6 +37,7 @@
 pub mod archive;
 mod check;
 mod compiled;
+mod declared;
 pub mod files;
 mod folder;
 mod format;
@@ -53,6 +55,7 @@ pub use toyproof_glsl::{Filter, Wrap};
 
 pub use self::check::{CheckedPass, CheckedProject, check};
 pub use self::compiled::CompiledProject;
+pub use self::declared::with_declarations;
 pub use self::folder::PROJECT_FILE;
 pub use self::graph::{MissingMedium, Rendering, UnsupportedPass};
 pub use self::media::Medium;

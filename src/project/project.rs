@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use toyproof_diagnostic::{Code, Diagnostic, FileId};
+use toyproof_glsl::UniformValue;
 use toyproof_image::Image;
 
 use crate::format::{Format, Wrapper};
@@ -20,6 +21,8 @@ pub struct Project {
     /// Whether the inputs are given. Otherwise channel *n* of every pass but Sound is assumed to read the
     /// *n*th buffer, if there is one.
     pub knows_inputs: bool,
+    /// The values of uniforms that the passes declare.
+    pub uniforms: Vec<UniformValue>,
     /// The images of the project's folder that were added, by their paths.
     pub(crate) images: HashMap<String, Image>,
     pub(crate) document: Document,

@@ -42,6 +42,7 @@ impl Project {
             common,
             passes,
             knows_inputs: true,
+            uniforms: Vec::new(),
             images: HashMap::new(),
             document: Document {
                 root,

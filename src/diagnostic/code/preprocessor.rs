@@ -243,5 +243,25 @@ macro_rules! preprocessor {
     /// void f() { B(;) }
     /// ```
     TooMuchExpansion "E0013" "A macro expansion that is too large",
+
+    /// The text of a file replaces `#include "file"`. The path is relative to the file with the directive, to
+    /// the folder of the shader, or to a folder that `--include-dir` names, and leads to a file in one of
+    /// these folders. Files that include each other need a guard.
+    ///
+    /// Wrong:
+    ///
+    /// ```glsl
+    /// #include "/usr/share/noise.glsl"
+    /// ```
+    ///
+    /// Right:
+    ///
+    /// ```glsl
+    /// #ifndef NOISE
+    /// #define NOISE
+    /// float noise(vec2 at) { return fract(at.x * at.y); }
+    /// #endif
+    /// ```
+    BadInclude "E0014" "An included file that cannot be read",
     } };
 }

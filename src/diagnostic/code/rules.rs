@@ -242,5 +242,24 @@ macro_rules! rules {
     /// }
     /// ```
     NotInVersion "E0413" "A feature that the version of GLSL does not have",
+
+    /// toyproof has the four texture channels of ShaderToy. The textures of another host are read from them:
+    /// those of known names, such as `u_tex0`, from the channel of their number, and others from the next free
+    /// one. A fifth texture has none. Combine textures in one image, or leave out what the image does not need.
+    ///
+    /// Wrong:
+    ///
+    /// ```glsl
+    /// uniform sampler2D a, b, c, d, e;
+    /// void main() { gl_FragColor = texture2D(a, vec2(0)) + texture2D(e, vec2(0)); }
+    /// ```
+    ///
+    /// Right:
+    ///
+    /// ```glsl
+    /// uniform sampler2D a, b, c, d;
+    /// void main() { gl_FragColor = texture2D(a, vec2(0)) + texture2D(d, vec2(0)); }
+    /// ```
+    NoChannelLeft "E0414" "A texture for which no channel is left",
     } };
 }

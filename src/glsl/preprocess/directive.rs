@@ -25,6 +25,9 @@ pub(crate) const DIRECTIVES: [&str; 13] = [
     "line",
 ];
 
+/// The directives that conditions consist of.
+const CONDITIONS: [&str; 6] = ["if", "ifdef", "ifndef", "elif", "else", "endif"];
+
 /// The extensions of GLSL ES 1.00 that add functions or outputs to fragment shaders.
 const EXTENSIONS_OF_WEBGL_1: [&str; 4] = [
     "GL_OES_standard_derivatives",
@@ -36,7 +39,9 @@ const EXTENSIONS_OF_WEBGL_1: [&str; 4] = [
 fn unknown_directive(name: &str, at: Place) -> Diagnostic {
     let diagnostic = Code::UnknownDirective.at(at, format!("unknown directive `#{name}`"));
     match nearest(name, DIRECTIVES) {
-        _ if name == "include" => diagnostic.help("GLSL ES has no `#include`: paste the code of the file"),
+        _ if name == "include" => {
+            diagnostic.help("a text without a folder cannot include files: paste the code")
+        }
         Some(near) => diagnostic.fix(Fix::new(
             format!("did you mean `#{near}`?"),
             at.span,
@@ -61,7 +66,17 @@ impl Preprocessor<'_> {
             self.report(Code::ErrorDirective.at(at, format!("#error {message}")));
             return;
         }
+        if self.inclusion.is_some() && self.is_active() && (name == "include" || name == "pragma") {
+            self.on_include(&name, at);
+            return;
+        }
         let line = self.rest_of_line();
+        if self.is_active()
+            && !CONDITIONS.contains(&&*name)
+            && let Some(inclusion) = &mut self.inclusion
+        {
+            inclusion.note_directive(&name);
+        }
         let done = match name.as_str() {
             "if" => self.on_if(&line, at),
             "ifdef" => self.on_ifdef(&line, at, true),
@@ -75,8 +90,9 @@ impl Preprocessor<'_> {
             "line" => self.line(line, at),
             "version" => self.version(&line, at),
             "extension" => self.extension(&line, at),
-            // §3.4: unknown pragmas are ignored.
-            "pragma" => Ok(()),
+            // §3.4: unknown pragmas are ignored. The declaration that an `#iUniform` stands for is in front of the
+            // text.
+            "pragma" | "iUniform" => Ok(()),
             _ => Err(Box::new(unknown_directive(&name, at))),
         };
         if let Err(diagnostic) = done {
@@ -95,7 +111,7 @@ impl Preprocessor<'_> {
         self.rest_of_line();
     }
 
-    fn rest_of_line(&mut self) -> Vec<PpToken> {
+    pub(super) fn rest_of_line(&mut self) -> Vec<PpToken> {
         let mut line = Vec::new();
         loop {
             let token = self.lex();

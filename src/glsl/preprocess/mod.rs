@@ -8,6 +8,7 @@ mod condition;
 mod directive;
 mod expand;
 mod expansions;
+mod include;
 mod lexer;
 mod macros;
 
@@ -19,6 +20,8 @@ use self::condition::Group;
 pub(crate) use self::directive::DIRECTIVES;
 use self::expand::Stream;
 pub use self::expansions::Expansions;
+use self::include::Inclusion;
+pub use self::include::{ReadInclude, with_includes};
 pub use self::lexer::ControlComment;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
@@ -265,6 +268,8 @@ struct Preprocessor<'a> {
     /// Nesting depth of macro calls in arguments of macro calls.
     depth: usize,
     diagnostics: Vec<Diagnostic>,
+    /// The included texts, while they replace their directives.
+    inclusion: Option<Inclusion<'a>>,
 }
 
 impl<'a> Preprocessor<'a> {
@@ -291,6 +296,7 @@ impl<'a> Preprocessor<'a> {
             gave_up: false,
             depth: 0,
             diagnostics: Vec::new(),
+            inclusion: None,
         }
     }
 
@@ -325,6 +331,7 @@ impl<'a> Preprocessor<'a> {
                     self.directive(token.at);
                     self.seen = self.seen.max(Prefix::Directive);
                 }
+                TokenKind::End if self.end_include() => {}
                 TokenKind::End => {
                     while let Some(group) = self.groups.pop() {
                         self.report(

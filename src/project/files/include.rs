@@ -1,0 +1,156 @@
+//! Reads the files that shaders include.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use toyproof_diagnostic::{Diagnostics, File, FileId, Files, path_name};
+use toyproof_glsl::{self as glsl, Options};
+
+use super::{Input, ReadError, read_text};
+
+/// Where the files that a shader includes may lie.
+#[derive(Debug, Clone)]
+pub struct IncludeFolders {
+    /// The folder of the shader or project.
+    own: PathBuf,
+    /// Further folders, in the order in which they are searched.
+    others: Vec<PathBuf>,
+}
+
+/// An included file.
+struct Found {
+    path: PathBuf,
+    file: FileId,
+}
+
+impl IncludeFolders {
+    /// The folder of an input, and others. That of a stream is the current one.
+    #[must_use]
+    pub fn of(input: &Input, others: &[PathBuf]) -> Self {
+        let own = match input.path() {
+            Some(path) if path.is_dir() => path,
+            Some(path) => path.parent().unwrap_or(path),
+            None => Path::new(""),
+        };
+        Self {
+            own: or_current(own),
+            others: others.to_vec(),
+        }
+    }
+
+    /// Adds the text in which included files replace their directives, see [`glsl::with_includes`].
+    ///
+    /// # Errors
+    /// A file cannot be read, lies outside the folders, or a limit is exceeded.
+    pub fn include(&self, files: &mut Files, file: FileId, options: &Options) -> Result<FileId, Diagnostics> {
+        self.read(files, file, options).0
+    }
+
+    /// The texts that a shader includes, directly or not, also where a condition skips the directive.
+    #[must_use]
+    pub fn texts(&self, file: &File) -> Vec<File> {
+        let mut files = Files::default();
+        let file = files.add(file.clone());
+        // An error is one of the check, which reports it.
+        let (_, found) = self.read(&mut files, file, &Options::default());
+        found
+            .values()
+            .map(|found| files.get(found.file).clone())
+            .collect()
+    }
+
+    /// Also returns the files, by their canonical paths.
+    fn read(
+        &self,
+        files: &mut Files,
+        file: FileId,
+        options: &Options,
+    ) -> (Result<FileId, Diagnostics>, BTreeMap<PathBuf, Found>) {
+        let mut found: BTreeMap<PathBuf, Found> = BTreeMap::new();
+        let joined = glsl::with_includes(files, file, options, &mut |files, from, path| {
+            let including = found.values().find(|found| found.file == from);
+            let folder = including
+                .and_then(|found| found.path.parent())
+                .unwrap_or(&self.own);
+            let path = self.resolve(folder, path)?;
+            let canonical = path.canonicalize().map_err(|error| error.to_string())?;
+            if let Some(found) = found.get(&canonical) {
+                return Ok(found.file);
+            }
+            let text = read_text(&path).map_err(|error| error.to_string())?;
+            let file = files.add(text);
+            found.insert(canonical, Found { path, file });
+            Ok(file)
+        });
+        (joined, found)
+    }
+
+    /// The path of an included file: relative to the file that includes it, else to one of the folders.
+    fn resolve(&self, including: &Path, path: &str) -> Result<PathBuf, String> {
+        let folders = || [&self.own].into_iter().chain(&self.others);
+        let bases = [including].into_iter().chain(folders().map(PathBuf::as_path));
+        let mut candidates = bases.map(|base| base.join(path));
+        let shown = path_name(Path::new(path));
+        let Some(found) = candidates.find(|candidate| candidate.is_file()) else {
+            let mut names: Vec<String> = folders().map(|folder| path_name(folder)).collect();
+            names.dedup();
+            let names = names.join(", ");
+            return Err(match path.starts_with("lygia/") {
+                true => format!(
+                    "there is no {shown} in {names}: name the folder in which `lygia` lies with --include-dir"
+                ),
+                false => format!("there is no {shown} in {names}: name its folder with --include-dir"),
+            });
+        };
+        let canonical = found.canonicalize().map_err(|error| error.to_string())?;
+        let is_inside = |folder: &PathBuf| {
+            let folder = folder.canonicalize();
+            folder.is_ok_and(|folder| canonical.starts_with(folder))
+        };
+        if folders().any(is_inside) {
+            Ok(found)
+        } else {
+            let message = "is outside of the shader's folder: allow its folder with --include-dir";
+            Err(format!("{shown} {message}"))
+        }
+    }
+}
+
+/// Removes the files of searched folders that others include and that are no shaders by themselves.
+pub fn drop_included(inputs: &mut Vec<Result<Input, ReadError>>) {
+    let mut included: HashSet<PathBuf> = HashSet::new();
+    for input in inputs.iter().flatten().filter(|input| input.folder.is_some()) {
+        let Some(Ok(text)) = input.path().filter(|path| path.is_file()).map(read_text) else {
+            continue;
+        };
+        if !text.text().contains("include") {
+            continue;
+        }
+        let mut files = Files::default();
+        let file = files.add(text);
+        let (_, found) = IncludeFolders::of(input, &[]).read(&mut files, file, &Options::default());
+        let parts = found
+            .into_iter()
+            .filter(|(_, found)| !files.get(found.file).text().contains("main"));
+        included.extend(parts.map(|(path, _)| path));
+    }
+    if included.is_empty() {
+        return;
+    }
+    inputs.retain(|input| match input {
+        Ok(input) if input.folder.is_some() => {
+            let canonical = input.path().and_then(|path| path.canonicalize().ok());
+            canonical.is_none_or(|path| !included.contains(&path))
+        }
+        _ => true,
+    });
+}
+
+/// A folder with a name.
+fn or_current(folder: &Path) -> PathBuf {
+    if folder.as_os_str().is_empty() {
+        PathBuf::from(".")
+    } else {
+        folder.to_owned()
+    }
+}
