@@ -18,8 +18,8 @@ use toyproof_tracer::Tracer;
 use toyproof_verify::project::bind::{accumulate, default_frame};
 use toyproof_verify::{self as verify, debug};
 
-use super::check::{Scenes, read_assignment};
-use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit};
+use super::check::{Scenes, assignment_beside, read_assignment};
+use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit, resized};
 use super::project::{pass_shader, rendering, target};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::run::{evaluation_error, parse_pass};
@@ -65,24 +65,31 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let input = find_one(&args.shader, "debug", terminal)?;
-    let assignment = match &args.assignment {
-        Some(path) => Some(read_assignment(path)?.1),
+    let beside = || {
+        input
+            .as_ref()
+            .ok()
+            .filter(|_| !args.reference.is_given())
+            .and_then(assignment_beside)
+    };
+    let assignment = match args.assignment.clone().or_else(beside) {
+        Some(path) => Some(read_assignment(&path)?.1),
         None => None,
     };
+    let uniforms = assignment.as_ref().map(|assignment| &assignment.uniforms[..]);
+    let language = args.language.with_uniforms(uniforms.unwrap_or_default());
     let reference = match &assignment {
         Some(assignment) => ReferenceArgs::of(assignment),
         None => args.reference.clone(),
     };
-    let given = GivenReference::read(&reference, &args.language, args.timeout)?;
-    let first = assignment
-        .as_ref()
-        .and_then(|assignment| assignment.frames.first());
-    let inputs = match first.filter(|_| !args.frame.is_given()) {
-        Some(first) => first.clone(),
+    let given = GivenReference::read(&reference, &language, args.timeout)?;
+    let frames = assignment.as_ref().filter(|_| !args.frame.is_given());
+    let inputs = match frames {
+        Some(assignment) => resized(&assignment.frames, args.frame.size).swap_remove(0),
         None => args.frame.inputs(),
     };
     let (frame, scene) = frame_and_scene(args, &inputs, &reference, &input, given.as_ref())?;
-    let shader = Shader::load(&input, &args.language, Deadline::after(args.timeout));
+    let shader = Shader::load(&input, &language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     let kind = args.pass.unwrap_or(PassKind::Image);
     let image = shader.require_image()?;

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use toyproof_diagnostic::{Diagnostic, Files};
+use toyproof_diagnostic::{Diagnostic, Files, short};
 
 /// The exit status of a command; the codes have the meanings that they have in grep, diff and cmp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,6 +67,15 @@ impl CliError {
             help: Some(help.to_string()),
             ..self
         }
+    }
+
+    /// The first diagnostic, and the message, in one line.
+    pub(super) fn in_one_line(&self) -> String {
+        let diagnostic = self.diagnostics.as_ref();
+        let diagnostic = diagnostic.and_then(|(all, files)| Some(short(all.first()?, files)));
+        let message = self.message.as_deref().and_then(|message| message.lines().next());
+        let parts = diagnostic.iter().map(String::as_str).chain(message);
+        parts.collect::<Vec<_>>().join("; ")
     }
 
     /// Sets the exit status, which is [`Exit::Error`] by default.

@@ -78,10 +78,9 @@ pub(super) struct FrameArgs {
 }
 
 impl FrameArgs {
-    /// Whether any flag of a frame is given.
+    /// Whether any flag of a frame besides its size is given.
     pub(super) fn is_given(&self) -> bool {
         let Self {
-            size,
             time,
             frame,
             mouse,
@@ -90,7 +89,6 @@ impl FrameArgs {
             ..
         } = self;
         let is_given = [
-            size.is_some(),
             time.is_some(),
             frame.is_some(),
             mouse.is_some(),
@@ -151,6 +149,21 @@ impl FrameArgs {
                 .map(|channel| channel.as_deref().map(Channel::named)),
         }
     }
+}
+
+/// The frames of an assignment, each once, in the size that the user gives, if any.
+pub(super) fn resized(frames: &[FrameInputs], size: Option<[u32; 2]>) -> Vec<FrameInputs> {
+    let mut resized: Vec<FrameInputs> = Vec::new();
+    for frame in frames {
+        let frame = FrameInputs {
+            size: size.or(frame.size),
+            ..frame.clone()
+        };
+        if !resized.contains(&frame) {
+            resized.push(frame);
+        }
+    }
+    resized
 }
 
 /// Reads a script of the mouse and the keyboard.
@@ -214,6 +227,9 @@ pub(super) struct LanguageArgs {
     /// The value of a uniform that the shader declares: `speed=2`, `color=1,0,0`
     #[arg(long, value_name = "NAME=X[,Y…]", value_parser = parse_uniform, allow_hyphen_values = true)]
     uniform: Vec<UniformValue>,
+    /// A folder in which `#include "file"` is searched, after that of the shader
+    #[arg(long, value_name = "DIR", hide_short_help = true)]
+    include_dir: Vec<PathBuf>,
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
     ///
     /// A comment `// toyproof: allow(W0005)` in the shader takes precedence.
@@ -348,6 +364,15 @@ impl LanguageArgs {
         }
     }
 
+    /// These options with values of uniforms that the user does not give.
+    pub(super) fn with_uniforms(&self, values: &[UniformValue]) -> Self {
+        let mut all = self.clone();
+        let is_given = |value: &&UniformValue| self.uniform.iter().any(|given| given.name == value.name);
+        all.uniform
+            .extend(values.iter().filter(|value| !is_given(value)).cloned());
+        all
+    }
+
     /// The flags that set these options, for a command that the user may run.
     pub(super) fn flags(&self) -> Vec<String> {
         let lenient = self.lenient.then(|| "--lenient".to_owned());
@@ -359,7 +384,15 @@ impl LanguageArgs {
             let components: Vec<String> = components.iter().map(f64::to_string).collect();
             format!("--uniform {name}={}", components.join(","))
         });
-        lenient.into_iter().chain(dialect).chain(uniforms).collect()
+        let folders = self.include_dir.iter();
+        let folders = folders.map(|folder| format!("--include-dir {}", shell_word(&path_name(folder))));
+        let flags = lenient.into_iter().chain(dialect).chain(uniforms);
+        flags.chain(folders).collect()
+    }
+
+    /// The folders in which included files are searched.
+    pub(super) fn include_folders(&self) -> &[PathBuf] {
+        &self.include_dir
     }
 
     pub(super) fn denied(&self) -> &[Deny] {

@@ -32,18 +32,18 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         terminal.note("`toyproof scenes --write DIR` writes their shaders (.glsl) and scenes (.toml)");
         return Ok(Exit::Success);
     };
-    let differs = |name: &str, text: &str| {
+    let differs = |name: &str, content: &[u8]| {
         let path = folder.join(name);
-        path.exists() && input::read(&path).ok().as_deref() != Some(text.as_bytes())
+        path.exists() && input::read(&path).ok().as_deref() != Some(content)
     };
-    if let Some((name, _)) = course_files().find(|(name, text)| differs(name, text)) {
+    if let Some((name, _)) = course_files().find(|(name, content)| differs(name, content)) {
         return Err(CliError::new(format_args!(
             "{} already exists with other contents; nothing was written, choose another folder",
             path_name(&folder.join(name))
         )));
     }
-    for (name, text) in course_files() {
-        terminal.write(&folder.join(name), text.as_bytes())?;
+    for (name, content) in course_files() {
+        terminal.write(&folder.join(name), content)?;
     }
     terminal.note(&format!(
         "wrote {} files to {}",
@@ -129,23 +129,27 @@ static COURSE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/glsl");
 
 /// The scenes of the course by their names, in order.
 fn course_scenes() -> impl Iterator<Item = (&'static str, &'static str)> {
-    // The other TOML files are those of projects, in folders, and the tests of functions.
+    // The other TOML files are those of projects and of exercises in folders, and the tests of functions.
     let is_scene = |stem: &&str| !stem.contains('/') && stem.strip_suffix(".test").is_none();
-    course_files().filter_map(move |(name, text)| {
+    course_files().filter_map(move |(name, content)| {
         let stem = name.strip_suffix(".toml").filter(is_scene)?;
-        Some((stem, text))
+        Some((stem, str::from_utf8(content).ok()?))
     })
 }
 
 /// All files of the course, sorted by name: shaders (`NN-name.glsl`, or the files of a project in the folder
-/// `NN-name`), their scenes (`NN-name.toml`) and the tests of their functions (`NN-name.test.toml`).
-fn course_files() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let projects = COURSE.dirs().flat_map(Dir::files);
-    let mut files: Vec<_> = COURSE
-        .files()
-        .chain(projects)
-        .filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)))
-        .collect();
+/// `NN-name`), their scenes or assignments (`NN-name.toml`), the tests of their functions (`NN-name.test.toml`),
+/// and what assignments refer to.
+fn course_files() -> impl Iterator<Item = (&'static str, &'static [u8])> {
+    let mut files = Vec::new();
+    let mut folders = vec![&COURSE];
+    while let Some(folder) = folders.pop() {
+        folders.extend(folder.dirs());
+        let named = folder
+            .files()
+            .filter_map(|file| Some((file.path().to_str()?, file.contents())));
+        files.extend(named);
+    }
     files.sort_unstable();
     files.into_iter()
 }

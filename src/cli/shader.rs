@@ -10,8 +10,8 @@ use toyproof_diagnostic::{
 use toyproof_glsl::tree::VariableKind;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
-use toyproof_project::CompiledProject;
-use toyproof_project::files::{self, Input, ReadError, Search, Texts, content_diagnostic};
+use toyproof_project::files::{self, IncludeFolders, Input, ReadError, Search, Texts, content_diagnostic};
+use toyproof_project::{CompiledProject, with_declarations};
 
 use super::inputs::{Deny, LanguageArgs};
 use super::scenes::with_builtin_hint;
@@ -50,11 +50,17 @@ impl Content {
 }
 
 /// The warnings about values of uniforms that no pass declares.
-fn undeclared_uniforms(trees: &[&Checked], options: &glsl::Options) -> Vec<Diagnostic> {
+fn undeclared_uniforms(content: &Content, options: &glsl::Options) -> Vec<Diagnostic> {
+    let trees = content.trees();
+    let of_project = match content {
+        Content::Project(project) => &project.project.uniforms[..],
+        Content::Shader(_) => &[],
+    };
     let variables = || trees.iter().flat_map(|checked| checked.tree.variables.iter());
     let uniforms = || variables().filter(|(_, variable)| variable.kind == VariableKind::Uniform);
     let names = || uniforms().map(|(_, variable)| variable.name.as_str());
-    let undeclared = options.uniforms.iter().map(|value| value.name.as_str());
+    let given = options.uniforms.iter().chain(of_project);
+    let undeclared = given.map(|value| value.name.as_str());
     let undeclared = undeclared.filter(|&name| names().all(|declared| declared != name));
     let warnings = undeclared.map(|name| {
         let message = format!("the shader declares no uniform `{name}`, whose value is given");
@@ -127,11 +133,17 @@ impl Shader {
             Err(error) => (error.name(), Err(Unusable::Unreadable(error.into()))),
             Ok(found) => {
                 let options = language.options(deadline);
-                let content = read(found, &mut files, &mut lints, &mut has_passes, &options);
+                let includes = IncludeFolders::of(found, language.include_folders());
+                let content = read(
+                    found,
+                    &includes,
+                    &mut files,
+                    &mut lints,
+                    &mut has_passes,
+                    &options,
+                );
                 if let Ok(content) = &content {
-                    lints
-                        .warnings
-                        .extend(undeclared_uniforms(&content.trees(), &options));
+                    lints.warnings.extend(undeclared_uniforms(content, &options));
                 }
                 let denied = denied(&mut lints.warnings, language.denied());
                 let content = match content {
@@ -229,6 +241,7 @@ pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Dia
 
 fn read(
     found: &Input,
+    includes: &IncludeFolders,
     files: &mut Files,
     lints: &mut Lints,
     has_passes: &mut bool,
@@ -237,8 +250,12 @@ fn read(
     match files::read(found) {
         Ok(Texts::Shader(text)) => {
             let file = files.add(text);
-            let checked = glsl::check(files, file, options)
-                .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, options)))?;
+            let mut options = options.clone();
+            let complete = includes.include(files, file, &options);
+            let complete = complete.and_then(|file| with_declarations(files, file, &mut options));
+            let file = complete.map_err(|errors| Unusable::Invalid(errors.into()))?;
+            let checked = glsl::check(files, file, &options)
+                .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, &options)))?;
             *lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
             Ok(Content::Shader(Box::new(checked)))
         }
@@ -247,7 +264,9 @@ fn read(
             let folder = texts.folder().map(Path::to_owned);
             let project = texts.parse(files).map_err(invalid)?;
             *has_passes = !project.needed_by_image().is_empty();
-            let compiled = CompiledProject::compile(project, folder.as_deref(), files, options);
+            // JSON of the site is a project without a folder, and has its texts in itself.
+            let includes = folder.is_some().then_some(includes);
+            let compiled = CompiledProject::compile(project, folder.as_deref(), includes, files, options);
             let (project, of_project) = compiled.map_err(invalid)?;
             *lints = of_project;
             Ok(Content::Project(project))
@@ -317,6 +336,7 @@ fn find_in(
         })
         .map(|input| input.map_err(with_builtin_hint))
         .collect();
+    files::drop_included(&mut inputs);
     keep_folders(&mut inputs);
     inputs
 }

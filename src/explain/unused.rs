@@ -1,10 +1,10 @@
 //! The inputs, and the functions of the same name, that a reference shader uses and another shader does not.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use toyproof_diagnostic::Span;
 use toyproof_glsl::Checked;
-use toyproof_glsl::tree::ExprKind;
+use toyproof_glsl::tree::{ExprKind, VariableKind};
 use toyproof_verify::random::reachable_expressions;
 
 /// The inputs and functions that a reference uses and a shader does not.
@@ -22,23 +22,33 @@ impl Unused {
     #[must_use]
     pub fn new(shader: &[&Checked], reference: &[&Checked]) -> Self {
         let (own, expected) = (Uses::new(shader), Uses::new(reference));
-        let mut inputs = expected.inputs;
-        inputs.retain(|name| !own.inputs.contains(name));
+        let missing = expected.inputs.difference(&own.inputs);
+        let mut inputs: Vec<String> = missing.map(|kind| name(*kind, shader)).collect();
+        inputs.sort_unstable();
         let is_uncalled = |name: &str| own.defined.contains(name) && !own.calls.contains_key(name);
         let calls = expected.calls.into_iter().filter(|(name, _)| is_uncalled(name));
         let mut functions: Vec<_> = calls.collect();
         functions.sort_by_key(|(_, span)| span.start);
-        Self {
-            inputs: inputs.into_iter().collect(),
-            functions,
-        }
+        Self { inputs, functions }
     }
+}
+
+/// The name of an input in the dialect of a shader, which may not declare it.
+fn name(kind: VariableKind, shader: &[&Checked]) -> String {
+    let of_host = match (kind, shader.first()) {
+        (VariableKind::Input(input), Some(checked)) => checked.dialect.name_of(input),
+        _ => None,
+    };
+    let mut variables = shader.iter().flat_map(|checked| checked.tree.variables.iter());
+    let found = variables.find(|(_, variable)| variable.kind == kind);
+    let own = found.map_or_else(String::new, |(_, variable)| variable.name.clone());
+    of_host.map_or(own, str::to_owned)
 }
 
 /// The inputs and functions that the passes of a shader use.
 #[derive(Default)]
 struct Uses {
-    inputs: BTreeSet<String>,
+    inputs: HashSet<VariableKind>,
     /// Called functions, each with its first call.
     calls: BTreeMap<String, Span>,
     /// Functions with a body.
@@ -53,7 +63,7 @@ impl Uses {
             for expr in reachable_expressions(tree, checked.main_image) {
                 match tree[expr].kind {
                     ExprKind::Variable(variable) if tree[variable].kind.is_input() => {
-                        uses.inputs.insert(tree[variable].name.clone());
+                        uses.inputs.insert(tree[variable].kind);
                     }
                     ExprKind::Call { function, .. } => {
                         let at = tree[expr].at.span;

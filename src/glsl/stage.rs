@@ -1,5 +1,6 @@
 //! The tabs of a project, which are compiled with different inputs and entry points.
 
+use crate::ADDED_MAIN;
 use crate::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
 
 /// The kind of program that a text is compiled as: a tab of ShaderToy's editor.
@@ -74,6 +75,13 @@ impl Stage {
             Self::Common => return None,
         })
     }
+}
+
+/// The function that is called instead of the host's, see [`ADDED_MAIN`].
+pub(crate) fn added_entry() -> Entry {
+    let mut entry = Stage::Image.entry().expect("it has one");
+    entry.name = ADDED_MAIN;
+    entry
 }
 
 /// The type of a parameter, and its possible qualifiers.

@@ -1,4 +1,4 @@
-//! The requirements of an assignment besides the image: rules, and tests of functions.
+//! The requirements of an assignment besides the image as a whole: rules, tests of functions, and features.
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{grouped, plural};
@@ -90,6 +90,44 @@ impl FunctionRecord {
     }
 }
 
+/// A feature of the image.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FeatureRecord {
+    /// The name.
+    pub name: String,
+    /// The points for a shader that is right in all pixels that the feature changes.
+    pub points: f64,
+    /// The number of these pixels in all frames.
+    pub pixels: u64,
+    /// The number of those in which the shader is right.
+    pub right: u64,
+}
+
+impl FeatureRecord {
+    fn sentence(&self) -> String {
+        format!(
+            "{}: {} of the {} {} that it changes {} right",
+            self.name,
+            grouped(self.right),
+            grouped(self.pixels),
+            plural(self.pixels, "pixel", "pixels"),
+            plural(self.right, "is", "are"),
+        )
+    }
+
+    /// The mark: the share of right pixels, rounded down to hundredths; all points if the image is right.
+    fn mark(&self, is_right: bool) -> Mark {
+        let share = self.right as f64 / self.pixels.max(1) as f64;
+        let partial = (100.0 * self.points * share).floor() / 100.0;
+        Mark {
+            name: self.name.clone().into(),
+            points: if is_right { self.points } else { partial },
+            of: self.points,
+            why: self.sentence(),
+        }
+    }
+}
+
 impl Record {
     /// Whether the shader has no fault: its verdict is good, no rule is violated, and all functions are
     /// right.
@@ -98,8 +136,8 @@ impl Record {
         self.verdict.is_good() && self.faults().is_empty()
     }
 
-    /// The violated rules and the functions that are not right, each with a label. The violations of a shader
-    /// that does not compile are not known.
+    /// The violated rules, the functions that are not right, and the features of a wrong image, each with a
+    /// label. The violations of a shader that does not compile are not known.
     pub(super) fn faults(&self) -> Vec<(&'static str, String)> {
         let violations = self
             .rules
@@ -110,7 +148,10 @@ impl Record {
         let functions = self.functions.iter();
         let wrong = functions.filter(|function| !function.passed && self.is_compiled());
         let wrong = wrong.map(|function| ("function", function.sentence()));
-        violations.chain(wrong).collect()
+        let is_shown = !self.verdict.is_good() && self.is_compiled();
+        let features = self.features.iter().filter(|_| is_shown);
+        let features = features.map(|feature| ("feature", feature.sentence()));
+        violations.chain(wrong).chain(features).collect()
     }
 
     /// The functions that are right, each in a sentence.
@@ -123,7 +164,7 @@ impl Record {
         self.verdict.is_compiled()
     }
 
-    /// The marks for rules and functions that have points.
+    /// The marks for rules, functions and features that have points.
     pub(super) fn assigned_marks(&self) -> Vec<Mark> {
         let rules = self.rules.iter().map(|rules| {
             let (passed, why) = match rules.violations.as_deref() {
@@ -140,7 +181,10 @@ impl Record {
             let why = function.sentence();
             mark(function.name.clone(), function.points, function.passed, why)
         });
-        rules.chain(functions).filter(|mark| mark.of > 0.0).collect()
+        let is_right = self.verdict.is_good();
+        let features = self.features.iter().map(|feature| feature.mark(is_right));
+        let marks = rules.chain(functions).chain(features);
+        marks.filter(|mark| mark.of > 0.0).collect()
     }
 }
 

@@ -35,7 +35,7 @@ mod thumbnails;
 mod trace;
 mod unused;
 
-pub use assigned::{FunctionRecord, RulesRecord, Violation};
+pub use assigned::{FeatureRecord, FunctionRecord, RulesRecord, Violation};
 pub use class::ClassTable;
 pub use csv::csv;
 pub use departure::{Departure, MissingValue, UnknownValue};

@@ -172,11 +172,11 @@ pub enum Reading {
     Function(Signature),
 }
 
-/// A `mainImage` that reads a case and returns `result`, an expression of type vec3 that may use the texels
+/// A function of this name, which is called like `mainImage`, that reads a case and returns `result`, an expression of type vec3 that may use the texels
 /// `a`, `b` and `c`.
-pub(crate) fn main(steps: &str, result: &str) -> String {
+pub(crate) fn main(name: &str, steps: &str, result: &str) -> String {
     format!(
-        "void mainImage(out vec4 color, in vec2 place) {{
+        "void {name}(out vec4 color, in vec2 place) {{
     ivec2 at = ivec2(place);
     vec4 a = texelFetch(iChannel0, at, 0);
     vec4 b = texelFetch(iChannel1, at, 0);
@@ -195,6 +195,7 @@ pub fn subjects() -> Vec<Subject> {
         kind: Kind::Spheres,
         text: formula.text.to_owned()
             + &main(
+                "mainImage",
                 "",
                 &format!(
                     "vec3({}(a.xyz, b.xyz, c.xyz, a.w, 0.0), 0.0, 0.0)",
@@ -208,7 +209,12 @@ pub fn subjects() -> Vec<Subject> {
     let quadrics = QUADRICS.into_iter().map(|(name, text)| Subject {
         name: name.to_owned(),
         kind: Kind::Quadrics,
-        text: text.to_owned() + &main("", "vec3(quadric(a.xyz, b.xyz, c.xyz, a.w, b.w), 0.0, 0.0)"),
+        text: text.to_owned()
+            + &main(
+                "mainImage",
+                "",
+                "vec3(quadric(a.xyz, b.xyz, c.xyz, a.w, b.w), 0.0, 0.0)",
+            ),
         in_f64: true,
         reading: Reading::Root,
         options: glsl::Options::default(),
@@ -357,6 +363,6 @@ impl Strategy {
     bool seen = near > tMin && near < 0.1 * a.w;
 "
         );
-        main(&steps, "vec3(again > tMin, !seen, 0.0)")
+        main("mainImage", &steps, "vec3(again > tMin, !seen, 0.0)")
     }
 }

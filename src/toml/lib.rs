@@ -385,21 +385,21 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// Removes and returns the entries that have not been read, of a table whose keys are names that its
-    /// author chose. Those that are not strings are reported.
-    pub fn take_strings(&mut self) -> Vec<(String, String)> {
-        let mut strings = Vec::new();
+    /// author chose. Those of another type are reported.
+    pub fn take_entries<T: Value>(&mut self) -> Vec<(String, T)> {
+        let mut entries = Vec::new();
         for (name, value) in std::mem::take(&mut self.entries) {
-            match String::read(&value) {
-                Ok(value) => strings.push((name.into_inner().into_owned(), value)),
+            match T::read(&value) {
+                Ok(value) => entries.push((name.into_inner().into_owned(), value)),
                 Err(mismatch) => {
                     let name = name.get_ref();
-                    let message = format!("`{name}` must be a string, found {}", mismatch.found);
-                    let help = format!("for example `{name} = \"name\"`");
+                    let message = format!("`{name}` must be {}, found {}", T::EXPECTED, mismatch.found);
+                    let help = format!("for example `{name} = {}`", T::EXAMPLE);
                     self.reject_form(self.reader.span(mismatch.bytes), message, &help);
                 }
             }
         }
-        strings
+        entries
     }
 
     /// Whether the value of a key is a table.

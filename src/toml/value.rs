@@ -162,6 +162,18 @@ pub enum Literal {
     List(Vec<Literal>),
 }
 
+impl Literal {
+    /// All numbers in it, in order; 1 and 0 for `true` and `false`.
+    #[must_use]
+    pub fn components(&self) -> Vec<f64> {
+        match self {
+            Self::Number { value, .. } => vec![*value],
+            Self::Boolean(value) => vec![f64::from(*value)],
+            Self::List(literals) => literals.iter().flat_map(Self::components).collect(),
+        }
+    }
+}
+
 impl Value for Literal {
     const EXPECTED: &'static str = "a number, `true`, `false` or a list of these";
     const EXAMPLE: &'static str = "1.0";

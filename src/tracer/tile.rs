@@ -69,8 +69,9 @@ struct PacketSamples {
 impl PacketSamples {
     /// Returns the samples of one of the `count` packets in which a tile with `count` samples per pixel is
     /// traced. Those of a pixel are in the order of their indices, over all packets.
-    fn new(number: u32, count: u32) -> Self {
-        if !count.is_multiple_of(ADJACENT_SAMPLES as u32) {
+    fn new(number: u32, count: u32, sampler: Sampler) -> Self {
+        // Rays through the centers are made for a whole tile.
+        if sampler == Sampler::Center || !count.is_multiple_of(ADJACENT_SAMPLES as u32) {
             return Self {
                 pixels: std::array::from_fn(|at| at),
                 indices: [number; PACKET_RAYS],
@@ -167,7 +168,7 @@ impl<T: Real> Tracer<T> {
         let mut sums = [[T::zero(); PACKET_RAYS]; 3];
         let count = self.film.samples;
         for number in 0..count {
-            let rays = PacketSamples::new(number, count);
+            let rays = PacketSamples::new(number, count, sampler);
             let pixel = |at: usize| tile.pixel(rays.pixels[at]);
             let mut streams = [const { SampleStream::Center }; PACKET_RAYS];
             let screen = match sampler {

@@ -101,14 +101,12 @@ fn the_course_is_correct_and_its_json_follows_the_schema() {
     let schema: Value = serde_json::from_str(toyproof::report::SCHEMA).unwrap();
     jsonschema::validate(&schema, &json).unwrap();
     let shaders = json["shaders"].as_array().unwrap();
-    assert_eq!(shaders.len(), 16);
+    // Those of the course, and the exercises in two dimensions with their assignments.
+    assert_eq!(shaders.len(), 16 + 8);
     for shader in shaders {
         assert_eq!(shader["verdict"], "correct", "{shader}");
-        let stem = Path::new(shader["shader"].as_str().unwrap())
-            .file_stem()
-            .unwrap()
-            .to_str()
-            .unwrap();
+        let path = Path::new(shader["shader"].as_str().unwrap()).with_extension("");
+        let stem = path.strip_prefix("glsl").unwrap().to_str().unwrap();
         for kind in ["reference", "actual", "difference"] {
             assert!(folder.path().join(format!("{stem}-{kind}.png")).is_file());
         }
@@ -525,7 +523,11 @@ fn written_scenes_pass_the_check() {
     assert!(toyproof(root(), &["scenes"]).stdout.contains("05-complex-scene"));
     let run = toyproof(folder.path(), &["scenes", "--write", "course"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    for name in ["02-sphere.glsl", "06-reflections.toml"] {
+    for name in [
+        "02-sphere.glsl",
+        "06-reflections.toml",
+        "2d/reference/08-image.png",
+    ] {
         let written = fs::read(folder.path().join("course").join(name)).unwrap();
         assert_eq!(written, fs::read(root().join("glsl").join(name)).unwrap());
     }

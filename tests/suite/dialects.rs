@@ -182,3 +182,131 @@ fn functions_of_another_host_are_tested() {
         "{run:?}"
     );
 }
+
+#[test]
+fn textures_and_arrays_of_another_host_are_bound() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = "uniform vec3 iChannelResolution[4];\nuniform float iChannelTime[4];\n";
+    let files = [
+        // A name of the host keeps its channel, wherever it is declared.
+        (
+            "order.frag",
+            "uniform sampler2D other, u_tex0;\nvoid main() { gl_FragColor = texture2D(other, vec2(0.5)) + texture2D(u_tex0, vec2(0.5)); }\n",
+        ),
+        (
+            "same.glsl",
+            "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, vec2(0.5)) + texture(iChannel0, vec2(0.5)); }\n",
+        ),
+        (
+            "five.frag",
+            "uniform sampler2D a, b, c, d, e;\nvoid main() { gl_FragColor = texture2D(e, vec2(0)); }\n",
+        ),
+        (
+            "four.frag",
+            "uniform sampler2D a, b, c, d, e;\nvoid main() { gl_FragColor = texture2D(d, vec2(0)); }\n",
+        ),
+        (
+            "surface.frag",
+            "varying vec2 surfacePosition;\nuniform vec2 surfaceSize;\nvoid main() { gl_FragColor = vec4(surfacePosition / surfaceSize + 0.5, 0.0, 1.0); }\n",
+        ),
+        (
+            "quad.glsl",
+            "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0); }\n",
+        ),
+        (
+            "size.frag",
+            &format!(
+                "{size}void main() {{ gl_FragColor = vec4(iChannelResolution[0].xy / 512.0, iChannelTime[1], 1.0); }}\n"
+            ),
+        ),
+        (
+            "size.glsl",
+            "void mainImage(out vec4 c, in vec2 p) { c = vec4(iChannelResolution[0].xy / 512.0, iChannelTime[1], 1.0); }\n",
+        ),
+    ];
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let verdict = |arguments: &[&str]| {
+        let common = [
+            "--size",
+            "32x18",
+            "--device",
+            "cpu",
+            "--format",
+            "json",
+            "--channel0",
+            "noise",
+        ];
+        record(&toyproof(
+            folder.path(),
+            &[&["check"], arguments, &common].concat(),
+        ))["verdict"]
+            .clone()
+    };
+    for (shader, reference) in [
+        ("order.frag", "same.glsl"),
+        ("surface.frag", "quad.glsl"),
+        ("size.frag", "size.glsl"),
+    ] {
+        assert_eq!(
+            verdict(&[shader, "--reference", reference]),
+            "correct",
+            "{shader}"
+        );
+    }
+    assert_eq!(
+        [verdict(&["five.frag"]), verdict(&["four.frag"])],
+        ["invalid", "ok"]
+    );
+}
+
+#[test]
+fn an_input_of_the_host_is_added_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let book = "precision mediump float;\nuniform vec2 u_resolution;\nuniform float u_time;\nvoid main() {\n    \
+                vec2 st = gl_FragCoord.xy / u_resolution;\n    gl_FragColor = vec4(st, 0.5 + 0.5 * sin(6.0 * st.x), 1.0);\n}\n";
+    let reference = "void mainImage(out vec4 c, in vec2 p) {\n    vec2 st = p / iResolution.xy;\n    \
+                     c = vec4(st, 0.5 + 0.5 * sin(6.0 * st.x + iTime), 1.0);\n}\n";
+    fs::write(folder.path().join("book.frag"), book).unwrap();
+    fs::write(folder.path().join("toy.glsl"), reference).unwrap();
+    let arguments = [
+        "check",
+        "book.frag",
+        "--reference",
+        "toy.glsl",
+        "--size",
+        "64x36",
+        "--time",
+        "1.3",
+        "--device",
+        "cpu",
+        "--format",
+        "json",
+    ];
+    let wrong = record(&toyproof(folder.path(), &arguments));
+    let fix = wrong["fix"]["text"].as_str().unwrap_or_default();
+    assert!(fix.contains("+ u_time"), "{wrong}");
+    let details = wrong["details"].to_string();
+    assert!(details.contains("the reference reads `u_time`"), "{details}");
+}
+
+#[test]
+fn a_function_of_another_host_is_called_and_not_its_image() {
+    let folder = tempfile::tempdir().unwrap();
+    for version in ["", "#version 300 es\n", "#version 330\n"] {
+        let output = if version.is_empty() { "" } else { "out vec4 gl;\n" };
+        let shader = format!(
+            "{version}precision mediump float;\n{output}// @test twice(2.0) == 4.0\n// @test twice(2.0) == 0.5\n\
+             float twice(float x) {{ return 2.0 * x; }}\nvoid main() {{ {} = vec4(0.5); }}\n",
+            if version.is_empty() { "gl_FragColor" } else { "gl" }
+        );
+        fs::write(folder.path().join("twice.frag"), shader).unwrap();
+        let run = toyproof(folder.path(), &["test", "twice.frag"]);
+        assert!(
+            run.stdout.contains("2 tests: 1 passed") || run.stderr.contains("2 tests: 1 passed"),
+            "{run:?}"
+        );
+        assert!(run.stdout.contains("is 4, expected 0.5"), "{run:?}");
+    }
+}

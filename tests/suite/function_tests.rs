@@ -457,7 +457,8 @@ fn each_exercise_passes_its_tests() {
     for entry in fs::read_dir(folder.path().join("course")).unwrap() {
         let path = entry.unwrap().path();
         let stem = path.file_stem().unwrap().to_str().unwrap();
-        if path.is_dir() || path.extension().is_some_and(|extension| extension == "glsl") {
+        if path.join("image.glsl").is_file() || path.extension().is_some_and(|extension| extension == "glsl")
+        {
             assert!(
                 run.stdout.contains(&format!("course/{stem}.test.toml:")),
                 "{stem}: {run:?}"

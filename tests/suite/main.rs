@@ -16,6 +16,7 @@ mod browser;
 mod code_hosts;
 mod collected;
 mod commands;
+mod composed;
 mod containment;
 mod conversion;
 mod conversion_accepted;

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
+use toyproof_glsl::UniformValue;
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_project::{PassKind, Tab};
 use toyproof_report::{Rubric, optional_points};
-use toyproof_toml::{Format, Located, Table};
+use toyproof_toml::{Format, Literal, Located, Table};
 use toyproof_verify::{Difference, UnknownDifference};
 
-use super::{Assignment, MAX_FRAMES, Reference, Rules};
+use super::{Assignment, Feature, MAX_FRAMES, Reference, Rules};
 use crate::function_test::{function_tests, is_identifier};
 
 static FORMAT: Format = Format {
@@ -50,9 +51,12 @@ impl Assignment {
             if frames.is_empty() {
                 frames.push(FrameInputs::default());
             }
+            let uniforms = document.table("uniforms", uniforms).unwrap_or_default();
             let rubric = document.table("rubric", Rubric::read);
             let rules = document.table("rules", rules);
             let functions = function_tests(document);
+            let features = document.tables("feature", |table| feature(table, folder));
+            let features: Vec<Feature> = features.into_iter().flatten().collect();
             document.reject_key(
                 "deadline",
                 "a deadline belongs to a class, not to an assignment",
@@ -66,7 +70,8 @@ impl Assignment {
             }
             let of_rules = rules.as_ref().map_or(0.0, |rules| rules.points);
             let of_functions: f64 = functions.iter().map(|test| test.points).sum();
-            let others = of_rules + of_functions;
+            let of_features: f64 = features.iter().map(|feature| feature.points).sum();
+            let others = of_rules + of_functions + of_features;
             let of_checks = rubric.as_ref().map_or(0.0, Rubric::check_points);
             if rubric.is_some() && of_checks + others == 0.0 && document.is_valid() {
                 let help = "add a table such as [rubric.algorithm] with `points = 6`";
@@ -77,12 +82,24 @@ impl Assignment {
                 reference: reference.unwrap_or_else(|| Reference::Scene(PathBuf::new())),
                 permitted,
                 frames,
+                uniforms,
                 rubric: rubric.or_else(|| (others > 0.0).then(Rubric::default)),
                 rules,
                 functions,
+                features,
             }
         })
     }
+}
+
+/// Reads the values of uniforms, by their names.
+fn uniforms(table: &mut Table) -> Vec<UniformValue> {
+    let entries = table.take_entries::<Literal>().into_iter();
+    let value = |(name, value): (String, Literal)| UniformValue {
+        name,
+        components: value.components(),
+    };
+    entries.map(value).collect()
 }
 
 /// Reads the differences with which a shader is still correct.
@@ -152,6 +169,34 @@ fn reference(document: &mut Table, folder: &Path) -> Option<Reference> {
         }),
         (None, None) => None,
     }
+}
+
+/// Reads a feature of the image; `None` if a key is missing.
+fn feature(table: &mut Table, folder: &Path) -> Option<Feature> {
+    let name = table.required::<String>("name");
+    table.require("without", "without = \"solution-without.glsl\"");
+    let without = path(table, "without", folder);
+    let points = table.required::<f64>("points");
+    if let Some(points) = points
+        .as_ref()
+        .filter(|points| points.value <= 0.0 || !points.value.is_finite())
+    {
+        table.reject_value("points", points, "must be a number greater than 0");
+    }
+    let path = without?.value;
+    let is_scene = path.extension().is_some_and(|extension| extension == "toml");
+    Some(Feature {
+        name: name?.value,
+        points: points?.value,
+        without: if is_scene {
+            Reference::Scene(path)
+        } else {
+            Reference::Given {
+                path,
+                tolerance: None,
+            }
+        },
+    })
 }
 
 /// Reads the path of a file or a project that must exist, relative to the folder of the assignment.

@@ -25,8 +25,9 @@ mod rules;
 mod sample;
 mod template;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use toyproof_glsl::UniformValue;
 use toyproof_image::FrameInputs;
 use toyproof_report::{FunctionRecord, Rubric, RulesRecord};
 use toyproof_verify::Difference;
@@ -50,12 +51,27 @@ pub struct Assignment {
     pub permitted: Vec<Difference>,
     /// The frames in which a shader must be right, at least one.
     pub frames: Vec<FrameInputs>,
+    /// The values of uniforms that the shaders declare.
+    pub uniforms: Vec<UniformValue>,
     /// The points of the checks, if the assignment gives any points.
     pub rubric: Option<Rubric>,
+    /// The features of the image that earn points.
+    pub features: Vec<Feature>,
     /// The rules for the shaders' text.
     pub rules: Option<Rules>,
     /// The functions that are tested.
     pub functions: Vec<FunctionTest>,
+}
+
+/// Whether a TOML file is an assignment and not a scene: it names its reference or its scene.
+#[must_use]
+pub fn is_assignment(text: &str) -> bool {
+    let keys = text
+        .lines()
+        .map(str::trim_start)
+        .take_while(|line| !line.starts_with('['));
+    let mut names = keys.filter_map(|line| Some(line.split_once('=')?.0.trim_end()));
+    names.any(|name| matches!(name, "reference" | "scene"))
 }
 
 impl Assignment {
@@ -75,6 +91,17 @@ impl Assignment {
     }
 }
 
+/// A feature of the image, such as soft shadows.
+#[derive(Debug, Clone)]
+pub struct Feature {
+    /// The name.
+    pub name: String,
+    /// The points for a shader that is right in all pixels that the feature changes.
+    pub points: f64,
+    /// The reference without the feature.
+    pub without: Reference,
+}
+
 /// The reference of the shaders of an assignment.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
@@ -87,4 +114,14 @@ pub enum Reference {
         /// The largest difference of a color, in 8-bit levels; `None` for the default.
         tolerance: Option<f64>,
     },
+}
+
+impl Reference {
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Scene(path) | Self::Given { path, .. } => path,
+        }
+    }
 }

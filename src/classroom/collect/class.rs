@@ -132,7 +132,7 @@ impl Class {
 /// Reads the list of students: a file, or a table with a name for each number.
 fn students(document: &mut Table, folder: &Path) -> StudentList {
     if document.has_table("students") {
-        let students = document.table("students", |table| Students::new(table.take_strings()));
+        let students = document.table("students", |table| Students::new(table.take_entries::<String>()));
         return StudentList::Table(students.unwrap_or_default());
     }
     match path(document, "students", folder) {

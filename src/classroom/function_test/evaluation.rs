@@ -1,6 +1,7 @@
 //! The evaluation of generated statements, once for each case, in f32 and in f64.
 
 use toyproof_diagnostic::Span;
+use toyproof_glsl::ADDED_MAIN;
 use toyproof_glsl::tree::Scalar;
 use toyproof_image::Frame;
 use toyproof_stress::{RunError, ShaderRunner};
@@ -14,7 +15,7 @@ use super::value::Component;
 /// Statements that are evaluated for each case, and the components of their results.
 #[derive(Debug, Clone)]
 pub(super) struct Evaluation {
-    /// Functions before `mainImage`.
+    /// Functions before the one that runs them.
     pub(super) declarations: GeneratedText,
     /// The statements. They may read the number of the case, `tpCase`.
     pub(super) statements: GeneratedText,
@@ -50,7 +51,9 @@ impl Evaluation {
             ));
         }
         let mut text = self.declarations.clone();
-        text.push("void mainImage(out vec4 tpColor, in vec2 tpPlace) {\n");
+        text.push(&format!(
+            "void {ADDED_MAIN}(out vec4 tpColor, in vec2 tpPlace) {{\n"
+        ));
         text.push(&format!(
             "    int tpPixel = int(tpPlace.y) * {width} + int(tpPlace.x);\n    int tpRow = tpPixel / {0};\n    \
              int tpCase = tpPixel - {0} * tpRow;\n    if (tpRow < {rows}) {{\n",

@@ -30,7 +30,7 @@
 //! - `file`: the TOML of tests, of test files and of assignments; `comment`: the tests in a shader's comments.
 //! - `listed`: the listed calls of a function; `typed`: the types of an assertion; `sampled`: its values, for
 //!   all samples of its variables.
-//! - `evaluation`: evaluates a generated `mainImage` after the shader; `source`: maps its places to those of
+//! - `evaluation`: evaluates a generated function after the shader; `source`: maps its places to those of
 //!   the author.
 //! - `value`: values of any type as components, and how they are compared.
 //! - `report`: the results as JSON and `JUnit`.

@@ -2,7 +2,6 @@
 //! are reported at the author's.
 
 use toyproof_diagnostic::{Diagnostic, Span};
-use toyproof_stress::function::with_main;
 
 use super::subject::Subject;
 
@@ -90,19 +89,17 @@ impl GeneratedText {
             .extend(snippets.map(|(at, snippet)| (start + at, snippet.clone())));
     }
 
-    /// The shader with this text after it, which defines another `mainImage`.
+    /// The shader with this text after it, which defines [`ADDED_MAIN`](toyproof_glsl::ADDED_MAIN).
     pub(super) fn after_shader(&self, subject: &Subject) -> Self {
-        let text = with_main(subject.text, &self.text);
+        let text = format!("{}\n{}", subject.text, self.text);
         let start = text.len() - self.text.len();
         let file = subject.checked.tree[subject.checked.main_image].at.span.file;
-        let of_shader = text.find(subject.text).map(|at| {
-            let span = Span::new(file, 0, subject.text.len() as u32);
-            (at, Snippet::new(subject.text, span, true))
-        });
+        let span = Span::new(file, 0, subject.text.len() as u32);
+        let of_shader = (0, Snippet::new(subject.text, span, true));
         let snippets = self.snippets.iter();
         let moved = snippets.map(|(at, snippet)| (start + at, snippet.clone()));
         Self {
-            snippets: of_shader.into_iter().chain(moved).collect(),
+            snippets: std::iter::once(of_shader).chain(moved).collect(),
             text,
         }
     }

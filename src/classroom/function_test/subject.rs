@@ -23,6 +23,7 @@ impl Subject<'_> {
     pub(super) fn options(&self) -> glsl::Options {
         glsl::Options {
             // The text that runs the tests counts and packs bits.
+            calls_added_main: true,
             lenient: self.checked.lenient || !self.checked.version.has_integer_operations(),
             deadline: Deadline::after(self.timeout),
             ..self.checked.options()

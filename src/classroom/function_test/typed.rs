@@ -2,7 +2,7 @@
 
 use toyproof_diagnostic::{Code, Diagnostic, File, Files, Span};
 use toyproof_glsl::tree::{Scalar, StatementKind, Tree, Type};
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::{self as glsl, ADDED_MAIN, Checked};
 
 use super::assertion::{Assertion, Comparison, Relation, Set, Side, Variable};
 use super::result::TestError;
@@ -87,9 +87,9 @@ impl SampledTest<'_> {
             text.push(");\n");
         }
         self.push_after(&mut text);
-        text.push(
-            "}\nvoid mainImage(out vec4 tpColor, in vec2 tpPlace) { tpTyped(); tpColor = vec4(0.0); }\n",
-        );
+        text.push(&format!(
+            "}}\nvoid {ADDED_MAIN}(out vec4 tpColor, in vec2 tpPlace) {{ tpTyped(); tpColor = vec4(0.0); }}\n"
+        ));
         let text = text.after_shader(self.subject);
         let mut files = Files::default();
         let file = files.add(File::new("<test>", text.text()));

@@ -14,6 +14,7 @@ use toyproof_scene::Scene;
 use toyproof_verify::Failure;
 use toyproof_verify::project::bind::accumulate;
 
+use super::features::Features;
 use super::options::CheckOptions;
 use super::plan::Plan;
 use super::reference::{Reference, References, other_scenes};
@@ -69,6 +70,7 @@ pub(super) struct Checker<'a> {
     pub(super) options: &'a CheckOptions,
     pub(super) plan: &'a Plan,
     pub(super) references: &'a References,
+    pub(super) features: &'a Features,
     /// Whether the missing driver has been reported.
     pub(super) fell_back: AtomicBool,
     scenes: SceneCache,
@@ -77,11 +79,17 @@ pub(super) struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    pub(super) fn new(options: &'a CheckOptions, plan: &'a Plan, references: &'a References) -> Self {
+    pub(super) fn new(
+        options: &'a CheckOptions,
+        plan: &'a Plan,
+        references: &'a References,
+        features: &'a Features,
+    ) -> Self {
         Self {
             options,
             plan,
             references,
+            features,
             fell_back: AtomicBool::new(false),
             scenes: SceneCache::default(),
             other_scenes: other_scenes(plan.reference.scene.as_deref()),
@@ -99,7 +107,7 @@ impl<'a> Checker<'a> {
     pub(super) fn load(&self, submission: &Submission) -> Shader {
         Shader::load(
             &submission.input,
-            &self.options.language,
+            &self.options.language.with_uniforms(&self.plan.uniforms),
             Deadline::after(self.options.driver.timeout()),
         )
     }

@@ -38,7 +38,7 @@ pub(super) struct PlanOptions {
     pub(super) reference: ReferenceArgs,
     pub(super) permitted: Vec<Difference>,
     pub(super) frame: FrameInputs,
-    /// Whether this frame replaces those of an assignment.
+    /// Whether this frame replaces those of an assignment; otherwise only its size does, if it is given.
     pub(super) is_frame_given: bool,
 }
 

@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use toyproof_classroom::assignment::{Assignment, FILE_NAME};
+use toyproof_classroom::assignment::{Assignment, FILE_NAME, is_assignment};
 use toyproof_diagnostic::path_name;
+use toyproof_glsl::UniformValue;
 use toyproof_image::{Frame, FrameInputs};
-use toyproof_project::files::OutsideLink;
+use toyproof_project::files::{self, Input, OutsideLink};
 use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
 use super::options::{PlanOptions, TaskInputs};
+use crate::cli::inputs::resized;
 use crate::cli::reference::ReferenceArgs;
 use crate::cli::shader::parse_named;
 use crate::cli::{CliError, Terminal};
@@ -23,6 +25,8 @@ pub(super) struct Plan {
     /// The differences from the reference that do not make a shader wrong.
     pub(super) permitted: Vec<Difference>,
     pub(super) rubric: Option<Rubric>,
+    /// The values of uniforms.
+    pub(super) uniforms: Vec<UniformValue>,
     /// The assignment and its text, if there is one.
     pub(super) assignment: Option<(Assignment, String)>,
 }
@@ -55,6 +59,7 @@ impl Plan {
             frames: Vec::new(),
             permitted: options.permitted.clone(),
             rubric,
+            uniforms: Vec::new(),
             assignment: None,
         };
         let mut frames = vec![options.frame.clone()];
@@ -62,10 +67,11 @@ impl Plan {
             let (assignment, text) = parse_assignment(&path)?;
             terminal.detail(&format!("assignment: {}", path_name(&path)));
             if !options.is_frame_given {
-                frames.clone_from(&assignment.frames);
+                frames = resized(&assignment.frames, options.frame.size);
             }
             plan.reference = ReferenceArgs::of(&assignment);
             plan.permitted.extend(&assignment.permitted);
+            plan.uniforms.clone_from(&assignment.uniforms);
             plan.rubric = plan.rubric.or_else(|| assignment.rubric.clone());
             plan.assignment = Some((assignment, text));
         }
@@ -96,6 +102,17 @@ fn assignment_file(path: &Path) -> Result<PathBuf, CliError> {
     }
     let error = CliError::new(format_args!("there is no assignment {}", path_name(&file)));
     Err(error.with_help("`toyproof new assignment` creates one"))
+}
+
+/// The assignment next to a shader, `NAME.toml` of `NAME.glsl`, unless that is a link that leads out of the
+/// folder.
+pub(in crate::cli) fn assignment_beside(found: &Input) -> Option<PathBuf> {
+    let shader = found.path()?;
+    let beside = shader.with_extension("toml");
+    let folder = found.folder.as_deref().or(shader.parent())?;
+    let is_usable = beside.is_file() && OutsideLink::find(&beside, folder).is_none();
+    let text = is_usable.then(|| files::read_text(&beside).ok())??;
+    is_assignment(text.text()).then_some(beside)
 }
 
 /// The assignment in the folder of all shaders. Folders of submissions are searched for shaders, but an

@@ -12,7 +12,7 @@ use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Expected, Failure};
 
 use super::options::CheckOptions;
-use super::plan::{Plan, PlannedFrame};
+use super::plan::{Plan, PlannedFrame, assignment_beside};
 use super::reference_cache::CachedReference;
 use crate::cli::reference::GivenReference;
 use crate::cli::scenes::{builtin_scenes, parse_scene, read_scene, with_builtin_hint};
@@ -91,7 +91,8 @@ impl References {
         terminal: &Terminal,
     ) -> Result<Self, CliError> {
         let timeout = options.driver.timeout();
-        let Some(given) = GivenReference::read(&plan.reference, &options.language, timeout)? else {
+        let language = options.language.with_uniforms(&plan.uniforms);
+        let Some(given) = GivenReference::read(&plan.reference, &language, timeout)? else {
             let scenes = Scenes::new(plan.reference.scene.as_deref());
             scenes.check()?;
             return Ok(Self::Scenes(scenes));
@@ -158,7 +159,7 @@ impl Scenes {
             (Some(named), _) => Some(named.clone()),
             (None, InputSource::File(shader)) => {
                 let beside = shader.with_extension("toml");
-                if !beside.is_file() && !beside.is_symlink() {
+                if !beside.is_file() && !beside.is_symlink() || assignment_beside(found).is_some() {
                     return None;
                 }
                 let text = match leaving_link(found, shader, &beside) {

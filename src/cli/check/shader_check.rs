@@ -74,6 +74,7 @@ impl<'a> ShaderCheck<'a> {
             _ => None,
         };
         let mut checked: Vec<CheckedFrame> = Vec::new();
+        let mut features = self.checker.features.count();
         let mut worst: Option<(Verdict, Option<Findings>)> = None;
         for (index, PlannedFrame { inputs, frame }) in plan.frames.iter().enumerate() {
             let mut frame = frame.clone();
@@ -106,6 +107,9 @@ impl<'a> ShaderCheck<'a> {
                 }),
             });
             let has_image = findings.is_ok();
+            if let Ok(findings) = &findings {
+                features.add(index, findings.results.algorithm.as_ref());
+            }
             if worst.as_ref().is_none_or(|(worst, _)| record.verdict < *worst) {
                 worst = Some((record.verdict, findings.ok()));
             }
@@ -118,13 +122,14 @@ impl<'a> ShaderCheck<'a> {
                 break;
             }
         }
-        let record = match (&plan.assignment, checked.pop()) {
+        let mut record = match (&plan.assignment, checked.pop()) {
             (None, Some(only)) => only.record,
             (_, last) => {
                 checked.extend(last);
                 Record::from_frames(checked, plan.frames.len())
             }
         };
+        record.features = features.records();
         (record, worst.and_then(|(_, findings)| findings))
     }
 

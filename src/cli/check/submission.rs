@@ -5,7 +5,7 @@ use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
 use toyproof_image::{FrameInputs, input};
-use toyproof_project::files::{self, Input, ReadError};
+use toyproof_project::files::{self, IncludeFolders, Input, ReadError};
 use toyproof_report::StudentSubmission;
 
 use super::options::CheckOptions;
@@ -109,7 +109,13 @@ fn identity(
     let assignment = plan.assignment.as_ref().map(|(_, text)| text.as_bytes());
     add(assignment.unwrap_or_default());
     let texts = files::read(found).ok()?;
-    for file in texts.files() {
+    let includes = IncludeFolders::of(found, options.language.include_folders());
+    let included: Vec<_> = texts
+        .files()
+        .into_iter()
+        .flat_map(|file| includes.texts(file))
+        .collect();
+    for file in texts.files().into_iter().chain(&included) {
         add(file.name().as_bytes());
         add(file.text().as_bytes());
         bytes += file.text().len() as u64;

@@ -1,16 +1,21 @@
 //! All work of one command: the submissions, and their requirements.
 
+use std::collections::HashSet;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use toyproof_classroom::collect::roster::Owners;
+use toyproof_diagnostic::path_name;
+use toyproof_project::files::{Input, ReadError};
 use toyproof_report::{Earlier, Rubrics};
 
 use super::batch::Batch;
 use super::checker::Checker;
 use super::earlier::earlier;
+use super::features::Features;
 use super::images::IMAGES;
 use super::options::{Options, TaskInputs};
-use super::plan::Plan;
+use super::plan::{Plan, assignment_beside};
 use super::reference::References;
 use super::reports::REPORT_NAMES;
 use super::results::{RESULTS_NAME, Results};
@@ -45,6 +50,57 @@ impl From<ClassPart> for TaskInputs {
 struct Task {
     plan: Plan,
     references: References,
+    features: Features,
+}
+
+/// Whether an input is a reference that a search of a folder has found beside the shaders.
+fn is_found_reference(input: &Result<Input, ReadError>, references: &HashSet<PathBuf>) -> bool {
+    let found = input.as_ref().ok().filter(|input| input.folder.is_some());
+    let path = found.and_then(|found| found.path()?.canonicalize().ok());
+    path.is_some_and(|path| references.contains(&path))
+}
+
+impl Task {
+    /// The canonical paths of the reference shaders.
+    fn files(&self) -> Vec<PathBuf> {
+        let assignment = self.plan.assignment.iter().map(|(assignment, _)| assignment);
+        let references = assignment.flat_map(|assignment| {
+            let features = assignment.features.iter().map(|feature| &feature.without);
+            std::iter::once(&assignment.reference).chain(features)
+        });
+        references
+            .filter_map(|reference| reference.path().canonicalize().ok())
+            .collect()
+    }
+
+    /// Reads the plan of a task, and renders its references.
+    fn new(options: &Options, inputs: &TaskInputs, terminal: &Terminal) -> Result<Self, CliError> {
+        let mut plan = Plan::new(&options.plan, inputs, terminal)?;
+        let references = References::new(&options.check, &mut plan, terminal)?;
+        let features = Features::new(&plan, &options.check, terminal)?;
+        Ok(Self {
+            plan,
+            references,
+            features,
+        })
+    }
+
+    /// The task of a shader with an assignment next to it. An error is that of this shader alone.
+    fn beside(options: &Options, found: &Input, terminal: &Terminal) -> Option<Result<Self, ReadError>> {
+        let assignment = assignment_beside(found)?;
+        let name = path_name(&assignment);
+        let inputs = TaskInputs {
+            name: None,
+            shaders: found.path().map(Path::to_owned).into_iter().collect(),
+            assignment: Some(assignment),
+            rubric: None,
+        };
+        let task = Self::new(options, &inputs, terminal);
+        Some(task.map_err(|error| {
+            let error = io::Error::other(error.in_one_line());
+            ReadError::Unreadable { name, error }
+        }))
+    }
 }
 
 /// The folder of `--out` with the submissions of a class that were collected from downloads.
@@ -76,30 +132,55 @@ impl Work {
             submissions: Vec::new(),
         };
         for part in parts {
-            let mut plan = Plan::new(&options.plan, part, terminal)?;
-            let references = References::new(&options.check, &mut plan, terminal)?;
+            let mut common = Task::new(options, part, terminal)?;
             let mut inputs = find_submissions(&part.shaders, terminal);
             let owners = Owners::read(&part.shaders, &mut inputs, |error| terminal.warn(error));
-            match (&part.name, plan.rubric.take()) {
+            match (&part.name, common.plan.rubric.take()) {
                 (None, rubric) => work.rubrics = rubric.into(),
                 (Some(name), Some(rubric)) => work.rubrics.add(name.clone(), rubric),
                 (Some(_), None) => {}
             }
-            for mut input in inputs {
+            let index_of_common = work.tasks.len();
+            let beside = inputs.iter().map(|input| match input {
+                Ok(found) if !common.plan.reference.is_given() => Task::beside(options, found, terminal),
+                _ => None,
+            });
+            let beside: Vec<Option<Result<Task, ReadError>>> = beside.collect();
+            let references: HashSet<PathBuf> =
+                beside.iter().flatten().flatten().flat_map(Task::files).collect();
+            let mut own_tasks = Vec::new();
+            for (mut input, own) in inputs.into_iter().zip(beside) {
+                if is_found_reference(&input, &references) {
+                    continue;
+                }
                 if let (Ok(input), Some(name)) = (&mut input, &part.name) {
                     input.relative = Path::new(name).join(&input.relative);
                 }
                 let submitted = owners.find(&input).cloned();
-                let submission =
-                    Submission::new(input, &options.check, &plan, &references, &mut names, build);
+                let own = match own.transpose() {
+                    Ok(own) => own,
+                    Err(error) => {
+                        input = Err(error);
+                        None
+                    }
+                };
+                let task = match own {
+                    Some(_) => index_of_common + 1 + own_tasks.len(),
+                    None => index_of_common,
+                };
+                let Task { plan, references, .. } = own.as_ref().unwrap_or(&common);
+                let submission = Submission::new(input, &options.check, plan, references, &mut names, build);
+                let seconds = costs.as_ref().and_then(|costs| costs.seconds(&submission.name));
+                own_tasks.extend(own);
                 work.submissions.push(Submission {
-                    task: work.tasks.len(),
+                    task,
                     submitted,
-                    seconds: costs.as_ref().and_then(|costs| costs.seconds(&submission.name)),
+                    seconds,
                     ..submission
                 });
             }
-            work.tasks.push(Task { plan, references });
+            work.tasks.push(common);
+            work.tasks.extend(own_tasks);
         }
         Ok(work)
     }
@@ -138,7 +219,8 @@ impl Work {
         let rubrics = std::mem::take(&mut self.rubrics);
         let mut batch = Batch::new(&options.batch, rubrics, results, earlier, submissions, terminal);
         let tasks = self.tasks.iter();
-        let checkers = tasks.map(|task| Checker::new(&options.check, &task.plan, &task.references));
+        let checkers =
+            tasks.map(|task| Checker::new(&options.check, &task.plan, &task.references, &task.features));
         batch.check(submissions, &checkers.collect::<Vec<_>>(), &options.check.driver);
         batch.finish(submissions)
     }

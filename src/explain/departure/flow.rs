@@ -55,6 +55,8 @@ pub(super) struct Flow<'a> {
     guards: HashMap<VariableId, Vec<ExprId>>,
     /// The variable that `mainImage` returns the color in.
     color: Option<VariableId>,
+    /// The place of the function that the host calls; where that is `main`, also of the call of it.
+    entry: Span,
 }
 
 impl<'a> Flow<'a> {
@@ -70,6 +72,7 @@ impl<'a> Flow<'a> {
         let mut flow = Self {
             tree,
             schema,
+            entry: tree[checked.main_image].at.span,
             origins: HashMap::new(),
             parts: HashMap::new(),
             definitions: HashMap::new(),
@@ -206,10 +209,11 @@ impl<'a> Flow<'a> {
         self.schema.event(event).at.span
     }
 
-    /// The call that an event is in; `None` in `mainImage`.
+    /// The call that an event is in; `None` in the function that the host calls.
     pub(super) fn call(&self, event: EventId) -> Option<Span> {
         let call = self.schema.event(event).call?;
-        Some(self.schema.call(call).at.span)
+        let at = self.schema.call(call).at.span;
+        (at != self.entry).then_some(at)
     }
 }
 

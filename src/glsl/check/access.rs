@@ -21,6 +21,7 @@ impl Checker<'_> {
                 if let Some(bound) = self.bound.get(&variable) {
                     return self.bound_value(bound.clone(), at);
                 }
+                self.report_unbound_texture(variable, at);
                 let variable = self.bound_texture(variable);
                 let found = &self.tree[variable];
                 let constant = match found.kind {

@@ -7,7 +7,7 @@ use toyproof_diagnostic::Code;
 use super::scope::Entity;
 use super::{Call, Checker, Specifier};
 use crate::Stage;
-use crate::stage::Entry;
+use crate::stage::{Entry, added_entry};
 use crate::token::Symbol;
 use crate::tree::{
     Block, BuiltIn, Direction, Function, FunctionId, Item, Place, Type, Variable, VariableId, VariableKind,
@@ -268,6 +268,9 @@ impl Checker<'_> {
                 .at(at, message)
                 .note("GLSL does not support recursion");
             self.report(diagnostic.help("use a loop"));
+        }
+        if self.calls_added_main {
+            return self.find_entry(&added_entry());
         }
         if !self.dialect.calls_main_image() {
             return self.entry_of_main();

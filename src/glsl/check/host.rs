@@ -6,8 +6,8 @@ use super::{Checker, Entity};
 use crate::dialect::{Bound, InputValue};
 use crate::tree::{
     BinaryOp, BuiltInVariable, Constructor, Direction, ExprId, ExprKind, Function, FunctionId, Input, Item,
-    Literal, Place, Scalar, Statement, StatementKind, Swizzle, Type, UnaryOp, Value, Variable, VariableId,
-    VariableKind,
+    Literal, Place, Sampler, SamplerShape, Scalar, Statement, StatementKind, Swizzle, Type, UnaryOp, Value,
+    Variable, VariableId, VariableKind,
 };
 
 /// The names of the color in GLSL ES 1.00.
@@ -86,7 +86,7 @@ impl Checker<'_> {
             return;
         }
         let known = self.dialect.input(name).into_iter().flatten();
-        let known = known.copied().find(|value| value.ty() == ty);
+        let known = known.copied().find(|&value| self.type_of_input(value) == ty);
         let value = known.or_else(|| match (kind, ty) {
             // The only coordinates of a quad that covers the image.
             (VariableKind::Varying, VEC2) => Some(InputValue::Quad),
@@ -94,7 +94,53 @@ impl Checker<'_> {
             _ => None,
         });
         if let Some(value) = value {
+            self.name_input(value, variable);
             self.bound.insert(variable, Bound::Input(value));
+        }
+    }
+
+    /// The type of an input that the host sets; some of ShaderToy's are arrays.
+    fn type_of_input(&self, value: InputValue) -> Type {
+        let InputValue::Whole(input) = value else {
+            return value.ty();
+        };
+        let mut variables = self.tree.variables.iter();
+        let found = variables.find(|(_, variable)| variable.kind == VariableKind::Input(input));
+        found.map_or_else(|| value.ty(), |(_, variable)| variable.ty)
+    }
+
+    /// Gives an input of ShaderToy the name that the text has for it, so that what is printed of the tree is
+    /// text of its dialect.
+    fn name_input(&mut self, value: InputValue, declared: VariableId) {
+        let kind = match value {
+            InputValue::Whole(input) | InputValue::First(input, 2..) => VariableKind::Input(input),
+            InputValue::Texture(channel) => VariableKind::Channel(channel),
+            _ => return,
+        };
+        let found = self
+            .tree
+            .variables
+            .iter()
+            .find(|(_, variable)| variable.kind == kind);
+        if let Some((input, _)) = found {
+            let name = self.tree[declared].name.clone();
+            self.tree[input].name = name;
+        }
+    }
+
+    /// Reports a texture that is read although no channel is left for it.
+    pub(super) fn report_unbound_texture(&mut self, variable: VariableId, at: Place) {
+        let Variable { kind, ty, name, .. } = &self.tree[variable];
+        // On ShaderToy, nothing sets a declared sampler, whose 0 is the number of the first channel.
+        if self.dialect.calls_main_image() {
+            return;
+        }
+        if *kind == VariableKind::Uniform && *ty == Type::Sampler(Sampler::float(SamplerShape::D2)) {
+            let message = format!("no channel is left for the texture `{name}`");
+            let error = Code::NoChannelLeft.at(at, message);
+            self.report(
+                error.help("textures are read from four channels, in the order of their declarations"),
+            );
         }
     }
 
@@ -132,12 +178,16 @@ impl Checker<'_> {
         self.bound.insert(variable, Bound::Value(ty, components));
     }
 
-    /// The first channel that no sampler is bound to.
+    /// The first channel to which no sampler is bound, and none with a known name in the text.
     fn free_texture(&self, ty: Type) -> Option<InputValue> {
         let textures = (0..4).map(InputValue::Texture);
         let is_bound =
             |texture: &InputValue| self.bound.values().any(|bound| *bound == Bound::Input(*texture));
-        let mut free = textures.filter(|texture| !is_bound(texture));
+        let is_named = |texture: &InputValue| {
+            let mut names = self.dialect.names_of(*texture);
+            names.any(|name| self.interner.find(name).is_some())
+        };
+        let mut free = textures.filter(|texture| !is_bound(texture) && !is_named(texture));
         free.find(|texture| texture.ty() == ty)
     }
 
@@ -202,14 +252,17 @@ impl Checker<'_> {
                 let quad = self.host_input(InputValue::Quad, at);
                 let half = self.number(0.5, at);
                 let centered = self.operation(BinaryOp::Subtract, quad, half, VEC2, at);
+                let size = self.host_input(InputValue::SurfaceSize, at);
+                self.operation(BinaryOp::Multiply, centered, size, VEC2, at)
+            }
+            InputValue::SurfaceSize => {
                 let [width, height] = [0, 1].map(|component| {
                     let resolution = self.input(VariableKind::Input(Input::Resolution), at);
                     self.components(resolution, &[component], at)
                 });
                 let aspect = self.operation(BinaryOp::Divide, width, height, Type::FLOAT, at);
                 let one = self.number(1.0, at);
-                let scale = self.vector(vec![aspect, one], VEC2, at);
-                self.operation(BinaryOp::Multiply, centered, scale, VEC2, at)
+                self.vector(vec![aspect, one], VEC2, at)
             }
             InputValue::TextureSize(channel) => {
                 let size = self.of_channel(Input::ChannelResolution, channel, at);

@@ -50,6 +50,7 @@ pub(crate) struct Checker<'a> {
     language: Language,
     dialect: Dialect,
     stage: Stage,
+    calls_added_main: bool,
     /// The uniforms and varyings that have a value.
     bound: HashMap<VariableId, Bound>,
     /// The values of uniforms that the caller gives.
@@ -106,6 +107,7 @@ impl<'a> Checker<'a> {
             language: wrapping.language,
             dialect: wrapping.dialect,
             stage: options.stage,
+            calls_added_main: options.calls_added_main,
             bound: HashMap::new(),
             uniforms: &options.uniforms,
             output: None,

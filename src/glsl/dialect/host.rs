@@ -1,5 +1,6 @@
 //! The hosts of shaders: one row for each, with the inputs that it sets.
 
+use super::Version;
 use crate::tree::{Input, Sampler, SamplerShape, Scalar, Type};
 
 /// A host, and how it wraps a shader.
@@ -16,6 +17,8 @@ pub enum Dialect {
     GlslSandbox,
     /// three.js, p5.js and other libraries whose inputs are named like `uTime`.
     Three,
+    /// ISF (Interactive Shader Format) of programs for live video: a JSON header declares its inputs.
+    Isf,
     /// Any other page with WebGL: a full-screen fragment shader whose uniforms are the author's own.
     WebGl,
 }
@@ -52,6 +55,8 @@ pub(crate) enum InputValue {
     QuadInSpace,
     /// Coordinates with the center at 0, in units of the height.
     Surface,
+    /// The extent of [`Self::Surface`]: the ratio of width to height, and 1.
+    SurfaceSize,
     /// `iChannelResolution[K].xy`
     TextureSize(u8),
     /// `iChannelK`
@@ -81,7 +86,7 @@ impl InputValue {
             Self::Whole(input) => vector(input.ty().components()),
             Self::First(_, size) => vector(usize::from(size)),
             Self::Float(_) => Type::FLOAT,
-            Self::Mouse | Self::Quad | Self::Surface | Self::TextureSize(_) => vector(2),
+            Self::Mouse | Self::Quad | Self::Surface | Self::SurfaceSize | Self::TextureSize(_) => vector(2),
             Self::QuadInSpace => vector(3),
             Self::Texture(_) => Type::Sampler(Sampler::float(SamplerShape::D2)),
             Self::Constant(values) => vector(values.len()),
@@ -89,7 +94,9 @@ impl InputValue {
     }
 }
 
-use InputValue::{Constant, First, Float, Mouse, Quad, QuadInSpace, Surface, Texture, TextureSize, Whole};
+use InputValue::{
+    Constant, First, Float, Mouse, Quad, QuadInSpace, Surface, SurfaceSize, Texture, TextureSize, Whole,
+};
 
 const TIME: &[InputValue] = &[Whole(Input::Time)];
 const DELTA: &[InputValue] = &[Whole(Input::TimeDelta)];
@@ -114,6 +121,8 @@ const SHADERTOY: &[(&str, &[InputValue])] = &[
     ("iMouse", &[Whole(Input::Mouse), First(Input::Mouse, 2)]),
     ("iDate", DATE),
     ("iSampleRate", &[Whole(Input::SampleRate)]),
+    ("iChannelTime", &[Whole(Input::ChannelTime)]),
+    ("iChannelResolution", &[Whole(Input::ChannelResolution)]),
     ("iChannel0", &[Texture(0)]),
     ("iChannel1", &[Texture(1)]),
     ("iChannel2", &[Texture(2)]),
@@ -205,7 +214,7 @@ const HOSTS: &[Host] = &[
             ("time", TIME),
             ("resolution", RESOLUTION),
             ("mouse", MOUSE_SHARE),
-            ("surfaceSize", RESOLUTION),
+            ("surfaceSize", &[SurfaceSize]),
             ("surfacePosition", &[Surface]),
         ],
     },
@@ -223,6 +232,22 @@ const HOSTS: &[Host] = &[
             ("uMouse", MOUSE_PIXELS),
             ("uDate", DATE),
             ("millis", TIME),
+        ],
+    },
+    Host {
+        dialect: Dialect::Isf,
+        name: "isf",
+        title: "ISF",
+        calls_main_image: false,
+        is_implicit: false,
+        inputs: &[
+            ("TIME", TIME),
+            ("TIMEDELTA", DELTA),
+            ("DATE", DATE),
+            ("FRAMEINDEX", FRAME),
+            ("RENDERSIZE", RESOLUTION),
+            ("isf_FragNormCoord", QUAD),
+            ("vv_FragNormCoord", QUAD),
         ],
     },
     Host {
@@ -271,6 +296,16 @@ impl Dialect {
         self.host().calls_main_image
     }
 
+    /// The version of a shader that does not state one.
+    pub(crate) fn version(self) -> Version {
+        match self {
+            _ if self.calls_main_image() => Version::Es300,
+            // As the programs compile it on the desktop.
+            Self::Isf => Version::Desktop(150),
+            _ => Version::Es100,
+        }
+    }
+
     /// Whether ShaderToy's inputs, and those of the host, exist without a declaration.
     pub(crate) fn is_implicit(self) -> bool {
         self.host().is_implicit
@@ -278,6 +313,27 @@ impl Dialect {
 
     /// The values of an input that the host sets; `None` if it has no such input.
     pub(crate) fn input(self, name: &str) -> Option<&'static [InputValue]> {
+        let mut all = self.inputs();
+        all.find(|(input, _)| *input == name).map(|(_, values)| *values)
+    }
+
+    /// The host's name of one of ShaderToy's inputs, if it has one of its own.
+    #[must_use]
+    pub fn name_of(self, input: Input) -> Option<&'static str> {
+        let is_value = |value: &InputValue| matches!(*value, Whole(of) | First(of, _) if of == input);
+        let mut inputs = self.host().inputs.iter();
+        let named = inputs.find(|(_, values)| values.iter().any(is_value));
+        named.map(|(name, _)| *name)
+    }
+
+    /// The names of the inputs that may have this value.
+    pub(crate) fn names_of(self, value: InputValue) -> impl Iterator<Item = &'static str> {
+        let of_value = move |(_, values): &&(&str, &[InputValue])| values.contains(&value);
+        self.inputs().filter(of_value).map(|(name, _)| *name)
+    }
+
+    /// The inputs that the host sets, its own first.
+    fn inputs(self) -> impl Iterator<Item = &'static (&'static str, &'static [InputValue])> {
         let own = self.host().inputs.iter();
         // Shaders of a host that runs `main` often come from another one.
         let others = HOSTS
@@ -285,8 +341,7 @@ impl Dialect {
             .filter(|host| !host.calls_main_image)
             .flat_map(|host| host.inputs);
         let common = SHADERTOY.iter().chain(VARYINGS).chain(others);
-        let mut all = own.chain(common.filter(|_| !self.calls_main_image()));
-        all.find(|(input, _)| *input == name).map(|(_, values)| *values)
+        own.chain(common.filter(move |_| !self.calls_main_image()))
     }
 
     /// The dialect of a shader with a function `main` in which these names occur: the host most of whose

@@ -18,13 +18,10 @@ pub(crate) struct Wrapping {
 }
 
 impl Wrapping {
-    /// `declared` is the version in the text. Without one, a page with WebGL compiles GLSL ES 1.00.
+    /// `declared` is the version in the text.
     pub(crate) fn new(dialect: Dialect, declared: Option<Version>, is_lenient: bool) -> Self {
-        let version = if dialect.calls_main_image() {
-            Version::Es300
-        } else {
-            declared.unwrap_or(Version::Es100)
-        };
+        let declared = declared.filter(|_| !dialect.calls_main_image());
+        let version = declared.unwrap_or(dialect.version());
         Self {
             dialect,
             language: Language { version, is_lenient },

@@ -5,6 +5,7 @@
 //! them.
 
 mod article;
+mod distribution;
 mod gallery;
 mod glossary;
 mod index;
@@ -135,7 +136,7 @@ impl Page<'_> {
             },
             facts = facts(report, records.len(), names, date),
             subsampling_note = subsampling_note(gallery.step()),
-            overview = overview.html(),
+            overview = distribution::html(records, rubrics) + &overview.html(),
             glossary = glossary.html(),
             images = images(gallery),
         )

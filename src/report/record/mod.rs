@@ -26,7 +26,9 @@ pub use self::seconds::Seconds;
 use super::departure::Departure;
 use super::reason::{Statement, state, state_reason};
 use super::unused::sentences;
-use super::{FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, StudentSubmission, Suspect};
+use super::{
+    FeatureRecord, FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, StudentSubmission, Suspect,
+};
 
 /// The JSON Schema of a [`Report`].
 pub const SCHEMA: &str = include_str!("../verdict.schema.json");
@@ -158,6 +160,9 @@ pub struct Record {
     /// The tests of functions that an assignment has.
     #[serde(default)]
     pub functions: Vec<FunctionRecord>,
+    /// The features of the image for which an assignment gives points.
+    #[serde(default)]
+    pub features: Vec<FeatureRecord>,
     /// The student and the assignment; null if no class is checked.
     #[serde(default)]
     pub submitted: Option<StudentSubmission>,
@@ -276,6 +281,7 @@ impl Record {
             frames: None,
             rules: None,
             functions: Vec::new(),
+            features: Vec::new(),
             submitted: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),

@@ -69,13 +69,14 @@ pub fn examine(
     interrupt: &AtomicBool,
     done: impl Fn(),
 ) -> Result<Findings, RunError> {
+    let (shader, shader_options) = call_shader(text, signature, options);
     let subject = Subject {
         name: signature.name.clone(),
         kind: Kind::Spheres,
-        text: call_shader(text, signature),
+        text: shader,
         in_f64: true,
         reading: Reading::Function(signature.clone()),
-        options: options.clone(),
+        options: shader_options,
     };
     let report = study(&[subject], gpu, settings, interrupt, done)?;
     let runner = FunctionRunner::new(text, signature, options, None)?;

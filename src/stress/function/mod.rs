@@ -20,7 +20,7 @@ pub use replace::replacements;
 pub use role::{Role, RoleMap};
 pub use signature::{Signature, Unrecognized};
 use toyproof_eval::Number;
-use toyproof_glsl as glsl;
+use toyproof_glsl::{self as glsl, ADDED_MAIN, Dialect};
 pub use typical::{TypicalResults, test_typical};
 
 use crate::case::{Case, RaySphere};
@@ -28,16 +28,26 @@ use crate::formula::main;
 use crate::run::{RunError, ShaderRunner, case_frame};
 use crate::tally::Outcome;
 
-/// A shader with another `mainImage` than its own, which is kept as `tpMainImage`.
-#[must_use]
-pub fn with_main(text: &str, main: &str) -> String {
-    format!("#define mainImage tpMainImage\n{text}\n#undef mainImage\n{main}")
-}
-
-/// A shader that calls a function of `text` for each case.
-fn call_shader(text: &str, signature: &Signature) -> String {
+/// A shader that calls a function of `text` for each case, with [`ADDED_MAIN`], and the options of its check.
+fn call_shader(text: &str, signature: &Signature, options: &glsl::Options) -> (String, glsl::Options) {
     let (steps, result) = signature.call();
-    with_main(text, &main(&steps, &result))
+    // Hosts other than ShaderToy declare their textures.
+    let is_declared = |name: &str| text.contains(name);
+    let is_implicit = options.dialect.is_none_or(Dialect::calls_main_image);
+    let names = ["iChannel0", "iChannel1", "iChannel2"].into_iter();
+    let missing = names.filter(|name| !is_implicit && !is_declared(name));
+    let declared: String = missing
+        .map(|name| format!("uniform sampler2D {name};\n"))
+        .collect();
+    let options = glsl::Options {
+        calls_added_main: true,
+        lenient: options.lenient || !is_implicit,
+        ..options.clone()
+    };
+    (
+        format!("{text}\n{declared}{}", main(ADDED_MAIN, &steps, &result)),
+        options,
+    )
 }
 
 /// Evaluates a function on chosen cases.
@@ -54,7 +64,8 @@ impl<'a> FunctionRunner<'a> {
         options: &glsl::Options,
         timeout: Option<Duration>,
     ) -> Result<Self, RunError> {
-        let shader = ShaderRunner::new(&call_shader(text, signature), options, timeout)?;
+        let (text, options) = call_shader(text, signature, options);
+        let shader = ShaderRunner::new(&text, &options, timeout)?;
         Ok(Self { shader, signature })
     }
 

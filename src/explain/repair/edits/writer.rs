@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use toyproof_glsl::tree::{
-    ExprId, ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, VariableId, VariableKind,
+    ExprId, ExprKind, Input, Member, Scalar, Swizzle, Tree, Type, Variable, VariableId, VariableKind,
 };
 
 use super::super::edit::{Candidate, Change, EditKind};
@@ -124,8 +124,13 @@ impl<'a> Writer<'a> {
             if values.len() >= MAX_VALUES {
                 break;
             }
-            let name = self.tree[variable].name.as_str();
-            let is_resolution = self.tree[variable].kind == VariableKind::Input(Input::Resolution);
+            let Variable { name, kind, .. } = &self.tree[variable];
+            let name = name.as_str();
+            let is_resolution = *kind == VariableKind::Input(Input::Resolution);
+            // A uniform of the host is the input of its name.
+            if *kind == VariableKind::Uniform {
+                continue;
+            }
             if !name.is_empty() && names.insert(name) && (reads_pixels || !is_resolution) {
                 self.values_of(variable, ty, &mut values);
                 self.elements(variable, scope, ty, &mut values);
@@ -140,8 +145,13 @@ impl<'a> Writer<'a> {
         let text = self.shader.text(self.shader.statements[statement].span);
         let position = self.tree[self.shader.checked.main_image].parameters.get(1);
         let position = position.map(|&position| self.tree[position].name.as_str());
+        let mut variables = self.tree.variables.iter();
+        let resolution =
+            variables.find(|(_, variable)| variable.kind == VariableKind::Input(Input::Resolution));
+        let resolution = resolution.map(|(_, resolution)| resolution.name.as_str());
+        let names = [resolution, position, Some("gl_FragCoord")];
         let mut words = text.split(|byte: char| !byte.is_ascii_alphanumeric() && byte != '_');
-        words.any(|word| word == "iResolution" || word == "gl_FragCoord" || Some(word) == position)
+        words.any(|word| names.contains(&Some(word)))
     }
 
     /// The elements of an array at the indices that the shader uses, and their members.
