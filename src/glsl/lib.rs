@@ -84,11 +84,11 @@ pub mod tree;
 use std::collections::HashSet;
 
 pub use dialect::{Dialect, Version};
-pub use preprocess::{ControlComment, Expansions, ReadInclude, with_includes};
+pub use preprocess::{ControlComment, Expansions, ReadInclude};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
-pub use stage::Stage;
+pub use stage::{ADDED_MAIN, Stage};
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
 use tree::{FunctionId, SamplerShape, Tree};
 
@@ -101,9 +101,6 @@ use self::preprocess::PreprocessorOutput;
 /// Deeper nesting is reported; this depth fits a stack of 2 MB. Chains of operators, of postfix `.x` and
 /// `[i]`, of commas and of `else if` do not count.
 pub const MAX_NESTING: usize = 256;
-
-/// The function that is called with [`Options::calls_added_main`].
-pub const ADDED_MAIN: &str = "toyproofMain";
 
 /// Options of a check.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -224,6 +221,22 @@ impl Checked {
             |(_, expr)| matches!(expr.kind, tree::ExprKind::BuiltIn { function, .. } if is_one(function)),
         )
     }
+}
+
+/// Adds the text in which included files replace their directives, and returns its id; that of the file
+/// itself if it includes none. Spans in the text are reported as those of the files.
+///
+/// # Errors
+/// A file cannot be read, or a limit is exceeded. Other errors of the text are left to its check.
+pub fn with_includes(
+    files: &mut Files,
+    file: FileId,
+    options: &Options,
+    read: &mut ReadInclude,
+) -> Result<FileId, Diagnostics> {
+    let declared = preprocess::declared_version(files, file);
+    let wrapping = Wrapping::new(options.dialect.unwrap_or_default(), declared, options.lenient);
+    preprocess::with_includes(files, file, options.stage, wrapping, &options.deadline, read)
 }
 
 /// Checks a shader. Returns its tree, or its diagnostics in source order.

@@ -1,6 +1,5 @@
 //! The tabs of a project, which are compiled with different inputs and entry points.
 
-use crate::ADDED_MAIN;
 use crate::tree::{Direction, Function, Scalar, Tree, Type, VariableKind};
 
 /// The kind of program that a text is compiled as: a tab of ShaderToy's editor.
@@ -76,6 +75,9 @@ impl Stage {
         })
     }
 }
+
+/// The function that is called with [`Options::calls_added_main`](crate::Options::calls_added_main).
+pub const ADDED_MAIN: &str = "toyproofMain";
 
 /// The function that is called instead of the host's, see [`ADDED_MAIN`].
 pub(crate) fn added_entry() -> Entry {

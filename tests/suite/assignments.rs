@@ -184,11 +184,13 @@ fn an_assignment_in_the_folder_of_the_shaders_is_used() {
     );
     let run = check(folder.path(), &[&["task/mai.glsl"][..], &flags].concat());
     assert_eq!((run.code, verdicts(&run)), (1, vec!["wrong".to_owned()]));
-    // Another reference replaces the assignment, and a flag of a frame its frames.
-    let run = check(
-        folder.path(),
-        &[&["task/mai.glsl", "--size", "64x36"][..], &flags].concat(),
-    );
+    // Another reference replaces the assignment, a flag of a frame its frames, and a size theirs.
+    let resized = ["task/mai.glsl", "--size", "32x18"];
+    let run = check(folder.path(), &[&resized[..], &flags].concat());
+    assert_eq!((run.code, verdicts(&run)), (1, vec!["wrong".to_owned()]));
+    assert!(run.stdout.contains("at 32x18, time 2"), "{run:?}");
+    let moment = ["task/mai.glsl", "--size", "64x36", "--time", "0"];
+    let run = check(folder.path(), &[&moment[..], &flags].concat());
     assert_eq!(
         (run.code, verdicts(&run)),
         (0, vec!["correct".to_owned()]),

@@ -211,7 +211,19 @@ void main() { gl_FragColor = vec4(vec3(level * u_time), 1.0); }
         let [name, verdict] = [&shader["shader"], &shader["verdict"]].map(|text| text.as_str().unwrap());
         format!("{name} {verdict} {reference}")
     });
-    assert_eq!(found.collect::<Vec<_>>(), ["?"], "{run:?}");
+    assert_eq!(
+        found.collect::<Vec<_>>(),
+        [
+            "./a.frag correct ./reference/a.glsl",
+            "./b.frag ok none",
+            "./broken.frag error none"
+        ],
+        "{run:?}"
+    );
+    assert!(
+        run.stdout.contains("there is no file \\\"none.glsl\\\""),
+        "{run:?}"
+    );
 }
 
 #[test]

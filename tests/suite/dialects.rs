@@ -307,6 +307,6 @@ fn a_function_of_another_host_is_called_and_not_its_image() {
             run.stdout.contains("2 tests: 1 passed") || run.stderr.contains("2 tests: 1 passed"),
             "{run:?}"
         );
-        assert!(run.stdout.contains("is 4, expected 0.5"), "{run:?}");
+        assert!(run.stdout.contains("is 4.0, expected 0.5"), "{run:?}");
     }
 }

@@ -174,7 +174,9 @@ fn reference(document: &mut Table, folder: &Path) -> Option<Reference> {
 /// Reads a feature of the image; `None` if a key is missing.
 fn feature(table: &mut Table, folder: &Path) -> Option<Feature> {
     let name = table.required::<String>("name");
-    table.require("without", "without = \"solution-without.glsl\"");
+    if !table.has("without") {
+        table.require("without", "\"solution-without.glsl\"");
+    }
     let without = path(table, "without", folder);
     let points = table.required::<f64>("points");
     if let Some(points) = points

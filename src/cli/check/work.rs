@@ -5,7 +5,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use toyproof_classroom::collect::roster::Owners;
-use toyproof_diagnostic::path_name;
 use toyproof_project::files::{Input, ReadError};
 use toyproof_report::{Earlier, Rubrics};
 
@@ -88,7 +87,7 @@ impl Task {
     /// The task of a shader with an assignment next to it. An error is that of this shader alone.
     fn beside(options: &Options, found: &Input, terminal: &Terminal) -> Option<Result<Self, ReadError>> {
         let assignment = assignment_beside(found)?;
-        let name = path_name(&assignment);
+        let name = found.name();
         let inputs = TaskInputs {
             name: None,
             shaders: found.path().map(Path::to_owned).into_iter().collect(),

@@ -3,12 +3,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, FileId, Files, Span};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, FileId, Files, Span};
 
 use super::lexer::Lexer;
 use super::{Preprocessor, source_tokens};
-use crate::Options;
 use crate::dialect::Wrapping;
+use crate::stage::Stage;
 use crate::token::{Punctuator, TokenKind};
 use crate::tree::Place;
 
@@ -33,24 +33,21 @@ pub type ReadInclude<'r> = dyn FnMut(&mut Files, FileId, &str) -> Result<FileId,
 ///
 /// # Errors
 /// A file cannot be read, or a limit is exceeded. Other errors of the text are left to its check.
-pub fn with_includes(
+pub(crate) fn with_includes(
     files: &mut Files,
     file: FileId,
-    options: &Options,
+    stage: Stage,
+    wrapping: Wrapping,
+    deadline: &Deadline,
     read: &mut ReadInclude,
 ) -> Result<FileId, Diagnostics> {
     let found = Found::new(files, file, read);
     if found.0.is_empty() {
         return Ok(file);
     }
-    let wrapping = Wrapping::new(
-        options.dialect.unwrap_or_default(),
-        super::declared_version(files, file),
-        options.lenient,
-    );
-    let mut preprocessor = Preprocessor::new(files, file, options.stage, wrapping);
+    let mut preprocessor = Preprocessor::new(files, file, stage, wrapping);
     preprocessor.inclusion = Some(Inclusion::new(files, file, &found));
-    while preprocessor.next_of_text().kind != TokenKind::End && !options.deadline.is_over() {
+    while preprocessor.next_of_text().kind != TokenKind::End && !deadline.is_over() {
         if let Some(inclusion) = &mut preprocessor.inclusion {
             inclusion.effects += 1;
         }
@@ -353,6 +350,7 @@ mod tests {
     use toyproof_diagnostic::File;
 
     use super::*;
+    use crate::{Options, with_includes};
 
     /// The text of the first file with the others included, which are found by their names.
     fn included(texts: &[(&str, &str)]) -> Result<(Files, FileId), String> {

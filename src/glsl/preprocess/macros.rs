@@ -7,9 +7,9 @@ use std::rc::Rc;
 use toyproof_diagnostic::{Code, Diagnostic, FileId, Span};
 
 use super::{PpToken, Preprocessor};
-use crate::Stage;
 use crate::dialect::{Version, Wrapping};
 use crate::keywords::Interner;
+use crate::stage::Stage;
 use crate::token::{Punctuator, Symbol, TokenKind};
 use crate::tree::Place;
 

@@ -21,15 +21,16 @@ pub(crate) use self::directive::DIRECTIVES;
 use self::expand::Stream;
 pub use self::expansions::Expansions;
 use self::include::Inclusion;
-pub use self::include::{ReadInclude, with_includes};
+pub use self::include::ReadInclude;
+pub(crate) use self::include::with_includes;
 pub use self::lexer::ControlComment;
 use self::lexer::{Lexer, PpToken};
 use self::macros::Macro;
 use super::token::{Punctuator, Symbol, Token, TokenKind};
-use crate::Stage;
 use crate::dialect::{Version, Wrapping};
 use crate::keywords::Interner;
 use crate::reporting::push_limited;
+use crate::stage::Stage;
 
 /// Maximum length of a name in bytes (WebGL 2, §4.3.1).
 const MAX_NAME_BYTES: usize = 1024;
