@@ -63,8 +63,9 @@ const LOSES_TEXT: [Code; 3] = [
 ];
 
 /// Errors after which declarations of names may be missing.
-const LOSES_NAMES: [Code; 5] = [
+const LOSES_NAMES: [Code; 6] = [
     Code::UnknownDirective,
+    Code::BadInclude,
     Code::MalformedDirective,
     Code::BadMacro,
     Code::BadMacroCall,

@@ -120,7 +120,7 @@ fn predefined_macros() {
         ("#error no", "E0010"),
         ("#if 0\n#error no\n#endif\na", "a"),
         ("#\na", "a"),
-        ("#include <a>", "E0003"),
+        ("#include <a>", "E0014"),
     ]);
 }
 

@@ -44,10 +44,25 @@ pub(crate) struct LoweringContext {
     pub(super) expansions: HashMap<(Expansion, Vec<Type>), FunctionId>,
 }
 
+/// Gives ShaderToy's inputs their names, which the shader of another host has replaced by its own.
+fn name_inputs(tree: &mut Tree) {
+    for id in tree.variables.ids() {
+        match tree[id].kind {
+            VariableKind::Input(input) if tree[id].name != input.name() => {
+                input.name().clone_into(&mut tree[id].name);
+            }
+            VariableKind::Channel(channel) => tree[id].name = format!("iChannel{channel}"),
+            _ => {}
+        }
+    }
+}
+
 impl LoweringContext {
     pub(crate) fn new(checked: &Checked) -> Self {
+        let mut tree = checked.tree.clone();
+        name_inputs(&mut tree);
         Self {
-            tree: checked.tree.clone(),
+            tree,
             main_image: checked.main_image,
             stage: checked.stage,
             sampling: checked.sampling,
