@@ -11,12 +11,11 @@ const KEYWORDS: &str = "\
     struct subroutine superp switch template this true typedef uint uniform union unsigned using varying \
     void volatile while writeonly";
 
-/// Functions that GLSL 450 or naga's front end has and ES 3.00 lacks.
+/// `main`, and functions that GLSL 450 or naga's front end adds to ES 3.00.
 const FUNCTIONS: &str = "\
-    main acosh all any atomicAdd atomicAnd atomicCompSwap atomicExchange atomicMax atomicMin atomicOr \
-    atomicXor barrier bitCount bitfieldExtract bitfieldInsert bitfieldReverse dFdxCoarse dFdxFine \
-    dFdyCoarse dFdyFine findLSB findMSB fma frexp ftransform fwidthCoarse fwidthFine imageLoad imageSize \
-    imageStore imulExtended interpolateAtCentroid interpolateAtOffset interpolateAtSample ldexp \
+    main atomicAdd atomicAnd atomicCompSwap atomicExchange atomicMax atomicMin atomicOr atomicXor barrier \
+    bitCount bitfieldExtract bitfieldInsert bitfieldReverse dFdxCoarse dFdxFine dFdyCoarse dFdyFine \
+    findLSB findMSB fma frexp ftransform fwidthCoarse fwidthFine imageLoad imageSize imageStore imulExtended interpolateAtCentroid interpolateAtOffset interpolateAtSample ldexp \
     memoryBarrier noise1 noise2 noise3 noise4 packDouble2x32 packSnorm4x8 packUnorm4x8 shadow1D shadow2D \
     texture1D texture2D texture2DLod texture2DProj texture3D textureCube textureGather textureGatherOffset \
     textureGatherOffsets textureQueryLevels textureQueryLod textureSamples uaddCarry umulExtended \
@@ -32,11 +31,15 @@ pub(super) fn is_reserved(word: &str) -> bool {
     lists(KEYWORDS, word) || is_type(word) || word.starts_with("gl_") || word.contains("__")
 }
 
-/// The word, with a prefix if a number appended to it would not make it a free name.
+/// A stem for `word` such that `{stem}_1` is not reserved.
 pub(super) fn with_free_stem(word: &str) -> String {
     if is_reserved(&format!("{word}_1")) {
         let words: Vec<_> = word.split('_').filter(|part| !part.is_empty()).collect();
-        format!("toyproof_{}", words.join("_"))
+        if words.is_empty() {
+            "toyproof_name".to_owned()
+        } else {
+            format!("toyproof_{}", words.join("_"))
+        }
     } else {
         word.to_owned()
     }
@@ -86,6 +89,24 @@ fn is_type(word: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_numbered_stem_is_reserved() {
+        for word in ["_", "__", "___", "a_", "_a", "a__b", "gl_x", "vec2vec", "name"] {
+            let stem = with_free_stem(word);
+            for name in [&stem, &format!("{stem}_1")] {
+                assert!(!is_reserved(name), "{word}: {name}");
+            }
+        }
+    }
+
+    #[test]
+    fn listed_functions_are_not_built_in() {
+        for word in FUNCTIONS.split_whitespace() {
+            let is_built_in = BuiltIn::ALL.iter().any(|function| function.name() == word);
+            assert!(!is_built_in, "{word}");
+        }
+    }
 
     #[test]
     fn only_words_of_desktop_glsl_are_reserved() {
