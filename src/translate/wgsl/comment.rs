@@ -3,13 +3,14 @@
 
 use std::collections::HashSet;
 
-use toyproof_diagnostic::{FileId, Files, Span};
-use toyproof_glsl::tree::{Place, Swizzle};
+use toyproof_diagnostic::{FileId, Files};
+use toyproof_glsl::tree::Place;
 
 /// Finds the author's comments and tracks which are printed.
 pub(super) struct Comments<'a> {
     files: &'a Files,
-    /// Printed comment and blank lines, by the byte where they begin.
+    /// What is printed: comment and blank lines by the byte where they begin, comments at the end of a line
+    /// by the byte where the code before them ends.
     printed: HashSet<(FileId, usize)>,
 }
 
@@ -45,23 +46,30 @@ impl<'a> Comments<'a> {
         let before = text.get(..at.span.start as usize).unwrap_or_default();
         let mut end = before.rfind('\n').map_or(0, |end| end + 1);
         let mut lines = Vec::new();
-        let mut in_block = false;
+        // The number of lines below the block comment that is being read, whose end is the first line read.
+        let mut block: Option<usize> = None;
         while end > 0 {
             let begin = text[..end - 1].rfind('\n').map_or(0, |end| end + 1);
             let line = text[begin..end].trim();
-            let opens = line.starts_with("/*");
-            let closes = line.ends_with("*/") && (opens || !line.contains("/*"));
-            if !(in_block || closes || line.starts_with("//")) {
+            if let Some(below) = block {
+                let opened = line.strip_prefix("/*");
+                if opened.unwrap_or(line).contains("*/") || opened.is_none() && line.contains("/*") {
+                    // The block begins after code, or its apparent end is not one.
+                    lines.truncate(below);
+                    return (lines, None);
+                }
+                if opened.is_some() {
+                    block = None;
+                }
+            } else if line.ends_with("*/") && !line.contains("/*") {
+                block = Some(lines.len());
+            } else if !line.starts_with("//") && !is_block_comment(line) {
                 return (lines, line.is_empty().then_some(begin));
             }
-            in_block = (in_block || closes) && !opens;
             lines.push((begin, line));
             end = begin;
         }
-        if in_block {
-            // The apparent end of a comment was not one.
-            lines.clear();
-        }
+        lines.truncate(block.unwrap_or(lines.len()));
         (lines, None)
     }
 
@@ -71,8 +79,7 @@ impl<'a> Comments<'a> {
         let text = self.files.get(file).text();
         let rest = text.get(at.span.end as usize..)?.lines().next()?.trim();
         let rest = rest.trim_start_matches([';', ',', ' ', '\t']);
-        let is_comment =
-            rest.starts_with("//") || (rest.starts_with("/*") && rest.find("*/") == Some(rest.len() - 2));
+        let is_comment = rest.starts_with("//") || is_block_comment(rest);
         (is_comment && self.printed.insert((file, at.span.end as usize)))
             .then(|| line_comment(rest))
             .flatten()
@@ -87,13 +94,14 @@ impl<'a> Comments<'a> {
         let mut begin = 0;
         for whole in text.split_inclusive('\n') {
             let line = whole.trim();
-            let opens = line.starts_with("/*");
-            if !(in_block || opens || line.starts_with("//")) {
+            let opened = line.strip_prefix("/*").filter(|_| !in_block);
+            if !(in_block || opened.is_some() || line.starts_with("//")) {
                 break;
             }
-            if opens || in_block {
-                match line.find("*/") {
-                    Some(end) if end + 2 == line.len() => in_block = false,
+            if in_block || opened.is_some() {
+                let inside = opened.unwrap_or(line);
+                match inside.find("*/") {
+                    Some(end) if end + 2 == inside.len() => in_block = false,
                     Some(_) => break,
                     None => in_block = true,
                 }
@@ -107,6 +115,18 @@ impl<'a> Comments<'a> {
         self.printed.extend(lines.iter().map(|&(begin, _)| (file, begin)));
         lines.iter().filter_map(|(_, line)| line_comment(line)).collect()
     }
+}
+
+/// Whether a text consists of block comments, and is not empty.
+fn is_block_comment(text: &str) -> bool {
+    let mut rest = text;
+    while let Some(inside) = rest.strip_prefix("/*") {
+        let Some((_, after)) = inside.split_once("*/") else {
+            return false;
+        };
+        rest = after.trim_start();
+    }
+    rest.is_empty() && !text.is_empty()
 }
 
 /// Converts a line of a comment to a WGSL comment; `None` if it only has the delimiters of a block.
@@ -126,51 +146,61 @@ fn line_comment(line: &str) -> Option<String> {
     (!line.is_empty()).then(|| format!("// {line}"))
 }
 
-impl<'a> Comments<'a> {
-    /// The letters of a swizzle: `rgba` where the author wrote these, `xyzw` otherwise.
-    pub(super) fn letters(&self, components: Swizzle, at: Place) -> String {
-        let color: String = components
-            .components()
-            .iter()
-            .map(|&c| char::from(b"rgba"[usize::from(c)]))
-            .collect();
-        let written = self.text(at.spelling).and_then(|text| text.rsplit('.').next());
-        if written.is_some_and(|written| written.trim() == color) {
-            color
-        } else {
-            components.name()
-        }
+#[cfg(test)]
+mod tests {
+    use toyproof_diagnostic::{File, Span};
+
+    use super::*;
+
+    /// The place of the last occurrence of a text.
+    fn place(files: &Files, file: FileId, code: &str) -> Place {
+        let start = files.get(file).text().rfind(code).unwrap();
+        Place::plain(Span::new(file, start as u32, (start + code.len()) as u32))
     }
 
-    /// The source text of a span.
-    pub(super) fn text(&self, span: Span) -> Option<&'a str> {
-        self.files
-            .get(span.file)
-            .text()
-            .get(span.start as usize..span.end as usize)
+    fn with<T>(text: &str, code: &str, find: impl FnOnce(&mut Comments<'_>, Place) -> T) -> T {
+        let mut files = Files::default();
+        let file = files.add(File::new("shader", text));
+        let at = place(&files, file, code);
+        find(&mut Comments::new(&files), at)
     }
 
-    /// Whether a place is the entire replacement text of `#define NAME`.
-    pub(super) fn is_whole_macro(&self, name: &str, at: Place) -> bool {
-        let text = self.files.get(at.spelling.file).text();
-        let (Some(before), Some(after)) = (
-            text.get(..at.spelling.start as usize),
-            text.get(at.spelling.end as usize..),
-        ) else {
-            return false;
-        };
-        let before = before.rsplit('\n').next().unwrap_or_default();
-        let after = after.lines().next().unwrap_or_default().trim();
-        let mut words = before.split_whitespace();
-        let directive = words.next().unwrap_or_default();
-        let named = match directive {
-            "#define" => words.next(),
-            "#" => words
-                .next()
-                .filter(|&word| word == "define")
-                .and_then(|_| words.next()),
-            _ => None,
-        };
-        named == Some(name) && words.next().is_none() && (after.is_empty() || after.starts_with("//"))
+    fn above(text: &str) -> Vec<String> {
+        with(text, "float y", |comments, at| comments.above(at))
+    }
+
+    #[test]
+    fn comments_above_are_kept() {
+        let text = "float x;\n// a\n/* b\n * c */\n/* d */ /* e */\n  float y;";
+        assert_eq!(above(text), ["// a", "// b", "// c", "// d */ /* e"]);
+        assert_eq!(above("/*/ a\nb */\nfloat y;"), ["// / a", "// b"]);
+    }
+
+    #[test]
+    fn code_is_not_a_comment() {
+        // A block that begins after code.
+        assert!(above("/* a */\nfloat x = 1.; /* b\nc */\nfloat y;").is_empty());
+        assert!(above("/* a */ float x = 1.; /* b\nc */\nfloat y;").is_empty());
+        assert!(above("float x = 1.; /* b\nc */\nfloat y;").is_empty());
+        // Only that block is dropped.
+        let text = "/* a */\nfloat x = 1.; /* b\nc */\n// d\nfloat y;";
+        assert_eq!(above(text), ["// d"]);
+        // `*/` in a line comment.
+        assert!(above("/* a\nb */ float x = 1.;\n// c */\nfloat y;").is_empty());
+        assert!(above("/* a */ float x = 1.; /* b */\nfloat y;").is_empty());
+    }
+
+    #[test]
+    fn an_opening_delimiter_does_not_close_a_comment() {
+        let text = "float x; /*/\nfloat z;\n*/ float y;";
+        assert_eq!(with(text, "float x", |comments, at| comments.trailing(at)), None);
+        let text = "/*/\na */\nfloat y;";
+        assert_eq!(
+            with(text, "float y", |comments, at| comments.first(at)),
+            ["// /", "// a"]
+        );
+        let text = "float x; /* a */\nfloat y;";
+        let trailing = with(text, "float x", |comments, at| comments.trailing(at));
+        assert_eq!(trailing.as_deref(), Some("// a"));
     }
 }

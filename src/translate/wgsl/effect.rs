@@ -113,7 +113,7 @@ impl Writer<'_> {
     pub(super) fn set(&mut self, target: ExprId, value: &Text) -> Result<(), Unprintable> {
         match self.cx.tree[target].kind {
             ExprKind::Swizzle { vector, components } if components.size() > 1 => {
-                let letters = self.comments.letters(components, self.cx.tree[target].at);
+                let letters = self.source.letters(components, self.cx.tree[target].at);
                 self.set_components(vector, components, &letters, value)
             }
             _ => {

@@ -77,7 +77,7 @@ impl Writer<'_> {
                     return Ok(text);
                 }
                 let vector = self.value(vector)?.operand();
-                let letters = self.comments.letters(components, expr.at);
+                let letters = self.source.letters(components, expr.at);
                 Ok(Text::primary(format!("{vector}.{letters}")))
             }
             &ExprKind::Member { structure, member } => {

@@ -101,11 +101,11 @@ impl Writer<'_> {
         if !at.is_expanded() {
             return None;
         }
-        let text = self.comments.text(at.span)?;
+        let text = self.source.text(at.span)?;
         let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && text.starts_with(|c: char| c.is_ascii_alphabetic());
         let is_free = !super::names::is_taken(text) && !self.names.all.contains(text);
-        (is_name && is_free && self.comments.is_whole_macro(text, at)).then(|| text.to_owned())
+        (is_name && is_free && self.source.is_whole_macro(text, at)).then(|| text.to_owned())
     }
 
     /// The zero value of a type.

@@ -15,6 +15,7 @@ mod item;
 mod literal;
 mod loops;
 mod names;
+mod source_text;
 mod statement;
 mod style;
 mod writer;

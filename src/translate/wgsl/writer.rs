@@ -11,6 +11,7 @@ use toyproof_glsl::tree::{
 use super::Unprintable;
 use super::comment::Comments;
 use super::names::Names;
+use super::source_text::SourceText;
 use super::style::Style;
 use crate::lower::context::LoweringContext;
 use crate::print::Order;
@@ -22,6 +23,7 @@ pub(super) struct Writer<'a> {
     pub(super) facts: &'a Facts,
     pub(super) style: Style,
     pub(super) comments: Comments<'a>,
+    pub(super) source: SourceText<'a>,
     pub(super) deadline: &'a Deadline,
     pub(super) out: String,
     pub(super) indent: usize,
@@ -62,6 +64,7 @@ impl<'a> Writer<'a> {
             facts,
             style,
             comments: Comments::new(files),
+            source: SourceText::new(files),
             deadline,
             out: String::new(),
             indent: 0,
