@@ -11,7 +11,8 @@ use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, Constructor, ExprId, ExprKind, StructId, Type, UnaryOp, Value};
 
 use super::Findings;
-use super::program::{Definition, Program, Shape};
+use super::program::{Definition, Program};
+use super::shape::Shape;
 
 /// The maximum number of terms of a discriminant, and of factors of a term.
 const MAX_TERMS: usize = 8;

@@ -6,7 +6,8 @@
 use toyproof_diagnostic::{Code, Files, Fix, Span};
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, Input, Type, UnaryOp, Value, VariableKind};
 
-use super::program::{Program, Shape};
+use super::program::Program;
+use super::shape::Shape;
 use super::{Findings, format_number};
 
 /// The maximum number of expressions examined for one call; nothing is reported beyond it.

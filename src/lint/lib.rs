@@ -20,6 +20,7 @@
 //! # Parts
 //!
 //! - `program`: facts that all lints share: reachable functions, definitions of variables.
+//! - `shape`: structural equality of expressions.
 //! - `uninit`, `unset`, `unused`, `uncalled`: variables, inputs, values and functions.
 //! - `equality`, `edges`, `fraction`, `randomness`: results that rounding decides, or that are undefined.
 //! - `direction`: directions of rays that are not normalized.
@@ -35,6 +36,7 @@ mod fraction;
 mod iteration;
 mod program;
 mod randomness;
+mod shape;
 mod uncalled;
 mod uniformity;
 mod uninit;

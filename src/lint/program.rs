@@ -1,15 +1,13 @@
 //! Facts shared by all analyses of a shader: reachable functions in call order, and the definitions of
 //! variables.
 
-use std::fmt::Write;
-
 use toyproof_diagnostic::Deadline;
 pub(super) use toyproof_glsl::tree::walk::direction;
 use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, FunctionId, StatementKind, Tree, Type, Value, VariableId, walk,
 };
 
-/// The part of a shader reachable from `mainImage`.
+/// The part of a shader reachable from `mainImage` and from the initializers of global variables.
 pub(super) struct Program<'a> {
     pub(super) tree: &'a Tree,
     /// The time limit of all analyses.
@@ -217,8 +215,7 @@ impl<'a> Program<'a> {
 /// The maximum number of names that an analysis follows from a use to its definition.
 pub(super) const MAX_RESOLVE_STEPS: usize = 64;
 
-/// The last `most` elements: a search that always takes the newest pending element and stops after `most`
-/// steps visits no others.
+/// The last `most` elements: a bounded depth-first search visits no others.
 pub(super) fn newest<T>(all: &[T], most: usize) -> &[T] {
     &all[all.len().saturating_sub(most)..]
 }
@@ -234,61 +231,4 @@ pub(super) fn callee(tree: &Tree, expr: ExprId) -> Option<FunctionId> {
 /// Whether a type is `float`, or a vector or matrix of floats.
 pub(super) fn is_float(ty: Type) -> bool {
     ty.scalar() == Some(toyproof_glsl::tree::Scalar::Float)
-}
-
-// Structural equality of expressions: the same operators applied to the same variables.
-
-/// The maximum number of nodes in a shape.
-const MAX_SHAPE_NODES: usize = 100;
-
-/// The structure of an expression; `None` for expressions with side effects or more than [`MAX_SHAPE_NODES`]
-/// nodes.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct Shape {
-    text: String,
-    /// The variables that its value depends on.
-    pub(super) variables: Vec<VariableId>,
-}
-
-impl Shape {
-    pub(super) fn new(tree: &Tree, root: ExprId) -> Option<Self> {
-        let mut shape = Self {
-            text: String::new(),
-            variables: Vec::new(),
-        };
-        let mut pending = vec![root];
-        for _ in 0..MAX_SHAPE_NODES {
-            let Some(expr) = pending.pop() else {
-                return Some(shape);
-            };
-            // Each operator's name implies its number of operands, so prefix order identifies the tree.
-            let text = &mut shape.text;
-            let written = match &tree[expr].kind {
-                ExprKind::Literal(literal) => write!(text, "{:?};", literal.value),
-                ExprKind::Variable(variable) => {
-                    shape.variables.push(*variable);
-                    write!(text, "{variable:?};")
-                }
-                ExprKind::Unary { op, .. } => write!(text, "{op:?};"),
-                ExprKind::Binary { op, .. } => write!(text, "{op:?};"),
-                ExprKind::Conditional { .. } => write!(text, "?:;"),
-                ExprKind::BuiltIn { function, arguments } if function.out_parameter().is_none() => {
-                    write!(text, "{function:?}{};", arguments.len())
-                }
-                ExprKind::Construct { arguments, .. } => {
-                    write!(text, "{:?}{};", tree[expr].ty, arguments.len())
-                }
-                ExprKind::Swizzle { components, .. } => write!(text, ".{};", components.name()),
-                ExprKind::Member { member, .. } => write!(text, ".{member};"),
-                ExprKind::Index { .. } => write!(text, "[];"),
-                ExprKind::Length { .. } => write!(text, "length;"),
-                _ => return None,
-            };
-            written.ok()?;
-            let first = pending.len();
-            tree[expr].kind.for_each_operand(|operand| pending.push(operand));
-            pending[first..].reverse();
-        }
-        None
-    }
 }

@@ -13,7 +13,8 @@ use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, ExprKind, FunctionId, Value};
 
 use super::Findings;
-use super::program::{Program, Shape, is_float};
+use super::program::{Program, is_float};
+use super::shape::Shape;
 
 pub(super) fn run(program: &Program, findings: &mut Findings) {
     let tree = program.tree;

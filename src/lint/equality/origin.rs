@@ -8,7 +8,8 @@ use toyproof_glsl::tree::{
 };
 
 use super::grid::Grid;
-use crate::program::{Definition, Program, Shape, newest};
+use crate::program::{Definition, Program, newest};
+use crate::shape::Shape;
 
 /// The maximum number of expressions examined; the origin is unknown beyond it.
 const MAX_EXPRS: usize = 2_000;

@@ -8,7 +8,8 @@ use toyproof_glsl::tree::{
 };
 
 use crate::Findings;
-use crate::program::{Program, Shape};
+use crate::program::Program;
+use crate::shape::Shape;
 
 /// Reports a function whose end can be reached, unless its author lists the cases of one value.
 pub(super) fn report(program: &Program, function: FunctionId, findings: &mut Findings) {
