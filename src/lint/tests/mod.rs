@@ -63,7 +63,7 @@ fn check_cases(table: &str) {
             found.join(",")
         };
         if found != wanted {
-            wrong.push(format!("{found} {text}"));
+            wrong.push(format!("expected {wanted}, found {found}: {text}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -76,7 +76,7 @@ fn message(functions: &str, statements: &str) -> String {
     found[0].message.clone()
 }
 
-// Properties of all warnings: `allow`, deduplication, deadlines and analysis time.
+// Properties of all warnings: `allow`, deduplication, deadlines and large shaders.
 
 #[test]
 fn repeated_macro_is_reported_once() {
@@ -152,11 +152,10 @@ fn allowed_warnings_are_suppressed() {
     assert!(self::warned(text).is_empty());
 }
 
-/// Quadratic time would be minutes, linear time is less than a second.
-const HANG_GUARD: std::time::Duration = std::time::Duration::from_secs(60);
-
+/// Analysis of these shaders takes less than a second in linear time, and minutes in quadratic time. Only the
+/// end of the analysis and its stack are checked, because time depends on the machine.
 #[test]
-fn analysis_time_is_linear() {
+fn analysis_of_large_shaders_ends_on_a_small_stack() {
     let lines = |line: fn(usize) -> String| (0..5_000).map(line).collect::<String>();
     let texts = [
         lines(|i| format!("float a{i}; if (f.x > {i}.0) a{i} = 1.0; c.x += a{i};\n")),
@@ -174,7 +173,6 @@ fn analysis_time_is_linear() {
         lines(|i| format!("for (int i = 0; i < {i}; i++) {{ if (f.x == 0.1 * c.y) break; }}\n")),
     ];
     for text in texts {
-        let start = std::time::Instant::now();
         let builder = std::thread::Builder::new().stack_size(2 << 20);
         let found = std::thread::scope(|scope| {
             let text = shader("", &text);
@@ -185,7 +183,6 @@ fn analysis_time_is_linear() {
                 .unwrap()
         });
         assert!(found <= MAX_REPORTED, "{found} {}", &text[..60]);
-        assert!(start.elapsed() < HANG_GUARD, "{}", &text[..60]);
     }
 }
 
