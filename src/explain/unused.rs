@@ -1,4 +1,4 @@
-//! The inputs, and the functions of the same name, that a reference shader uses and another shader does not.
+//! The inputs and functions that a reference shader uses and another shader leaves unused.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -28,8 +28,12 @@ impl Unused {
         let is_uncalled = |name: &str| own.defined.contains(name) && !own.calls.contains_key(name);
         let calls = expected.calls.into_iter().filter(|(name, _)| is_uncalled(name));
         let mut functions: Vec<_> = calls.collect();
-        functions.sort_by_key(|(_, span)| span.start);
-        Self { inputs, functions }
+        functions.sort_by_key(|(_, call)| call.order());
+        let functions = functions.into_iter().map(|(name, call)| (name, call.span));
+        Self {
+            inputs,
+            functions: functions.collect(),
+        }
     }
 }
 
@@ -50,15 +54,30 @@ fn name(kind: VariableKind, shader: &[&Checked]) -> String {
 struct Uses {
     inputs: HashSet<VariableKind>,
     /// Called functions, each with its first call.
-    calls: BTreeMap<String, Span>,
+    calls: BTreeMap<String, Call>,
     /// Functions with a body.
     defined: BTreeSet<String>,
+}
+
+/// A call in a pass.
+#[derive(Clone, Copy)]
+struct Call {
+    /// The number of the pass.
+    pass: usize,
+    span: Span,
+}
+
+impl Call {
+    /// Orders calls by the passes, which are separate files, and by their places.
+    fn order(self) -> (usize, u32) {
+        (self.pass, self.span.start)
+    }
 }
 
 impl Uses {
     fn new(passes: &[&Checked]) -> Self {
         let mut uses = Self::default();
-        for checked in passes {
+        for (pass, checked) in passes.iter().enumerate() {
             let tree = &checked.tree;
             for expr in reachable_expressions(tree, checked.main_image) {
                 match tree[expr].kind {
@@ -66,10 +85,11 @@ impl Uses {
                         uses.inputs.insert(tree[variable].kind);
                     }
                     ExprKind::Call { function, .. } => {
-                        let at = tree[expr].at.span;
-                        let first = uses.calls.entry(tree[function].name.clone()).or_insert(at);
-                        if at.start < first.start {
-                            *first = at;
+                        let span = tree[expr].at.span;
+                        let call = Call { pass, span };
+                        let first = uses.calls.entry(tree[function].name.clone()).or_insert(call);
+                        if call.order() < first.order() {
+                            *first = call;
                         }
                     }
                     _ => {}
@@ -115,6 +135,29 @@ mod tests {
         assert_eq!(inputs(&dead), ["iChannel2", "iFrame", "iMouse", "iTime"]);
         assert!(inputs(reference).is_empty());
         assert!(unused(reference, still).0.is_empty());
+    }
+
+    #[test]
+    fn calls_are_in_the_order_of_the_passes() {
+        let image = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.0); }";
+        let padding = " ".repeat(200);
+        let with = |names: [&str; 2], calls: &str, before: &str| {
+            let define = |name: &str| format!("float {name}(float x) {{ return x; }}");
+            format!(
+                "{before}{}{} void mainImage(out vec4 c, in vec2 p) {{ c = vec4({calls}); }}",
+                define(names[0]),
+                define(names[1])
+            )
+        };
+        // The calls of the first pass have the larger offsets.
+        let first = with(["sky", "fog"], "sky(p.x)", &padding);
+        let second = with(["fog", "sky"], "fog(p.x) * sky(p.x)", "");
+        let shader = checked(&with(["fog", "sky"], "0.0", ""));
+        let (first, second) = (checked(&first), checked(&second));
+        let Unused { functions, .. } = Unused::new(&[&shader, &checked(image)], &[&first, &second]);
+        let names: Vec<_> = functions.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["sky", "fog"]);
+        assert!(functions[0].1.start > 200);
     }
 
     #[test]
