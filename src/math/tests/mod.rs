@@ -1,4 +1,4 @@
-//! Tests of the functions in f64 against identities that hold for any order of operations.
+//! Tests of the functions against identities, and of the f32 and graph variants against each other.
 
 mod accuracy;
 
@@ -90,8 +90,14 @@ proptest! {
         let m = modulo(x, y);
         prop_assert!(near(((x - m) / y).round(), (x - m) / y) && m / y > -TOLERANCE && m / y < 1.0 + TOLERANCE);
         prop_assert!(near(mix(x, y, 0.0), x) && near(mix(x, y, 1.0), y));
+        prop_assert!(near(mix(x, y, 0.25), 0.75 * x + 0.25 * y));
         prop_assert!(near(smoothstep(0.0, 4.0, x) + smoothstep(0.0, 4.0, 4.0 - x), 1.0));
     }
+}
+
+#[test]
+fn smoothstep_is_cubic() {
+    assert_eq!(smoothstep(0.0, 4.0, 1.0), 0.156_25);
 }
 
 #[test]
@@ -120,7 +126,7 @@ fn a_graph_computes_what_the_functions_compute() {
         fract(x),
     ];
     let ids = results.map(FloatTerm::id);
-    // Which NaN it is, is not defined.
+    // NaN payloads are unspecified.
     let bits = |values: &[f32]| {
         values
             .iter()
