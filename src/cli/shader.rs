@@ -27,7 +27,7 @@ pub(super) struct Shader {
     pub(super) content: Result<Content, Unusable>,
     /// The lints; of a project, the lints of its image with the warnings about all tabs.
     pub(super) lints: Lints,
-    /// Whether this is a project whose image reads other passes, and so depends on earlier frames.
+    /// Whether this is a project whose image reads other passes, and so may depend on earlier frames.
     pub(super) has_passes: bool,
     /// Whether a student submitted no shader.
     pub(super) is_missing: bool,

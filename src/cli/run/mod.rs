@@ -18,7 +18,7 @@ use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image, ImageError};
-use toyproof_player::Clock;
+use toyproof_player::{Clock, Target};
 use toyproof_project::PassKind;
 use toyproof_project::files;
 use toyproof_report as report;
@@ -145,7 +145,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
         output: &output,
         worker: worker.filter(|_| args.precision == Precision::F32),
         prefers_evaluator: args.driver.is_evaluator_equal(),
-        frame,
+        frame: &frame,
         images: Vec::new(),
     };
     for input in &inputs {
@@ -165,10 +165,10 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
             continue;
         }
         if let Ok(checked) = shader.image() {
-            terminal.diagnostics(&unbound(checked, &shader.lints, &runner.frame), &shader.files);
+            terminal.diagnostics(&unbound(checked, &shader.lints, runner.frame), &shader.files);
         }
         let rendered = match args.frames {
-            None => runner.one_image(&shader, &path),
+            None => runner.one_image(&shader, runner.frame, &path),
             Some(frames) => runner.sequence(&shader, frames, &path),
         };
         if let Err(error) = rendered {
@@ -256,7 +256,8 @@ struct Runner<'a> {
     worker: Option<Worker>,
     /// Whether the evaluator renders shaders for which it is not slower than the driver.
     prefers_evaluator: bool,
-    frame: Frame,
+    /// The inputs of the frame that the user gives.
+    frame: &'a Frame,
     /// The written images.
     images: Vec<WrittenImage>,
 }
@@ -295,9 +296,9 @@ impl Runner<'_> {
     }
 
     /// Renders an image into its file.
-    fn one_image(&mut self, shader: &Shader, path: &Path) -> Result<(), CliError> {
-        match self.render(shader, None) {
-            Ok(rendered) => self.write_confirmed(&rendered, &shader.name, path),
+    fn one_image(&mut self, shader: &Shader, frame: &Frame, path: &Path) -> Result<(), CliError> {
+        match self.render(shader, frame, None) {
+            Ok(rendered) => self.write_confirmed(&rendered, frame, &shader.name, path),
             Err(ImageFailure::Failed(error)) => Err(error),
             Err(ImageFailure::Interrupted) => Err(CliError::silent()),
         }
@@ -313,9 +314,9 @@ impl Runner<'_> {
         let sequence = Sequence::resume(frames, output, &fingerprint, self.terminal);
         let clock = self.clock(0);
         sequence.render(self.terminal, |one, interrupted| {
-            self.frame = clock.frame(one.frame);
-            match self.render(shader, Some(interrupted)) {
-                Ok(rendered) => self.write(&rendered, &shader.name, &one.path)?,
+            let frame = clock.frame(one.frame);
+            match self.render(shader, &frame, Some(interrupted)) {
+                Ok(rendered) => self.write(&rendered, &frame, &shader.name, &one.path)?,
                 Err(ImageFailure::Failed(error)) => return Err(error),
                 Err(ImageFailure::Interrupted) => return Ok(FrameEnd::Interrupted),
             };
@@ -353,16 +354,17 @@ impl Runner<'_> {
         format!("{:016x}", hasher.finish())
     }
 
-    /// Renders the shader. The evaluator shows its progress, and ends early if the user interrupts it, unless
-    /// the image is one of a sequence, whose flag is given.
+    /// Renders a frame of the shader. The evaluator shows its progress, and ends early if the user interrupts
+    /// it, unless the image is one of a sequence, whose flag is given.
     fn render(
         &mut self,
         shader: &Shader,
+        frame: &Frame,
         interrupted: Option<&AtomicBool>,
     ) -> Result<RenderedImage, ImageFailure> {
         let checked = shader.require_image()?;
         if self.prefers_evaluator {
-            match self.evaluate::<f32>(checked, interrupted) {
+            match self.evaluate::<f32>(checked, frame, interrupted) {
                 Err(failure) if self.worker.is_some() && is_too_large(&failure) => {
                     self.terminal.detail(&format!(
                         "{}: {failure}; the Vulkan driver renders it",
@@ -383,7 +385,7 @@ impl Runner<'_> {
             let lowered = float
                 .lower_within(checked, &deadline)
                 .map_err(|overdue| shader_error(vec![glsl::overdue(overdue)], shader))?;
-            let drawn = worker.draw(lowered, self.frame.clone(), float);
+            let drawn = worker.draw(lowered, frame.clone(), float);
             spinner.finish_and_clear();
             match drawn {
                 Err(failure) if failure.is_without_driver() && self.args.driver.may_fall_back() => {
@@ -394,8 +396,8 @@ impl Runner<'_> {
             }
         }
         let evaluated = match self.args.precision {
-            Precision::F32 => self.evaluate::<f32>(checked, interrupted),
-            Precision::F64 => self.evaluate::<f64>(checked, interrupted),
+            Precision::F32 => self.evaluate::<f32>(checked, frame, interrupted),
+            Precision::F64 => self.evaluate::<f64>(checked, frame, interrupted),
         };
         evaluated.map_err(|failure| image_failure(&failure, shader))
     }
@@ -415,6 +417,7 @@ impl Runner<'_> {
     fn evaluate<N: Number>(
         &self,
         checked: &Checked,
+        frame: &Frame,
         interrupted: Option<&AtomicBool>,
     ) -> Result<RenderedImage, eval::Failure> {
         let start = Instant::now();
@@ -425,7 +428,7 @@ impl Runner<'_> {
             interrupt: Some(interrupted.unwrap_or(self.terminal.interrupt_flag())),
             ..Settings::default()
         };
-        let height = self.frame.size[1];
+        let height = frame.size[1];
         let bar = match interrupted {
             None => self.terminal.bar(u64::from(height), "rows"),
             // The sequence has its own progress bar.
@@ -440,7 +443,7 @@ impl Runner<'_> {
         let bands = (0..height).step_by(rows_per_band as usize);
         let bands = bands.map(|first| -> Result<Image, eval::Failure> {
             let rows = first..first.saturating_add(rows_per_band).min(height);
-            let rendered = program.render_rows(&self.frame, rows.clone(), &settings)?;
+            let rendered = program.render_rows(frame, rows.clone(), &settings)?;
             bar.inc(rows.len() as u64);
             Ok(rendered.image)
         });
@@ -457,10 +460,11 @@ impl Runner<'_> {
     fn write_confirmed(
         &mut self,
         rendered: &RenderedImage,
+        frame: &Frame,
         shader: &str,
         path: &Path,
     ) -> Result<(), CliError> {
-        let size = file_size(self.write(rendered, shader, path)?);
+        let size = file_size(self.write(rendered, frame, shader, path)?);
         let [width, height] = rendered.image.size();
         let precision = self.args.precision.name();
         let (device, seconds) = (short_device(&rendered.device), rendered.seconds);
@@ -470,15 +474,21 @@ impl Runner<'_> {
     }
 
     /// Writes an image; returns the size of the file in bytes.
-    fn write(&mut self, rendered: &RenderedImage, shader: &str, path: &Path) -> Result<usize, CliError> {
+    fn write(
+        &mut self,
+        rendered: &RenderedImage,
+        frame: &Frame,
+        shader: &str,
+        path: &Path,
+    ) -> Result<usize, CliError> {
         let bytes = encode(&rendered.image, path)?;
         self.terminal.write_output(self.output, path, &bytes)?;
         self.images.push(WrittenImage {
             shader: shader.to_owned(),
             output: path_name(path),
             size: rendered.image.size(),
-            frame: self.frame.frame,
-            time: self.frame.time,
+            frame: frame.frame,
+            time: frame.time,
             precision: self.args.precision.name(),
             device: rendered.device.clone(),
             seconds: rendered.seconds,
@@ -540,11 +550,19 @@ fn image_failure(failure: &eval::Failure, shader: &Shader) -> ImageFailure {
 
 /// Why the evaluator failed.
 pub(in crate::cli) fn evaluation_error(failure: &eval::Failure, shader: &Shader) -> CliError {
+    pass_error(failure, None, shader)
+}
+
+/// Why the evaluator failed, and in which pass of a project.
+fn pass_error(failure: &eval::Failure, pass: Option<Target>, shader: &Shader) -> CliError {
+    let tab = pass.map_or_else(String::new, |pass| format!("{pass}: "));
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
-        return shader_error(vec![glsl::overdue(*overdue)], shader);
+        let mut diagnostic = glsl::overdue(*overdue);
+        diagnostic.message.insert_str(0, &tab);
+        return shader_error(vec![diagnostic], shader);
     }
     let position = report::failure_position(failure, &shader.files);
-    let error = CliError::new(format_args!("{}: {failure}{position}", shader.name));
+    let error = CliError::new(format_args!("{}: {tab}{failure}{position}", shader.name));
     match failure {
         eval::Failure::Refused(_) => error,
         eval::Failure::Timeout { .. } | eval::Failure::TimeUp => error

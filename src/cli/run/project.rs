@@ -13,12 +13,12 @@ use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Filter};
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{Channel, Clock, Source, State, Target};
+use toyproof_player::{Channel, Clock, Graph, Source, State, Target};
 use toyproof_project::{CompiledProject, PassKind, Rendering, Tab};
 use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::state::{self, Owner};
-use super::{Precision, RenderedImage, Runner, draw_error, evaluation_error, is_too_large, shader_error};
+use super::{Precision, RenderedImage, Runner, draw_error, is_too_large, pass_error, shader_error};
 use crate::cli::inputs::short_device;
 use crate::cli::project::{pass_shader, target};
 use crate::cli::sequence::{FrameEnd, Sequence};
@@ -58,8 +58,8 @@ fn report_replaced(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &s
     }
 }
 
-/// The reason of the wait is reported if at least this many frames, a second of the animation, must be
-/// rendered before the first one that is shown.
+/// The reason for the wait is reported if at least this many frames must be rendered before the first one
+/// that is shown.
 const MANY_FRAMES: u64 = 60;
 
 /// Frames in progress.
@@ -140,11 +140,12 @@ impl Playback<'_> {
 /// The frames of a project in progress.
 struct Run<'a> {
     playback: Playback<'a>,
+    graph: &'a Graph,
     clock: Clock,
     target: Target,
     /// The next frame to render.
     next: i32,
-    /// Whether a frame depends on those before it.
+    /// Whether a frame may depend on those before it: there are several passes.
     has_history: bool,
     terminal: &'a Terminal,
 }
@@ -196,8 +197,8 @@ impl Run<'_> {
     }
 }
 
-/// The frame of a project whose image reads no other pass, with the sources of its channels; `None` if it
-/// depends on earlier frames.
+/// The frame of a project whose image reads no other pass, with the sources of its channels; `None` if there
+/// are other passes.
 fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let [image] = rendering.graph.passes() else {
         return None;
@@ -218,32 +219,31 @@ impl Runner<'_> {
         passes: &CompiledProject,
         path: &Path,
     ) -> Result<Exit, CliError> {
-        // The worker is used beside this runner, which writes the images. The next shader has the same frame.
-        let (mut worker, frame) = (self.worker.take(), self.frame.clone());
-        let exit = self.render_project(&mut worker, shader, passes, path);
-        (self.worker, self.frame) = (worker, frame);
-        exit
-    }
-
-    fn render_project(
-        &mut self,
-        worker: &mut Option<Worker>,
-        shader: &Shader,
-        passes: &CompiledProject,
-        path: &Path,
-    ) -> Result<Exit, CliError> {
         let kind = self.args.pass.unwrap_or(PassKind::Image);
         let rendering = self.rendering(shader, passes, kind)?;
-        let scheduled = pass_shader(passes, &rendering);
         if self.args.frames.is_none()
             && self.args.state.is_none()
             && let Some(frame) = bound(&rendering, &self.clock(self.frame.frame).frame(self.frame.frame))
         {
-            (self.worker, self.frame) = (worker.take(), frame);
-            let rendered = self.one_image(shader, path);
-            *worker = self.worker.take();
-            return rendered.map(|()| Exit::Success);
+            return self.one_image(shader, &frame, path).map(|()| Exit::Success);
         }
+        // The worker is used beside this runner, which writes the images.
+        let mut worker = self.worker.take();
+        let exit = self.render_passes(&mut worker, shader, passes, (kind, &rendering), path);
+        self.worker = worker;
+        exit
+    }
+
+    /// Renders the passes over frames.
+    fn render_passes(
+        &mut self,
+        worker: &mut Option<Worker>,
+        shader: &Shader,
+        passes: &CompiledProject,
+        (kind, rendering): (PassKind, &Rendering),
+        path: &Path,
+    ) -> Result<Exit, CliError> {
+        let scheduled = pass_shader(passes, rendering);
         let sequence = self.args.frames.map(|frames| {
             let fingerprint = self.fingerprint_of_project(shader, passes);
             Sequence::resume(frames, path, &fingerprint, self.terminal)
@@ -254,7 +254,7 @@ impl Runner<'_> {
             _ => self.args.frame.number(has_history, self.args.fps),
         };
         let clock = self.clock(if sequence.is_some() { 0 } else { first });
-        let owner = Owner::new(passes, &rendering, &shader.files, &clock);
+        let owner = Owner::new(passes, rendering, &shader.files, &clock);
         let state = self.state(shader, &scheduled, &owner, first)?;
         let next = self.next(state.as_ref(), first, has_history);
         self.report_history(shader, next, first);
@@ -300,6 +300,7 @@ impl Runner<'_> {
         ));
         let mut run = Run {
             playback,
+            graph: &rendering.graph,
             clock,
             target: target(kind),
             next,
@@ -331,15 +332,14 @@ impl Runner<'_> {
         has_history: bool,
     ) -> Result<Backend<'w>, CliError> {
         let limit = self.args.driver.explicit_timeout();
-        let evaluates = worker.is_none()
-            || self.args.precision == Precision::F64
-            || self.prefers_evaluator && !(has_history && scheduled.is_filtering());
+        let evaluates =
+            worker.is_none() || self.prefers_evaluator && !(has_history && scheduled.is_filtering());
         if evaluates {
             match scheduled.programs(limit) {
                 Err((_, refusal)) if worker.is_some() && is_too_large(&refusal.into()) => {}
                 programs => {
                     return Ok(Backend {
-                        renderer: Renderer::Evaluator(compiled_programs(programs, shader)?),
+                        renderer: Renderer::Evaluator(compiled_programs(programs, scheduled.graph, shader)?),
                         has_no_driver: false,
                     });
                 }
@@ -352,7 +352,10 @@ impl Runner<'_> {
         let has_no_driver = opened.is_none();
         let renderer = match opened {
             Some(playback) => Renderer::Device(playback),
-            None => Renderer::Evaluator(compiled_programs(scheduled.programs(limit), shader)?),
+            None => {
+                let programs = scheduled.programs(limit);
+                Renderer::Evaluator(compiled_programs(programs, scheduled.graph, shader)?)
+            }
         };
         Ok(Backend {
             renderer,
@@ -440,7 +443,7 @@ impl Runner<'_> {
                 _ => "",
             };
             self.terminal.note(&format!(
-                "{}: frame {} depends on earlier ones: {} frames are rendered first{help}",
+                "{}: frame {} may depend on earlier ones: {} frames are rendered first{help}",
                 shader.name,
                 grouped(u64::from(first.unsigned_abs())),
                 grouped(count)
@@ -477,20 +480,19 @@ impl Runner<'_> {
         interrupted: &AtomicBool,
     ) -> Result<(), CliError> {
         let rendered = run.show(number, interrupted);
-        let rendered = rendered.map_err(|failure| self.frame_error(failure, number, shader))?;
-        self.frame = run.clock.frame(number);
-        self.write_confirmed(&rendered, &shader.name, path)
+        let rendered = rendered.map_err(|failure| self.frame_error(failure, run.graph, number, shader))?;
+        self.write_confirmed(&rendered, &run.clock.frame(number), &shader.name, path)
     }
 
     fn all_frames(&mut self, run: &mut Run<'_>, sequence: Sequence, shader: &Shader) -> Result<(), CliError> {
         sequence.render(self.terminal, |one, interrupted| {
             match run.show(one.frame, interrupted) {
                 Ok(rendered) => {
-                    self.frame = run.clock.frame(one.frame);
-                    self.write(&rendered, &shader.name, &one.path)?;
+                    let frame = run.clock.frame(one.frame);
+                    self.write(&rendered, &frame, &shader.name, &one.path)?;
                 }
                 Err(FrameFailure::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
-                Err(failure) => return Err(self.frame_error(failure, one.frame, shader)),
+                Err(failure) => return Err(self.frame_error(failure, run.graph, one.frame, shader)),
             }
             Ok(FrameEnd::Written)
         })
@@ -513,10 +515,12 @@ impl Runner<'_> {
     }
 
     /// The error of a frame that is not shown.
-    fn frame_error(&self, failure: FrameFailure, number: i32, shader: &Shader) -> CliError {
+    fn frame_error(&self, failure: FrameFailure, graph: &Graph, number: i32, shader: &Shader) -> CliError {
         match failure {
             FrameFailure::Device(failure) => draw_error(failure, shader),
-            FrameFailure::Evaluator(error) => evaluation_error(&error.failure, shader),
+            FrameFailure::Evaluator(PassFailure { pass, failure }) => {
+                pass_error(&failure, target_of(graph, pass), shader)
+            }
             FrameFailure::Interrupted(next) => {
                 let error = format!("interrupted before frame {next}; frame {number} was to be shown");
                 CliError::new(error).with_help(match self.args.state {
@@ -550,7 +554,45 @@ fn refusal(shader: &Shader, error: impl Display, help: &str) -> CliError {
 /// Unwraps the programs of the passes.
 fn compiled_programs(
     result: Result<Vec<Program>, (usize, eval::Refusal)>,
+    graph: &Graph,
     shader: &Shader,
 ) -> Result<Vec<Program>, CliError> {
-    result.map_err(|(_, refusal)| evaluation_error(&refusal.into(), shader))
+    result.map_err(|(pass, refusal)| pass_error(&refusal.into(), target_of(graph, pass), shader))
+}
+
+/// What the pass with this number renders, which has the name of its tab.
+fn target_of(graph: &Graph, pass: usize) -> Option<Target> {
+    graph.passes().get(pass).map(|pass| pass.target)
+}
+
+#[cfg(test)]
+mod tests {
+    use toyproof_eval::Refusal;
+    use toyproof_player::Pass;
+
+    use super::*;
+    use crate::cli::shader::Unusable;
+
+    #[test]
+    fn the_error_of_a_pass_names_its_tab() {
+        let shader = Shader {
+            name: "waves".to_owned(),
+            files: Default::default(),
+            content: Err(Unusable::Invalid(Vec::new())),
+            lints: Default::default(),
+            has_passes: true,
+            is_missing: false,
+        };
+        let pass = |target| Pass {
+            target,
+            inputs: [None; 4],
+        };
+        let passes = vec![pass(Target::Buffer(1)), pass(Target::Image)];
+        let graph = Graph::new(passes, Default::default());
+        for (pass, tab) in [(0, "Buffer B"), (1, "Image")] {
+            let result = compiled_programs(Err((pass, Refusal::TooLong)), &graph, &shader);
+            let message = result.err().and_then(|error| error.message).unwrap();
+            assert!(message.starts_with(&format!("waves: {tab}: ")), "{message}");
+        }
+    }
 }
