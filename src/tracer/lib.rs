@@ -27,7 +27,8 @@
 //! - `tile`: renders tiles, whose camera rays are traced in packets.
 //! - `world`: follows the samples of a packet from the first hit to the film, each in a lane of its own:
 //!   `points` (what the lanes hit), `queries`, and the integrators `whitted` and `path`.
-//! - `ray_epsilon`: the range of colors over the accepted offsets of secondary rays.
+//! - `ray_epsilon`: the accepted offsets of secondary rays; `color_range`: the range of colors over them;
+//!   `usual_epsilons`: those that authors use.
 //!
 //! In `spheres`, one formula serves `single_ray` (one ray and eight spheres), `packet` (64 camera rays and
 //! one sphere) and `lanes` (a ray in each lane and one sphere). `tree` is a bounding volume hierarchy for
@@ -63,12 +64,14 @@ mod tests;
 mod tile;
 mod tracer;
 mod transfer;
+mod usual_epsilons;
 mod world;
 
 pub use self::adaptive::SamplingCost;
-pub use self::color_range::{ColorRange, EpsilonFamily, EpsilonSet};
+pub use self::color_range::{ColorRange, EpsilonSet};
 pub use self::film::RESAMPLED_ROWS;
 pub use self::ray_epsilon::{Acne, LightPolicy, RayEpsilon, RayEpsilons};
 pub use self::real::{Real, Vector};
 pub use self::render::Backend;
 pub use self::tracer::Tracer;
+pub use self::usual_epsilons::EpsilonFamily;
