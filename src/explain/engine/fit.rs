@@ -76,9 +76,9 @@ pub(crate) enum Fit {
 
 /// A search for the zeros of errors, each of which depends on a number of its own.
 struct Search {
-    /// The index of the fit, and the candidate.
+    /// The index of the fit, and the hypothesis.
     fit: usize,
-    candidate: usize,
+    hypothesis: usize,
     errors: Vec<ErrorOf>,
     /// The last two vectors of numbers, and their errors.
     at: [Numbers; 2],
@@ -117,10 +117,10 @@ impl ErrorOf {
 
 impl Search {
     /// A search that has ended at these numbers.
-    fn at_zero(fit: usize, candidate: usize, numbers: Numbers) -> Self {
+    fn at_zero(fit: usize, hypothesis: usize, numbers: Numbers) -> Self {
         Self {
             fit,
-            candidate,
+            hypothesis,
             errors: vec![ErrorOf::Mean],
             at: [numbers; 2],
             values: [[0.0; 3]; 2],
@@ -129,7 +129,7 @@ impl Search {
 
     fn run(&self, numbers: Numbers, probes: &Probes) -> Run {
         Run {
-            candidate: Some(self.candidate),
+            hypothesis: Some(self.hypothesis),
             numbers,
             probes: self.errors[0].probes(probes),
         }
@@ -172,7 +172,7 @@ impl Search {
 }
 
 /// Returns numbers that make some wrong pixel right, each with the index of its fit. The fits are given with
-/// their candidates.
+/// their hypotheses.
 pub(crate) fn fitted(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]) -> Vec<(usize, Numbers)> {
     let mut searches = if probes.are_means() {
         starts_of_means(probes, field, fits)
@@ -210,12 +210,12 @@ pub(crate) fn fitted(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit
 fn bases(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]) -> Vec<(Numbers, Colors)> {
     let count = probes.all.len().min(PROBES);
     let before: Colors = probes.all[..count].iter().map(|probe| probe.before).collect();
-    let base = |&(candidate, fit): &(usize, Fit)| {
+    let base = |&(hypothesis, fit): &(usize, Fit)| {
         let Fit::Multiple(number) = fit else {
             return (fit.start(), before.clone());
         };
         let runs = MULTIPLES.map(|multiple| Run {
-            candidate: Some(candidate),
+            hypothesis: Some(hypothesis),
             numbers: one(multiple * number),
             probes: 0..count,
         });
@@ -254,11 +254,14 @@ impl Fit {
 fn starts(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]) -> Vec<Search> {
     let count = probes.all.len().min(PROBES);
     let bases = bases(probes, field, fits);
-    let runs = fits.iter().zip(&bases).map(|(&(candidate, fit), (base, _))| Run {
-        candidate: Some(candidate),
-        numbers: fit.moved(*base, 1e-3),
-        probes: 0..count,
-    });
+    let runs = fits
+        .iter()
+        .zip(&bases)
+        .map(|(&(hypothesis, fit), (base, _))| Run {
+            hypothesis: Some(hypothesis),
+            numbers: fit.moved(*base, 1e-3),
+            probes: 0..count,
+        });
     let runs: Vec<Run> = runs.collect();
     let mut searches = Vec::new();
     for (number, (moved, run)) in field.colors(probes, &runs).into_iter().zip(&runs).enumerate() {
@@ -266,16 +269,16 @@ fn starts(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]) -> Vec<
         let Some(moved) = moved.filter(|moved| moved.iter().flatten().all(|part| part.is_finite())) else {
             continue;
         };
-        let (candidate, fit) = fits[number];
+        let (hypothesis, fit) = fits[number];
         if let Fit::Multiple(_) = fit {
             // One of the multiples may be the number: nothing is missing there from which to search.
-            searches.push(Search::at_zero(number, candidate, *base));
+            searches.push(Search::at_zero(number, hypothesis, *base));
         }
         let mut search = |errors: Vec<(usize, usize)>| {
             let error = |(probe, component)| ErrorOf::Component { probe, component };
             let mut search = Search {
                 fit: number,
-                candidate,
+                hypothesis,
                 errors: errors.into_iter().map(error).collect(),
                 at: [*base, run.numbers],
                 values: [[0.0; 3]; 2],
@@ -326,9 +329,9 @@ fn starts_of_means(probes: &Probes, field: &mut dyn Field, fits: &[(usize, Fit)]
         .enumerate()
         .filter(|(_, (_, fit))| !matches!(fit, Fit::Color(_)));
     let mut searches: Vec<Search> = numbers
-        .map(|(number, &(candidate, fit))| Search {
+        .map(|(number, &(hypothesis, fit))| Search {
             fit: number,
-            candidate,
+            hypothesis,
             errors: vec![ErrorOf::Mean],
             at: [fit.start(), fit.moved(fit.start(), 0.05)],
             values: [[f64::NAN; 3]; 2],
@@ -359,7 +362,7 @@ mod tests {
     fn zero(function: impl Fn(f64) -> f64, at: [f64; 2]) -> Option<f64> {
         let mut search = Search {
             fit: 0,
-            candidate: 0,
+            hypothesis: 0,
             errors: vec![ErrorOf::Mean],
             at: at.map(one),
             values: at.map(|at| one(function(at))),

@@ -30,11 +30,11 @@ pub(crate) fn one(number: f64) -> Numbers {
 /// Colors at probes.
 pub(crate) type Colors = Vec<[f64; 3]>;
 
-/// A candidate, with its numbers, at some of the probes.
+/// A hypothesis, with its numbers, at some of the probes.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
     /// Its place in the field; `None` for the image without any of them.
-    pub(crate) candidate: Option<usize>,
+    pub(crate) hypothesis: Option<usize>,
     pub(crate) numbers: Numbers,
     pub(crate) probes: Range<usize>,
 }
@@ -65,7 +65,7 @@ pub(crate) trait Hypothesis: Sync {
 /// Hypotheses that are rendered one by one.
 impl<H: Hypothesis> Field for &[H] {
     fn colors(&mut self, probes: &Probes, runs: &[Run]) -> Vec<Option<Colors>> {
-        let color = |run: &Run| self[run.candidate?].colors(&probes.part(run.probes.clone()), &run.numbers);
+        let color = |run: &Run| self[run.hypothesis?].colors(&probes.part(run.probes.clone()), &run.numbers);
         runs.par_iter().map(color).collect()
     }
 }

@@ -3,7 +3,7 @@
 //! a few pixels that represent the whole image, wrong ones of every kind and right ones, the most significant
 //! first.
 //!
-//! If a shader has its own random numbers, no pixel has an exact color. Then the difference of a candidate
+//! If a shader has its own random numbers, no pixel has an exact color. Then the difference of a hypothesis
 //! from the expected means is projected onto the shader's own bias, see [`bias`](super::bias).
 
 use std::borrow::Cow;
@@ -21,8 +21,8 @@ use toyproof_verify::{CheckResult, Expected};
 use super::bias::{Bias, Projection, project};
 use super::{Colors, colors_of, differ};
 
-/// The number of wrong pixels at which all candidates are evaluated, and of a stochastic shader's, whose bias
-/// is the most significant. Most candidates change nothing there.
+/// The number of wrong pixels at which all hypotheses are evaluated, and of a stochastic shader's, whose bias
+/// is the most significant. Most of them change nothing there.
 const SCREENING: usize = 4;
 const SCREENING_MEANS: usize = 8;
 
@@ -101,7 +101,7 @@ impl Limits {
     }
 }
 
-/// The effect of a candidate at the probes.
+/// The effect of a hypothesis at the probes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Outcome {
     /// The number of wrong pixels that it repairs.
@@ -313,7 +313,7 @@ impl Probes {
         differ(color, probe.before, self.limits.tolerance)
     }
 
-    /// The number of probes at which all candidates are evaluated.
+    /// The number of probes at which all hypotheses are evaluated.
     pub(crate) fn screening(&self) -> usize {
         match (&self.grid, self.are_means()) {
             (Some(_), _) => self.all.len(),
@@ -322,7 +322,7 @@ impl Probes {
         }
     }
 
-    /// Tests a candidate. `colors` returns its colors at some of the probes; if it returns `None`, so does
+    /// Tests a hypothesis. `colors` returns its colors at some of the probes; if it returns `None`, so does
     /// this function.
     pub(crate) fn test(&self, mut colors: impl FnMut(Range<usize>) -> Option<Colors>) -> Option<Outcome> {
         let are_means = self.are_means();
@@ -341,7 +341,7 @@ impl Probes {
         self.outcome(&all)
     }
 
-    /// The effect of a candidate, by its colors at the first probes; `None` if their mean is not a number.
+    /// The effect of a hypothesis, by its colors at the first probes; `None` if their mean is not a number.
     pub(crate) fn outcome(&self, colors: &[[f64; 3]]) -> Option<Outcome> {
         if self.are_means() {
             let projection = self.project(colors)?;

@@ -1,5 +1,8 @@
 //! The tournament of the hypotheses of a field: all of them are tried at the first probes side by side, and
 //! those that make progress there are tested at all probes. Numbers are given or fitted.
+//!
+//! An *entrant* is a hypothesis with the numbers that it tries, an *attempt* has one of these, and a
+//! *finalist* is an attempt that was kept.
 
 use super::fit::{Fit, Precision, fitted};
 use super::probes::{Outcome, Probes};
@@ -27,26 +30,26 @@ impl Values {
     }
 }
 
-/// A hypothesis of the field in the tournament.
+/// A hypothesis of the field, with the numbers that it tries.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entrant<'a> {
     pub(crate) values: &'a Values,
     pub(crate) cost: u32,
 }
 
-/// A hypothesis that was tried, by its place in the field, with its numbers and their cost.
+/// An attempt that passes or makes progress, with its outcome.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Finalist {
-    pub(crate) candidate: usize,
+    pub(crate) hypothesis: usize,
     pub(crate) numbers: Numbers,
     pub(crate) cost: u32,
     pub(crate) outcome: Outcome,
 }
 
-/// A candidate of the field with numbers, and their cost.
+/// A hypothesis, by its place in the field, with numbers and their cost.
 #[derive(Debug, Clone, Copy)]
 struct Attempt {
-    candidate: usize,
+    hypothesis: usize,
     numbers: Numbers,
     cost: u32,
 }
@@ -78,7 +81,7 @@ pub(crate) fn passing(field: &mut dyn Field, count: usize, probes: &Probes) -> V
     let finalists = play(field, &entrants, probes).into_iter();
     let passing = finalists.filter(|finalist| finalist.outcome.passes);
     passing
-        .map(|finalist| (finalist.candidate, finalist.outcome))
+        .map(|finalist| (finalist.hypothesis, finalist.outcome))
         .collect()
 }
 
@@ -87,7 +90,7 @@ struct Tournament<'a> {
     entrants: &'a [Entrant<'a>],
     probes: &'a Probes,
     found: Vec<Finalist>,
-    /// Whether each candidate passes with some number.
+    /// Whether each hypothesis passes with some number.
     passes: Vec<bool>,
 }
 
@@ -95,9 +98,9 @@ impl Tournament<'_> {
     /// Tries the hypotheses that have no number, or whose numbers are given.
     fn given_numbers(&mut self) {
         let mut attempts = Vec::new();
-        for (candidate, entrant) in self.entrants.iter().enumerate() {
+        for (hypothesis, entrant) in self.entrants.iter().enumerate() {
             let attempt = |numbers, cost| Attempt {
-                candidate,
+                hypothesis,
                 numbers,
                 cost,
             };
@@ -132,29 +135,36 @@ impl Tournament<'_> {
         let (costs, fits): (Vec<u32>, Vec<(usize, Fit)>) = fits.unzip();
         let found = fitted(self.probes, self.field, &fits);
         let attempt = |(fit, numbers): (usize, Numbers)| Attempt {
-            candidate: fits[fit].0,
+            hypothesis: fits[fit].0,
             numbers,
             cost: costs[fit],
         };
         for (attempt, colors) in self.screened(found.into_iter().map(attempt).collect()) {
-            if self.passes[attempt.candidate] {
+            if self.passes[attempt.hypothesis] {
                 continue;
             }
             let Some(exact) = self.outcome(attempt, &colors) else {
                 continue;
             };
-            // An author wrote the shortest number that passes.
-            let shorter = Precision::at(self.probes).shorter(&attempt.numbers).into_iter();
-            let shorter = shorter.map(|numbers| Attempt { numbers, ..attempt });
-            let is_found = exact.passes
-                && shorter.into_iter().any(|shorter| {
-                    let outcome = self.outcome(shorter, &[]);
-                    outcome.is_some_and(|outcome| self.record(shorter, outcome))
-                });
-            if !is_found {
+            if !(exact.passes && self.passes_with_shorter(attempt)) {
                 self.record(attempt, exact);
             }
         }
+    }
+
+    /// Tries the shorter numbers near those of an attempt, and returns whether one passes.
+    fn passes_with_shorter(&mut self, attempt: Attempt) -> bool {
+        // Authors usually write the shortest number that passes.
+        for numbers in Precision::at(self.probes).shorter(&attempt.numbers) {
+            let shorter = Attempt { numbers, ..attempt };
+            // Attempts that only make progress are kept, too.
+            if let Some(outcome) = self.outcome(shorter, &[])
+                && self.record(shorter, outcome)
+            {
+                return true;
+            }
+        }
+        false
     }
 
     /// The attempts that make progress at the first probes, with their colors there.
@@ -176,7 +186,8 @@ impl Tournament<'_> {
             .collect()
     }
 
-    /// Tests an attempt at all probes, or the first if it fails there. Some of its colors are known.
+    /// Tests an attempt at all probes, but stops after the first ones if it fails there. `known` are its
+    /// colors there, if computed.
     fn outcome(&mut self, attempt: Attempt, known: &[[f64; 3]]) -> Option<Outcome> {
         self.probes.test(|probes| {
             if probes.start == 0 && known.len() == probes.end {
@@ -189,14 +200,14 @@ impl Tournament<'_> {
     /// Keeps an attempt that passes or makes progress, and returns whether it passes.
     fn record(&mut self, attempt: Attempt, outcome: Outcome) -> bool {
         let Attempt {
-            candidate,
+            hypothesis,
             numbers,
             cost,
         } = attempt;
-        self.passes[candidate] |= outcome.passes;
+        self.passes[hypothesis] |= outcome.passes;
         if outcome.passes || outcome.is_progress() {
             self.found.push(Finalist {
-                candidate,
+                hypothesis,
                 numbers,
                 cost,
                 outcome,
@@ -209,7 +220,7 @@ impl Tournament<'_> {
 impl Attempt {
     fn run(&self, probes: std::ops::Range<usize>) -> Run {
         Run {
-            candidate: Some(self.candidate),
+            hypothesis: Some(self.hypothesis),
             numbers: self.numbers,
             probes,
         }

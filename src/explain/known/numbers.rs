@@ -106,7 +106,7 @@ impl<'a> Parameters<'a> {
         let entrants: Vec<Entrant> = entrants.collect();
         let finalists = play(&mut &all[..], &entrants, &probes).into_iter();
         finalists
-            .filter_map(|finalist| all[finalist.candidate].confirm(&finalist.numbers))
+            .filter_map(|finalist| all[finalist.hypothesis].confirm(&finalist.numbers))
             .collect()
     }
 

@@ -129,7 +129,7 @@ impl<'a> Evaluation<'a> {
         let colors = |probes: &Probes| {
             let (colors, iterations, work) = evaluation.evaluate(&program, 0, |field| {
                 let run = Run {
-                    candidate: None,
+                    hypothesis: None,
                     numbers: Numbers::default(),
                     probes: 0..probes.all.len(),
                 };
@@ -203,11 +203,11 @@ impl<'a> Evaluation<'a> {
             };
             self.evaluate(&program, 0, |field| {
                 let mut colors = |probes| {
-                    let (candidate, numbers) = (None, Numbers::default());
+                    let (hypothesis, numbers) = (None, Numbers::default());
                     field.run(
                         &self.probes,
                         Run {
-                            candidate,
+                            hypothesis,
                             numbers,
                             probes,
                         },
@@ -297,7 +297,7 @@ impl<'a> Evaluation<'a> {
                 .collect();
             let influences = |group: &[(usize, Candidate)], field: &mut SchemaField| {
                 let run = |at| Run {
-                    candidate: Some(at),
+                    hypothesis: Some(at),
                     numbers: Numbers::default(),
                     probes: 0..count,
                 };
@@ -412,7 +412,7 @@ impl<'a> Evaluation<'a> {
             let entrants: Vec<Entrant> = entrants.collect();
             let finalists = play(field, &entrants, &probes).into_iter();
             let tried = finalists.map(|finalist| TriedEdit {
-                candidate: group[finalist.candidate]
+                candidate: group[finalist.hypothesis]
                     .1
                     .with_numbers(&finalist.numbers, finalist.cost),
                 outcome: finalist.outcome,

@@ -47,7 +47,7 @@ impl<'a, 'e> SchemaField<'a, 'e> {
     /// The values of the parameters of a run: those that select edits, one for each, then the fitted numbers.
     fn values(&self, run: &Run) -> Vec<f64> {
         let mut values = vec![0.0; self.count];
-        if let Some(at) = run.candidate {
+        if let Some(at) = run.hypothesis {
             values[at] = 1.0;
         }
         values.extend(run.numbers);
@@ -76,12 +76,9 @@ impl Field for SchemaField<'_, '_> {
         let mut colors = colors.into_iter();
         runs.iter()
             .map(|run| {
-                colors
-                    .by_ref()
-                    .take(run.probes.len())
-                    .collect::<Vec<_>>()
-                    .into_iter()
-                    .collect()
+                // All colors of the run are taken even if one is missing, so that the next run has its own.
+                let own: Vec<_> = colors.by_ref().take(run.probes.len()).collect();
+                own.into_iter().collect()
             })
             .collect()
     }
@@ -99,7 +96,7 @@ pub(super) fn compile(
     for (number, candidate) in candidates.iter().enumerate() {
         writer.add(shader, number, candidate);
     }
-    writer.statements();
+    writer.apply_actions();
     ParametricProgram::new(&writer.checked, &writer.parameters, frame, max_values, limit)
 }
 
@@ -107,7 +104,7 @@ struct Writer {
     checked: Checked,
     /// A `bool` for each candidate, and a `float` for each fitted number.
     parameters: Vec<VariableId>,
-    /// The place of the original of a replaced expression.
+    /// Where the original of a replaced expression is now.
     moved: HashMap<ExprId, ExprId>,
     /// The changes of statements, by candidate.
     actions: BTreeMap<StatementId, Vec<(usize, Insertion)>>,
@@ -155,7 +152,7 @@ impl Writer {
             }
             Change::Statements(actions) => {
                 for (at, action) in actions {
-                    self.action(shader, number, *at, action);
+                    self.add_action(shader, number, *at, action);
                 }
             }
         }
@@ -166,7 +163,7 @@ impl Writer {
         let fitted = self.fitted();
         let tree = &mut self.checked.tree;
         let old = tree[expr].clone();
-        let (ty, at) = (old.ty, old.at);
+        let at = old.at;
         let before = tree.exprs.push(old);
         let original = *self.moved.entry(expr).or_insert(before);
         let condition = push(tree, ExprKind::Variable(self.parameters[number]), Type::BOOL, at);
@@ -176,11 +173,10 @@ impl Writer {
             yes,
             no: before,
         };
-        tree[expr].ty = ty;
         tree[expr].constant = false;
     }
 
-    fn action(&mut self, shader: &Shader, number: usize, at: usize, action: &Action) {
+    fn add_action(&mut self, shader: &Shader, number: usize, at: usize, action: &Action) {
         let Some(id) = shader.statements[at].at else {
             return;
         };
@@ -201,17 +197,17 @@ impl Writer {
                 Place::plain(place),
             );
             let expr = term.build(tree, [nothing; 2], &fitted);
-            Some(Statement {
+            Statement {
                 kind: StatementKind::Expression(expr),
                 at: Place::plain(place),
-            })
+            }
         };
         let insertion = match action {
             Action::Delete => Some(Insertion::Delete),
             Action::CopyBefore(other) => copy(*other).map(Insertion::Before),
             Action::CopyAfter(other) => copy(*other).map(Insertion::After),
-            Action::Before(term) => assignment(self, term).map(Insertion::Before),
-            Action::After(term) => assignment(self, term).map(Insertion::After),
+            Action::Before(term) => Some(Insertion::Before(assignment(self, term))),
+            Action::After(term) => Some(Insertion::After(assignment(self, term))),
         };
         if let Some(insertion) = insertion {
             self.actions.entry(id).or_default().push((number, insertion));
@@ -219,7 +215,7 @@ impl Writer {
     }
 
     /// Applies the changes of statements to the functions.
-    fn statements(&mut self) {
+    fn apply_actions(&mut self) {
         let mut functions: Vec<FunctionId> = self.actions.keys().map(|id| id.function).collect();
         functions.dedup();
         for function in functions {
