@@ -51,6 +51,25 @@ pub struct MissingValue {
     pub y: u32,
 }
 
+/// What a sentence about a departure describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum DepartureKind {
+    /// [`Departure::unknown`]
+    FirstDifference,
+    /// [`Departure::missing`]
+    MissingValue,
+}
+
+impl DepartureKind {
+    /// The label of the sentence.
+    pub(super) fn label(self) -> &'static str {
+        match self {
+            Self::FirstDifference => "first difference",
+            Self::MissingValue => "missing value",
+        }
+    }
+}
+
 impl Departure {
     /// Creates the record; `reference` are the files of the reference.
     pub(super) fn new(departure: &departure::Departure, files: &Files, reference: &Files) -> Self {
@@ -85,8 +104,8 @@ impl Departure {
         unknown.or_else(|| self.missing.as_ref().map(|missing| [missing.x, missing.y]))
     }
 
-    /// Sentences, each with its label.
-    pub(super) fn sentences(&self) -> Vec<(&'static str, String)> {
+    /// Sentences, each with what it describes.
+    pub(super) fn sentences(&self) -> Vec<(DepartureKind, String)> {
         let unknown = self.unknown.as_ref().map(|unknown| {
             let UnknownValue {
                 range,
@@ -101,7 +120,7 @@ impl Departure {
             let text = format!(
                 "line {line}{call}: {text} is {value} at ({x}, {y}), which nothing in the reference is equal to"
             );
-            ("first difference", text)
+            (DepartureKind::FirstDifference, text)
         });
         let missing = self.missing.as_ref().map(|missing| {
             let MissingValue {
@@ -117,7 +136,7 @@ impl Departure {
             let computed =
                 format!("{text} is {value} at ({x}, {y}) in line {reference_line} of the reference");
             (
-                "missing value",
+                DepartureKind::MissingValue,
                 format!("{place}{computed}, which nothing in the shader is equal to"),
             )
         });

@@ -213,6 +213,7 @@ fn mistake_lines(mistake: &Mistake, layout: &Layout) -> Vec<String> {
 pub(super) fn fix_lines(record: &Record) -> Vec<(&'static str, String)> {
     let Some(fix) = &record.fix else {
         let departure = record.departure.iter().flat_map(Departure::sentences);
+        let departure = departure.map(|(kind, text)| (kind.label(), text));
         let suspects = suspect_lines(&record.suspects)
             .map(|(label, lines)| (label, format!("{lines} (the wrong pixels depend most on these)")));
         return departure.chain(suspects).collect();

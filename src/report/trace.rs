@@ -11,7 +11,7 @@ use toyproof_glsl::tree::{Scalar, Tree, Type};
 use toyproof_verify::NumberType;
 use toyproof_verify::debug::{Explanation, Step, digits};
 
-use super::departure::Departure;
+use super::departure::{Departure, DepartureKind};
 
 /// The trace of a pixel in f32 and in f64, in terms of the source text.
 #[derive(Debug, Serialize)]
@@ -501,12 +501,11 @@ impl PixelTrace {
                 "  first not finite   line {line}, column {column}: `{source}`"
             );
         }
-        for (label, sentence) in self.departure.iter().flat_map(Departure::sentences) {
+        for (kind, sentence) in self.departure.iter().flat_map(Departure::sentences) {
             // The first difference is that of the two precisions here.
-            let label = if label == "missing value" {
-                label
-            } else {
-                "wrong value"
+            let label = match kind {
+                DepartureKind::FirstDifference => "wrong value",
+                DepartureKind::MissingValue => kind.label(),
             };
             let _ = writeln!(text, "  {label:18} {sentence}");
         }

@@ -8,6 +8,7 @@ use toyproof_verify::compare::{CheckSummary, Pixel};
 use super::glossary::{Glossary, term};
 use super::source::{SourceLimit, source};
 use super::{Exhibit, Text, sentence};
+use crate::departure::DepartureKind;
 use crate::repair::{in_tab, suspect_lines};
 use crate::terminal::{CUT_BY_TIME, CUT_SEARCH};
 use crate::{Departure, Mistake, Record, Repair, Rubrics};
@@ -130,13 +131,7 @@ impl Article<'_> {
     /// The likely mistake with links to its explanation; with alternatives, a ranked list. A symptom is not
     /// one of the mistakes: they cause it.
     fn mistake(&self, mistake: &Mistake) -> String {
-        let explained = |id: &str, text: &str| match self.glossary.mistake_links(id) {
-            Some(links) => format!(
-                "{} <span class=\"explanation\">Explanation: {links}</span>",
-                sentence(text)
-            ),
-            None => sentence(text),
-        };
+        let explained = |id: &str, text: &str| sentence(text) + &self.explanation(id);
         let first = explained(&mistake.id, &mistake.text);
         let others = mistake.alternatives.iter();
         let mut ranked: Vec<_> = others.map(|other| explained(&other.id, &other.text)).collect();
@@ -163,7 +158,14 @@ impl Article<'_> {
         format!("<div class=\"mistake\">\n{html}</div>\n")
     }
 
-    /// The fix with its alternatives, else the suspect lines.
+    /// The links to the explanation of a mistake, after its sentence; empty if there is none.
+    fn explanation(&self, id: &str) -> String {
+        let links = self.glossary.mistake_links(id);
+        let span = links.map(|links| format!(" <span class=\"explanation\">Explanation: {links}</span>"));
+        span.unwrap_or_default()
+    }
+
+    /// The fix with its alternatives, else where the shader departs from the reference, and the suspect lines.
     fn fix(&self) -> String {
         let Record {
             fix,
@@ -179,10 +181,7 @@ impl Article<'_> {
             let mistake = self.record.mistake.as_ref().map(|mistake| mistake.id.as_str());
             let explained = |repair: &Repair, text: &str| {
                 let new = Some(repair.id.as_str()).filter(|id| Some(*id) != mistake);
-                let links = new.and_then(|id| self.glossary.mistake_links(id));
-                let links =
-                    links.map(|links| format!(" <span class=\"explanation\">Explanation: {links}</span>"));
-                sentence(text) + &links.unwrap_or_default()
+                sentence(text) + &new.map(|id| self.explanation(id)).unwrap_or_default()
             };
             let first = explained(fix, &(in_tab(fix, &self.record.shader) + &fix.sentence()));
             let _ = writeln!(html, "<p><strong>{}:</strong> {first}</p>", term("fix", "Fix"));
@@ -192,10 +191,10 @@ impl Article<'_> {
             }
         }
         let departure = departure.iter().filter(|_| fix.is_none());
-        for (label, text) in departure.flat_map(Departure::sentences) {
-            let label = match label {
-                "first difference" => "First difference",
-                _ => "Missing value",
+        for (kind, text) in departure.flat_map(Departure::sentences) {
+            let label = match kind {
+                DepartureKind::FirstDifference => "First difference",
+                DepartureKind::MissingValue => "Missing value",
             };
             let _ = writeln!(html, "<p><strong>{label}:</strong> {}</p>", sentence(&text));
         }
@@ -285,8 +284,8 @@ fn points(rubrics: &Rubrics, record: &Record) -> String {
     let marks: Vec<_> = marks
         .map(|mark| match mark.of {
             // Deductions have no maximum.
-            0.0 => format!("{} {}", mark.name, mark.points),
-            of => format!("{} {} of {of}", mark.name, mark.points),
+            0.0 => format!("{} {}", Text(&mark.name), mark.points),
+            of => format!("{} {} of {of}", Text(&mark.name), mark.points),
         })
         .collect();
     format!("<span>Points: {points} of {of} ({})</span>", marks.join(", "))
@@ -379,10 +378,9 @@ mod tests {
     use toyproof_verify::Verdict;
 
     use super::*;
-    use crate::Alternative;
-    use crate::Hints;
     use crate::record::samples::{check_summary, correct, record};
     use crate::repair::samples::{SOURCE, repaired, suspected};
+    use crate::{Alternative, FunctionRecord, Hints, MissingValue, Rubric, SourceRange, UnknownValue};
 
     fn article(record: &Record) -> String {
         let article = Article {
@@ -428,25 +426,27 @@ mod tests {
         assert!(html.contains("<ol>\n<li>second</li>\n</ol>"), "{html}");
     }
 
-    #[test]
-    fn a_fix_is_shown_with_its_image_and_its_line() {
+    /// The article of a shader whose source and fixed image are shown.
+    fn article_with_source(record: &Record) -> String {
         let exhibit = Exhibit {
             source: Some(SOURCE.to_owned()),
             fixed: Some(7),
             ..Exhibit::default()
         };
-        let shown = |record: &Record| {
-            let article = Article {
-                record,
-                name: &record.shader,
-                exhibit: &exhibit,
-                rubrics: &Rubrics::default(),
-                glossary: &Glossary::new(std::slice::from_ref(record)),
-                limit: SourceLimit::new([SOURCE]),
-            };
-            article.html(0)
+        let article = Article {
+            record,
+            name: &record.shader,
+            exhibit: &exhibit,
+            rubrics: &Rubrics::default(),
+            glossary: &Glossary::new(std::slice::from_ref(record)),
+            limit: SourceLimit::new([SOURCE]),
         };
-        let html = shown(&repaired());
+        article.html(0)
+    }
+
+    #[test]
+    fn a_fix_is_shown_with_its_image_and_its_line() {
+        let html = article_with_source(&repaired());
         assert!(
             html.contains(
                 "line 2: replace <code>b + c</code> with <code>b - c</code>; then all 14,400 pixels agree"
@@ -459,18 +459,71 @@ mod tests {
         assert!(html.contains("data-fixed=\"7\""), "{html}");
         assert!(html.contains("return <mark>b + c</mark>;"), "{html}");
         assert!(!html.contains("Suspect"), "{html}");
-        let html = shown(&suspected());
+    }
+
+    #[test]
+    fn suspect_lines_are_shown_without_a_fix() {
+        let html = article_with_source(&suspected());
         assert!(html.contains("Suspect lines</a>:</strong> 4, 2</p>"), "{html}");
         assert!(html.contains("= <mark>1.0</mark>;"), "{html}");
         assert!(!html.contains("data-fixed"), "{html}");
+    }
+
+    #[test]
+    fn hints_hide_the_fix() {
         let hidden = repaired().redacted(Hints::Line);
-        let html = shown(&hidden);
+        let html = article_with_source(&hidden);
         assert!(
             html.contains("an edit of line 2") && !html.contains("b - c"),
             "{html}"
         );
-        let html = shown(&hidden.redacted(Hints::None));
+        let html = article_with_source(&hidden.redacted(Hints::None));
         assert!(!html.contains("data-fixed") && !html.contains("<mark>"), "{html}");
+    }
+
+    #[test]
+    fn departures_are_labeled() {
+        let mut wrong = record(Verdict::Wrong);
+        wrong.departure = Some(Departure {
+            unknown: Some(UnknownValue {
+                range: SourceRange {
+                    line: 2,
+                    column: 1,
+                    end_line: 2,
+                    end_column: 6,
+                },
+                text: "`b + c`".to_owned(),
+                called_at: None,
+                value: vec![Some(1.0)],
+                x: 3,
+                y: 4,
+            }),
+            missing: Some(MissingValue {
+                line: None,
+                reference_line: 7,
+                text: "`b - c`".to_owned(),
+                value: vec![Some(2.0)],
+                x: 3,
+                y: 4,
+            }),
+        });
+        let html = article(&wrong);
+        assert!(
+            html.contains("<strong>First difference:</strong> line 2: "),
+            "{html}"
+        );
+        assert!(
+            html.contains("<strong>Missing value:</strong> <code>b - c</code>"),
+            "{html}"
+        );
+    }
+
+    #[test]
+    fn names_of_marks_are_escaped() {
+        let mut record = correct();
+        record.functions = vec![FunctionRecord::untested("<f>", 2.0, "")];
+        let html = points(&Rubrics::from(Some(Rubric::default())), &record);
+        assert!(html.contains("&lt;f&gt; 0 of 2"), "{html}");
     }
 
     #[test]
