@@ -1,5 +1,6 @@
 //! Mistakes in the scene: an object is misplaced, missing, or moves differently.
 
+mod hierarchy;
 mod image;
 mod motion;
 mod objects;
@@ -43,14 +44,19 @@ pub(super) fn all(scene: &Scene, frame_time: FrameTime) -> Vec<Change> {
     motion::motions(&mut changes);
     objects::objects(&mut changes);
     objects::boxes(&mut changes);
-    motion::hierarchy(&mut changes);
+    hierarchy::hierarchy(&mut changes);
     image::figures(&mut changes);
     changes.all
 }
 
 /// What the guide says about the changes.
 pub(super) fn documented() -> impl Iterator<Item = Documented> {
-    let all = [image::DOCUMENTED, motion::DOCUMENTED, objects::DOCUMENTED];
+    let all = [
+        image::DOCUMENTED,
+        motion::DOCUMENTED,
+        hierarchy::DOCUMENTED,
+        objects::DOCUMENTED,
+    ];
     all.into_iter().flatten().copied()
 }
 
