@@ -17,13 +17,15 @@
 //!
 //! # Parts
 //!
-//! - `film`, `shape`, `material`, `motion`: the model.
+//! - `film`, `camera`, `figure`, `shape`, `material`, `motion`: the model.
 //! - `file`: the scene file, with a diagnostic for every error; `template`: a scene to begin with.
 //! - `requirements`: the features that a scene uses.
 //! - `perturb`: scenes whose numbers are perturbed by a few units in the last place.
 //! - [`export`]: the shader that renders a scene, whose parts have names (slots).
 
+mod camera;
 pub mod export;
+mod figure;
 mod file;
 mod film;
 mod material;
@@ -35,8 +37,10 @@ mod template;
 
 use std::ops::Range;
 
+pub use camera::{Camera, Projection};
+pub use figure::{Figure, Outline};
 pub use file::parse;
-pub use film::{Camera, Figure, Film, Integrator, MAX_SAMPLES, Outline, Projection, Sampler, ToneMap};
+pub use film::{Film, Integrator, MAX_SAMPLES, Sampler, ToneMap};
 pub use material::{Background, Disney, Fresnel, Light, Material, Model, Pattern, PatternKind, Space};
 pub use motion::{FrameTime, Motion, Period};
 pub use requirements::Requirements;
