@@ -8,10 +8,11 @@ use toyproof_image::FrameInputs;
 use super::sample::sample;
 use crate::function_test::Subject;
 
-/// The size of the frames of an assignment from a shader, in pixels.
+/// The size of the frames of an assignment whose reference is a shader, in pixels.
 const SIZE: [u32; 2] = [320, 180];
 
-/// The time of the frame that shows motion, in seconds: not a period of common animations.
+/// The time of the frame that shows motion, in seconds: chosen so that common animations are not back at
+/// their start.
 const TIME: f32 = 2.3;
 
 /// The example of a test if the model solution has no suitable function: it tests a function of exported
@@ -130,14 +131,16 @@ impl Model<'_> {
         } else {
             quoted.join(", ")
         };
+        // The name of the file, which may be any text, is inserted last; the other texts consist of numbers,
+        // identifiers and calls, and none has the form of a placeholder.
         include_str!("template.toml")
-            .replace("{reference}\n", &format!("{reference}\n{tolerance}"))
             .replace("{frames}\n", &frames)
             .replace("{functions}", &names)
             .replace(
                 "{function}\n",
                 &self.sample().unwrap_or_else(|| SAMPLE.to_owned()),
             )
+            .replace("{reference}\n", &format!("{reference}\n{tolerance}"))
     }
 }
 
@@ -155,4 +158,16 @@ fn frame(inputs: &FrameInputs) -> String {
         let _ = writeln!(text, "mouse = [{x:?}, {y:?}, {z:?}, {w:?}]");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_may_be_named_like_a_placeholder() {
+        let text = Model::Scene { is_animated: false }.assignment("{functions}.toml");
+        assert!(text.contains("scene = \"{functions}.toml\"\n"), "{text}");
+        assert!(text.contains("[\"intersectSphere\"]"), "{text}");
+    }
 }
