@@ -77,7 +77,7 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
         Self { places, ..self }
     }
 
-    /// Runs the machine code of the program where making it pays.
+    /// Runs the machine code of the program if compiling it pays off.
     pub(crate) fn with_native(self, program: Option<&'a dyn NativeProgram>) -> Self {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let engine = self.settings.engine;
@@ -106,21 +106,21 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
 
     pub(crate) fn batch(&self) -> Batch<'_, N> {
         let code = self.code;
-        let width = code.width;
+        let chunk_count = code.width;
         let mut active = vec![Active::default(); code.masks];
         active[0] = Active {
-            chunks: u32::MAX >> (32 - width),
+            chunks: u32::MAX >> (32 - chunk_count),
             all: true,
         };
-        let masks = chunks([0; LANES], code.masks * width);
-        for chunk in &masks[..width] {
+        let masks = chunks([0; LANES], code.masks * chunk_count);
+        for chunk in &masks[..chunk_count] {
             chunk.set([u32::MAX; LANES]);
         }
         Batch {
             masks,
             active: active.into_iter().map(Cell::new).collect(),
             ..Batch::new(
-                width,
+                chunk_count,
                 [code.float_rows, code.word_rows],
                 (&self.floats, &self.words),
                 self.settings,

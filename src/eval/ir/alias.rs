@@ -37,9 +37,9 @@ impl AliasGroups {
     }
 
     /// Returns the cell that represents the alias class: the first of the group, or the cell itself.
-    pub(crate) fn unit(&self, cell: Cell) -> usize {
+    pub(crate) fn representative(&self, cell: Cell) -> Cell {
         let group = self.find(cell);
-        group.map_or(cell.0, |group| self.ranges[group].first) as usize
+        group.map_or(cell, |group| Cell(self.ranges[group].first))
     }
 
     /// Returns all groups.

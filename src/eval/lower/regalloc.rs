@@ -221,7 +221,7 @@ impl<'a> Uses<'a> {
                 Step::Store { cell, value } => {
                     self.read(*value, at);
                     self.cell_at(*cell, at);
-                    let unit = self.groups.unit(*cell);
+                    let unit = self.groups.representative(*cell).index();
                     self.stores[unit].push(at);
                 }
                 Step::StoreAt {
@@ -229,7 +229,7 @@ impl<'a> Uses<'a> {
                 } => {
                     self.read(*index, at);
                     self.read(*value, at);
-                    let unit = self.groups.unit(Cell(cells.first));
+                    let unit = self.groups.representative(Cell(cells.first)).index();
                     self.stores[unit].push(at);
                 }
                 Step::Split { condition, .. }
@@ -275,7 +275,7 @@ impl Allocator<'_> {
                 continue;
             };
             let LiveRange { end, .. } = self.uses.values[value.0 as usize];
-            let stores = &self.uses.stores[self.uses.groups.unit(cell)];
+            let stores = &self.uses.stores[self.uses.groups.representative(cell).index()];
             let next = stores.partition_point(|&store| store <= at);
             if stores.get(next).is_none_or(|&store| store > end) {
                 self.elided[at as usize] = true;

@@ -59,11 +59,13 @@ impl DeadCodeElimination<'_> {
         for node in block {
             match node {
                 Node::Let(value) => self.branch_of[value.0 as usize] = branch,
-                Node::Store { cell, value } => self.stores[self.groups.unit(*cell)].push((*value, branch)),
+                Node::Store { cell, value } => {
+                    self.stores[self.groups.representative(*cell).index()].push((*value, branch))
+                }
                 Node::StoreAt {
                     cells, index, value, ..
                 } => {
-                    let unit = self.groups.unit(Cell(cells.first));
+                    let unit = self.groups.representative(Cell(cells.first)).index();
                     self.stores[unit].extend([(*index, branch), (*value, branch)]);
                 }
                 Node::If { condition, .. } => {
@@ -109,7 +111,7 @@ impl DeadCodeElimination<'_> {
                 ValueDef::LoadAt { cells, .. } => Cell(cells.first),
                 _ => continue,
             };
-            let unit = self.groups.unit(cell);
+            let unit = self.groups.representative(cell).index();
             if !std::mem::replace(&mut self.cells[unit], true) {
                 for (value, branch) in std::mem::take(&mut self.stores[unit]) {
                     self.pending.push(value);
@@ -133,9 +135,11 @@ impl DeadCodeElimination<'_> {
         for node in block {
             let kept = match node {
                 Node::Let(value) => self.values[value.0 as usize].then_some(node),
-                Node::Store { cell, .. } => self.cells[self.groups.unit(cell)].then_some(node),
+                Node::Store { cell, .. } => {
+                    self.cells[self.groups.representative(cell).index()].then_some(node)
+                }
                 Node::StoreAt { cells, .. } => {
-                    self.cells[self.groups.unit(Cell(cells.first))].then_some(node)
+                    self.cells[self.groups.representative(Cell(cells.first)).index()].then_some(node)
                 }
                 Node::If { condition, yes, no } => {
                     let [yes, no] = [yes, no].map(|block| self.retain(block));

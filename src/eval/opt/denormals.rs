@@ -67,7 +67,7 @@ impl MayBeDenormal {
     }
 
     fn store(&mut self, cell: Cell, value: Value) -> bool {
-        let unit = self.groups.unit(cell);
+        let unit = self.groups.representative(cell).index();
         self.values[value.0 as usize] && !std::mem::replace(&mut self.cells[unit], true)
     }
 
@@ -77,8 +77,10 @@ impl MayBeDenormal {
             ValueDef::Operation(Operation::Neg | Operation::Abs | Operation::Select, operands) => operands
                 .iter()
                 .any(|value| self.values.get(value.0 as usize).is_some_and(|&is| is)),
-            ValueDef::Load(cell) => self.cells[self.groups.unit(cell)],
-            ValueDef::LoadAt { cells, .. } => self.cells[self.groups.unit(Cell(cells.first))],
+            ValueDef::Load(cell) => self.cells[self.groups.representative(cell).index()],
+            ValueDef::LoadAt { cells, .. } => {
+                self.cells[self.groups.representative(Cell(cells.first)).index()]
+            }
             _ => false,
         }
     }

@@ -159,13 +159,13 @@ impl<'a> CodeMap<'a> {
     }
 
     fn load(&mut self, cell: Cell, here: usize) {
-        let loads = &mut self.units[self.groups.unit(cell)].loads;
+        let loads = &mut self.units[self.groups.representative(cell).index()].loads;
         let (first, last) = loads.unwrap_or((here, here));
         *loads = Some((first.min(here), last.max(here)));
     }
 
     fn store(&mut self, cell: Cell, values: &[Value], here: usize) {
-        let unit = self.groups.unit(cell);
+        let unit = self.groups.representative(cell).index();
         self.units[unit].begins.get_or_insert(here);
         self.stores
             .extend(values.iter().map(|&value| (value, unit, here)));
@@ -233,7 +233,7 @@ impl<'a> Solver<'a> {
             self.propagate(fact);
         }
         for cell in 0..function.cells.len() as u32 {
-            let unit = self.map.groups.unit(Cell(cell));
+            let unit = self.map.groups.representative(Cell(cell)).index();
             self.divergence.cells.push(self.units[unit]);
             self.divergence.shared.push(self.shared[unit]);
         }
@@ -249,9 +249,14 @@ impl<'a> Solver<'a> {
             let fact = Fact::Value(value);
             def.for_each_operand(|operand| implications.add(operand.0 as usize, fact));
             match def {
-                ValueDef::Load(cell) => implications.add(values + map.groups.unit(cell), fact),
+                ValueDef::Load(cell) => {
+                    implications.add(values + map.groups.representative(cell).index(), fact)
+                }
                 ValueDef::LoadAt { cells, .. } => {
-                    implications.add(values + map.groups.unit(Cell(cells.first)), fact);
+                    implications.add(
+                        values + map.groups.representative(Cell(cells.first)).index(),
+                        fact,
+                    );
                 }
                 _ => {}
             }
