@@ -64,7 +64,7 @@ impl Stage {
             Self::Sound => Entry {
                 name: "mainSound",
                 return_type: VEC2,
-                // Older shaders have no number of the sample.
+                // Older shaders omit the sample number.
                 parameters: &[
                     &[(Type::INT, INPUT), (Type::FLOAT, INPUT)],
                     &[(Type::FLOAT, INPUT)],
@@ -102,11 +102,11 @@ impl Entry {
     /// The number of the form that a function has: 0 is preferred. `None` if it has another form.
     pub(crate) fn form(&self, function: &Function, tree: &Tree) -> Option<usize> {
         let fits = |&(ty, directions): &Parameter, variable: &crate::tree::Variable| {
-            let direction = match variable.kind {
+            let has_direction = match variable.kind {
                 VariableKind::Parameter(direction) => directions.contains(&direction),
                 _ => false,
             };
-            variable.ty == ty && direction
+            variable.ty == ty && has_direction
         };
         let has_form = |form: &&[Parameter]| {
             let parameters = function.parameters.iter().map(|&id| &tree[id]);

@@ -42,8 +42,8 @@ fn json_file(results: &impl Serialize) -> String {
         tool: concat!("toyproof ", env!("CARGO_PKG_VERSION")),
         results,
     };
-    // Strings and numbers always serialize.
-    serde_json::to_string_pretty(&file).unwrap_or_default() + "\n"
+    let json = serde_json::to_string_pretty(&file);
+    json.expect("strings and numbers always serialize") + "\n"
 }
 
 /// A table in the format of RFC 4180, with a row of the columns' names.

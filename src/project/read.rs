@@ -81,7 +81,7 @@ impl Project {
     }
 }
 
-/// Advice on another file than the site's JSON.
+/// Advice for a file that is not the site's JSON.
 const EXPECTED: &str = "expected ShaderToy's JSON: of its API, of its page data, or of the editor's export";
 
 /// Removes the structure around the JSON.
@@ -166,6 +166,7 @@ pub(crate) fn read(
         "the passes must be a list, found {}",
         renderpass.describe()
     ));
+    // Built here because `root` is borrowed mutably below.
     let no_image = renderpass.error("there is no pass of the type `image`");
     let Value::Array(nodes) = &mut renderpass.value else {
         errors.push(wrong);
@@ -234,8 +235,8 @@ fn tab(pass: &Node) -> Result<Tab, Box<Diagnostic>> {
     }
 }
 
-/// The buffer that a pass writes: that of its output's id. Its name is for people only, and often another
-/// one.
+/// The buffer that a pass writes: that of its output's id. The output's name is only a label, and often names
+/// another buffer.
 fn buffer(pass: &Node) -> Result<Buffer, Box<Diagnostic>> {
     let Some(outputs) = pass.get("outputs") else {
         return Err(pass

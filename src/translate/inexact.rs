@@ -1,5 +1,6 @@
-//! The functions whose last bits are implementation-defined, by function and by instruction. Both expansions
-//! derive from them, that of the tree (`lower::polyfill`) and that of SPIR-V (`backend::spirv`).
+//! The functions whose last bits are implementation-defined, found by the built-in function or by the SPIR-V
+//! instruction. Both expansions use this list: that of the tree (`lower::polyfill`) and that of SPIR-V
+//! (`backend::spirv`).
 
 use std::sync::LazyLock;
 
@@ -20,7 +21,8 @@ struct Instructions {
     core: Vec<(Op, InexactFunction)>,
 }
 
-/// The largest number of an instruction whose last bits are implementation-defined.
+/// The largest number of an instruction among which that of a name is searched for; those of all inexact
+/// functions are smaller.
 const LAST_INSTRUCTION: u32 = 255;
 
 static INSTRUCTIONS: LazyLock<Instructions> = LazyLock::new(|| {

@@ -27,7 +27,7 @@ Examples:
   toyproof collect moodle.zip -o homework
   toyproof collect submissions.zip --class class.toml -o homework
 
-Exit code: 0 on success, also if students have no shader, 2 for any error.")]
+Exit code: 0 on success, even if a student submitted no shader, 2 for any error.")]
 pub(super) struct Args {
     /// Archives (.zip) and folders
     #[arg(required = true, value_name = "DOWNLOAD")]
@@ -137,7 +137,8 @@ pub(super) struct ClassPart {
 }
 
 /// Finds the submissions of each assignment of a class: in a folder that `collect` wrote, or in downloads,
-/// from which they are collected into the folder `to`; without one, downloads are refused.
+/// from which they are collected into the folder `to`; if `to` is `None`, as for a shard, downloads are
+/// refused.
 pub(super) fn class_parts(
     downloads: &[PathBuf],
     class: &Path,
@@ -163,7 +164,7 @@ pub(super) fn class_parts(
     let parts = class.assignments.iter().map(|assignment| ClassPart {
         name: assignment.name.clone(),
         folder: collected.join(&assignment.name),
-        // Without one, the class has an error.
+        // `Purpose::Check` requires one.
         assignment: assignment.assignment.clone().unwrap_or_default(),
         rubric: assignment.rubric.clone(),
     });
@@ -179,7 +180,7 @@ fn is_collected(folder: &Path, class: &Class) -> bool {
         .all(|assignment| has_roster(&assignment.name))
 }
 
-/// Prints the command that checks what was collected, against something.
+/// Prints the `check` command for the collected folder.
 fn next(folder: &Path, assignment: Option<&Path>, terminal: &Terminal) {
     let assignment = assignment.map(|path| shell_word(&path_name(path)));
     terminal.note(&format!(

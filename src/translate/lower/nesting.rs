@@ -28,6 +28,8 @@ const MAX_DRIVER_DEPTH: u32 = 72;
 /// Maximum depths of functions that are not flattened, in the first and the second attempt.
 const MAX_KEPT_DEPTHS: [u32; 2] = [8, 2];
 
+/// Flattens conditionals and functions that are nested too deeply for the driver, and records the diagnostic
+/// of a shader that still is.
 pub(super) fn run(cx: &mut LoweringContext) {
     flatten_conditionals(cx);
     for kept in MAX_KEPT_DEPTHS {
@@ -272,7 +274,8 @@ impl DepthVisitor<'_> {
 /// Maximum depth of nested conditionals that stay unchanged.
 const MAX_KEPT_CONDITIONALS: usize = 16;
 
-/// Flattens nested conditionals: `a ? x : b ? y : z` becomes `p = a, r = p ? x : r, q = !p, …`.
+/// Flattens nested conditionals: `a ? x : b ? y : z` becomes `chosen = 0, here = a, other = !here,
+/// chosen = here ? x : chosen, here2 = other ? b : false, other2 = other && !here2, …, chosen`.
 fn flatten_conditionals(cx: &mut LoweringContext) {
     let mut nested = HashSet::new();
     for (_, expr) in cx.tree.exprs.iter() {

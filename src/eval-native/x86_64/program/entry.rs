@@ -29,7 +29,7 @@ impl Writer<'_> {
         code.copy64(CONTEXT, RDI);
         code.copy64(RAX, RSP);
         code.arithmetic_immediate64(Arithmetic::Sub, RSP, 0);
-        let frame_size = code.len() - 4;
+        let frame_size_at = code.len() - 4;
         // Vectors are aligned.
         code.arithmetic_immediate64(Arithmetic::And, RSP, -(CONSTANT_BYTES as i32));
         code.store64(Memory::at(RSP, SAVED_STACK), RAX);
@@ -51,7 +51,7 @@ impl Writer<'_> {
             code.store32(Memory::at(CONTEXT, offset!(own_mxcsr)), RAX);
             code.load_mxcsr(Memory::at(CONTEXT, offset!(own_mxcsr)));
         }
-        frame_size
+        frame_size_at
     }
 
     /// Whether the processor flushes denormals.

@@ -1,4 +1,4 @@
-//! Programs: each step is executed in a region, on scalars, by its handler, or by jumps.
+//! Programs: a step becomes part of a vector region, scalar code, a call of its handler, or a jump.
 
 mod entry;
 mod region;
@@ -42,11 +42,11 @@ pub(super) fn assemble(input: NativeInput<'_>, vectors: Vectors, precision: Prec
         refuel,
         refuels: Vec::new(),
     };
-    let frame_size = writer.prologue();
+    let frame_size_at = writer.prologue();
     writer.steps()?;
     writer.epilogue(note);
     let stack = writer.frame.stack_bytes();
-    writer.code.patch(frame_size, stack);
+    writer.code.patch(frame_size_at, stack);
     Some(writer.code.finish(&writer.pool.constants))
 }
 
@@ -61,17 +61,22 @@ struct Writer<'a> {
     code: Assembler,
     /// The labels of the steps that are jumped to.
     labels: Vec<Option<Label>>,
+    /// The end of the program.
     exit: Label,
+    /// Calls the handlers of a range of instructions.
     call: Label,
+    /// Calls the check of the limits.
     refuel: Label,
     refuels: Vec<Refuel>,
 }
 
-/// A check of the limits, out of the way of the steps.
+/// A check of the limits: code after the steps, so that they are contiguous.
 struct Refuel {
+    /// Where the check begins.
     entry: Label,
-    /// The place after it.
+    /// Where the program continues if no limit is exceeded.
     back: Label,
+    /// The instruction at which the limits are checked.
     instruction: u32,
 }
 

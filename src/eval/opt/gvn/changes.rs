@@ -1,5 +1,5 @@
-//! The changes made by loops and scopes, collected in one traversal: those of inner ones are part of the same
-//! list.
+//! The changes made by loops and scopes, collected in one traversal. The list is flat: an inner scope's range
+//! lies within the outer one's.
 
 use std::ops::Range;
 
