@@ -257,8 +257,8 @@ macro_rules! rules {
     /// Right:
     ///
     /// ```glsl
-    /// uniform sampler2D a, b, c, d;
-    /// void main() { gl_FragColor = texture2D(a, vec2(0)) + texture2D(d, vec2(0)); }
+    /// uniform sampler2D a;
+    /// void main() { gl_FragColor = texture2D(a, vec2(0)) + texture2D(a, vec2(1)); }
     /// ```
     NoChannelLeft "E0414" "A texture for which no channel is left",
     } };

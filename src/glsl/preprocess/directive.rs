@@ -37,11 +37,12 @@ const EXTENSIONS_OF_WEBGL_1: [&str; 4] = [
 ];
 
 fn unknown_directive(name: &str, at: Place) -> Diagnostic {
+    if name == "include" {
+        let diagnostic = Code::BadInclude.at(at, "a text without a folder cannot include files");
+        return diagnostic.help("paste the code of the file");
+    }
     let diagnostic = Code::UnknownDirective.at(at, format!("unknown directive `#{name}`"));
     match nearest(name, DIRECTIVES) {
-        _ if name == "include" => {
-            diagnostic.help("a text without a folder cannot include files: paste the code")
-        }
         Some(near) => diagnostic.fix(Fix::new(
             format!("did you mean `#{near}`?"),
             at.span,
