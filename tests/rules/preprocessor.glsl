@@ -422,7 +422,7 @@ float x;
 #endif
 bool holds() { return true; }
 
-//# 3.4 E0003 include is not supported
+//# 3.4 E0014 a text without a folder includes no file
 #include "other.glsl"  //!
 
 //# 3.4 E0003 a directive has a known name
