@@ -172,9 +172,9 @@ impl Declarations {
             value.push(1.0);
         }
         if ty == "int" {
-            value
-                .iter_mut()
-                .for_each(|component| *component = component.trunc());
+            for component in &mut value {
+                *component = component.trunc();
+            }
         }
         self.uniform(ty, name, Some(value));
         Ok(())

@@ -315,17 +315,12 @@ fn take_uniforms(root: &mut Node, errors: &mut Vec<Diagnostic>) -> Vec<UniformVa
     let mut table = members.remove(at).node;
     let mut uniforms = Vec::new();
     for Member { key, node } in table.members_mut().into_iter().flatten() {
-        match components(node) {
-            Some(components) => uniforms.push(UniformValue {
-                name: key.clone(),
-                components,
-            }),
-            None => {
-                let found = node.describe();
-                errors.push(node.error(format!(
-                    "`{key}` must be a number, true, false or a list of numbers, found {found}"
-                )));
-            }
+        if let Some(components) = components(node) {
+            let name = key.clone();
+            uniforms.push(UniformValue { name, components });
+        } else {
+            let (expected, found) = ("a number, true, false or a list of numbers", node.describe());
+            errors.push(node.error(format!("`{key}` must be {expected}, found {found}")));
         }
     }
     uniforms

@@ -131,8 +131,8 @@ impl Model<'_> {
         } else {
             quoted.join(", ")
         };
-        // The name of the file, which may be any text, is inserted last; the other texts consist of numbers,
-        // identifiers and calls, and none has the form of a placeholder.
+        // The name of the file, which may be any text, is inserted last. The other texts are lists of numbers
+        // and identifiers, so none of them contains a placeholder.
         include_str!("template.toml")
             .replace("{frames}\n", &frames)
             .replace("{functions}", &names)

@@ -172,9 +172,9 @@ impl Work {
                 let seconds = costs.as_ref().and_then(|costs| costs.seconds(&submission.name));
                 own_tasks.extend(own);
                 work.submissions.push(Submission {
+                    seconds,
                     task,
                     submitted,
-                    seconds,
                     ..submission
                 });
             }

@@ -350,12 +350,11 @@ impl Runner<'_> {
             None => None,
         };
         let has_no_driver = opened.is_none();
-        let renderer = match opened {
-            Some(playback) => Renderer::Device(playback),
-            None => {
-                let programs = scheduled.programs(limit);
-                Renderer::Evaluator(compiled_programs(programs, scheduled.graph, shader)?)
-            }
+        let renderer = if let Some(playback) = opened {
+            Renderer::Device(playback)
+        } else {
+            let programs = scheduled.programs(limit);
+            Renderer::Evaluator(compiled_programs(programs, scheduled.graph, shader)?)
         };
         Ok(Backend {
             renderer,

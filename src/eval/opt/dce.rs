@@ -60,7 +60,7 @@ impl DeadCodeElimination<'_> {
             match node {
                 Node::Let(value) => self.branch_of[value.0 as usize] = branch,
                 Node::Store { cell, value } => {
-                    self.stores[self.groups.representative(*cell).index()].push((*value, branch))
+                    self.stores[self.groups.representative(*cell).index()].push((*value, branch));
                 }
                 Node::StoreAt {
                     cells, index, value, ..

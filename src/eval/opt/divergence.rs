@@ -250,7 +250,7 @@ impl<'a> Solver<'a> {
             def.for_each_operand(|operand| implications.add(operand.0 as usize, fact));
             match def {
                 ValueDef::Load(cell) => {
-                    implications.add(values + map.groups.representative(cell).index(), fact)
+                    implications.add(values + map.groups.representative(cell).index(), fact);
                 }
                 ValueDef::LoadAt { cells, .. } => {
                     implications.add(

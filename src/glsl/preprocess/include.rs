@@ -264,7 +264,7 @@ impl<'a> Inclusion<'a> {
     }
 }
 
-impl<'a> Preprocessor<'a> {
+impl Preprocessor<'_> {
     /// Executes `#include` or `#pragma`, whose name has been read.
     pub(super) fn on_include(&mut self, name: &str, at: Place) {
         if name == "include" {

@@ -95,12 +95,14 @@ impl IncludeFolders {
             let mut names: Vec<String> = folders().map(|folder| path_name(folder)).collect();
             names.dedup();
             let names = names.join(", ");
-            return Err(match path.starts_with("lygia/") {
-                true => format!(
-                    "there is no {shown} in {names}: name the folder in which `lygia` lies with --include-dir"
-                ),
-                false => format!("there is no {shown} in {names}: name its folder with --include-dir"),
-            });
+            let sought = if path.starts_with("lygia/") {
+                "the folder in which `lygia` lies"
+            } else {
+                "its folder"
+            };
+            return Err(format!(
+                "there is no {shown} in {names}: name {sought} with --include-dir"
+            ));
         };
         let canonical = found.canonicalize().map_err(|error| error.to_string())?;
         let is_inside = |folder: &PathBuf| {

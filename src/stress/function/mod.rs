@@ -36,9 +36,8 @@ fn call_shader(text: &str, signature: &Signature, options: &glsl::Options) -> (S
     let is_implicit = options.dialect.is_none_or(Dialect::calls_main_image);
     let names = ["iChannel0", "iChannel1", "iChannel2"].into_iter();
     let missing = names.filter(|name| !is_implicit && !is_declared(name));
-    let declared: String = missing
-        .map(|name| format!("uniform sampler2D {name};\n"))
-        .collect();
+    let missing = missing.flat_map(|name| ["uniform sampler2D ", name, ";\n"]);
+    let declared = missing.collect::<String>();
     let options = glsl::Options {
         calls_added_main: true,
         lenient: options.lenient || !is_implicit,

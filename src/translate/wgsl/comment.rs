@@ -152,21 +152,23 @@ mod tests {
 
     use super::*;
 
-    /// The place of the last occurrence of a text.
-    fn place(files: &Files, file: FileId, code: &str) -> Place {
-        let start = files.get(file).text().rfind(code).unwrap();
-        Place::plain(Span::new(file, start as u32, (start + code.len()) as u32))
-    }
-
-    fn with<T>(text: &str, code: &str, find: impl FnOnce(&mut Comments<'_>, Place) -> T) -> T {
+    /// The file of a text, and the place of the last occurrence of some code in it.
+    fn placed(text: &str, code: &str) -> (Files, Place) {
         let mut files = Files::default();
         let file = files.add(File::new("shader", text));
-        let at = place(&files, file, code);
-        find(&mut Comments::new(&files), at)
+        let start = text.rfind(code).unwrap();
+        let span = Span::new(file, start as u32, (start + code.len()) as u32);
+        (files, Place::plain(span))
     }
 
     fn above(text: &str) -> Vec<String> {
-        with(text, "float y", |comments, at| comments.above(at))
+        let (files, at) = placed(text, "float y");
+        Comments::new(&files).above(at)
+    }
+
+    fn trailing(text: &str) -> Option<String> {
+        let (files, at) = placed(text, "float x");
+        Comments::new(&files).trailing(at)
     }
 
     #[test]
@@ -192,15 +194,9 @@ mod tests {
 
     #[test]
     fn an_opening_delimiter_does_not_close_a_comment() {
-        let text = "float x; /*/\nfloat z;\n*/ float y;";
-        assert_eq!(with(text, "float x", |comments, at| comments.trailing(at)), None);
-        let text = "/*/\na */\nfloat y;";
-        assert_eq!(
-            with(text, "float y", |comments, at| comments.first(at)),
-            ["// /", "// a"]
-        );
-        let text = "float x; /* a */\nfloat y;";
-        let trailing = with(text, "float x", |comments, at| comments.trailing(at));
-        assert_eq!(trailing.as_deref(), Some("// a"));
+        assert_eq!(trailing("float x; /*/\nfloat z;\n*/ float y;"), None);
+        assert_eq!(trailing("float x; /* a */\nfloat y;").as_deref(), Some("// a"));
+        let (files, at) = placed("/*/\na */\nfloat y;", "float y");
+        assert_eq!(Comments::new(&files).first(at), ["// /", "// a"]);
     }
 }
