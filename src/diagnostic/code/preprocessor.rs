@@ -36,19 +36,19 @@ macro_rules! preprocessor {
     UnterminatedComment "E0002" "An unterminated comment",
 
     /// A line that begins with `#` is a preprocessor directive: `#define`, `#undef`, `#if`, `#ifdef`,
-    /// `#ifndef`, `#elif`, `#else`, `#endif`, `#error`, `#pragma`, `#extension`, `#version` or `#line`. There
-    /// is no `#include`: paste the code of the file.
+    /// `#ifndef`, `#elif`, `#else`, `#endif`, `#error`, `#pragma`, `#extension`, `#version` or `#line`, and
+    /// `#include` in files.
     ///
     /// Wrong:
     ///
     /// ```glsl
-    /// #include "noise.glsl"
+    /// #constant WIDTH 0.1
     /// ```
     ///
     /// Right:
     ///
     /// ```glsl
-    /// float noise(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
+    /// #define WIDTH 0.1
     /// ```
     UnknownDirective "E0003" "An unknown preprocessor directive",
 

@@ -80,21 +80,20 @@ fn mistakes(records: &[Record]) -> String {
         return String::new();
     };
     let rows = counts.iter().take(MAX_MISTAKES);
-    let rows: String = rows
-        .map(|(text, count)| row(&sentence(text), *count, most))
-        .collect();
+    let rows: String = rows.map(|(text, count)| row(text, *count, most)).collect();
     format!(
         "<table class=\"bars\">\n<caption>Commonest mistakes</caption>\n<tbody>\n{rows}</tbody>\n</table>\n"
     )
 }
 
-/// A row with a bar, whose label is HTML.
+/// A row with a bar. Its first cell is no header, so that headers of rows are those of shaders.
 fn row(label: &str, count: u64, most: u64) -> String {
     let shaders = plural(count, "shader", "shaders");
+    let name = Text(format!("{label}: {} {shaders}", grouped(count)));
     format!(
-        "<tr><th scope=\"row\">{label}</th><td><meter min=\"0\" max=\"{most}\" value=\"{count}\">{}</meter></td>\
+        "<tr><td>{}</td><td><meter aria-label=\"{name}\" min=\"0\" max=\"{most}\" value=\"{count}\"></meter></td>\
          <td class=\"number\">{}</td></tr>\n",
-        Text(format!("{count} {shaders}")),
+        sentence(label),
         grouped(count)
     )
 }
@@ -126,11 +125,11 @@ mod tests {
         }
         let page = html(&records, &rubrics);
         assert!(
-            page.contains("<th scope=\"row\">100 %</th><td><meter min=\"0\" max=\"4\" value=\"4\">"),
+            page.contains("<meter aria-label=\"100 %: 4 shaders\" min=\"0\" max=\"4\" value=\"4\">"),
             "{page}"
         );
         assert!(page.contains("median 100 %"), "{page}");
-        let missing = "<th scope=\"row\">a factor is missing</th><td><meter min=\"0\" max=\"2\" value=\"2\">";
+        let missing = "<td>a factor is missing</td><td><meter aria-label=\"a factor is missing: 2 shaders\" min=\"0\" max=\"2\"";
         assert!(html(&records, &None.into()).contains(missing), "{page}");
     }
 }

@@ -136,7 +136,7 @@ impl Page<'_> {
             },
             facts = facts(report, records.len(), names, date),
             subsampling_note = subsampling_note(gallery.step()),
-            overview = distribution::html(records, rubrics) + &overview.html(),
+            overview = overview.html() + &distribution::html(records, rubrics),
             glossary = glossary.html(),
             images = images(gallery),
         )
