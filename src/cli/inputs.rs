@@ -367,9 +367,7 @@ impl LanguageArgs {
     /// These options with values of uniforms that the user does not give.
     pub(super) fn with_uniforms(&self, values: &[UniformValue]) -> Self {
         let mut all = self.clone();
-        let is_given = |value: &&UniformValue| self.uniform.iter().any(|given| given.name == value.name);
-        all.uniform
-            .extend(values.iter().filter(|value| !is_given(value)).cloned());
+        UniformValue::add_missing(&mut all.uniform, values);
         all
     }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use toyproof_diagnostic::{Deadline, path_name};
-use toyproof_glsl::Checked;
+use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
 use toyproof_image::Frame;
 use toyproof_lab::stress as output;
@@ -134,7 +134,11 @@ fn examine(
         None => Signature::only(checked, &map),
     };
     let signature = signature.map_err(|why| format!("{}: {why}", shader.name))?;
-    let options = args.language.options(Deadline::after(args.driver.timeout()));
+    // Those of the dialect that was recognized.
+    let options = glsl::Options {
+        deadline: Deadline::after(args.driver.timeout()),
+        ..checked.options()
+    };
     let bar = terminal.bar(2 + u64::from(gpu.is_some()), "runs");
     let (text, settings) = (shader.text(checked), args.settings());
     let examined = function::examine(text, &signature, &options, gpu, settings, interrupted, || {

@@ -131,11 +131,7 @@ pub struct Options {
 impl Options {
     /// Adds the values of uniforms that have none.
     pub fn add_uniforms(&mut self, values: &[UniformValue]) {
-        for value in values {
-            if self.uniforms.iter().all(|given| given.name != value.name) {
-                self.uniforms.push(value.clone());
-            }
-        }
+        UniformValue::add_missing(&mut self.uniforms, values);
     }
 }
 
@@ -146,6 +142,17 @@ pub struct UniformValue {
     pub name: String,
     /// Its components, matrices in column order; 1 and 0 for `true` and `false`.
     pub components: Vec<f64>,
+}
+
+impl UniformValue {
+    /// Adds the values of the uniforms that have none yet.
+    pub fn add_missing(all: &mut Vec<Self>, values: &[Self]) {
+        for value in values {
+            if all.iter().all(|given| given.name != value.name) {
+                all.push(value.clone());
+            }
+        }
+    }
 }
 
 /// A shader without errors.

@@ -29,14 +29,15 @@ pub fn with_declarations(
     options: &mut Options,
 ) -> Result<FileId, Diagnostics> {
     let text = files.get(file).text();
-    let Declarations { text, uniforms } = match options.dialect {
-        None | Some(Dialect::Isf) if header(text).is_some() => {
+    let may_be_isf = options.dialect.is_none_or(|dialect| dialect == Dialect::Isf);
+    let declared = match header(text).filter(|_| may_be_isf) {
+        Some(bytes) => {
             options.dialect = Some(Dialect::Isf);
-            of_header(files, file)
+            of_header(files, file, bytes)
         }
-        _ => of_annotations(files, file),
-    }
-    .map_err(|error| Diagnostics::new(vec![error], files))?;
+        None => of_annotations(files, file),
+    };
+    let Declarations { text, uniforms } = declared.map_err(|error| Diagnostics::new(vec![error], files))?;
     if text.is_empty() {
         return Ok(file);
     }
@@ -83,15 +84,11 @@ fn header(text: &str) -> Option<(u32, u32)> {
     is_header.then_some((start as u32, end as u32))
 }
 
-fn of_header(files: &mut Files, file: FileId) -> Result<Declarations, Diagnostic> {
-    let text = files.get(file).text().to_owned();
-    let Some((start, end)) = header(&text) else {
-        return Ok(Declarations::default());
-    };
+fn of_header(files: &mut Files, file: FileId, (start, end): (u32, u32)) -> Result<Declarations, Diagnostic> {
     let name = files.get(file).name().to_owned();
     let json = files.join_parts(name, &[Span::new(file, start, end)], "");
     let root = json::parse(files, json).map_err(|error| *error)?;
-    let body = &text[end as usize..];
+    let body = &files.get(file).text()[end as usize..];
     let mut declared = Declarations::default();
     let passes = root.get("PASSES").and_then(Node::as_array).unwrap_or_default();
     if let Some(pass) = passes
@@ -142,8 +139,7 @@ impl Declarations {
     fn add_input(&mut self, input: &Node) -> Result<(), Diagnostic> {
         let text = |key| input.get(key).and_then(Node::as_str);
         let name = text("NAME").filter(|name| is_name(name));
-        let name =
-            name.ok_or_else(|| input.error("an input needs a `NAME`, which is one of the language"))?;
+        let name = name.ok_or_else(|| input.error("an input needs a `NAME` that is a name in GLSL"))?;
         let Some(ty) = text("TYPE") else {
             return Err(input.error("an input needs a `TYPE`"));
         };

@@ -172,8 +172,8 @@ pub enum Reading {
     Function(Signature),
 }
 
-/// A function of this name, which is called like `mainImage`, that reads a case and returns `result`, an expression of type vec3 that may use the texels
-/// `a`, `b` and `c`.
+/// A function of this name with the form of `mainImage`, which reads a case and returns `result`, an expression
+/// of type vec3 that may use the texels `a`, `b` and `c`.
 pub(crate) fn main(name: &str, steps: &str, result: &str) -> String {
     format!(
         "void {name}(out vec4 color, in vec2 place) {{

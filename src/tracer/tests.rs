@@ -36,6 +36,24 @@ fn ball(center: &str, radius: &str, material: &str) -> String {
 }
 
 #[test]
+fn samples_at_the_center_are_those_of_one_sample() {
+    let text = |samples: u32| {
+        let film =
+            format!("[film]\nsize = [24, 16]\nsampler = \"center\"\nsamples = {samples}\n[background]\n");
+        film + &ball(
+            "[1, 0.5, -6]",
+            "1.5",
+            "{ model = \"facing\", color = [1, 0.5, 0] }",
+        )
+    };
+    let image = |samples| Tracer::<f64>::new(&scene(&text(samples))).render(|| ());
+    // Packets of 8 samples of a pixel and of 64 pixels have other orders.
+    for samples in [4, 8, 16] {
+        assert_eq!(image(samples), image(1), "{samples}");
+    }
+}
+
+#[test]
 fn a_sphere_straight_ahead_faces_the_eye() {
     let text = ONE.to_owned() + &ball("[0, 0, -6]", "1.5", "{ model = \"facing\", color = [1, 0.5, 0] }");
     assert_near(pixel(&text, 0, 0), [1.0, 0.5, 0.0]);

@@ -100,6 +100,24 @@ fn only_named_folders_are_read() {
 }
 
 #[test]
+fn a_submission_cannot_include_a_shader_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [
+        ("hw/solution.glsl", WHOLE),
+        ("hw/copy.glsl", "#include \"solution.glsl\"\n"),
+    ];
+    write(folder.path(), &files);
+    let (_, refused) = check(folder.path(), &["hw/copy.glsl"]);
+    let errors = refused["shaders"][0]["diagnostics"].to_string();
+    assert!(
+        errors.contains("solution.glsl is a shader on its own"),
+        "{errors}"
+    );
+    let (_, allowed) = check(folder.path(), &["hw/copy.glsl", "--include-dir", "hw"]);
+    assert_eq!(allowed["shaders"][0]["verdict"], "ok");
+}
+
+#[test]
 fn results_are_not_reused_after_an_included_file_has_changed() {
     let folder = tempfile::tempdir().unwrap();
     let shader = "#include \"level.glsl\"\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(LEVEL); }\n";

@@ -310,3 +310,33 @@ fn a_function_of_another_host_is_called_and_not_its_image() {
         assert!(run.stdout.contains("is 4.0, expected 0.5"), "{run:?}");
     }
 }
+
+#[test]
+fn an_intersection_of_another_host_is_tested() {
+    let folder = tempfile::tempdir().unwrap();
+    let shader = "precision highp float;
+uniform vec2 u_resolution;
+float hitSphere(vec3 o, vec3 d, vec3 c, float r) {
+    vec3 f = o - c;
+    float b = dot(f, d);
+    float disc = b * b - dot(f, f) + r * r;
+    return disc < 0.0 ? -1.0 : -b - sqrt(disc);
+}
+void main() {
+    gl_FragColor = vec4(hitSphere(vec3(0.0), vec3(gl_FragCoord.xy / u_resolution, -1.0), vec3(0.0, 0.0, -5.0), 1.0));
+}
+";
+    fs::write(folder.path().join("sphere.frag"), shader).unwrap();
+    let arguments = [
+        "stress",
+        "sphere.frag",
+        "-o",
+        "out",
+        "--device",
+        "cpu",
+        "--cases",
+        "200",
+    ];
+    let run = toyproof(folder.path(), &arguments);
+    assert!(run.code < 2 && run.stdout.contains("hitSphere"), "{run:?}");
+}

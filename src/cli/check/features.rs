@@ -9,6 +9,7 @@ use toyproof_verify::{CheckResult, Expected};
 
 use super::options::CheckOptions;
 use super::plan::{Plan, PlannedFrame};
+use super::reference::References;
 use crate::cli::inputs::LanguageArgs;
 use crate::cli::reference::{GivenReference, ReferenceArgs};
 use crate::cli::scenes::{parse_scene, read_scene};
@@ -33,7 +34,12 @@ impl Features {
     ///
     /// # Errors
     /// A reference cannot be rendered, or a feature changes no pixel.
-    pub(super) fn new(plan: &Plan, options: &CheckOptions, terminal: &Terminal) -> Result<Self, CliError> {
+    pub(super) fn new(
+        plan: &Plan,
+        references: &References,
+        options: &CheckOptions,
+        terminal: &Terminal,
+    ) -> Result<Self, CliError> {
         let Some((assignment, _)) = plan
             .assignment
             .as_ref()
@@ -42,11 +48,14 @@ impl Features {
             return Ok(Self::default());
         };
         let language = options.language.with_uniforms(&plan.uniforms);
-        let images = |reference: &Reference| images(reference, plan, &language, options, terminal);
-        let with = images(&assignment.reference)?;
+        let render = |reference: &Reference| images(reference, plan, &language, options, terminal);
+        let with = match references {
+            References::Given(prepared) => prepared.images(plan)?,
+            References::Scenes(_) => render(&assignment.reference)?,
+        };
         let mut features = Vec::new();
         for feature in &assignment.features {
-            let without = images(&feature.without)?;
+            let without = render(&feature.without)?;
             let name = path_name(feature.without.path());
             let masks: Option<Vec<Vec<bool>>> = with.iter().zip(&without).map(|(a, b)| mask(a, b)).collect();
             let masks = masks.ok_or_else(|| format!("{name} has another size than the reference"))?;

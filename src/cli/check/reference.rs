@@ -6,7 +6,9 @@ use std::sync::{Arc, LazyLock};
 
 use toyproof_classroom::function_test::is_test_file;
 use toyproof_diagnostic::{File, Files, path_name};
+use toyproof_eval as eval;
 use toyproof_explain::whole_image::OtherScenes;
+use toyproof_image::Image;
 use toyproof_project::files::{self, Input, InputSource, OutsideLink, ReadError};
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Expected, Failure};
@@ -64,6 +66,18 @@ impl PreparedReference {
     /// The shader, if it is one.
     pub(super) fn shader(&self) -> Option<&Shader> {
         self.given.shader().map(|(shader, _)| shader)
+    }
+
+    /// The images in the frames of a plan.
+    ///
+    /// # Errors
+    /// If a shader that is too large for the cache cannot be evaluated again.
+    pub(super) fn images(&self, plan: &Plan) -> Result<Vec<Image>, eval::Failure> {
+        let frames = plan.frames.iter().map(|planned| &planned.frame);
+        let cached = self.cached.iter().zip(frames);
+        cached
+            .map(|(cached, frame)| cached.expected.image(frame))
+            .collect()
     }
 
     /// A warning about pixels that depend on how the shader marches, once a comparison has needed it; `None`

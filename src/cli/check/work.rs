@@ -61,7 +61,7 @@ fn is_found_reference(input: &Result<Input, ReadError>, references: &HashSet<Pat
 
 impl Task {
     /// The canonical paths of the reference shaders.
-    fn files(&self) -> Vec<PathBuf> {
+    fn reference_files(&self) -> Vec<PathBuf> {
         let assignment = self.plan.assignment.iter().map(|(assignment, _)| assignment);
         let references = assignment.flat_map(|assignment| {
             let features = assignment.features.iter().map(|feature| &feature.without);
@@ -76,7 +76,7 @@ impl Task {
     fn new(options: &Options, inputs: &TaskInputs, terminal: &Terminal) -> Result<Self, CliError> {
         let mut plan = Plan::new(&options.plan, inputs, terminal)?;
         let references = References::new(&options.check, &mut plan, terminal)?;
-        let features = Features::new(&plan, &options.check, terminal)?;
+        let features = Features::new(&plan, &references, &options.check, terminal)?;
         Ok(Self {
             plan,
             references,
@@ -145,8 +145,12 @@ impl Work {
                 _ => None,
             });
             let beside: Vec<Option<Result<Task, ReadError>>> = beside.collect();
-            let references: HashSet<PathBuf> =
-                beside.iter().flatten().flatten().flat_map(Task::files).collect();
+            let references: HashSet<PathBuf> = beside
+                .iter()
+                .flatten()
+                .flatten()
+                .flat_map(Task::reference_files)
+                .collect();
             let mut own_tasks = Vec::new();
             for (mut input, own) in inputs.into_iter().zip(beside) {
                 if is_found_reference(&input, &references) {

@@ -32,6 +32,8 @@ struct Host {
     title: &'static str,
     /// Whether it calls `mainImage`; otherwise it runs `main`.
     calls_main_image: bool,
+    /// The version of a shader that does not state one.
+    version: Version,
     /// Whether its inputs exist without a declaration.
     is_implicit: bool,
     /// The inputs beyond ShaderToy's: a name, and its values, one for each type that it may be declared with.
@@ -157,6 +159,7 @@ const HOSTS: &[Host] = &[
         name: "shadertoy",
         title: "ShaderToy",
         calls_main_image: true,
+        version: Version::Es300,
         is_implicit: true,
         inputs: &[],
     },
@@ -165,6 +168,7 @@ const HOSTS: &[Host] = &[
         name: "ghostty",
         title: "Ghostty",
         calls_main_image: true,
+        version: Version::Es300,
         is_implicit: true,
         inputs: &[
             ("iCurrentCursor", &[CURSOR]),
@@ -186,6 +190,7 @@ const HOSTS: &[Host] = &[
         name: "book-of-shaders",
         title: "The Book of Shaders",
         calls_main_image: false,
+        version: Version::Es100,
         is_implicit: false,
         inputs: &[
             ("u_resolution", RESOLUTION),
@@ -209,6 +214,7 @@ const HOSTS: &[Host] = &[
         name: "glsl-sandbox",
         title: "GLSL Sandbox",
         calls_main_image: false,
+        version: Version::Es100,
         is_implicit: false,
         inputs: &[
             ("time", TIME),
@@ -223,6 +229,7 @@ const HOSTS: &[Host] = &[
         name: "three",
         title: "three.js and p5.js",
         calls_main_image: false,
+        version: Version::Es100,
         is_implicit: false,
         inputs: &[
             ("uTime", TIME),
@@ -239,6 +246,8 @@ const HOSTS: &[Host] = &[
         name: "isf",
         title: "ISF",
         calls_main_image: false,
+        // As programs compile it on the desktop.
+        version: Version::Desktop(150),
         is_implicit: false,
         inputs: &[
             ("TIME", TIME),
@@ -255,6 +264,7 @@ const HOSTS: &[Host] = &[
         name: "webgl",
         title: "WebGL",
         calls_main_image: false,
+        version: Version::Es100,
         is_implicit: false,
         inputs: &[],
     },
@@ -298,12 +308,7 @@ impl Dialect {
 
     /// The version of a shader that does not state one.
     pub(crate) fn version(self) -> Version {
-        match self {
-            _ if self.calls_main_image() => Version::Es300,
-            // As the programs compile it on the desktop.
-            Self::Isf => Version::Desktop(150),
-            _ => Version::Es100,
-        }
+        self.host().version
     }
 
     /// Whether ShaderToy's inputs, and those of the host, exist without a declaration.

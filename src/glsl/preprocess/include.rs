@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, FileId, Files, Span};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, FileId, Files, Span, grouped};
 
 use super::lexer::Lexer;
 use super::{Preprocessor, source_tokens};
@@ -23,6 +23,9 @@ const MAX_INCLUDED_FILES: usize = 1000;
 
 /// Maximum size in bytes of a text with those that it includes.
 const MAX_TEXT_BYTES: usize = 4 << 20;
+
+/// Maximum size in bytes of all texts that are read, a text once for each inclusion.
+const MAX_READ_BYTES: usize = 64 << 20;
 
 /// Reads an included file, adds it to the files, and returns its id, which is the same for the same file.
 /// Takes the id of the including file and the path as it is written; an error is the reason.
@@ -80,7 +83,10 @@ impl Found {
                     continue;
                 }
                 let included = if known.len() > MAX_INCLUDED_FILES {
-                    Err(format!("more than {MAX_INCLUDED_FILES} files are included"))
+                    Err(format!(
+                        "more than {} files are included",
+                        grouped(MAX_INCLUDED_FILES as u64)
+                    ))
                 } else {
                     read(files, from, &key.1)
                 };
@@ -150,6 +156,8 @@ struct Outer<'a> {
     /// The numbers of parts and of effects in front of the included text.
     parts: usize,
     effects: usize,
+    /// The size of the text in front of the included one.
+    size: usize,
 }
 
 /// The state of inclusions.
@@ -162,7 +170,9 @@ pub(super) struct Inclusion<'a> {
     file: FileId,
     from: u32,
     parts: Vec<Span>,
+    /// The size of the parts, and of all texts that were read.
     size: usize,
+    read: usize,
     /// The number of active tokens and of directives that change what follows. A text without any is left
     /// out: another inclusion of a file with a guard.
     effects: usize,
@@ -186,6 +196,7 @@ impl<'a> Inclusion<'a> {
             from: 0,
             parts: Vec::new(),
             size: 0,
+            read: 0,
             effects: 0,
             definitions: 0,
             ineffective: HashMap::new(),
@@ -252,9 +263,13 @@ impl<'a> Inclusion<'a> {
             });
         }
         if self.executed > MAX_INCLUDES {
-            return Err(refuse(format!("more than {MAX_INCLUDES} files are included")));
+            return Err(refuse(format!(
+                "more than {} files are included",
+                grouped(MAX_INCLUDES as u64)
+            )));
         }
-        if self.size > MAX_TEXT_BYTES {
+        self.read += self.files.get(file).text().len();
+        if self.size > MAX_TEXT_BYTES || self.read > MAX_READ_BYTES {
             let megabytes = MAX_TEXT_BYTES >> 20;
             return Err(refuse(format!(
                 "the text with all included ones is larger than {megabytes} MB"
@@ -315,6 +330,7 @@ impl Preprocessor<'_> {
             counted: std::mem::replace(&mut self.counted, (0, 1)),
             parts: parts + 1,
             effects: inclusion.effects,
+            size: inclusion.size,
         };
         inclusion.from = 0;
         inclusion.outer.push(outer);
@@ -332,6 +348,7 @@ impl Preprocessor<'_> {
         inclusion.add_part(end);
         if inclusion.effects == outer.effects {
             inclusion.parts.truncate(outer.parts);
+            inclusion.size = outer.size;
             inclusion
                 .ineffective
                 .insert(inclusion.file, inclusion.definitions);
@@ -452,7 +469,7 @@ mod tests {
             .collect();
         let error = error(&texts);
         assert!(
-            error.contains("64 deep") || error.contains("10000 files"),
+            error.contains("64 deep") || error.contains("10,000 files"),
             "{error}"
         );
     }

@@ -72,12 +72,18 @@ impl IncludeFolders {
             let folder = including
                 .and_then(|found| found.path.parent())
                 .unwrap_or(&self.own);
+            let shown = path_name(Path::new(path));
             let path = self.resolve(folder, path)?;
             let canonical = path.canonicalize().map_err(|error| error.to_string())?;
             if let Some(found) = found.get(&canonical) {
                 return Ok(found.file);
             }
             let text = read_text(&path).map_err(|error| error.to_string())?;
+            // Submissions often lie in one folder, and a solution beside them.
+            if has_entry_point(text.text()) && !is_in_one_of(&self.others, &canonical) {
+                let way_out = "name its folder with --include-dir to include it";
+                return Err(format!("{shown} is a shader on its own: {way_out}"));
+            }
             let file = files.add(text);
             found.insert(canonical, Found { path, file });
             Ok(file)
@@ -105,11 +111,7 @@ impl IncludeFolders {
             ));
         };
         let canonical = found.canonicalize().map_err(|error| error.to_string())?;
-        let is_inside = |folder: &PathBuf| {
-            let folder = folder.canonicalize();
-            folder.is_ok_and(|folder| canonical.starts_with(folder))
-        };
-        if folders().any(is_inside) {
+        if is_in_one_of(folders(), &canonical) {
             Ok(found)
         } else {
             let message = "is outside of the shader's folder: allow its folder with --include-dir";
@@ -133,7 +135,7 @@ pub fn drop_included(inputs: &mut Vec<Result<Input, ReadError>>) {
         let (_, found) = IncludeFolders::of(input, &[]).read(&mut files, file, &Options::default());
         let parts = found
             .into_iter()
-            .filter(|(_, found)| !files.get(found.file).text().contains("main"));
+            .filter(|(_, found)| !has_entry_point(files.get(found.file).text()));
         included.extend(parts.map(|(path, _)| path));
     }
     if included.is_empty() {
@@ -146,6 +148,23 @@ pub fn drop_included(inputs: &mut Vec<Result<Input, ReadError>>) {
         }
         _ => true,
     });
+}
+
+/// Whether a canonical path lies in one of these folders.
+fn is_in_one_of<'f>(folders: impl IntoIterator<Item = &'f PathBuf>, path: &Path) -> bool {
+    let mut folders = folders
+        .into_iter()
+        .filter_map(|folder| folder.canonicalize().ok());
+    folders.any(|folder| path.starts_with(folder))
+}
+
+/// Whether a text has a word that a host calls: `mainImage`, or `main(`.
+fn has_entry_point(text: &str) -> bool {
+    let is_in_name = |character: char| character.is_alphanumeric() || character == '_';
+    text.match_indices("main").any(|(at, word)| {
+        let (before, after) = (&text[..at], &text[at + word.len()..]);
+        !before.ends_with(is_in_name) && (after.starts_with("Image") || after.trim_start().starts_with('('))
+    })
 }
 
 /// A folder with a name.

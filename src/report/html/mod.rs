@@ -114,8 +114,14 @@ impl Page<'_> {
             rubrics,
             kind,
         };
+        // A page with a part of the shaders says nothing about the class.
+        let class = if records.len() == report.shaders().len() {
+            distribution::html(records, rubrics)
+        } else {
+            String::new()
+        };
         format!(
-            r##"{head}<body{class}>
+            r##"{head}<body{kind}>
 <a class="skip" href="#main">Skip to the content</a>
 <header class="page">
 <h1>{heading}</h1>
@@ -130,13 +136,13 @@ impl Page<'_> {
 </html>
 "##,
             head = head(&heading),
-            class = match kind {
+            kind = match kind {
                 PageKind::Shaders => "",
                 PageKind::Index => " class=\"index\"",
             },
             facts = facts(report, records.len(), names, date),
             subsampling_note = subsampling_note(gallery.step()),
-            overview = overview.html() + &distribution::html(records, rubrics),
+            overview = overview.html() + &class,
             glossary = glossary.html(),
             images = images(gallery),
         )
