@@ -43,10 +43,11 @@ pub fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofSta
             }
             return;
         }
-        Target::Glsl => bytes
+        Target::Glsl if bytes.starts_with(b"#version") => bytes
             .iter()
             .position(|&byte| byte == b'\n')
             .map_or(0, |end| end + 1),
+        Target::Glsl => 0,
         Target::Wgsl | Target::Msl | Target::Hlsl => 0,
     };
     let head = header_text(name, status);

@@ -36,8 +36,8 @@ pub use proof::{
 pub use prover::{ProofError, Prover, Reader, Readers, ShaderProof};
 use thiserror::Error;
 pub use tool::ToolError;
-use toyproof_diagnostic::{Deadline, Files, Overdue};
-use toyproof_glsl::Checked;
+use toyproof_diagnostic::{Code, Deadline, Files, Overdue};
+use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::{self, Style, Unprintable};
@@ -63,6 +63,9 @@ impl Source<'_> {
 /// The extension of the lowered GLSL that naga parses.
 const LOWERED_EXTENSION: &str = "lowered.glsl";
 
+/// The extension of shaders with `mainImage`, which are no complete fragment shaders.
+const SHADERTOY_EXTENSION: &str = "glsl";
+
 /// The settings of a conversion.
 #[derive(Debug, Clone, Copy)]
 pub struct Converter {
@@ -70,6 +73,8 @@ pub struct Converter {
     pub target: Option<Target>,
     /// The kind of host that WGSL is written for.
     pub style: Style,
+    /// The host that GLSL is written for, in the author's words; `None` for GLSL by naga.
+    pub dialect: Option<Dialect>,
     /// Whether functions such as `sin` are expanded.
     pub float: FloatMode,
     /// The time limit of each step.
@@ -83,6 +88,8 @@ pub enum TargetCode {
     Lowered(Lowered),
     /// WGSL for a kind of host.
     Wgsl(String, Style),
+    /// GLSL for a host.
+    Glsl(String, Dialect),
     /// A file of naga's in a language other than WGSL.
     Naga {
         /// The language.
@@ -100,7 +107,7 @@ impl TargetCode {
     pub fn into_bytes(self) -> Vec<u8> {
         match self {
             Self::Lowered(lowered) => lowered.text().as_bytes().to_vec(),
-            Self::Wgsl(text, _) => text.into_bytes(),
+            Self::Wgsl(text, _) | Self::Glsl(text, _) => text.into_bytes(),
             Self::Naga { bytes, .. } => bytes,
         }
     }
@@ -159,6 +166,9 @@ pub enum ConvertError {
     /// The shader cannot be written as WGSL for this kind of host, and naga only writes for the plain one.
     #[error(transparent)]
     Unwritable(WgslError),
+    /// The shader cannot be written for another host of GLSL.
+    #[error(transparent)]
+    Port(PortError),
 }
 
 impl Conversion {
@@ -206,6 +216,10 @@ impl Converter {
             let lowered = self.lower(source)?;
             return Conversion::new(source, TargetCode::Lowered(lowered), prover);
         };
+        if let Some(dialect) = self.dialect {
+            let written = self.port(source, dialect)?;
+            return Conversion::new(source, written, prover);
+        }
         if !self.prints_wgsl() {
             let written = self.write_with_naga(source, target, translator)?;
             return Conversion::new(source, written, prover);
@@ -245,7 +259,11 @@ impl Converter {
     /// The extension of files in the target language, without the dot.
     #[must_use]
     pub fn extension(&self) -> &'static str {
-        self.target.map_or(LOWERED_EXTENSION, Target::extension)
+        match (self.dialect, self.target) {
+            (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
+            (_, Some(target)) => target.extension(),
+            (_, None) => LOWERED_EXTENSION,
+        }
     }
 
     /// Whether our own writer prints the files.
@@ -261,6 +279,21 @@ impl Converter {
     fn lower(&self, source: Source) -> Result<Lowered, ConvertError> {
         let deadline = Deadline::after(self.timeout);
         Ok(self.float.lower_for_host(source.checked, &deadline)?)
+    }
+
+    /// Writes the shader's text for another host.
+    fn port(&self, source: Source, dialect: Dialect) -> Result<TargetCode, ConvertError> {
+        let deadline = Deadline::after(self.timeout);
+        let refusal = |files: &Files, written: &Checked| {
+            let lints = toyproof_lint::lint(files, written, &deadline);
+            let mut warnings = lints.warnings.into_iter();
+            warnings.find(|warning| warning.code == Code::BeyondAppendixA)
+        };
+        match glsl::port(source.checked, source.files, dialect, &refusal, &deadline) {
+            Ok(text) => Ok(TargetCode::Glsl(text, dialect)),
+            Err(PortError::Overdue(overdue)) => Err(overdue.into()),
+            Err(error) => Err(ConvertError::Port(error)),
+        }
     }
 
     /// Writes WGSL that keeps the author's names and comments, and that naga reads.

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 use toyproof_diagnostic::Files;
+use toyproof_glsl::Dialect;
 use toyproof_gpu::Worker;
 use toyproof_project::{CompiledProject, PassKind, UnsupportedPass};
 use toyproof_translate::backend::Target;
@@ -66,6 +67,9 @@ pub enum ProjectError {
         Style::WgpuShadertoy.name()
     )]
     Style(Style),
+    /// GLSL is written for hosts that render one pass.
+    #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
+    Dialect(Dialect),
     /// A pass is needed that cannot be rendered.
     #[error("the project {0}")]
     NotRendered(#[from] UnsupportedPass),
@@ -99,6 +103,9 @@ impl Converter {
     ) -> Result<ProjectConversion, ProjectError> {
         if matches!(self.style, Style::ComputeToys | Style::Bevy) {
             return Err(ProjectError::Style(self.style));
+        }
+        if let Some(dialect) = self.dialect {
+            return Err(ProjectError::Dialect(dialect));
         }
         let ProjectSource { project, files, .. } = source;
         let rendering = project.rendering(PassKind::Image)?;

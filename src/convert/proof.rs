@@ -9,7 +9,7 @@ use toyproof_diagnostic::{Deadline, File, Files, short};
 use toyproof_eval::{self as eval, Observed, Refusal};
 use toyproof_eval_native::Program;
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_glsl::{self as glsl, Checked, Stage};
+use toyproof_glsl::{self as glsl, Checked, Dialect, Stage};
 use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
 use toyproof_image::{self as image, Frame, Image};
 use toyproof_translate::FloatMode;
@@ -315,12 +315,34 @@ impl Runner<'_> {
 
 /// Reads a converted shader, as `ShaderToy` would run it, with our own front end.
 pub(super) fn read_shadertoy(text: &str, stage: Stage, timeout: Duration) -> Result<Checked, ProofError> {
+    let options = glsl::Options {
+        stage,
+        ..glsl::Options::default()
+    };
+    read(text, options, timeout)
+}
+
+/// Reads a shader that was written for another host, with the original's textures and values of uniforms.
+pub(super) fn read_glsl(
+    text: &str,
+    original: &Checked,
+    dialect: Dialect,
+    timeout: Duration,
+) -> Result<Checked, ProofError> {
+    let options = glsl::Options {
+        dialect: Some(dialect),
+        lenient: false,
+        ..original.options()
+    };
+    read(text, options, timeout)
+}
+
+fn read(text: &str, options: glsl::Options, timeout: Duration) -> Result<Checked, ProofError> {
     let mut files = Files::default();
     let file = files.add(File::new("written", text));
     let options = glsl::Options {
-        stage,
         deadline: Deadline::after(timeout),
-        ..glsl::Options::default()
+        ..options
     };
     glsl::check(&files, file, &options).map_err(|errors| {
         if let Err(overdue) = options.deadline.check() {

@@ -20,7 +20,7 @@ use toyproof_verify::Failure;
 
 use super::passes::PassComparison;
 use super::proof::{
-    Proof, ProofReference, Rgb8Comparison, Runner, compare_with_original, frames, read_shadertoy,
+    Proof, ProofReference, Rgb8Comparison, Runner, compare_with_original, frames, read_glsl, read_shadertoy,
 };
 use super::tool::{self, ToolError};
 use super::{Source, TargetCode};
@@ -266,6 +266,12 @@ impl Prover<'_> {
                     ShaderArtifact::Wgsl(style.hosted_in(text, checked.stage)),
                 )]);
             }
+            TargetCode::Glsl(text, dialect) => {
+                let again = read_glsl(text, checked, *dialect, self.timeout)?;
+                let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
+                let lowered = lowered.map_err(ProofError::Overdue)?;
+                return Ok(vec![(Reader::FrontEnd, ShaderArtifact::Lowered(lowered))]);
+            }
             TargetCode::Naga { target, bytes, .. } => (*target, bytes),
         };
         let channels = checked.channels.map(|shape| match shape {
@@ -343,6 +349,15 @@ pub(super) fn validate(written: &TargetCode) -> Result<Option<String>, ToolError
     match written {
         TargetCode::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
         TargetCode::Naga { target, bytes, .. } => tool::validate(*target, bytes),
+        TargetCode::Glsl(text, dialect) => {
+            let text = match dialect {
+                _ if dialect.calls_main_image() => browser::as_shadertoy(text),
+                // Without a version, a host with WebGL compiles GLSL ES 1.00.
+                _ if text.starts_with("#version") => text.clone(),
+                _ => format!("#version 100\n{text}"),
+            };
+            tool::validate(Target::Glsl, text.as_bytes())
+        }
         // Only their hosts complete them.
         TargetCode::Wgsl(..) | TargetCode::Lowered(_) => Ok(None),
     }
@@ -414,7 +429,12 @@ pub(super) fn in_browser(
             let images = browser.render(Text::Glsl(&text), sampling, frames);
             (original, images.map_err(ProofError::Browser)?)
         }
-        TargetCode::Naga { .. } | TargetCode::Lowered(_) => return Ok(None),
+        TargetCode::Glsl(text, dialect) if dialect.calls_main_image() => {
+            let original = render_original(browser)?;
+            let images = browser.render(Text::Glsl(&browser::as_shadertoy(text)), sampling, frames);
+            (original, images.map_err(ProofError::Browser)?)
+        }
+        TargetCode::Naga { .. } | TargetCode::Lowered(_) | TargetCode::Glsl(..) => return Ok(None),
     };
     let shown = Rgb8Comparison::new(&original, &converted, undefined);
     if shown.differing > 0 {

@@ -61,7 +61,9 @@
 //! - `check`: scopes, types, rules and built-in functions; called by the parser for each construct.
 //! - `constant`: the values of constant expressions.
 //! - [`tree`]: the typed tree in arenas, and its visitors ([`tree::walk`]).
-//! - `single_edit`: one edit after which an invalid shader compiles.
+//! - `single_edit`: one edit after which an invalid shader compiles; `source`: the tokens of a text as it is
+//!   written.
+//! - `port`: the text of a shader for another host.
 //! - `dialect`: the hosts of shaders with their inputs, and the versions of the language.
 //! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
@@ -73,27 +75,30 @@ mod dialect;
 mod foreign;
 mod keywords;
 mod parse;
+mod port;
 mod preprocess;
 mod reporting;
 mod sampling;
 mod single_edit;
+mod source;
 mod stage;
 mod token;
 pub mod tree;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 pub use dialect::{Dialect, Version};
+pub use port::{PortError, Refusal, port};
 pub use preprocess::{ControlComment, Expansions, ReadInclude};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
 pub use stage::{ADDED_MAIN, Stage};
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
-use tree::{FunctionId, SamplerShape, Tree};
+use tree::{FunctionId, SamplerShape, Tree, VariableId};
 
 use self::check::{Channels, Checker};
-use self::dialect::Wrapping;
+use self::dialect::{Bound, Wrapping};
 use self::parse::Parser;
 use self::preprocess::PreprocessorOutput;
 
@@ -186,6 +191,10 @@ pub struct Checked {
     /// Names in branches of `#if` that are not compiled, and in the replacements of macros: with other
     /// macros, or a use of them, the shader may use what these names declare.
     pub unexpanded_names: HashSet<String>,
+    /// The uniforms and varyings that have a value.
+    pub(crate) bound: HashMap<VariableId, Bound>,
+    /// The variable that holds the color, if the host runs `main`.
+    pub(crate) output: Option<VariableId>,
 }
 
 impl Checked {
@@ -280,6 +289,8 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         control_comments: text.control_comments,
         expansions: text.expansions,
         unexpanded_names: text.unexpanded_names,
+        bound: text.bound,
+        output: text.output,
     })
 }
 
@@ -312,6 +323,8 @@ struct Text {
     control_comments: Vec<ControlComment>,
     expansions: Expansions,
     unexpanded_names: HashSet<String>,
+    bound: HashMap<VariableId, Bound>,
+    output: Option<VariableId>,
 }
 
 /// Preprocesses a text in its dialect, which is recognized if the options do not give it: only a shader of
@@ -384,6 +397,8 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
         if (entry.is_some() || options.stage.entry().is_none()) && !all.iter().any(is_error) {
             let names = text.unexpanded_names.iter();
             return Ok(Text {
+                bound: checker.bound,
+                output: checker.output,
                 tree: checker.tree,
                 entry,
                 wrapping,

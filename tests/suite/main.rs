@@ -60,6 +60,7 @@ mod nesting;
 mod page;
 mod passes;
 mod planted_faults;
+mod ported;
 mod povray;
 mod program;
 mod projects;

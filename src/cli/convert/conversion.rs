@@ -9,7 +9,7 @@ use toyproof_convert::{
     ProjectSource, ProofError, Prover, Runner, Source, TargetCode, WgslError,
 };
 use toyproof_diagnostic::{Deadline, Diagnostic};
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::{self as glsl, Checked, PortError};
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
 use toyproof_project::files::{Input, ReadError};
@@ -237,6 +237,10 @@ fn refusal(error: ConvertError) -> Refusal {
         ConvertError::Overdue(overdue) => {
             Refusal::Diagnostics(vec![glsl::overdue(overdue)], Exit::ShaderFault)
         }
+        ConvertError::Port(PortError::Host(diagnostic)) => {
+            Refusal::Diagnostics(vec![*diagnostic], Exit::Error)
+        }
+        ConvertError::Port(error) => Refusal::Message(error.to_string(), Exit::Error),
         ConvertError::Unwritable(WgslError::Unprintable {
             why: Unprintable::Host(diagnostic),
             ..

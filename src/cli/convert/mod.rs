@@ -37,6 +37,8 @@ Examples:
   toyproof convert mine.glsl -o mine.wgsl --verify
   toyproof convert shaders -o converted --to spv
   toyproof convert waves -o converted --verify
+  toyproof convert mine.glsl -o mine.frag --style book-of-shaders
+  toyproof convert waves.frag -o waves.glsl --style shadertoy
 
 Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of {} bytes \
 (std140), with these inputs at these bytes: {} (elements of arrays have 16 bytes each). The texture of channel K is at \
@@ -65,7 +67,7 @@ pub(super) struct Args {
     /// The target language [default: by the extension of the output, else wgsl]
     #[arg(long, value_enum, value_name = "LANGUAGE")]
     to: Option<To>,
-    /// The host of the WGSL, which determines its entry point, bindings and direction of y
+    /// The host of WGSL or GLSL, which determines the entry point and the inputs
     #[arg(long, value_enum, default_value_t = StyleName::Plain)]
     style: StyleName,
     /// Run the result and compare it with the shader; write it only if all pixels are equal, bit for bit
@@ -123,7 +125,8 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         to,
         converter: Converter {
             target: to.target(),
-            style: args.style.into(),
+            style: args.style.wgsl().unwrap_or_default(),
+            dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),
         },

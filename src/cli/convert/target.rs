@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use toyproof_diagnostic::path_name;
+use toyproof_glsl::Dialect;
+use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
 
@@ -37,16 +39,35 @@ pub(super) enum StyleName {
     ComputeToys,
     /// A fragment shader for a Material2d of Bevy
     Bevy,
+    /// GLSL for ShaderToy
+    Shadertoy,
+    /// GLSL for the terminal Ghostty
+    Ghostty,
+    /// GLSL for The Book of Shaders and glslViewer
+    BookOfShaders,
+    /// GLSL for GLSL Sandbox
+    GlslSandbox,
+    /// GLSL for a RawShaderMaterial of three.js, or for p5.js
+    Three,
+    /// GLSL for a page with WebGL that sets ShaderToy's inputs as uniforms
+    Webgl,
 }
 
-impl From<StyleName> for Style {
-    fn from(name: StyleName) -> Self {
-        match name {
-            StyleName::Plain => Self::Plain,
-            StyleName::WgpuShadertoy => Self::WgpuShadertoy,
-            StyleName::ComputeToys => Self::ComputeToys,
-            StyleName::Bevy => Self::Bevy,
+impl StyleName {
+    /// The host of WGSL.
+    pub(super) fn wgsl(self) -> Option<Style> {
+        match self {
+            Self::Plain => Some(Style::Plain),
+            Self::WgpuShadertoy => Some(Style::WgpuShadertoy),
+            Self::ComputeToys => Some(Style::ComputeToys),
+            Self::Bevy => Some(Style::Bevy),
+            _ => None,
         }
+    }
+
+    /// The host of GLSL.
+    pub(super) fn dialect(self) -> Option<Dialect> {
+        Dialect::named(self.to_possible_value()?.get_name())
     }
 }
 
@@ -113,15 +134,21 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
     let of_extension = (!is_standard_output && !output.is_dir())
         .then(|| To::from_extension(output))
         .flatten();
-    let to = match (args.to, of_extension) {
+    let of_style = args.style.dialect().map(|_| To::Glsl);
+    let to = match (args.to.or(of_style), of_extension) {
         (Some(to), Some(other)) if !other.may_contain(to) => {
             let error = CliError::new(format_args!(
-                "the extension of {} means {}, but --to is {}",
+                "the extension of {} means {}, but {} {}",
                 path_name(output),
                 other.name(),
+                if args.to.is_some() {
+                    "--to is"
+                } else {
+                    "the --style is of"
+                },
                 to.name()
             ));
-            return Err(error.with_help("leave out --to, or give the output another extension"));
+            return Err(error.with_help("leave it out, or give the output another extension"));
         }
         (to, of) => to.or(of),
     };
@@ -147,8 +174,18 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
 
 /// Checks that the options apply to the target language.
 pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
-    if args.style != StyleName::Plain && to != To::Wgsl {
-        return Err("--style applies to WGSL only");
+    let dialect = args.style.dialect();
+    if dialect.is_none() && args.style != StyleName::Plain && to != To::Wgsl {
+        return Err("this --style applies to WGSL only");
+    }
+    if dialect.is_some() && to != To::Glsl {
+        return Err("this --style applies to GLSL only");
+    }
+    if dialect.is_some() && args.driver.explicit_float() == Some(FloatMode::Strict) {
+        return Err("this --style keeps the author's operations: leave out --float strict");
+    }
+    if args.browser && dialect.is_some_and(|dialect| !dialect.calls_main_image()) {
+        return Err("--browser renders ShaderToy's inputs only: leave it out for this --style");
     }
     if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
         return Err("--browser applies to WGSL and GLSL, the languages that browsers run");

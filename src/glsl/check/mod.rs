@@ -52,11 +52,11 @@ pub(crate) struct Checker<'a> {
     stage: Stage,
     calls_added_main: bool,
     /// The uniforms and varyings that have a value.
-    bound: HashMap<VariableId, Bound>,
+    pub(crate) bound: HashMap<VariableId, Bound>,
     /// The values of uniforms that the caller gives.
     uniforms: &'a [UniformValue],
     /// The variable that holds the color, if the host runs `main`.
-    output: Option<VariableId>,
+    pub(crate) output: Option<VariableId>,
     pub(crate) tree: Tree,
     scopes: Scopes,
     channels: Channels,

@@ -34,8 +34,12 @@ struct Host {
     calls_main_image: bool,
     /// The version of a shader that does not state one.
     version: Version,
+    /// The versions in which shaders are written for it, the preferred one first; none if they are not.
+    written: &'static [Version],
     /// Whether its inputs exist without a declaration.
     is_implicit: bool,
+    /// Whether the author's own page or program sets the inputs, and so any of ShaderToy's.
+    sets_any: bool,
     /// The inputs beyond ShaderToy's: a name, and its values, one for each type that it may be declared with.
     inputs: &'static [(&'static str, &'static [InputValue])],
 }
@@ -148,6 +152,10 @@ const VARYINGS: &[(&str, &[InputValue])] = &[
     ("fragTexCoord", QUAD),
 ];
 
+const ES_100: &[Version] = &[Version::Es100];
+const ES_300: &[Version] = &[Version::Es300];
+const ES_100_OR_300: &[Version] = &[Version::Es100, Version::Es300];
+
 const BLACK: InputValue = Constant(&[0.0, 0.0, 0.0]);
 const WHITE: InputValue = Constant(&[1.0, 1.0, 1.0]);
 /// A cursor in the middle of a terminal of 640×360 pixels: x, y of its upper left corner, width, height.
@@ -160,7 +168,9 @@ const HOSTS: &[Host] = &[
         title: "ShaderToy",
         calls_main_image: true,
         version: Version::Es300,
+        written: ES_300,
         is_implicit: true,
+        sets_any: false,
         inputs: &[],
     },
     Host {
@@ -169,7 +179,9 @@ const HOSTS: &[Host] = &[
         title: "Ghostty",
         calls_main_image: true,
         version: Version::Es300,
+        written: ES_300,
         is_implicit: true,
+        sets_any: false,
         inputs: &[
             ("iCurrentCursor", &[CURSOR]),
             ("iPreviousCursor", &[CURSOR]),
@@ -191,7 +203,9 @@ const HOSTS: &[Host] = &[
         title: "The Book of Shaders",
         calls_main_image: false,
         version: Version::Es100,
+        written: ES_100_OR_300,
         is_implicit: false,
+        sets_any: false,
         inputs: &[
             ("u_resolution", RESOLUTION),
             ("u_time", TIME),
@@ -215,7 +229,9 @@ const HOSTS: &[Host] = &[
         title: "GLSL Sandbox",
         calls_main_image: false,
         version: Version::Es100,
+        written: ES_100,
         is_implicit: false,
+        sets_any: false,
         inputs: &[
             ("time", TIME),
             ("resolution", RESOLUTION),
@@ -230,7 +246,9 @@ const HOSTS: &[Host] = &[
         title: "three.js and p5.js",
         calls_main_image: false,
         version: Version::Es100,
+        written: ES_100_OR_300,
         is_implicit: false,
+        sets_any: true,
         inputs: &[
             ("uTime", TIME),
             ("uDeltaTime", DELTA),
@@ -248,7 +266,9 @@ const HOSTS: &[Host] = &[
         calls_main_image: false,
         // As programs compile it on the desktop.
         version: Version::Desktop(150),
+        written: &[],
         is_implicit: false,
+        sets_any: false,
         inputs: &[
             ("TIME", TIME),
             ("TIMEDELTA", DELTA),
@@ -265,7 +285,9 @@ const HOSTS: &[Host] = &[
         title: "WebGL",
         calls_main_image: false,
         version: Version::Es100,
+        written: ES_100_OR_300,
         is_implicit: false,
+        sets_any: true,
         inputs: &[],
     },
 ];
@@ -314,6 +336,26 @@ impl Dialect {
     /// Whether ShaderToy's inputs, and those of the host, exist without a declaration.
     pub(crate) fn is_implicit(self) -> bool {
         self.host().is_implicit
+    }
+
+    /// The versions in which shaders are written for the host, the preferred one first; none if they are not.
+    pub(crate) fn written_versions(self) -> &'static [Version] {
+        self.host().written
+    }
+
+    /// Whether the author's own page or program sets the inputs, and so any of ShaderToy's.
+    pub(crate) fn sets_any(self) -> bool {
+        self.host().sets_any
+    }
+
+    /// The first input that the host sets to a value with this property: its name, and the value.
+    pub(crate) fn sets(self, is_wanted: impl Fn(InputValue) -> bool) -> Option<(&'static str, InputValue)> {
+        let host = self.host();
+        let shadertoys = SHADERTOY.iter().filter(|_| host.is_implicit || host.sets_any);
+        // The first value of each is the one that the host sets; it converts it to the others.
+        let mut all = host.inputs.iter().chain(shadertoys);
+        all.find(|(_, values)| is_wanted(values[0]))
+            .map(|&(name, values)| (name, values[0]))
     }
 
     /// The values of an input that the host sets; `None` if it has no such input.

@@ -3,8 +3,8 @@
 use toyproof_diagnostic::Span;
 
 use super::candidates::Candidates;
-use super::source::Source;
 use crate::keywords::Keyword;
+use crate::source::Source;
 use crate::token::Punctuator;
 
 /// Cost of a brace that the indentation does not suggest.

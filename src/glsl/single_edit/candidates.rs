@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, Edit, Fix, Severity, Span};
 
-use super::source::Source;
+use crate::source::Source;
 
 /// Number of errors, from the first one, around which edits are tried.
 const MAX_ERRORS: usize = 4;

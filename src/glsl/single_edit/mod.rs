@@ -9,7 +9,6 @@ mod braces;
 mod candidates;
 mod names;
 mod punctuation;
-mod source;
 mod types;
 
 use std::time::Duration;
@@ -17,9 +16,8 @@ use std::time::Duration;
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, File, FileId, Files, Fix, Severity};
 
 use self::candidates::{Candidates, edited};
-use self::source::Source;
-use crate::preprocess;
-use crate::{Options, check};
+use crate::source::Source;
+use crate::{Options, check, preprocess};
 
 /// Maximum number of candidates that are verified.
 const MAX_CHECKS: usize = 300;

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, Edit, Span, similar};
 
 use super::candidates::Candidates;
-use super::source::Source;
 use crate::foreign::Foreign;
 use crate::keywords::{Keyword, Word};
 use crate::preprocess::DIRECTIVES;
+use crate::source::Source;
 use crate::token::{Punctuator, Symbol};
 use crate::tree::BuiltIn;
 

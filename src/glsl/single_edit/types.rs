@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use toyproof_diagnostic::{Code, Diagnostics, Span};
 
 use super::candidates::Candidates;
-use super::source::Source;
 use crate::keywords::{Keyword, Word};
+use crate::source::Source;
 use crate::token::{Punctuator, Symbol};
 
 /// Cost of a change of types where only the grammar is reported.

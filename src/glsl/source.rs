@@ -23,16 +23,16 @@ struct Line {
 }
 
 /// A source text as tokens. An index past the last token is valid and has no token.
-pub(super) struct Source<'a> {
-    pub(super) text: &'a str,
-    pub(super) file: FileId,
-    pub(super) interner: Interner,
+pub(crate) struct Source<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) file: FileId,
+    pub(crate) interner: Interner,
     tokens: Vec<Token>,
     lines: Vec<Line>,
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(files: &'a Files, file: FileId) -> Self {
+    pub(crate) fn new(files: &'a Files, file: FileId) -> Self {
         let layout = Layout::new(files.get(file));
         let (written, interner) = source_tokens(files, file);
         let (mut tokens, mut lines) = (Vec::with_capacity(written.len()), Vec::new());
@@ -63,28 +63,28 @@ impl<'a> Source<'a> {
     }
 
     /// The number of tokens.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.tokens.len()
     }
 
     /// The index of the first token that ends after a byte.
-    pub(super) fn index_at(&self, byte: u32) -> usize {
+    pub(crate) fn index_at(&self, byte: u32) -> usize {
         self.tokens.partition_point(|token| token.at.span.end <= byte)
     }
 
     /// The span of a token; past the last one, the end of the text.
-    pub(super) fn span(&self, index: usize) -> Span {
+    pub(crate) fn span(&self, index: usize) -> Span {
         let end = self.text.len() as u32;
         let end = Span::new(self.file, end, end);
         self.tokens.get(index).map_or(end, |token| token.at.span)
     }
 
-    pub(super) fn token_text(&self, index: usize) -> &'a str {
+    pub(crate) fn token_text(&self, index: usize) -> &'a str {
         self.slice(self.span(index))
     }
 
     /// The text of a span.
-    pub(super) fn slice(&self, span: Span) -> &'a str {
+    pub(crate) fn slice(&self, span: Span) -> &'a str {
         self.text
             .get(span.start as usize..span.end as usize)
             .unwrap_or_default()
@@ -94,69 +94,69 @@ impl<'a> Source<'a> {
         self.tokens.get(index).map_or(TokenKind::End, |token| token.kind)
     }
 
-    pub(super) fn punctuator(&self, index: usize) -> Option<Punctuator> {
+    pub(crate) fn punctuator(&self, index: usize) -> Option<Punctuator> {
         match self.kind(index) {
             TokenKind::Punctuator(punctuator) => Some(punctuator),
             _ => None,
         }
     }
 
-    pub(super) fn is(&self, index: usize, punctuator: Punctuator) -> bool {
+    pub(crate) fn is(&self, index: usize, punctuator: Punctuator) -> bool {
         self.punctuator(index) == Some(punctuator)
     }
 
-    pub(super) fn symbol(&self, index: usize) -> Option<Symbol> {
+    pub(crate) fn symbol(&self, index: usize) -> Option<Symbol> {
         match self.kind(index) {
             TokenKind::Word(symbol) => Some(symbol),
             _ => None,
         }
     }
 
-    pub(super) fn word(&self, index: usize) -> Option<Word> {
+    pub(crate) fn word(&self, index: usize) -> Option<Word> {
         self.symbol(index).map(|symbol| self.interner.word(symbol))
     }
 
-    pub(super) fn keyword(&self, index: usize) -> Option<Keyword> {
+    pub(crate) fn keyword(&self, index: usize) -> Option<Keyword> {
         match self.word(index) {
             Some(Word::Keyword(keyword)) => Some(keyword),
             _ => None,
         }
     }
 
-    pub(super) fn is_name(&self, index: usize) -> bool {
+    pub(crate) fn is_name(&self, index: usize) -> bool {
         self.word(index) == Some(Word::Name)
     }
 
-    pub(super) fn is_type(&self, index: usize) -> bool {
+    pub(crate) fn is_type(&self, index: usize) -> bool {
         matches!(self.word(index), Some(Word::Type(_)))
     }
 
-    pub(super) fn is_number(&self, index: usize) -> bool {
+    pub(crate) fn is_number(&self, index: usize) -> bool {
         matches!(self.kind(index), TokenKind::Number(_))
     }
 
-    pub(super) fn is_in_directive(&self, index: usize) -> bool {
+    pub(crate) fn is_in_directive(&self, index: usize) -> bool {
         self.lines.get(index).is_some_and(|line| line.is_directive)
     }
 
     /// The number of a token's line, from 0.
-    pub(super) fn line(&self, index: usize) -> usize {
+    pub(crate) fn line(&self, index: usize) -> usize {
         let last = self.lines.last().map_or(0, |line| line.number + 1);
         self.lines.get(index).map_or(last, |line| line.number)
     }
 
     /// The indentation of a token's line in columns.
-    pub(super) fn indent(&self, index: usize) -> usize {
+    pub(crate) fn indent(&self, index: usize) -> usize {
         self.lines.get(index).map_or(0, |line| line.indent)
     }
 
     /// Whether the token is the first of its line.
-    pub(super) fn begins_line(&self, index: usize) -> bool {
+    pub(crate) fn begins_line(&self, index: usize) -> bool {
         index == 0 || self.line(index) != self.line(index - 1)
     }
 
     /// Whether an expression may end with the token.
-    pub(super) fn ends_operand(&self, index: usize) -> bool {
+    pub(crate) fn ends_operand(&self, index: usize) -> bool {
         match self.kind(index) {
             TokenKind::Number(_) => true,
             TokenKind::Word(_) => matches!(
@@ -175,7 +175,7 @@ impl<'a> Source<'a> {
     }
 
     /// Whether an expression may begin with the token.
-    pub(super) fn begins_operand(&self, index: usize) -> bool {
+    pub(crate) fn begins_operand(&self, index: usize) -> bool {
         match self.kind(index) {
             TokenKind::Number(_) => true,
             TokenKind::Word(_) => matches!(
@@ -197,7 +197,7 @@ impl<'a> Source<'a> {
     }
 
     /// Whether a statement or a block ends before the token.
-    pub(super) fn follows_statement(&self, index: usize) -> bool {
+    pub(crate) fn follows_statement(&self, index: usize) -> bool {
         let Some(before) = index.checked_sub(1) else {
             return true;
         };
@@ -209,7 +209,7 @@ impl<'a> Source<'a> {
     }
 
     /// The index after the operand that begins with the word at `index`: with arguments, indices and members.
-    pub(super) fn operand_end(&self, index: usize) -> usize {
+    pub(crate) fn operand_end(&self, index: usize) -> usize {
         let mut end = index + 1;
         loop {
             if matches!(
@@ -229,7 +229,7 @@ impl<'a> Source<'a> {
     }
 
     /// The index of the bracket that closes the one at `open`, if it is near.
-    pub(super) fn partner(&self, open: usize) -> Option<usize> {
+    pub(crate) fn partner(&self, open: usize) -> Option<usize> {
         let mut depth = 0_usize;
         for index in (open..self.len()).take(MAX_SEARCHED_TOKENS) {
             match self.punctuator(index) {
@@ -254,7 +254,7 @@ impl<'a> Source<'a> {
     }
 
     /// The end of the text before a byte, as a message quotes it: the last token, or a short call.
-    pub(super) fn quoted_end(&self, byte: u32) -> &'a str {
+    pub(crate) fn quoted_end(&self, byte: u32) -> &'a str {
         let index = self.index_at(byte);
         let span = self.span(index);
         if span.start < byte {
