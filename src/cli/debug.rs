@@ -76,18 +76,19 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         Some(path) => Some(read_assignment(&path)?.1),
         None => None,
     };
-    let uniforms = assignment.as_ref().map(|assignment| &assignment.uniforms[..]);
-    let language = args.language.with_uniforms(uniforms.unwrap_or_default());
-    let reference = match &assignment {
-        Some(assignment) => ReferenceArgs::of(assignment),
-        None => args.reference.clone(),
-    };
-    let given = GivenReference::read(&reference, &language, args.timeout)?;
     let frames = assignment.as_ref().filter(|_| !args.frame.is_given());
     let inputs = match frames {
         Some(assignment) => resized(&assignment.frames, args.frame.size).swap_remove(0),
         None => args.frame.inputs(),
     };
+    let uniforms = assignment.as_ref().map(|assignment| &assignment.uniforms[..]);
+    let language = args.language.with_uniforms(&inputs.uniforms);
+    let language = language.with_uniforms(uniforms.unwrap_or_default());
+    let reference = match &assignment {
+        Some(assignment) => ReferenceArgs::of(assignment),
+        None => args.reference.clone(),
+    };
+    let given = GivenReference::read(&reference, &language, args.timeout)?;
     let (frame, scene) = frame_and_scene(args, &inputs, &reference, &input, given.as_ref())?;
     let shader = Shader::load(&input, &language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);

@@ -147,6 +147,7 @@ impl FrameArgs {
             channels: self
                 .channels()
                 .map(|channel| channel.as_deref().map(Channel::named)),
+            uniforms: Vec::new(),
         }
     }
 }
@@ -205,6 +206,8 @@ pub(super) fn frame_flags(inputs: &FrameInputs) -> Vec<String> {
             flags.push(format!("--channel{index} {}", shell_word(&name)));
         }
     }
+    let uniforms = inputs.uniforms.iter().map(|value| format!("--uniform {value}"));
+    flags.extend(uniforms);
     flags
 }
 
@@ -378,10 +381,7 @@ impl LanguageArgs {
             Some(DialectChoice::Given(dialect)) => Some(format!("--dialect {}", dialect.name())),
             Some(DialectChoice::Recognized) | None => None,
         };
-        let uniforms = self.uniform.iter().map(|UniformValue { name, components }| {
-            let components: Vec<String> = components.iter().map(f64::to_string).collect();
-            format!("--uniform {name}={}", components.join(","))
-        });
+        let uniforms = self.uniform.iter().map(|value| format!("--uniform {value}"));
         let folders = self.include_dir.iter();
         let folders = folders.map(|folder| format!("--include-dir {}", shell_word(&path_name(folder))));
         let flags = lenient.into_iter().chain(dialect).chain(uniforms);

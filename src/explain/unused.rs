@@ -10,7 +10,7 @@ use toyproof_verify::random::reachable_expressions;
 /// The inputs and functions that a reference uses and a shader does not.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Unused {
-    /// The names of the inputs that only the reference reads, such as `iMouse`.
+    /// The names of the inputs and uniforms that only the reference reads, such as `iMouse`.
     pub inputs: Vec<String>,
     /// The names of functions that the shader defines and never calls, each with the first call of a function
     /// of this name in the reference.
@@ -24,6 +24,12 @@ impl Unused {
         let (own, expected) = (Uses::new(shader), Uses::new(reference));
         let missing = expected.inputs.difference(&own.inputs);
         let mut inputs: Vec<String> = missing.map(|kind| name(*kind, shader)).collect();
+        inputs.extend(
+            expected
+                .values
+                .difference(&own.values)
+                .map(|&name| name.to_owned()),
+        );
         inputs.sort_unstable();
         let is_uncalled = |name: &str| own.defined.contains(name) && !own.calls.contains_key(name);
         let calls = expected.calls.into_iter().filter(|(name, _)| is_uncalled(name));
@@ -51,8 +57,10 @@ fn name(kind: VariableKind, shader: &[&Checked]) -> String {
 
 /// The inputs and functions that the passes of a shader use.
 #[derive(Default)]
-struct Uses {
+struct Uses<'a> {
     inputs: HashSet<VariableKind>,
+    /// The uniforms of the author, whose values are constants.
+    values: BTreeSet<&'a str>,
     /// Called functions, each with its first call.
     calls: BTreeMap<String, Call>,
     /// Functions with a body.
@@ -74,11 +82,13 @@ impl Call {
     }
 }
 
-impl Uses {
-    fn new(passes: &[&Checked]) -> Self {
+impl<'a> Uses<'a> {
+    fn new(passes: &[&'a Checked]) -> Self {
         let mut uses = Self::default();
         for (pass, checked) in passes.iter().enumerate() {
             let tree = &checked.tree;
+            let values = checked.values_read.iter();
+            uses.values.extend(values.map(|&variable| &*tree[variable].name));
             for expr in reachable_expressions(tree, checked.main_image) {
                 match tree[expr].kind {
                     ExprKind::Variable(variable) if tree[variable].kind.is_input() => {

@@ -95,6 +95,7 @@ pub use sampling::{Filter, Sampling, Wrap};
 pub use single_edit::{single_edit, with_single_edit};
 pub use stage::{ADDED_MAIN, Stage};
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
+pub use toyproof_image::UniformValue;
 use tree::{FunctionId, SamplerShape, Tree, VariableId};
 
 use self::check::{Channels, Checker};
@@ -140,26 +141,6 @@ impl Options {
     }
 }
 
-/// The value of a uniform.
-#[derive(Debug, Clone, PartialEq)]
-pub struct UniformValue {
-    /// The name of the uniform.
-    pub name: String,
-    /// Its components, matrices in column order; 1 and 0 for `true` and `false`.
-    pub components: Vec<f64>,
-}
-
-impl UniformValue {
-    /// Adds the values of the uniforms that have none yet.
-    pub fn add_missing(all: &mut Vec<Self>, values: &[Self]) {
-        for value in values {
-            if all.iter().all(|given| given.name != value.name) {
-                all.push(value.clone());
-            }
-        }
-    }
-}
-
 /// A shader without errors.
 #[derive(Debug, Clone)]
 pub struct Checked {
@@ -191,6 +172,8 @@ pub struct Checked {
     /// Names in branches of `#if` that are not compiled, and in the replacements of macros: with other
     /// macros, or a use of them, the shader may use what these names declare.
     pub unexpanded_names: HashSet<String>,
+    /// The uniforms with values that an expression reads.
+    pub values_read: HashSet<VariableId>,
     /// The uniforms and varyings that have a value.
     pub(crate) bound: HashMap<VariableId, Bound>,
     /// The variable that holds the color, if the host runs `main`.
@@ -289,6 +272,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         control_comments: text.control_comments,
         expansions: text.expansions,
         unexpanded_names: text.unexpanded_names,
+        values_read: text.values_read,
         bound: text.bound,
         output: text.output,
     })
@@ -323,6 +307,7 @@ struct Text {
     control_comments: Vec<ControlComment>,
     expansions: Expansions,
     unexpanded_names: HashSet<String>,
+    values_read: HashSet<VariableId>,
     bound: HashMap<VariableId, Bound>,
     output: Option<VariableId>,
 }
@@ -397,6 +382,7 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
         if (entry.is_some() || options.stage.entry().is_none()) && !all.iter().any(is_error) {
             let names = text.unexpanded_names.iter();
             return Ok(Text {
+                values_read: checker.values_read,
                 bound: checker.bound,
                 output: checker.output,
                 tree: checker.tree,

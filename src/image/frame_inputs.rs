@@ -1,7 +1,10 @@
 //! The inputs of a frame as a user describes them: the files of its channels are not read yet.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
 
 use crate::{Frame, IDLE_MOUSE, Image, ImageError, Script, Texture, noise, read};
 
@@ -22,6 +25,36 @@ pub struct FrameInputs {
     pub script: Option<Arc<Script>>,
     /// The textures of `iChannel0` to `iChannel3`; `None` for black.
     pub channels: [Option<Channel>; 4],
+    /// The values of uniforms that the author declares, in this frame.
+    pub uniforms: Vec<UniformValue>,
+}
+
+/// The value of a uniform.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UniformValue {
+    /// The name of the uniform.
+    pub name: String,
+    /// Its components, matrices in column order; 1 and 0 for `true` and `false`.
+    pub components: Vec<f64>,
+}
+
+impl UniformValue {
+    /// Adds the values of the uniforms that have none yet.
+    pub fn add_missing(all: &mut Vec<Self>, values: &[Self]) {
+        for value in values {
+            if all.iter().all(|given| given.name != value.name) {
+                all.push(value.clone());
+            }
+        }
+    }
+}
+
+impl fmt::Display for UniformValue {
+    /// As `--uniform` takes it: `color=1,0.5,0`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let components: Vec<String> = self.components.iter().map(f64::to_string).collect();
+        write!(f, "{}={}", self.name, components.join(","))
+    }
 }
 
 impl Default for FrameInputs {
@@ -34,6 +67,7 @@ impl Default for FrameInputs {
             date: [0.0; 4],
             script: None,
             channels: [const { None }; 4],
+            uniforms: Vec::new(),
         }
     }
 }

@@ -37,7 +37,7 @@ mod texture;
 
 pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown, write_png};
 pub use frame::{FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
-pub use frame_inputs::{Channel, FrameInputs};
+pub use frame_inputs::{Channel, FrameInputs, UniformValue};
 pub use inputs::{BLOCK_BYTES, Input, InputType};
 pub use keys::{KeySet, Keys};
 pub use noise::{Noise, noise};

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{all_of, grouped, path_name, plural};
-use toyproof_image::{Channel, FrameInputs};
+use toyproof_image::{Channel, FrameInputs, UniformValue};
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison};
 
@@ -28,6 +28,9 @@ pub struct FrameRecord {
     pub date: [f32; 4],
     /// The image files of the channels, or `noise`; null for black.
     pub channels: [Option<String>; 4],
+    /// The values of uniforms in this frame.
+    #[serde(default)]
+    pub uniforms: Vec<UniformValue>,
     /// The verdict in this frame.
     pub verdict: Verdict,
     /// Why, in one short sentence.
@@ -65,6 +68,7 @@ impl FrameRecord {
                 .channels
                 .each_ref()
                 .map(|channel| channel.as_ref().map(name)),
+            uniforms: inputs.uniforms.clone(),
             verdict: record.verdict,
             reason: record.reason.clone(),
             algorithm: record.algorithm.clone(),
@@ -103,6 +107,9 @@ impl FrameRecord {
             if let Some(channel) = channel {
                 let _ = write!(label, ", channel {index} {channel}");
             }
+        }
+        for value in &self.uniforms {
+            let _ = write!(label, ", {value}");
         }
         label
     }

@@ -340,3 +340,40 @@ void main() {
     let run = toyproof(folder.path(), &arguments);
     assert!(run.code < 2 && run.stdout.contains("hitSphere"), "{run:?}");
 }
+
+#[test]
+fn an_assignment_checks_several_values_of_a_uniform() {
+    let folder = tempfile::tempdir().unwrap();
+    let assignment = "reference = \"book.frag\"\n\n[uniforms]\nspeed = 2\n\n[[frame]]\nsize = [64, 36]\ntime = 0.3\n\n\
+                      [[frame]]\nsize = [64, 36]\ntime = 0.3\nuniforms = { speed = 5.0 }\n";
+    let ignoring = BOOK.replace("speed * u_time", "2.0 * u_time");
+    let files = [
+        ("task.toml", assignment),
+        ("book.frag", BOOK),
+        ("right.frag", BOOK),
+        ("wrong.frag", &ignoring),
+    ];
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let check = |shader| {
+        let options = ["--assignment", "task.toml", "--device", "cpu", "--format", "json"];
+        record(&toyproof(
+            folder.path(),
+            &[&["check", shader][..], &options].concat(),
+        ))
+    };
+    let right = check("right.frag");
+    assert_eq!(right["verdict"], "correct", "{right}");
+    assert_eq!(right["frames"][1]["uniforms"][0]["name"], "speed");
+    let wrong = check("wrong.frag");
+    assert_eq!(wrong["verdict"], "wrong", "{wrong}");
+    assert_eq!(wrong["frames"][0]["verdict"], "correct", "{wrong}");
+    let reason = wrong["reason"].as_str().unwrap();
+    assert!(reason.starts_with("at 64x36, time 0.3, speed=5: "), "{wrong}");
+    let details = wrong["details"].to_string();
+    assert!(
+        details.contains("the reference reads `speed`, the shader does not"),
+        "{wrong}"
+    );
+}

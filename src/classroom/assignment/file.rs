@@ -231,6 +231,7 @@ fn frame(table: &mut Table, folder: &Path) -> FrameInputs {
         date: date(table),
         script: None,
         channels: ["channel0", "channel1", "channel2", "channel3"].map(|key| channel(table, key, folder)),
+        uniforms: table.table("uniforms", uniforms).unwrap_or_default(),
     }
 }
 

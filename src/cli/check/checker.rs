@@ -103,18 +103,20 @@ impl<'a> Checker<'a> {
         pixels.max().unwrap_or(0)
     }
 
-    /// Reads a shader.
-    pub(super) fn load(&self, submission: &Submission) -> Shader {
+    /// Reads a shader, with the values of uniforms of the planned frame with this index.
+    pub(super) fn load(&self, submission: &Submission, index: usize) -> Shader {
         Shader::load(
             &submission.input,
-            &self.options.language.with_uniforms(&self.plan.uniforms),
+            &self
+                .plan
+                .language(&self.options.language, &self.plan.frames[index].inputs),
             Deadline::after(self.options.driver.timeout()),
         )
     }
 
     /// Collects the expressions of correct shaders.
     pub(super) fn donors<'s>(&self, correct: impl Iterator<Item = &'s Submission>) -> Donors {
-        let shaders: Vec<Shader> = correct.map(|submission| self.load(submission)).collect();
+        let shaders: Vec<Shader> = correct.map(|submission| self.load(submission, 0)).collect();
         Donors::new(shaders.iter().filter_map(Shader::single_pass))
     }
 

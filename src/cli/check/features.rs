@@ -2,16 +2,15 @@
 
 use toyproof_classroom::assignment::Reference;
 use toyproof_diagnostic::path_name;
-use toyproof_image::{Frame, Image};
+use toyproof_image::Image;
 use toyproof_report::FeatureRecord;
 use toyproof_verify::compare::{Pixel, PixelStatus};
 use toyproof_verify::{CheckResult, Expected};
 
 use super::options::CheckOptions;
 use super::plan::{Plan, PlannedFrame};
-use super::reference::References;
-use crate::cli::inputs::LanguageArgs;
-use crate::cli::reference::{GivenReference, ReferenceArgs};
+use super::reference::{References, expected_in};
+use crate::cli::reference::ReferenceArgs;
 use crate::cli::scenes::{parse_scene, read_scene};
 use crate::cli::{CliError, Terminal};
 
@@ -47,8 +46,7 @@ impl Features {
         else {
             return Ok(Self::default());
         };
-        let language = options.language.with_uniforms(&plan.uniforms);
-        let render = |reference: &Reference| images(reference, plan, &language, options, terminal);
+        let render = |reference: &Reference| images(reference, plan, options, terminal);
         let with = match references {
             References::Given(prepared) => prepared.images(plan)?,
             References::Scenes(_) => render(&assignment.reference)?,
@@ -122,36 +120,31 @@ impl Count<'_> {
 fn images(
     reference: &Reference,
     plan: &Plan,
-    language: &LanguageArgs,
     options: &CheckOptions,
     terminal: &Terminal,
 ) -> Result<Vec<Image>, CliError> {
-    let mut frames: Vec<Frame> = plan.frames.iter().map(|planned| planned.frame.clone()).collect();
+    let mut frames = plan.frames.clone();
     let expected = match reference {
         Reference::Scene(path) => {
             let scene = parse_scene(read_scene(path)?)?;
-            let with_size = |(frame, planned): (&mut Frame, &PlannedFrame)| {
+            let with_size = |PlannedFrame { inputs, frame }: &mut PlannedFrame| {
                 let mut scene = scene.clone();
-                frame.size = planned.inputs.size.unwrap_or(scene.film.size);
+                frame.size = inputs.size.unwrap_or(scene.film.size);
                 scene.film.size = frame.size;
                 Expected::from_scene(scene, frame)
             };
-            frames.iter_mut().zip(&plan.frames).map(with_size).collect()
+            frames.iter_mut().map(with_size).collect()
         }
         Reference::Given { path, .. } => {
-            let timeout = options.driver.timeout();
-            let given = GivenReference::read(&ReferenceArgs::given(path.clone()), language, timeout)?;
-            let given = given.expect("a path is given");
-            for (frame, planned) in frames.iter_mut().zip(&plan.frames) {
-                given.resize(frame, planned.inputs.size)?;
-            }
-            given.expected(frames.iter(), timeout, terminal)?
+            let args = ReferenceArgs::given(path.clone());
+            let rendered = expected_in(&args, plan, &mut frames, options, terminal)?;
+            rendered.expect("a path is given").1
         }
     };
     let images = expected
         .iter()
         .zip(&frames)
-        .map(|(expected, frame)| expected.image(frame));
+        .map(|(expected, planned)| expected.image(&planned.frame));
     Ok(images.collect::<Result<_, _>>()?)
 }
 

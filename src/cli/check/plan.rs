@@ -11,7 +11,7 @@ use toyproof_report::Rubric;
 use toyproof_verify::Difference;
 
 use super::options::{PlanOptions, TaskInputs};
-use crate::cli::inputs::resized;
+use crate::cli::inputs::{LanguageArgs, resized};
 use crate::cli::reference::ReferenceArgs;
 use crate::cli::shader::parse_named;
 use crate::cli::{CliError, Terminal};
@@ -32,6 +32,7 @@ pub(super) struct Plan {
 }
 
 /// A frame in which shaders are checked.
+#[derive(Clone)]
 pub(super) struct PlannedFrame {
     pub(super) inputs: FrameInputs,
     /// The inputs with loaded channels, in their size or the default one; a scene or a reference image may
@@ -40,6 +41,12 @@ pub(super) struct PlannedFrame {
 }
 
 impl Plan {
+    /// The options of the language for a frame: the user's values of uniforms, else those of the frame, else those
+    /// of the assignment.
+    pub(super) fn language(&self, given: &LanguageArgs, frame: &FrameInputs) -> LanguageArgs {
+        given.with_uniforms(&frame.uniforms).with_uniforms(&self.uniforms)
+    }
+
     /// Reads the plan: the assignment that the task names, else, without a reference among the options, the
     /// one in the folder of all shaders; else the options alone.
     pub(super) fn new(

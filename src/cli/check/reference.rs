@@ -16,7 +16,7 @@ use toyproof_verify::{Expected, Failure};
 use super::options::CheckOptions;
 use super::plan::{Plan, PlannedFrame, assignment_beside};
 use super::reference_cache::CachedReference;
-use crate::cli::reference::GivenReference;
+use crate::cli::reference::{GivenReference, ReferenceArgs};
 use crate::cli::scenes::{builtin_scenes, parse_scene, read_scene, with_builtin_hint};
 use crate::cli::shader::Shader;
 use crate::cli::{CliError, Terminal};
@@ -97,6 +97,37 @@ pub(super) enum References {
     Given(PreparedReference),
 }
 
+/// Reads a shader or an image, and renders it in the frames of a plan, which get the size of an image. A shader is
+/// read anew for each set of values of uniforms; that of the first frame is returned. `None` if the arguments name
+/// neither.
+///
+/// # Errors
+/// Shaders cannot be compared with it.
+pub(super) fn expected_in(
+    args: &ReferenceArgs,
+    plan: &Plan,
+    frames: &mut [PlannedFrame],
+    options: &CheckOptions,
+    terminal: &Terminal,
+) -> Result<Option<(GivenReference, Vec<Expected>)>, CliError> {
+    let timeout = options.driver.timeout();
+    let mut first = None;
+    let mut all = Vec::new();
+    for alike in frames.chunk_by_mut(|a, b| a.inputs.uniforms == b.inputs.uniforms) {
+        let language = plan.language(&options.language, &alike[0].inputs);
+        let Some(given) = GivenReference::read(args, &language, timeout)? else {
+            return Ok(None);
+        };
+        for PlannedFrame { inputs, frame } in &mut *alike {
+            given.resize(frame, inputs.size)?;
+        }
+        let frames = alike.iter().map(|planned| &planned.frame);
+        all.extend(given.expected(frames, timeout, terminal)?);
+        first.get_or_insert(given);
+    }
+    Ok(first.map(|first| (first, all)))
+}
+
 impl References {
     /// Reads what shaders are compared with. The frames get the size of a reference image.
     pub(super) fn new(
@@ -104,18 +135,14 @@ impl References {
         plan: &mut Plan,
         terminal: &Terminal,
     ) -> Result<Self, CliError> {
-        let timeout = options.driver.timeout();
-        let language = options.language.with_uniforms(&plan.uniforms);
-        let Some(given) = GivenReference::read(&plan.reference, &language, timeout)? else {
+        let mut frames = plan.frames.clone();
+        let Some((given, expected)) = expected_in(&plan.reference, plan, &mut frames, options, terminal)?
+        else {
             let scenes = Scenes::new(plan.reference.scene.as_deref());
             scenes.check()?;
             return Ok(Self::Scenes(scenes));
         };
-        for PlannedFrame { inputs, frame } in &mut plan.frames {
-            given.resize(frame, inputs.size)?;
-        }
-        let frames = plan.frames.iter().map(|planned| &planned.frame);
-        let expected = given.expected(frames, timeout, terminal)?;
+        plan.frames = frames;
         let cached = expected
             .into_iter()
             .map(|expected| Arc::new(CachedReference::new(expected)));

@@ -29,6 +29,10 @@ use crate::cli::shader::{Shader, Unusable, denied};
 pub(super) struct ShaderCheck<'a> {
     checker: &'a Checker<'a>,
     context: &'a mut WorkerContext,
+    /// The shader from the frame with this index on: values of uniforms are part of it. The first is that of the first
+    /// frame.
+    shaders: &'a [(usize, Shader)],
+    /// That of the frame in progress.
     shader: &'a Shader,
     reference: Option<&'a Reference<'a>>,
     log: Log,
@@ -44,13 +48,14 @@ impl<'a> ShaderCheck<'a> {
     pub(super) fn new(
         checker: &'a Checker<'a>,
         context: &'a mut WorkerContext,
-        shader: &'a Shader,
+        shaders: &'a [(usize, Shader)],
         reference: Option<&'a Reference<'a>>,
     ) -> Self {
         Self {
             checker,
             context,
-            shader,
+            shaders,
+            shader: &shaders[0].1,
             reference,
             log: Log::default(),
             diagnostics: Vec::new(),
@@ -67,7 +72,7 @@ impl<'a> ShaderCheck<'a> {
     /// Checks the shader in all frames, up to the first without an image. Returns its record, and the
     /// findings in the first frame with the worst verdict, which is that of the record.
     pub(super) fn check_frames(&mut self) -> (Record, Option<Findings>) {
-        let (plan, shader) = (self.checker.plan, self.shader);
+        let plan = self.checker.plan;
         let (scene_name, reference_name) = self.reference.map(Reference::names).unwrap_or_default();
         let solution = match self.reference {
             Some(Reference::Given(given)) => given.shader(),
@@ -78,6 +83,10 @@ impl<'a> ShaderCheck<'a> {
         let mut worst: Option<(Verdict, Option<Findings>)> = None;
         for (index, PlannedFrame { inputs, frame }) in plan.frames.iter().enumerate() {
             let mut frame = frame.clone();
+            if let Some((_, shader)) = self.shaders.iter().rfind(|(from, _)| *from <= index) {
+                self.shader = shader;
+            }
+            let shader = self.shader;
             // The explanation of the first wrong image is reported.
             let explains = !checked.iter().any(|frame| frame.record.verdict == Verdict::Wrong);
             self.report(shader.lints.warnings.clone(), &shader.files);

@@ -16,6 +16,7 @@ use super::outcome::{Log, Outcome};
 use super::shader_check::{ShaderCheck, image};
 use super::submission::Submission;
 use crate::cli::inputs::{frame_flags, shell_word};
+use crate::cli::shader::Shader;
 
 impl Checker<'_> {
     /// Checks a shader and writes its images. A panic costs only this shader's verdict, which is then
@@ -48,10 +49,19 @@ impl Checker<'_> {
     }
 
     fn check_shader(&self, context: &mut WorkerContext, submission: &Submission) -> Outcome {
-        let shader = self.load(submission);
+        // The shader in each frame, read anew for each set of values of uniforms.
+        let mut shaders: Vec<(usize, Shader)> = Vec::new();
+        for (index, planned) in self.plan.frames.iter().enumerate() {
+            let uniforms = &planned.inputs.uniforms;
+            let is_last = |&(last, _): &(usize, _)| self.plan.frames[last].inputs.uniforms == *uniforms;
+            if !shaders.last().is_some_and(is_last) {
+                shaders.push((index, self.load(submission, index)));
+            }
+        }
+        let shader = &shaders[0].1;
         let found = submission.input.as_ref().ok();
         let reference = found.and_then(|found| self.references.find(found));
-        let mut check = ShaderCheck::new(self, context, &shader, reference.as_ref());
+        let mut check = ShaderCheck::new(self, context, &shaders, reference.as_ref());
         let (mut record, findings) = check.check_frames();
         let (mut log, is_late_on_gpu) = check.finish();
         let is_explained = findings
@@ -62,7 +72,7 @@ impl Checker<'_> {
             record = record.with_unsearched();
         }
         if let Some((assignment, _)) = &self.plan.assignment {
-            let subject = image(&shader).ok().map(|checked| Subject {
+            let subject = image(shader).ok().map(|checked| Subject {
                 checked,
                 files: &shader.files,
                 text: shader.text(checked),
@@ -142,10 +152,10 @@ impl Checker<'_> {
         record: &Record,
         donors: &Donors,
     ) -> Option<Outcome> {
-        let shader = self.load(submission);
+        let index = record.shown_frame();
+        let shader = self.load(submission, index);
         let checked = shader.single_pass()?;
         let reference = self.references.find(submission.input.as_ref().ok()?)?;
-        let index = record.shown_frame();
         let mut frame = self.plan.frames[index].frame.clone();
         let cached = self.cached(&reference, (index, index), false, &mut frame).ok()?;
         let case = Case {

@@ -4,6 +4,7 @@ use toyproof_diagnostic::{Code, nearest, plural};
 
 use super::Checker;
 use super::scope::{Entity, did_you_mean};
+use crate::dialect::Bound;
 use crate::token::Symbol;
 use crate::tree::{
     BuiltIn, ExprId, ExprKind, Place, Scalar, StructId, Swizzle, Type, Variable, VariableId, VariableKind,
@@ -18,8 +19,11 @@ impl Checker<'_> {
         let text = self.text(name);
         match self.scopes.find(name) {
             Some(&Entity::Variable(variable)) => {
-                if let Some(bound) = self.bound.get(&variable) {
-                    return self.bound_value(bound.clone(), at);
+                if let Some(bound) = self.bound.get(&variable).cloned() {
+                    if matches!(bound, Bound::Value(..)) {
+                        self.values_read.insert(variable);
+                    }
+                    return self.bound_value(bound, at);
                 }
                 self.report_unbound_texture(variable, at);
                 let variable = self.bound_texture(variable);

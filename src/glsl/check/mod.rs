@@ -53,6 +53,8 @@ pub(crate) struct Checker<'a> {
     calls_added_main: bool,
     /// The uniforms and varyings that have a value.
     pub(crate) bound: HashMap<VariableId, Bound>,
+    /// The uniforms with values that an expression reads.
+    pub(crate) values_read: HashSet<VariableId>,
     /// The values of uniforms that the caller gives.
     uniforms: &'a [UniformValue],
     /// The variable that holds the color, if the host runs `main`.
@@ -109,6 +111,7 @@ impl<'a> Checker<'a> {
             stage: options.stage,
             calls_added_main: options.calls_added_main,
             bound: HashMap::new(),
+            values_read: HashSet::new(),
             uniforms: &options.uniforms,
             output: None,
             tree: Tree::default(),
