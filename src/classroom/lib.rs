@@ -6,6 +6,7 @@
 //! - [`assignment`]: the requirements on the shaders of a class, in one TOML file
 //! - [`function_test`]: tests of single functions, in assignments, files of their own and comments
 //! - [`collect`]: the submissions of a class, from the downloads of a learning management system
+//! - [`decisions`]: what a teacher decides on single shaders instead of the check
 //! - [`autograder`]: autograders for grading platforms
 //! - [`gradebook`]: marks in the tables of learning management systems
 //! - [`similar`]: similarity of shaders by their trees
@@ -28,6 +29,7 @@
 pub mod assignment;
 pub mod autograder;
 pub mod collect;
+pub mod decisions;
 pub mod function_test;
 pub mod gradebook;
 pub mod shards;

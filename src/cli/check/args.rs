@@ -90,6 +90,14 @@ pub(in crate::cli) struct Args {
     /// A rubric (.toml): points for compiling and for each check, for report.csv and results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
+    /// What the teacher decides on single shaders (.toml) [default: decisions.toml beside the class or the
+    /// assignment]
+    ///
+    /// Each table [[decision]] has a `shader` by its path in the report, or a `student` and in a class an
+    /// `assignment`; a `verdict`, `points` or both; and a `reason`. All reports and the exit code follow the
+    /// decisions; --resume and a later check never lose them.
+    #[arg(long, value_name = "FILE", help_heading = "Reports")]
+    decisions: Option<PathBuf>,
     /// The grading platform that reads results.json
     #[arg(long, value_name = "PLATFORM", value_parser = platform(), default_value = "gradescope",
           requires = "out", help_heading = "Reports")]
@@ -155,6 +163,7 @@ impl Args {
             },
             class: self.class.clone(),
             costs: self.costs.clone(),
+            decisions: self.decisions.clone(),
             plan: PlanOptions {
                 reference: self.reference.clone(),
                 permitted: self.permit.clone(),

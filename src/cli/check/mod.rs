@@ -3,6 +3,7 @@
 mod args;
 mod batch;
 mod checker;
+mod decisions;
 mod donors;
 mod earlier;
 mod features;

@@ -19,6 +19,8 @@ pub(super) struct Options {
     pub(super) class: Option<PathBuf>,
     /// The earlier report whose times balance the shards.
     pub(super) costs: Option<PathBuf>,
+    /// The file of the teacher's decisions, if it is not the one beside the class or the assignment.
+    pub(super) decisions: Option<PathBuf>,
     pub(super) plan: PlanOptions,
     pub(super) check: CheckOptions,
     pub(super) batch: BatchOptions,

@@ -34,6 +34,14 @@ pub(super) struct Submission {
 }
 
 impl Submission {
+    /// The name in reports, also of a shader that cannot be read.
+    pub(super) fn shown_name(&self) -> String {
+        match &self.input {
+            Ok(found) => found.name(),
+            Err(error) => error.name(),
+        }
+    }
+
     /// Whether the shader belongs to an assignment of a class.
     pub(super) fn is_assigned(&self) -> bool {
         let assignment = self.submitted.as_ref().map(|one| &one.assignment);
