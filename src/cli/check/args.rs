@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use toyproof_explain::repair::DEFAULT_BUDGET;
 use toyproof_report::Hints;
-use toyproof_report::platform::Platform;
+use toyproof_report::platform::{PLATFORMS, Platform};
 use toyproof_verify::Difference;
 
 use super::options::{BatchOptions, CheckFormat, CheckOptions, Options, PlanOptions, TaskInputs};
@@ -98,10 +98,11 @@ pub(in crate::cli) struct Args {
     /// decisions; --resume and a later check never lose them.
     #[arg(long, value_name = "FILE", help_heading = "Reports")]
     decisions: Option<PathBuf>,
-    /// The grading platform that reads results.json
-    #[arg(long, value_name = "PLATFORM", value_parser = platform(), default_value = "gradescope",
-          requires = "out", help_heading = "Reports")]
-    autograder: &'static Platform,
+    /// The grading platform that reads results.json [default: gradescope]
+    ///
+    /// Platforms know when a submission is due: if one is named, the deadline of the assignment has no effect.
+    #[arg(long, value_name = "PLATFORM", value_parser = platform(), requires = "out", help_heading = "Reports")]
+    autograder: Option<&'static Platform>,
     /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
     ///
     /// Students' reports are junit.xml and results.json. If this option is given, it applies to
@@ -164,6 +165,7 @@ impl Args {
             class: self.class.clone(),
             costs: self.costs.clone(),
             decisions: self.decisions.clone(),
+            is_on_platform: self.autograder.is_some(),
             plan: PlanOptions {
                 reference: self.reference.clone(),
                 permitted: self.permit.clone(),
@@ -187,7 +189,7 @@ impl Args {
                 searches_again: self.search > 0.0 && self.shard.is_none(),
                 teachers_hints: hints(Hints::Fix),
                 students_hints: hints(Hints::Line),
-                platform: self.autograder,
+                platform: self.autograder.unwrap_or(PLATFORMS[0]),
             },
         }
     }

@@ -21,6 +21,8 @@ pub(super) struct Options {
     pub(super) costs: Option<PathBuf>,
     /// The file of the teacher's decisions, if it is not the one beside the class or the assignment.
     pub(super) decisions: Option<PathBuf>,
+    /// Whether a grading platform checks the shaders, which knows when they are due.
+    pub(super) is_on_platform: bool,
     pub(super) plan: PlanOptions,
     pub(super) check: CheckOptions,
     pub(super) batch: BatchOptions,

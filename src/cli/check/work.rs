@@ -141,7 +141,9 @@ impl Work {
                 decisions.add_beside(file, part.name.as_deref())?;
             }
             let mut inputs = find_submissions(&part.shaders, terminal);
-            let owners = Owners::read(&part.shaders, &mut inputs, |error| terminal.warn(error));
+            let deadline = common.plan.assignment.as_ref().and_then(|(one, _)| one.deadline);
+            let deadline = deadline.filter(|_| !options.is_on_platform);
+            let owners = Owners::read(&part.shaders, &mut inputs, deadline, |error| terminal.warn(error));
             match (&part.name, common.plan.rubric.take()) {
                 (None, rubric) => work.rubrics = rubric.into(),
                 (Some(name), Some(rubric)) => work.rubrics.add(name.clone(), rubric),
