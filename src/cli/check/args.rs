@@ -28,6 +28,7 @@ Examples:
   toyproof check homework --assignment shadows/assignment.toml --out marks
   toyproof check mine.glsl --scene scene.toml --format json
   toyproof check moodle.zip --class class.toml --out marks
+  toyproof check homework --assignment shadows --out marks --feedback feedback.zip
 
 Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.
 With --shard: 0 if the shard is complete, else 2.")]
@@ -65,6 +66,14 @@ pub(in crate::cli) struct Args {
     /// junit.xml and report.sarif; with --class, class.csv.
     #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
+    /// Write a page for each student into this folder or archive
+    ///
+    /// The page has the student's own shaders: verdict, points, images, functions and rules. With the names of a
+    /// collected download of Moodle or Canvas, so that the archive can be uploaded there. It shows of a mistake what
+    /// --hints permits, but no edits, whose expressions may be those of the reference or of other students. Several
+    /// assignments have a folder or an archive each.
+    #[arg(long, value_name = "DIR|FILE.zip", requires = "out", help_heading = "Reports")]
+    feedback: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
     ///
     /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been
@@ -183,6 +192,7 @@ impl Args {
                 format: self.format,
                 jobs: self.jobs.map(usize::from),
                 out: self.out.clone(),
+                feedback: self.feedback.clone(),
                 resume: self.resume,
                 shard: self.shard,
                 // The expression that repairs a shader may be in another shard; `merge` searches.

@@ -14,6 +14,7 @@ use toyproof_verify::contain::{Part, contain};
 
 use super::checker::{Checker, WorkerContext};
 use super::decisions::decided;
+use super::feedback;
 use super::options::{BatchOptions, CheckFormat};
 use super::outcome::{Log, Message, Outcome};
 use super::reference::unused_scene;
@@ -329,7 +330,8 @@ impl<'a> Batch<'a> {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
             let written = options.shard.is_some()
-                || reports::write(&report, &reported, &rubrics, options, out, terminal);
+                || reports::write(&report, &reported, &rubrics, options, out, terminal)
+                    & feedback::write(&report, &reported, &rubrics, options, terminal);
             match is_there {
                 Ok(()) if written => terminal.note(&match options.shard {
                     None => format!("report: {}", path_name(&out.join("report.html"))),

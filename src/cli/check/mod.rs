@@ -7,6 +7,7 @@ mod decisions;
 mod donors;
 mod earlier;
 mod features;
+mod feedback;
 mod images;
 mod merge;
 mod options;

@@ -65,6 +65,8 @@ pub(super) struct BatchOptions {
     pub(super) jobs: Option<usize>,
     /// The folder of the reports, if they are written.
     pub(super) out: Option<PathBuf>,
+    /// The folder or the archive of the pages for students, if they are written.
+    pub(super) feedback: Option<PathBuf>,
     /// Whether results of an earlier run into this folder are reused.
     pub(super) resume: bool,
     pub(super) shard: Option<Shard>,

@@ -31,6 +31,8 @@ pub(super) struct Submission {
     pub(super) task: usize,
     /// The student and the assignment, for a class.
     pub(super) submitted: Option<StudentSubmission>,
+    /// The path of the student's page in the folder of `--feedback`, if the student is known.
+    pub(super) page: Option<String>,
 }
 
 impl Submission {
@@ -74,6 +76,7 @@ impl Submission {
             output_stem,
             task: 0,
             submitted: None,
+            page: None,
             input,
         }
     }

@@ -169,7 +169,8 @@ impl Work {
                 if let (Ok(input), Some(name)) = (&mut input, &part.name) {
                     input.relative = Path::new(name).join(&input.relative);
                 }
-                let submitted = owners.find(&input).cloned();
+                let owner = owners.find(&input).cloned();
+                let (submitted, page) = owner.map(|owner| (owner.submitted, owner.page)).unzip();
                 let own = match own.transpose() {
                     Ok(own) => own,
                     Err(error) => {
@@ -189,6 +190,7 @@ impl Work {
                     seconds,
                     task,
                     submitted,
+                    page,
                     ..submission
                 });
             }
