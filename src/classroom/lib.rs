@@ -9,6 +9,7 @@
 //! - [`decisions`]: what a teacher decides on single shaders instead of the check
 //! - [`autograder`]: autograders for grading platforms
 //! - [`gradebook`]: marks in the tables of learning management systems
+//! - [`pack`]: what students get of an assignment, without its solution
 //! - [`similar`]: similarity of shaders by their trees
 //! - [`shards`]: the parts of a large batch
 //!
@@ -32,5 +33,6 @@ pub mod collect;
 pub mod decisions;
 pub mod function_test;
 pub mod gradebook;
+pub mod pack;
 pub mod shards;
 pub mod similar;
