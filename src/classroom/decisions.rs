@@ -129,8 +129,8 @@ impl Decisions {
         named.or_else(|| self.0.iter().find(on)).map(|one| &one.decision)
     }
 
-    /// A warning for each decision that is on none of these shaders, with advice if a name looks like a typing
-    /// error.
+    /// A warning for each decision that is on none of these shaders, with advice if a name looks like a
+    /// typing error.
     #[must_use]
     pub fn unmatched(
         &self,

@@ -43,7 +43,8 @@ const COLUMNS: [&str; 30] = [
 ];
 
 /// Writes the table; its first row names the columns. Checks that did not run are empty, and points without
-/// a rubric. `fix_line` is the line of the first edit, and `checked_verdict` the verdict before a teacher's decision.
+/// a rubric. `fix_line` is the line of the first edit, and `checked_verdict` the verdict before a teacher's
+/// decision.
 ///
 /// # Errors
 /// The table cannot be written.

@@ -57,7 +57,8 @@ impl Record {
                 format!("{checked_reason}; {points} {noun} decided by the teacher: {reason}")
             }
             _ => format!(
-                "decided by the teacher: {reason}; the verdict of the check was {checked_verdict}: {checked_reason}"
+                "decided by the teacher: {reason}; the verdict of the check was {checked_verdict}: \
+                 {checked_reason}"
             ),
         };
         record.decision = Some(DecisionRecord {

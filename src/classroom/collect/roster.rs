@@ -174,8 +174,8 @@ pub fn unknown_times(folder: &Path, count: u64) -> String {
 /// The name of the page that a student reads.
 pub const FEEDBACK_NAME: &str = "feedback.html";
 
-/// The longest name in a download that the path of a page begins with, in bytes: with the name of the page, it
-/// is one that file systems can store.
+/// The longest name in a download that the path of a page begins with, in bytes: file systems can store it
+/// with the name of the page.
 const MAX_DOWNLOAD_BYTES: usize = 240;
 
 /// A student whose folder has inputs.
@@ -195,8 +195,8 @@ pub struct Owners {
 
 impl Owners {
     /// Reads the rosters of folders, and adds an error for each student who has no shader, in the order of
-    /// the paths. Other folders have no roster; a file that is not one is ignored with a warning. Where a class
-    /// has no deadline, that of the assignment counts.
+    /// the paths. Other folders have no roster; a file that is not one is ignored with a warning. Where a
+    /// class has no deadline, that of the assignment counts.
     pub fn read(
         folders: &[PathBuf],
         inputs: &mut Vec<Result<Input, ReadError>>,

@@ -1,6 +1,6 @@
-//! What students get of an assignment: the images that their shaders have to render, a shader to begin with, the
-//! tests of its functions, and the requirements. Nothing of the reference's text is in it, except the signatures
-//! of functions that the assignment names.
+//! What students get of an assignment: the images that their shaders have to render, a shader to begin with,
+//! the tests of its functions, and the requirements. Nothing of the reference's text is in it, except the
+//! signatures of functions that the assignment names.
 
 mod starter;
 
@@ -72,8 +72,8 @@ pub fn pack_textures(frames: &mut [FrameInputs]) -> Result<PackFiles, String> {
     Ok(files)
 }
 
-/// The files for the students, apart from textures. `reference` has the signatures of functions; `commands` check
-/// the shader in each frame.
+/// The files for the students, apart from textures. `reference` has the signatures of functions; `commands`
+/// check the shader in each frame.
 #[must_use]
 pub fn pack(
     name: &str,
@@ -146,8 +146,8 @@ fn readme(name: &str, assignment: &Assignment, frames: &[PackedFrame], commands:
     }
     let _ = write!(
         text,
-        "\n## Check your shader\n\n```sh\n{}\n```\n\nThe images have 8 bits per color, so that a few pixels at edges may \
-         differ although your shader is right.\n",
+        "\n## Check your shader\n\n```sh\n{}\n```\n\nThe images have 8 bits per color, so that a few pixels at edges \
+         may differ although your shader is right.\n",
         commands.join("\n")
     );
     if !assignment.functions.is_empty() {

@@ -68,10 +68,10 @@ pub(in crate::cli) struct Args {
     out: Option<PathBuf>,
     /// Write a page for each student into this folder or archive
     ///
-    /// The page has the student's own shaders: verdict, points, images, functions and rules. With the names of a
-    /// collected download of Moodle or Canvas, so that the archive can be uploaded there. It shows of a mistake what
-    /// --hints permits, but no edits, whose expressions may be those of the reference or of other students. Several
-    /// assignments have a folder or an archive each.
+    /// The page has the student's own shaders: verdict, points, images, functions and rules. It has the name
+    /// that a collected download of Moodle or Canvas has, so that the archive can be uploaded there. It shows
+    /// of a mistake what --hints permits, but no edits, whose expressions may be those of the reference or of
+    /// other students. Several assignments have a folder or an archive each.
     #[arg(long, value_name = "DIR|FILE.zip", requires = "out", help_heading = "Reports")]
     feedback: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
@@ -102,15 +102,17 @@ pub(in crate::cli) struct Args {
     /// What the teacher decides on single shaders (.toml) [default: decisions.toml beside the class or the
     /// assignment]
     ///
-    /// Each table [[decision]] has a `shader` by its path in the report, or a `student` and in a class an
+    /// Each table `[[decision]]` has a `shader` by its path in the report, or a `student` and in a class an
     /// `assignment`; a `verdict`, `points` or both; and a `reason`. All reports and the exit code follow the
     /// decisions; --resume and a later check never lose them.
     #[arg(long, value_name = "FILE", help_heading = "Reports")]
     decisions: Option<PathBuf>,
     /// The grading platform that reads results.json [default: gradescope]
     ///
-    /// Platforms know when a submission is due: if one is named, the deadline of the assignment has no effect.
-    #[arg(long, value_name = "PLATFORM", value_parser = platform(), requires = "out", help_heading = "Reports")]
+    /// Platforms know when a submission is due: if one is named, the deadline of the assignment has no
+    /// effect.
+    #[arg(long, value_name = "PLATFORM", value_parser = platform(), requires = "out",
+          help_heading = "Reports")]
     autograder: Option<&'static Platform>,
     /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
     ///

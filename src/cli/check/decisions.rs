@@ -35,8 +35,8 @@ impl DecisionFiles {
         Ok(files)
     }
 
-    /// Reads the file beside that of a class or of an assignment, if there is one. `assignment` is its name in
-    /// a class.
+    /// Reads the file beside that of a class or of an assignment, if there is one. `assignment` is its name
+    /// in a class.
     pub(super) fn add_beside(&mut self, path: &Path, assignment: Option<&str>) -> Result<(), CliError> {
         let file = path.with_file_name(FILE_NAME);
         if self.is_given || !file.is_file() {

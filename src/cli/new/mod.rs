@@ -50,8 +50,9 @@ enum What {
     Assignment(AssignmentArgs),
     /// Create what students get of an assignment: images, a shader to begin with, tests and requirements
     ///
-    /// Nothing of the solution is in it: the shader has the functions that the assignment names, without their bodies.
-    /// README.md states frames, rules, points, and the commands with which students check their shaders.
+    /// Nothing of the solution is in it: the shader has the functions that the assignment names, without
+    /// their bodies. README.md states frames, rules, points, and the commands with which students check their
+    /// shaders.
     #[command(
         after_long_help = "Examples:\n  toyproof new pack shadows -o shadows-for-students\n  \
                            toyproof new pack shadows/assignment.toml -o shadows.zip"
