@@ -358,6 +358,7 @@ fn each_student_has_a_page_under_the_name_of_the_download() {
         "Points: 2 of 12 (compiles 2 of 2, algorithm 0 of 8, distanceTo 0 of 2)",
         "function: distanceTo is right in 0 of 1 case",
         "an edit of line 2",
+        "<span>Reference: solution.glsl</span>",
         " data-actual=\"0\" data-reference=\"1\"",
         "<script id=\"p1\"",
     ] {

@@ -132,10 +132,18 @@ fn page(
     let hints = hints.min(Hints::Line);
     let records = student.shaders.iter().map(|&index| {
         let record = report.shaders()[index].clone().redacted(hints);
-        // Other commands need the files of the teacher.
+        // Paths and other commands are those of the teacher's files.
         let help = record.help.clone();
-        let help = help.filter(|help| help.starts_with("toyproof explain "));
-        Record { help, ..record }
+        let file_name = |path: &String| {
+            let name = Path::new(path).file_name();
+            name.map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned())
+        };
+        Record {
+            help: help.filter(|help| help.starts_with("toyproof explain ")),
+            scene: record.scene.as_ref().map(file_name),
+            reference: record.reference.as_ref().map(file_name),
+            ..record
+        }
     });
     let records: Vec<Record> = records.collect();
     let rubric = records.iter().find_map(|record| rubrics.find(record));
