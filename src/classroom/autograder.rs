@@ -161,7 +161,8 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// The name of an assignment, whose file is at `path`: that of its folder.
-fn assignment_name(path: &Path) -> String {
+#[must_use]
+pub fn assignment_name(path: &Path) -> String {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let folder = absolute.parent().and_then(Path::file_name);
     folder.map_or_else(

@@ -130,10 +130,10 @@ impl FeatureRecord {
 
 impl Record {
     /// Whether the shader has no fault: its verdict is good, no rule is violated, and all functions are
-    /// right.
+    /// right. A verdict that a teacher decided counts alone.
     #[must_use]
     pub fn is_passed(&self) -> bool {
-        self.verdict.is_good() && self.faults().is_empty()
+        self.verdict.is_good() && (self.decided_verdict().is_some() || self.faults().is_empty())
     }
 
     /// The violated rules, the functions that are not right, and the features of a wrong image, each with a

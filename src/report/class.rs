@@ -16,6 +16,8 @@ struct Cell {
     points: Option<f64>,
     verdict: toyproof_verify::Verdict,
     late: String,
+    /// The reason of a teacher's decision; empty without one.
+    decision: String,
 }
 
 /// The table of a class.
@@ -59,6 +61,9 @@ impl ClassTable {
             points: rubrics.total(record).map(|[points, _]| points),
             verdict: record.verdict,
             late: late.map(|late| late.to_string()).unwrap_or_default(),
+            decision: record.decision.as_ref().map_or_else(String::new, |decision| {
+                format!("{}; the check: {}", decision.reason, decision.checked_verdict)
+            }),
         };
         let cells = self.students.entry((student.clone(), id.clone())).or_default();
         let other = cells.get(&place);
@@ -72,7 +77,7 @@ impl ClassTable {
     }
 
     /// Writes the table; its first row names the columns. An assignment without a rubric has the verdict
-    /// instead of points.
+    /// instead of points, and one on whose shaders a teacher decided has a column for the reasons.
     ///
     /// # Errors
     /// The table cannot be written.
@@ -83,6 +88,15 @@ impl ClassTable {
         for assignment in &self.assignments {
             columns.extend(["verdict", "late"].map(|what| spreadsheet_text(&format!("{assignment} {what}"))));
         }
+        let is_decided = |place: &usize| {
+            let mut cells = self.students.values().filter_map(|cells| cells.get(place));
+            cells.any(|cell| !cell.decision.is_empty())
+        };
+        let decided: Vec<usize> = (0..self.assignments.len()).filter(is_decided).collect();
+        let reasons = decided
+            .iter()
+            .map(|&place| format!("{} decision", self.assignments[place]));
+        columns.extend(reasons.map(|name| spreadsheet_text(&name)));
         let mut table = table(out);
         table.write_record(columns)?;
         for ((name, id), cells) in &self.students {
@@ -105,11 +119,15 @@ impl ClassTable {
                 [] => String::new(),
                 points => ((100.0 * points.iter().sum::<f64>()).round() / 100.0).to_string(),
             });
-            for cell in cells {
+            for cell in &cells {
                 let verdict = cell.map(|cell| cell.verdict.to_string());
                 row.push(verdict.unwrap_or_default());
                 row.push(cell.map(|cell| cell.late.clone()).unwrap_or_default());
             }
+            let reasons = decided
+                .iter()
+                .map(|&place| cells[place].map_or("", |cell| &cell.decision));
+            row.extend(reasons.map(spreadsheet_text));
             table.write_record(row)?;
         }
         table.flush()
@@ -122,7 +140,7 @@ mod tests {
 
     use super::*;
     use crate::record::samples::{correct, invalid, record};
-    use crate::{Late, Rubric, written};
+    use crate::{Decision, Late, Rubric, written};
 
     fn submitted(record: Record, assignment: &str, student: &str, late: Option<u64>) -> Record {
         Record {
@@ -156,6 +174,25 @@ mod tests {
             "student,id,one,\"two, three\",total,one verdict,one late,\"two, three verdict\",\"two, three late\"\r\n\
              '=Anna,7,10,,10,correct,late by 1 min,,\r\n\
              Bo,7,0,wrong,0,invalid,,wrong,\r\n"
+        );
+    }
+
+    #[test]
+    fn decisions_have_a_column_where_there_are_some() {
+        let decision = Decision {
+            verdict: Some(Verdict::Correct),
+            points: None,
+            reason: "=as announced".to_owned(),
+        };
+        let records = [
+            submitted(correct(), "one", "Anna", None),
+            submitted(record(Verdict::Wrong), "two", "Anna", None).with_decision(&decision),
+        ];
+        let table = ClassTable::new(&records, &Rubrics::default());
+        assert_eq!(
+            written(|out| table.csv(out)),
+            "student,id,one,two,total,one verdict,one late,two verdict,two late,two decision\r\n\
+             Anna,7,correct,correct,,correct,,correct,,'=as announced; the check: wrong\r\n"
         );
     }
 }

@@ -9,7 +9,7 @@ use toyproof_verify::compare::CheckSummary;
 use super::repair::in_tab;
 use super::{Record, Rubrics};
 
-const COLUMNS: [&str; 28] = [
+const COLUMNS: [&str; 30] = [
     "shader",
     "scene",
     "reference",
@@ -38,10 +38,13 @@ const COLUMNS: [&str; 28] = [
     "student",
     "id",
     "late_seconds",
+    "checked_verdict",
+    "decision",
 ];
 
 /// Writes the table; its first row names the columns. Checks that did not run are empty, and points without
-/// a rubric. `fix_line` is the line of the first edit.
+/// a rubric. `fix_line` is the line of the first edit, and `checked_verdict` the verdict before a teacher's
+/// decision.
 ///
 /// # Errors
 /// The table cannot be written.
@@ -61,7 +64,7 @@ pub(super) fn table<W: Write>(out: W) -> Writer<W> {
 
 fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
     let total = rubrics.total(record);
-    let submitted = record.submitted.as_ref();
+    let (submitted, decision) = (record.submitted.as_ref(), record.decision.as_ref());
     // A submission that is late without a known time has a text here.
     let late = record.late().map(|late| match late.seconds {
         Some(seconds) => seconds.to_string(),
@@ -112,6 +115,8 @@ fn row(record: &Record, rubrics: &Rubrics) -> [String; COLUMNS.len()] {
         spreadsheet_text(&cell(submitted.map(|one| &one.student))),
         spreadsheet_text(&cell(submitted.and_then(|one| one.id.as_ref()))),
         cell(late),
+        cell(decision.map(|decision| decision.checked_verdict)),
+        spreadsheet_text(&cell(decision.map(|decision| &decision.reason))),
     ]
 }
 
@@ -139,11 +144,11 @@ mod tests {
         assert_eq!(lines.next().unwrap().split(',').collect::<Vec<_>>(), COLUMNS);
         assert_eq!(
             lines.next().unwrap(),
-            "correct,scene.toml,,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500,,,,"
+            "correct,scene.toml,,correct,it is correct,,,,,,1000,0,0,0,0.25,0,0.25,0,0.25,,,0,0,1.500,,,,,,"
         );
         assert_eq!(
             lines.next().unwrap(),
-            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500,,,,"
+            "\"'=cmd|'/c calc'!A1,\"\"x\"\"\\n.glsl\",scene.toml,,invalid,it is invalid,,,,,,,,,,,,,,,,,1,0,1.500,,,,,,"
         );
         assert_eq!(lines.collect::<Vec<_>>(), [""]);
     }

@@ -100,7 +100,7 @@ pub enum TestStatus {
 impl TestStatus {
     fn new(record: &Record) -> Self {
         match Self::from(record.verdict) {
-            Self::Passed if !record.faults().is_empty() => Self::Failure,
+            Self::Passed if !record.is_passed() => Self::Failure,
             status => status,
         }
     }

@@ -7,6 +7,7 @@
 //!   `verdict.json`. `html` is one page that needs no network.
 //! - [`platform`]: the results of autograders, and the files that grading platforms run.
 //! - `hints`: redacts the hints that a report gives to the author of a wrong shader.
+//! - `decision`: what a teacher decides instead.
 //! - `rubric`: the marks of a shader; `class`: the table of a class.
 //! - `frames`: one record of all frames of an assignment.
 //! - `explanation`: the sections of `docs/guide/diagnostics.md` and `docs/guide/mistakes.md`, and terms.
@@ -14,6 +15,7 @@
 mod assigned;
 mod class;
 mod csv;
+mod decision;
 mod departure;
 mod earlier;
 mod explanation;
@@ -38,6 +40,7 @@ mod unused;
 pub use assigned::{FeatureRecord, FunctionRecord, RulesRecord, Violation};
 pub use class::ClassTable;
 pub use csv::csv;
+pub use decision::{Decision, DecisionRecord};
 pub use departure::{Departure, MissingValue, UnknownValue};
 pub use earlier::{Change, Earlier};
 pub use explanation::{Explanation, explain, explanations};

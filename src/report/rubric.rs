@@ -83,9 +83,9 @@ struct LateDeduction {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// `compiles`, `algorithm` or `precision`; of an assignment also `rules`, or the name of a function;
-    /// `late` for the deduction for a late submission.
+    /// `late` for the deduction for a late submission, and `decision` for what a teacher's decision adds.
     pub name: Cow<'static, str>,
-    /// The points earned, in [0, `of`], rounded to hundredths; negative for `late`.
+    /// The points earned, in [0, `of`], rounded to hundredths; negative for `late`, and any for `decision`.
     pub points: f64,
     /// The maximum points.
     pub of: f64,
@@ -148,9 +148,40 @@ impl Rubric {
         self.compiles + self.algorithm.points + self.precision.points
     }
 
+    /// What a late submission loses, such as “10 % of all points for each day that has begun”.
+    #[must_use]
+    pub fn late_deduction(&self) -> Option<String> {
+        let LateDeduction {
+            percent_per_day,
+            max_percent,
+        } = self.late?;
+        let most = if max_percent < 100.0 {
+            format!(", at most {max_percent} %")
+        } else {
+            String::new()
+        };
+        Some(format!(
+            "{percent_per_day} % of all points for each day that has begun{most}"
+        ))
+    }
+
     /// Computes the marks of a shader, one for each check, and each part of an assignment, that has points.
     #[must_use]
     pub fn marks(&self, record: &Record) -> Vec<Mark> {
+        let marks = match record.decided_verdict() {
+            Some(verdict) => self.decided_marks(verdict, record),
+            None => self.check_marks(record),
+        };
+        let marks = marks.into_iter().filter(|mark| mark.of > 0.0);
+        let mut marks: Vec<_> = marks.chain(record.assigned_marks()).collect();
+        let late = self.late.zip(record.late());
+        marks.extend(late.map(|(deduction, late)| deduction.mark(late, &marks)));
+        marks.extend(decision(record, &marks));
+        marks
+    }
+
+    /// The marks of the checks.
+    fn check_marks(&self, record: &Record) -> [Mark; 3] {
         let algorithm = algorithm(self.algorithm, record);
         let mut precision = precision(self.precision, record);
         // A black image has no rounding errors.
@@ -158,12 +189,23 @@ impl Rubric {
             precision.points = 0.0;
             "not graded: the algorithm check must earn points first".clone_into(&mut precision.why);
         }
-        let marks = [compiles(self.compiles, record), algorithm, precision];
-        let marks = marks.into_iter().filter(|mark| mark.of > 0.0);
-        let mut marks: Vec<_> = marks.chain(record.assigned_marks()).collect();
-        let late = self.late.zip(record.late());
-        marks.extend(late.map(|(deduction, late)| deduction.mark(late, &marks)));
-        marks
+        [compiles(self.compiles, record), algorithm, precision]
+    }
+
+    /// The marks of the checks that a verdict stands for, which a teacher decided.
+    fn decided_marks(&self, verdict: Verdict, record: &Record) -> [Mark; 3] {
+        let is_right = verdict.is_good() || matches!(verdict, Verdict::Unstable | Verdict::Chaotic);
+        let mark = |name: &'static str, points: f64, passed: bool| Mark {
+            name: name.into(),
+            points: if passed { points } else { 0.0 },
+            of: points,
+            why: record.reason.clone(),
+        };
+        [
+            mark("compiles", self.compiles, verdict.is_compiled()),
+            mark("algorithm", self.algorithm.points, is_right),
+            mark("precision", self.precision.points, verdict.is_good()),
+        ]
     }
 }
 
@@ -181,6 +223,19 @@ impl LateDeduction {
             why: format!("{late}: {percent} % of all points are deducted"),
         }
     }
+}
+
+/// The mark that turns the sum of all others into the points that a teacher decided, if any.
+fn decision(record: &Record, marks: &[Mark]) -> Option<Mark> {
+    let decision = record.decision.as_ref()?;
+    let points = decision.points?;
+    let sum = (100.0 * marks.iter().map(|mark| mark.points).sum::<f64>()).round() / 100.0 + 0.0;
+    Some(Mark {
+        name: "decision".into(),
+        points: (100.0 * (points - sum)).round() / 100.0,
+        of: 0.0,
+        why: format!("{points} points instead of {sum}: {}", decision.reason),
+    })
 }
 
 /// Reads the deduction for a late submission.

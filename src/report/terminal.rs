@@ -93,7 +93,7 @@ pub fn lines(record: &Record, layout: &Layout) -> String {
     let errors = diagnostics(record, Severity::Error);
     let reason = match errors.len() {
         0 => record.reason.clone(),
-        _ if layout.detail == Detail::Short => record.reason.clone(),
+        _ if layout.detail == Detail::Short || record.decision.is_some() => record.reason.clone(),
         // The errors themselves are next to this line.
         1 => "1 error".to_owned(),
         count => format!("{} errors", grouped(count as u64)),

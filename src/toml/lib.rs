@@ -514,7 +514,7 @@ impl<'r, 't> Table<'r, 't> {
     }
 
     /// Rejects a key that does not belong in this table, if it is there.
-    pub fn reject_key(&mut self, key: &str, message: impl Into<String>, help: &str) {
+    fn reject_key(&mut self, key: &str, message: String, help: &str) {
         if let Some((name, _)) = self.entries.remove_entry(key) {
             self.reject(self.reader.span(name.span()), message, help);
         }

@@ -508,15 +508,4 @@ fn messages_name_what_to_do() {
         "{}",
         run.stderr
     );
-
-    let assignment = "scene = \"scene.toml\"\ndeadline = 2026-03-01T12:00:00Z\n";
-    fs::write(folder.join("assignment.toml"), assignment).unwrap();
-    let run = toyproof(folder, &["check", "s.glsl", "--assignment", "assignment.toml"]);
-    for text in [
-        "assignment.toml:2:1",
-        "a deadline belongs to a class, not to an assignment",
-        "`toyproof new class`",
-    ] {
-        assert!(run.code == 2 && run.stderr.contains(text), "{}", run.stderr);
-    }
 }

@@ -43,6 +43,7 @@ mod function_tests;
 mod fuzzed;
 mod generated;
 mod glslang;
+mod grading;
 mod growth;
 #[cfg(target_os = "linux")]
 mod hostile;

@@ -7,7 +7,7 @@ use toyproof_glsl::UniformValue;
 use toyproof_image::{Channel, Frame, FrameInputs};
 use toyproof_project::{PassKind, Tab};
 use toyproof_report::{Rubric, optional_points};
-use toyproof_toml::{Format, Literal, Located, Table};
+use toyproof_toml::{Format, Literal, Located, Moment, Table};
 use toyproof_verify::{Difference, UnknownDifference};
 
 use super::{Assignment, Feature, MAX_FRAMES, Reference, Rules};
@@ -33,6 +33,7 @@ impl Assignment {
         toyproof_toml::read(&FORMAT, files, file, |document| {
             let reference = reference(document, folder);
             let permitted = permitted(document);
+            let deadline = document.optional::<Moment>("deadline");
             let mut frames = Vec::new();
             document.tables("frame", |table| {
                 let frame = frame(table, folder);
@@ -57,11 +58,6 @@ impl Assignment {
             let functions = function_tests(document);
             let features = document.tables("feature", |table| feature(table, folder));
             let features: Vec<Feature> = features.into_iter().flatten().collect();
-            document.reject_key(
-                "deadline",
-                "a deadline belongs to a class, not to an assignment",
-                "move it to [[assignment]] of the class (`toyproof new class`)",
-            );
             document.report_unknown_keys();
             if reference.is_none() && document.is_valid() {
                 let help = "add `scene = \"scene.toml\"` or `reference = \"solution.glsl\"`";
@@ -81,6 +77,7 @@ impl Assignment {
                 // Without one, there are errors.
                 reference: reference.unwrap_or_else(|| Reference::Scene(PathBuf::new())),
                 permitted,
+                deadline: deadline.map(|deadline| deadline.value),
                 frames,
                 uniforms,
                 rubric: rubric.or_else(|| (others > 0.0).then(Rubric::default)),

@@ -30,6 +30,7 @@ use std::path::{Path, PathBuf};
 use toyproof_glsl::UniformValue;
 use toyproof_image::FrameInputs;
 use toyproof_report::{FunctionRecord, Rubric, RulesRecord};
+use toyproof_toml::Moment;
 use toyproof_verify::Difference;
 
 pub use self::rules::Rules;
@@ -49,6 +50,8 @@ pub struct Assignment {
     pub reference: Reference,
     /// The differences from the reference with which a shader is still correct.
     pub permitted: Vec<Difference>,
+    /// When the submissions are due, unless a class has another deadline.
+    pub deadline: Option<Moment>,
     /// The frames in which a shader must be right, at least one.
     pub frames: Vec<FrameInputs>,
     /// The values of uniforms that the shaders declare.

@@ -1,4 +1,4 @@
-//! The submissions of all students in downloads, and how late they are.
+//! The submissions of all students in downloads.
 
 use std::collections::{BTreeMap, HashSet};
 use std::io;
@@ -7,11 +7,10 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::path_name;
 use toyproof_project::archive::FileTime;
 use toyproof_project::files;
-use toyproof_report::Late;
-use toyproof_toml::Moment;
 
 use super::class::{Class, ClassAssignment, StudentList};
 use super::download::{self, DownloadFile};
+use super::lateness::SubmissionTime;
 use super::naming::{Paths, Student, SubmissionPath, is_archive, submission_path};
 use super::roster::FILE_NAME;
 use super::students::Students;
@@ -27,9 +26,11 @@ pub struct SubmittedFile {
     pub path: Vec<String>,
     /// The content, or why it cannot be read.
     pub content: Result<Content, String>,
-    time: Option<FileTime>,
+    /// What the names of the student's files in the download begin with, as in [`SubmissionPath`].
+    pub download: String,
+    pub(super) time: Option<FileTime>,
     /// Whether the system marks it as late; `None` if the system marks nothing in names.
-    is_late: Option<bool>,
+    pub(super) is_late: Option<bool>,
 }
 
 impl SubmittedFile {
@@ -53,53 +54,15 @@ pub struct Submission {
     pub files: Vec<SubmittedFile>,
 }
 
-/// How late something was submitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lateness {
-    /// Submitted on time.
-    OnTime,
-    /// Submitted late.
-    Late(Late),
-    /// The download does not state the time.
-    Unknown,
-}
-
 impl Submission {
-    /// How late the shaders of an assignment are, or those of all assignments.
+    /// When the shaders of an assignment, or those of all assignments, were submitted.
     #[must_use]
-    pub fn lateness(&self, assignment: Option<&ClassAssignment>) -> Lateness {
+    pub fn time(&self, assignment: Option<&ClassAssignment>) -> SubmissionTime {
         let belongs = |file: &&SubmittedFile| {
             let path = file.original_path();
             file.is_shader() && assignment.is_none_or(|assignment| assignment.has(&path))
         };
-        let files: Vec<_> = self.files.iter().filter(belongs).collect();
-        if files.iter().any(|file| file.is_late == Some(true)) {
-            return Lateness::Late(Late { seconds: None });
-        }
-        let deadline = assignment.and_then(|assignment| assignment.deadline);
-        let Some(deadline) = deadline else {
-            return Lateness::OnTime;
-        };
-        // Canvas marks late files, and gives all files the time of the download.
-        let unmarked = files.iter().filter(|file| file.is_late.is_none());
-        let delays: Vec<_> = unmarked
-            .map(|file| file.time.map(|time| utc(time, deadline) - deadline.seconds))
-            .collect();
-        match delays.iter().flatten().max() {
-            Some(&delay @ 1..) => Lateness::Late(Late {
-                seconds: Some(delay.unsigned_abs()),
-            }),
-            _ if delays.contains(&None) => Lateness::Unknown,
-            _ => Lateness::OnTime,
-        }
-    }
-}
-
-/// A time in UTC. One without an offset is that of a clock at the place of the deadline.
-fn utc(time: FileTime, deadline: Moment) -> i64 {
-    match time {
-        FileTime::Utc(seconds) => seconds,
-        FileTime::Local(seconds) => seconds - deadline.offset,
+        SubmissionTime::of(self.files.iter().filter(belongs))
     }
 }
 
@@ -187,11 +150,13 @@ fn add(
         let SubmissionPath {
             student,
             path,
+            download,
             is_late,
         } = submission_path(&path);
         let file = SubmittedFile {
             path,
             content,
+            download,
             time,
             is_late,
         };

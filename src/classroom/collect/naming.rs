@@ -13,6 +13,9 @@ pub struct SubmissionPath {
     pub student: Student,
     /// The path in the submission; empty for a folder.
     pub path: Vec<String>,
+    /// What the names of the student's files in the download begin with: the name of a folder with `/`, or
+    /// what the system wrote before the name of a file, such as `smithanna_1234_5678_`.
+    pub download: String,
     /// Whether the system marks it as late; `None` if the system marks nothing in names.
     pub is_late: Option<bool>,
 }
@@ -52,6 +55,12 @@ pub fn submission_path(path: &[String]) -> SubmissionPath {
         file,
         is_late,
     } = named.unwrap_or_else(|| by_place(first, is_file));
+    let download = match &file {
+        // A system's name ends with that of the file.
+        Some(file) if first.len() > file.len() => first[..first.len() - file.len()].to_owned(),
+        Some(_) => format!("{}/", student.name),
+        None => format!("{first}/"),
+    };
     // macOS writes names in decomposed form.
     let student = Student {
         name: student.name.nfc().collect(),
@@ -60,6 +69,7 @@ pub fn submission_path(path: &[String]) -> SubmissionPath {
     SubmissionPath {
         student,
         path: file.into_iter().chain(rest.iter().cloned()).collect(),
+        download,
         is_late,
     }
 }
@@ -290,6 +300,7 @@ mod tests {
             student,
             path,
             is_late,
+            ..
         } = submission_path(&path);
         (student.name, student.id, path.join("/"), is_late == Some(true))
     }
@@ -332,6 +343,30 @@ mod tests {
             ),
         ] {
             assert_eq!(read(path), expected, "{path}");
+        }
+    }
+
+    #[test]
+    fn the_names_of_a_download_are_kept() {
+        for (path, expected) in [
+            (
+                "Anna Smith_12_assignsubmission_file_/x/a.glsl",
+                "Anna Smith_12_assignsubmission_file_/",
+            ),
+            (
+                "Anna Smith_12_assignsubmission_file_my_a.glsl",
+                "Anna Smith_12_assignsubmission_file_",
+            ),
+            (
+                "Anna Smith_12_assignsubmission_file_a.zip/x/a.glsl",
+                "Anna Smith_12_assignsubmission_file_",
+            ),
+            ("doejane_LATE_12_345_my_a-1.glsl", "doejane_LATE_12_345_"),
+            ("anna/a_1_2_b.glsl", "anna/"),
+            ("anna.glsl", "anna/"),
+        ] {
+            let path: Vec<_> = path.split('/').map(str::to_owned).collect();
+            assert_eq!(submission_path(&path).download, expected);
         }
     }
 

@@ -5,10 +5,14 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use toyproof_diagnostic::{path_name, printable};
+use toyproof_diagnostic::{grouped, path_name, plural, printable};
 use toyproof_image::{input, output};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_report::{Late, StudentSubmission};
+use toyproof_toml::Moment;
+
+use super::lateness::{Lateness, SubmissionTime};
+use super::naming::file_name;
 
 /// The name of the file.
 pub const FILE_NAME: &str = "submissions.json";
@@ -23,6 +27,9 @@ pub struct Roster {
     /// The name of the assignment, if a class has several.
     #[serde(default)]
     pub assignment: Option<String>,
+    /// Whether the class has a deadline for the assignment, which `late` refers to.
+    #[serde(default)]
+    pub has_deadline: bool,
     /// The students.
     pub students: Vec<Entry>,
 }
@@ -36,6 +43,13 @@ pub struct Entry {
     pub name: String,
     /// The student's number, if there is one.
     pub id: Option<String>,
+    /// What the names of the student's files in the download begin with: a folder with `/`, or the start of
+    /// file names; null if the student is not in the download.
+    #[serde(default)]
+    pub download: Option<String>,
+    /// When the files were submitted.
+    #[serde(default = "unknown")]
+    pub time: SubmissionTime,
     /// How late the files are; null if they are not.
     #[serde(default)]
     pub late: Option<Late>,
@@ -54,7 +68,30 @@ pub struct SkippedFile {
     pub reason: String,
 }
 
+/// The time in a list that an earlier version wrote.
+fn unknown() -> SubmissionTime {
+    SubmissionTime {
+        is_unknown: true,
+        ..SubmissionTime::default()
+    }
+}
+
 impl Entry {
+    /// The path of the student's page, under the name that the download has for the student.
+    fn page(&self) -> String {
+        // The list may be edited, and names in archives are the students' own.
+        let is_usable = |download: &&String| {
+            let name = download.strip_suffix('/').unwrap_or(download);
+            !matches!(name, "" | "." | "..")
+                && name.len() <= MAX_DOWNLOAD_BYTES
+                && !name.contains(|character: char| "/\\:".contains(character) || character.is_control())
+        };
+        match self.download.as_ref().filter(is_usable) {
+            Some(download) => format!("{download}{FEEDBACK_NAME}"),
+            None => format!("{}/{FEEDBACK_NAME}", file_name(&self.folder)),
+        }
+    }
+
     /// The files submitted instead of a shader, in parentheses; empty if there are none.
     fn instead(&self) -> String {
         let list =
@@ -94,6 +131,24 @@ impl Roster {
         parsed.map(Some).map_err(not_roster)
     }
 
+    /// Computes how late the submissions are, unless the class has a deadline; returns how many have no
+    /// time, and so count as on time.
+    fn set_deadline(&mut self, deadline: Option<Moment>) -> u64 {
+        if self.has_deadline || deadline.is_none() {
+            return 0;
+        }
+        let mut unknown = 0;
+        for student in &mut self.students {
+            match student.time.lateness(deadline) {
+                Lateness::Late(late) => student.late = Some(late),
+                Lateness::OnTime => student.late = None,
+                // The list of an earlier version has marks, but no times.
+                Lateness::Unknown => unknown += u64::from(student.late.is_none()),
+            }
+        }
+        unknown
+    }
+
     /// Writes the roster into a folder.
     ///
     /// # Errors
@@ -105,23 +160,52 @@ impl Roster {
     }
 }
 
+/// The warning of submissions in a folder without a time, which count as on time.
+#[must_use]
+pub fn unknown_times(folder: &Path, count: u64) -> String {
+    format!(
+        "{}: {} {} as on time: the download does not state when",
+        path_name(folder),
+        grouped(count),
+        plural(count, "submission counts", "submissions count")
+    )
+}
+
+/// The name of the page that a student reads.
+pub const FEEDBACK_NAME: &str = "feedback.html";
+
+/// The longest name in a download that the path of a page begins with, in bytes: file systems can store it
+/// with the name of the page.
+const MAX_DOWNLOAD_BYTES: usize = 240;
+
+/// A student whose folder has inputs.
+#[derive(Debug, Clone)]
+pub struct Owner {
+    /// Whose they are.
+    pub submitted: StudentSubmission,
+    /// The path of the student's page in an archive that the learning management system reads, with `/`.
+    pub page: String,
+}
+
 /// The owners of inputs, by the folders of students.
 #[derive(Debug, Default)]
 pub struct Owners {
-    students: HashMap<PathBuf, StudentSubmission>,
+    students: HashMap<PathBuf, Owner>,
 }
 
 impl Owners {
     /// Reads the rosters of folders, and adds an error for each student who has no shader, in the order of
-    /// the paths. Other folders have no roster; a file that is not one is ignored with a warning.
+    /// the paths. Other folders have no roster; a file that is not one is ignored with a warning. Where a
+    /// class has no deadline, that of the assignment counts.
     pub fn read(
         folders: &[PathBuf],
         inputs: &mut Vec<Result<Input, ReadError>>,
+        deadline: Option<Moment>,
         mut warn: impl FnMut(String),
     ) -> Self {
         let mut owners = Self::default();
         for folder in folders {
-            let roster = match Roster::read(folder) {
+            let mut roster = match Roster::read(folder) {
                 Ok(Some(roster)) => roster,
                 Ok(None) => continue,
                 Err(error) => {
@@ -129,15 +213,19 @@ impl Owners {
                     continue;
                 }
             };
+            if let unknown @ 1.. = roster.set_deadline(deadline) {
+                warn(unknown_times(folder, unknown));
+            }
             add_missing(folder, &roster, inputs);
             let students = roster.students.into_iter().map(|student| {
+                let page = student.page();
                 let submitted = StudentSubmission {
                     assignment: roster.assignment.clone(),
                     student: student.name,
                     id: student.id,
                     late: student.late,
                 };
-                (folder.join(student.folder), submitted)
+                (folder.join(student.folder), Owner { submitted, page })
             });
             owners.students.extend(students);
         }
@@ -146,7 +234,7 @@ impl Owners {
 
     /// The student who submitted an input, if any.
     #[must_use]
-    pub fn find(&self, input: &Result<Input, ReadError>) -> Option<&StudentSubmission> {
+    pub fn find(&self, input: &Result<Input, ReadError>) -> Option<&Owner> {
         let path = input_path(input)?;
         path.ancestors().find_map(|folder| self.students.get(folder))
     }
@@ -195,6 +283,34 @@ mod tests {
     use std::fs::File;
 
     use super::*;
+
+    #[test]
+    fn pages_have_the_names_of_the_download_and_stay_in_their_folder() {
+        for (download, expected) in [
+            (
+                Some("Anna Smith_1_assignsubmission_file_/"),
+                "Anna Smith_1_assignsubmission_file_/feedback.html",
+            ),
+            (Some("smithanna_1_2_"), "smithanna_1_2_feedback.html"),
+            (None, "Anna-Smith/feedback.html"),
+            (Some("../"), "Anna-Smith/feedback.html"),
+            (Some("a/../../"), "Anna-Smith/feedback.html"),
+            (Some("a\\b/"), "Anna-Smith/feedback.html"),
+            (Some("/"), "Anna-Smith/feedback.html"),
+        ] {
+            let entry = Entry {
+                folder: "Anna-Smith".to_owned(),
+                name: "Anna Smith".to_owned(),
+                id: None,
+                download: download.map(str::to_owned),
+                time: unknown(),
+                late: None,
+                files: Vec::new(),
+                skipped: Vec::new(),
+            };
+            assert_eq!(entry.page(), expected, "{download:?}");
+        }
+    }
 
     #[test]
     fn a_roster_above_the_limit_is_too_large_and_not_read() {

@@ -7,7 +7,8 @@ use toyproof_diagnostic::{grouped, path_name, plural, printable};
 use toyproof_image::output;
 
 use super::class::ClassAssignment;
-use super::collection::{Lateness, StudentFolder};
+use super::collection::{StudentFolder, SubmittedFile};
+use super::lateness::Lateness;
 use super::naming::{Paths, file_name};
 use super::roster::{Entry, FILE_NAME, Roster, SkippedFile};
 use super::text::Content;
@@ -29,8 +30,15 @@ pub fn write_student(
     student_folder: &StudentFolder,
     lateness: Lateness,
 ) -> Result<(Entry, Vec<String>), String> {
+    let files = &student_folder.submission.files;
+    let belongs = |file: &&SubmittedFile| {
+        file.is_shader() && assignment.is_none_or(|assignment| assignment.has(&file.original_path()))
+    };
+    let named = files.iter().find(belongs).or(files.first());
     let mut entry = Entry {
         folder: student_folder.name.clone(),
+        download: named.map(|file| file.download.clone()),
+        time: student_folder.submission.time(assignment),
         name: student_folder.student.name.clone(),
         id: student_folder.student.id.clone(),
         late: match lateness {
@@ -42,7 +50,7 @@ pub fn write_student(
     };
     let mut notes = Vec::new();
     let mut paths = Paths::default();
-    for handed in &student_folder.submission.files {
+    for handed in files {
         let original = handed.original_path();
         let mut skip = |reason: &str| {
             let (file, reason) = (original.clone(), reason.to_owned());

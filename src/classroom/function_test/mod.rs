@@ -28,6 +28,7 @@
 //! - `assertion`: the grammar of a test in one line, such as `|normalAt(p)| == 1 for p in [-2, 2]`, and its
 //!   `tokens`.
 //! - `file`: the TOML of tests, of test files and of assignments; `comment`: the tests in a shader's comments.
+//! - `text`: the text of a test file.
 //! - `listed`: the listed calls of a function; `typed`: the types of an assertion; `sampled`: its values, for
 //!   all samples of its variables.
 //! - `evaluation`: evaluates a generated function after the shader; `source`: maps its places to those of
@@ -46,6 +47,7 @@ mod sampled;
 mod source;
 mod subject;
 mod test;
+mod text;
 mod tokens;
 mod typed;
 mod value;
@@ -63,9 +65,28 @@ pub use self::result::{Run, TestError, TestResult};
 pub use self::source::Snippet;
 pub use self::subject::Subject;
 pub use self::test::{DEFAULT_TOLERANCE, FunctionCases, FunctionTest, ListedCall, MAX_TESTS, Precision};
+pub(crate) use self::text::test_file;
 pub(crate) use self::value::{literal_text, parts};
 
 impl FunctionTest {
+    /// The names in the tests, which may be those of functions.
+    pub(crate) fn names(&self) -> Vec<&str> {
+        let is_part = |character: char| character.is_ascii_alphanumeric() || character == '_';
+        let after = self.after.iter().flat_map(move |after| {
+            let words = after.text().split(move |character| !is_part(character));
+            words.filter(|word| is_identifier(word))
+        });
+        let assertions: &[Assertion] = match &self.cases {
+            FunctionCases::Written { assertions, .. } => assertions,
+            FunctionCases::Stress => &[],
+        };
+        assertions
+            .iter()
+            .flat_map(Assertion::names)
+            .chain(after)
+            .collect()
+    }
+
     /// The record of a shader that does not compile.
     #[must_use]
     pub fn untested(&self) -> FunctionRecord {

@@ -31,7 +31,7 @@ impl Subject<'_> {
     }
 
     /// The definitions of all functions of that name.
-    pub(super) fn functions<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s Function> {
+    pub(crate) fn functions<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s Function> {
         let functions = self.checked.tree.functions.iter().map(|(_, function)| function);
         functions.filter(move |function| function.name == name && function.body.is_some())
     }

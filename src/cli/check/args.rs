@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use toyproof_explain::repair::DEFAULT_BUDGET;
 use toyproof_report::Hints;
-use toyproof_report::platform::Platform;
+use toyproof_report::platform::{PLATFORMS, Platform};
 use toyproof_verify::Difference;
 
 use super::options::{BatchOptions, CheckFormat, CheckOptions, Options, PlanOptions, TaskInputs};
@@ -28,6 +28,7 @@ Examples:
   toyproof check homework --assignment shadows/assignment.toml --out marks
   toyproof check mine.glsl --scene scene.toml --format json
   toyproof check moodle.zip --class class.toml --out marks
+  toyproof check homework --assignment shadows --out marks --feedback feedback.zip
 
 Exit code: 0 if every shader is correct or ok, 1 if one is not, 2 for any other error.
 With --shard: 0 if the shard is complete, else 2.")]
@@ -65,6 +66,14 @@ pub(in crate::cli) struct Args {
     /// junit.xml and report.sarif; with --class, class.csv.
     #[arg(short, long, value_name = "DIR", help_heading = "Reports")]
     out: Option<PathBuf>,
+    /// Write a page for each student into this folder or archive
+    ///
+    /// The page has the student's own shaders: verdict, points, images, functions and rules. It has the name
+    /// that a collected download of Moodle or Canvas has, so that the archive can be uploaded there. It shows
+    /// of a mistake what --hints permits, but no edits, whose expressions may be those of the reference or of
+    /// other students. Several assignments have a folder or an archive each.
+    #[arg(long, value_name = "DIR|FILE.zip", requires = "out", help_heading = "Reports")]
+    feedback: Option<PathBuf>,
     /// Reuse results of an earlier run into the same folder
     ///
     /// A result is reused if shader, reference and flags are unchanged. The earlier run may have been
@@ -90,10 +99,21 @@ pub(in crate::cli) struct Args {
     /// A rubric (.toml): points for compiling and for each check, for report.csv and results.json
     #[arg(long, value_name = "RUBRIC.toml", requires = "out", help_heading = "Reports")]
     rubric: Option<PathBuf>,
-    /// The grading platform that reads results.json
-    #[arg(long, value_name = "PLATFORM", value_parser = platform(), default_value = "gradescope",
-          requires = "out", help_heading = "Reports")]
-    autograder: &'static Platform,
+    /// What the teacher decides on single shaders (.toml) [default: decisions.toml beside the class or the
+    /// assignment]
+    ///
+    /// Each table `[[decision]]` has a `shader` by its path in the report, or a `student` and in a class an
+    /// `assignment`; a `verdict`, `points` or both; and a `reason`. All reports and the exit code follow the
+    /// decisions; --resume and a later check never lose them.
+    #[arg(long, value_name = "FILE", help_heading = "Reports")]
+    decisions: Option<PathBuf>,
+    /// The grading platform that reads results.json [default: gradescope]
+    ///
+    /// Platforms know when a submission is due: if one is named, the deadline of the assignment has no
+    /// effect.
+    #[arg(long, value_name = "PLATFORM", value_parser = platform(), requires = "out",
+          help_heading = "Reports")]
+    autograder: Option<&'static Platform>,
     /// What reports show of the mistake in a wrong shader [default: line for students' reports, else fix]
     ///
     /// Students' reports are junit.xml and results.json. If this option is given, it applies to
@@ -155,6 +175,8 @@ impl Args {
             },
             class: self.class.clone(),
             costs: self.costs.clone(),
+            decisions: self.decisions.clone(),
+            is_on_platform: self.autograder.is_some(),
             plan: PlanOptions {
                 reference: self.reference.clone(),
                 permitted: self.permit.clone(),
@@ -172,13 +194,14 @@ impl Args {
                 format: self.format,
                 jobs: self.jobs.map(usize::from),
                 out: self.out.clone(),
+                feedback: self.feedback.clone(),
                 resume: self.resume,
                 shard: self.shard,
                 // The expression that repairs a shader may be in another shard; `merge` searches.
                 searches_again: self.search > 0.0 && self.shard.is_none(),
                 teachers_hints: hints(Hints::Fix),
                 students_hints: hints(Hints::Line),
-                platform: self.autograder,
+                platform: self.autograder.unwrap_or(PLATFORMS[0]),
             },
         }
     }

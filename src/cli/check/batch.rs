@@ -5,6 +5,7 @@ use std::num::NonZero;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use toyproof_classroom::decisions::Decisions;
 use toyproof_diagnostic::{Severity, grouped, path_name, plural};
 use toyproof_project::files::Input;
 use toyproof_report::{self as report, Detail, Earlier, Layout, Record, Report, Rubrics, Tally};
@@ -12,6 +13,8 @@ use toyproof_verify::Verdict;
 use toyproof_verify::contain::{Part, contain};
 
 use super::checker::{Checker, WorkerContext};
+use super::decisions::decided;
+use super::feedback;
 use super::options::{BatchOptions, CheckFormat};
 use super::outcome::{Log, Message, Outcome};
 use super::reference::unused_scene;
@@ -47,12 +50,13 @@ pub(super) struct Batch<'a> {
     pub(super) options: &'a BatchOptions,
     pub(super) terminal: &'a Terminal,
     rubrics: Rubrics,
+    pub(super) decisions: &'a Decisions,
     results: Option<Results>,
     /// The report that is compared with.
     earlier: Option<Earlier>,
     /// The results that wait for their turn, each with the index of its submission.
     order: InOrder<(usize, Outcome)>,
-    /// The reported records, in order.
+    /// The reported records, in order, without decisions.
     pub(super) records: Vec<Record>,
     /// The index of each one's submission.
     pub(super) reported: Vec<usize>,
@@ -73,6 +77,7 @@ impl<'a> Batch<'a> {
     pub(super) fn new(
         options: &'a BatchOptions,
         rubrics: Rubrics,
+        decisions: &'a Decisions,
         results: Option<Results>,
         earlier: Option<Earlier>,
         submissions: &[Submission],
@@ -82,6 +87,7 @@ impl<'a> Batch<'a> {
             options,
             terminal,
             rubrics,
+            decisions,
             results,
             earlier,
             order: InOrder::default(),
@@ -230,7 +236,7 @@ impl<'a> Batch<'a> {
             self.print(message, record.verdict);
         }
         match self.options.format {
-            CheckFormat::Human => match contain(Part::Summary, || report::lines(&record, &self.layout)) {
+            CheckFormat::Human => match contain(Part::Summary, || self.lines(&record)) {
                 Ok(lines) => self.terminal.result(&lines),
                 Err(panic) => {
                     let Record { shader, verdict, .. } = &record;
@@ -250,6 +256,11 @@ impl<'a> Batch<'a> {
         self.device = log.device.or(self.device.take());
         self.records.push(record);
         self.reported.push(index);
+    }
+
+    /// The lines of a shader on the terminal, with the decision on it.
+    pub(super) fn lines(&self, record: &Record) -> String {
+        report::lines(&decided(record.clone(), self.decisions), &self.layout)
     }
 
     /// Prints a message. For many shaders, diagnostics are not shown with their source lines: errors are
@@ -276,6 +287,7 @@ impl<'a> Batch<'a> {
             options,
             terminal,
             rubrics,
+            decisions,
             records,
             reported,
             device,
@@ -287,7 +299,8 @@ impl<'a> Batch<'a> {
             ..
         } = self;
         let reported: Vec<_> = reported.into_iter().map(|index| &submissions[index]).collect();
-        let report = Report::new(device, records);
+        let records = records.into_iter().map(|record| decided(record, decisions));
+        let report = Report::new(device, records.collect());
         match options.format {
             CheckFormat::Human => {
                 print_summary(&report, hidden_warnings, start.elapsed(), terminal);
@@ -309,6 +322,7 @@ impl<'a> Batch<'a> {
             CheckFormat::Short => {}
             CheckFormat::Json => failed |= terminal.stream(|stdout| report.json(stdout)).is_err(),
         }
+        warn_without_rubric(&report, &rubrics, terminal);
         if let Some(earlier) = earlier {
             print_changes(&earlier, &report, options.format, terminal);
         }
@@ -316,7 +330,8 @@ impl<'a> Batch<'a> {
             // Before the reports are written, which would create the folder again.
             let is_there = results.as_ref().map_or(Ok(()), Results::check_place);
             let written = options.shard.is_some()
-                || reports::write(&report, &reported, &rubrics, options, out, terminal);
+                || reports::write(&report, &reported, &rubrics, options, out, terminal)
+                    & feedback::write(&report, &reported, &rubrics, options, terminal);
             match is_there {
                 Ok(()) if written => terminal.note(&match options.shard {
                     None => format!("report: {}", path_name(&out.join("report.html"))),
@@ -376,6 +391,23 @@ fn print_summary(report: &Report, hidden_warnings: u64, elapsed: Duration, termi
             plural(without, "shader", "shaders")
         ));
         terminal.help("name a scene with --scene or a shader or image with --reference, or put NAME.toml beside NAME.glsl");
+    }
+}
+
+/// Warns of decided points of shaders for which there is no rubric, so that no report has points.
+fn warn_without_rubric(report: &Report, rubrics: &Rubrics, terminal: &Terminal) {
+    for record in report.shaders() {
+        let has_points = record
+            .decision
+            .as_ref()
+            .is_some_and(|decision| decision.points.is_some());
+        if has_points && rubrics.find(record).is_none() {
+            let shader = &record.shader;
+            terminal.warn(format_args!(
+                "the points decided for {shader} are in no table: nothing gives points"
+            ));
+            terminal.help("add [rubric.algorithm] with `points = 6` to the assignment, or use --rubric");
+        }
     }
 }
 

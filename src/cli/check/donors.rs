@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use toyproof_diagnostic::{grouped, plural};
 use toyproof_explain::repair::Donors;
-use toyproof_report::{self as report, Record};
+use toyproof_report::Record;
 use toyproof_verify::Verdict;
 
 use super::batch::Batch;
@@ -130,7 +130,7 @@ impl Batch<'_> {
                 message.print(self.terminal);
             }
             if self.options.format == CheckFormat::Human {
-                self.terminal.result(&report::lines(&record, &self.layout));
+                self.terminal.result(&self.lines(&record));
             }
             self.failed |= log.failed;
             self.records[place] = record;

@@ -9,7 +9,9 @@ use toyproof_explain::Findings;
 use toyproof_explain::departure::ValueImages;
 use toyproof_image::{self as image, ImageError, Rgb8Image, input, output};
 use toyproof_project::files;
-use toyproof_report::{Exhibit, Gallery, MAX_IMAGE_BYTES, Rubric, StudentImages, Thumbnails, subsample};
+use toyproof_report::{
+    Exhibit, Gallery, Hints, MAX_IMAGE_BYTES, Rubric, StudentImages, Thumbnails, subsample,
+};
 use toyproof_verify::CheckResult;
 use toyproof_verify::compare::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE};
 use toyproof_verify::contain::{Part, contain};
@@ -119,13 +121,39 @@ pub(super) fn keep(out: &Path, stem: &Path, kinds: &[ImageKind], findings: Optio
 
 // The parts of a shader on the report page: its text, and the images that were written.
 
+/// Which images of shaders a page has.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Shown {
+    /// All, for teachers.
+    All,
+    /// Those that the rubric and the hints permit, for the author of the shaders.
+    Student(StudentImages, Hints),
+}
+
+impl Shown {
+    /// Whether a page has the image with this suffix.
+    fn has(self, suffix: &str) -> bool {
+        match self {
+            Self::All => true,
+            Self::Student(StudentImages::None, _) => false,
+            Self::Student(StudentImages::Rendered, _) => suffix == "-actual.png",
+            Self::Student(StudentImages::All, hints) => match suffix {
+                // What the reference computes on the way to its image.
+                "-reference-value.png" => false,
+                "-fixed.png" | "-value.png" => hints >= Hints::Line,
+                _ => true,
+            },
+        }
+    }
+}
+
 /// Builds the gallery of the shaders of a page, subsampling the images until it fits [`MAX_IMAGE_BYTES`].
-pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
+pub(super) fn gallery(submissions: &[&Submission], shown: Shown) -> Gallery {
     let mut step = 1;
     loop {
         let mut gallery = Gallery::new(step);
         for submission in submissions {
-            let exhibit = exhibit(submission, step, &mut gallery);
+            let exhibit = exhibit(submission, step, shown, &mut gallery);
             gallery.add_exhibit(exhibit);
         }
         if gallery.bytes() <= MAX_IMAGE_BYTES {
@@ -137,7 +165,7 @@ pub(super) fn gallery(submissions: &[&Submission]) -> Gallery {
     }
 }
 
-fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit {
+fn exhibit(submission: &Submission, step: u32, shown: Shown, gallery: &mut Gallery) -> Exhibit {
     let mut exhibit = Exhibit::default();
     // Unreadable files are not shown: the record holds the reason.
     if let Ok(found) = &submission.input
@@ -150,25 +178,32 @@ fn exhibit(submission: &Submission, step: u32, gallery: &mut Gallery) -> Exhibit
         return exhibit;
     };
     let paths = IMAGES.map(|kind| with_suffix(stem, kind.suffix));
-    let [actual, reference, _, fixed, checks @ .., value, reference_value] = paths;
+    let is_shown = |path: &Path| {
+        let kind = IMAGES.iter().zip(&paths).find(|(_, known)| *known == path);
+        kind.is_some_and(|(kind, _)| shown.has(kind.suffix))
+    };
+    let [actual, reference, _, fixed, checks @ .., value, reference_value] = &paths;
     // The images of checks have a legend at the bottom, which the page does not show.
     let size = if step == 1 {
         None
     } else {
-        image::read_shown(&actual).ok().map(|actual| actual.size())
+        image::read_shown(actual).ok().map(|actual| actual.size())
     };
     let mut add = |path: &Path| {
+        if !is_shown(path) {
+            return None;
+        }
         let png = match size {
             None => input::read(path).ok(),
             Some(size) => subsampled_png(path, step, size).ok(),
         };
         png.map(|png| gallery.add_image(png))
     };
-    exhibit.actual = add(&actual);
-    exhibit.reference = add(&reference);
-    exhibit.fixed = add(&fixed);
-    exhibit.checks = checks.map(|path| add(&path));
-    exhibit.values = [value, reference_value].map(|path| add(&path));
+    exhibit.actual = add(actual);
+    exhibit.reference = add(reference);
+    exhibit.fixed = add(fixed);
+    exhibit.checks = checks.each_ref().map(|path| add(path));
+    exhibit.values = [value, reference_value].map(|path| add(path));
     exhibit
 }
 

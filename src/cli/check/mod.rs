@@ -3,9 +3,11 @@
 mod args;
 mod batch;
 mod checker;
+mod decisions;
 mod donors;
 mod earlier;
 mod features;
+mod feedback;
 mod images;
 mod merge;
 mod options;

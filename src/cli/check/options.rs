@@ -19,6 +19,10 @@ pub(super) struct Options {
     pub(super) class: Option<PathBuf>,
     /// The earlier report whose times balance the shards.
     pub(super) costs: Option<PathBuf>,
+    /// The file of the teacher's decisions, if it is not the one beside the class or the assignment.
+    pub(super) decisions: Option<PathBuf>,
+    /// Whether a grading platform checks the shaders, which knows when they are due.
+    pub(super) is_on_platform: bool,
     pub(super) plan: PlanOptions,
     pub(super) check: CheckOptions,
     pub(super) batch: BatchOptions,
@@ -61,6 +65,8 @@ pub(super) struct BatchOptions {
     pub(super) jobs: Option<usize>,
     /// The folder of the reports, if they are written.
     pub(super) out: Option<PathBuf>,
+    /// The folder or the archive of the pages for students, if they are written.
+    pub(super) feedback: Option<PathBuf>,
     /// Whether results of an earlier run into this folder are reused.
     pub(super) resume: bool,
     pub(super) shard: Option<Shard>,

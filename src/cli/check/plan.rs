@@ -29,6 +29,8 @@ pub(super) struct Plan {
     pub(super) uniforms: Vec<UniformValue>,
     /// The assignment and its text, if there is one.
     pub(super) assignment: Option<(Assignment, String)>,
+    /// The file of the assignment.
+    pub(super) assignment_file: Option<PathBuf>,
 }
 
 /// A frame in which shaders are checked.
@@ -68,6 +70,7 @@ impl Plan {
             rubric,
             uniforms: Vec::new(),
             assignment: None,
+            assignment_file: None,
         };
         let mut frames = vec![options.frame.clone()];
         if let Some(path) = assignment {
@@ -81,6 +84,7 @@ impl Plan {
             plan.uniforms.clone_from(&assignment.uniforms);
             plan.rubric = plan.rubric.or_else(|| assignment.rubric.clone());
             plan.assignment = Some((assignment, text));
+            plan.assignment_file = Some(path);
         }
         for inputs in frames {
             let frame = inputs.load()?;

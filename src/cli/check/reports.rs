@@ -12,7 +12,7 @@ use toyproof_report::{
 };
 use toyproof_verify::contain::{Part, contain};
 
-use super::images::{gallery, thumbnails};
+use super::images::{Shown, gallery, thumbnails};
 use super::options::BatchOptions;
 use super::submission::Submission;
 use crate::cli::Terminal;
@@ -127,13 +127,13 @@ impl Folder<'_> {
         let mut parts = 0;
         if submissions.len() <= MAX_PAGE_SHADERS {
             self.write(name, |file| {
-                file.write_all(html(report, rubrics, &gallery(submissions), date).as_bytes())
+                file.write_all(html(report, rubrics, &gallery(submissions, Shown::All), date).as_bytes())
             });
         } else {
             for submissions in submissions.chunks(MAX_PAGE_SHADERS) {
                 parts += 1;
                 self.write(part_path(parts), |file| {
-                    let page = html_part(report, parts, rubrics, &gallery(submissions), date);
+                    let page = html_part(report, parts, rubrics, &gallery(submissions, Shown::All), date);
                     file.write_all(page.as_bytes())
                 });
             }

@@ -31,9 +31,19 @@ pub(super) struct Submission {
     pub(super) task: usize,
     /// The student and the assignment, for a class.
     pub(super) submitted: Option<StudentSubmission>,
+    /// The path of the student's page in the folder of `--feedback`, if the student is known.
+    pub(super) page: Option<String>,
 }
 
 impl Submission {
+    /// The name in reports, also of a shader that cannot be read.
+    pub(super) fn shown_name(&self) -> String {
+        match &self.input {
+            Ok(found) => found.name(),
+            Err(error) => error.name(),
+        }
+    }
+
     /// Whether the shader belongs to an assignment of a class.
     pub(super) fn is_assigned(&self) -> bool {
         let assignment = self.submitted.as_ref().map(|one| &one.assignment);
@@ -66,6 +76,7 @@ impl Submission {
             output_stem,
             task: 0,
             submitted: None,
+            page: None,
             input,
         }
     }

@@ -5,11 +5,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use toyproof_classroom::collect::roster::Owners;
+use toyproof_classroom::decisions::Decisions;
 use toyproof_project::files::{Input, ReadError};
 use toyproof_report::{Earlier, Rubrics};
 
 use super::batch::Batch;
 use super::checker::Checker;
+use super::decisions::DecisionFiles;
 use super::earlier::earlier;
 use super::features::Features;
 use super::images::IMAGES;
@@ -32,6 +34,7 @@ pub(super) struct Work {
     tasks: Vec<Task>,
     rubrics: Rubrics,
     pub(super) submissions: Vec<Submission>,
+    decisions: Decisions,
 }
 
 impl From<ClassPart> for TaskInputs {
@@ -109,6 +112,7 @@ impl Work {
     /// Reads the tasks that the options name. With the `build` that checks them, submissions have keys.
     pub(super) fn new(options: &Options, build: Option<&str>, terminal: &Terminal) -> Result<Self, CliError> {
         let costs = earlier(options.costs.as_deref())?;
+        let mut decisions = DecisionFiles::new(options.decisions.as_deref(), options.class.as_deref())?;
         let collected = options.batch.out.as_ref().map(|out| out.join(SUBMISSIONS));
         let parts;
         let parts = match &options.class {
@@ -129,11 +133,17 @@ impl Work {
             tasks: Vec::new(),
             rubrics: Rubrics::default(),
             submissions: Vec::new(),
+            decisions: Decisions::default(),
         };
         for part in parts {
             let mut common = Task::new(options, part, terminal)?;
+            if let Some(file) = &common.plan.assignment_file {
+                decisions.add_beside(file, part.name.as_deref())?;
+            }
             let mut inputs = find_submissions(&part.shaders, terminal);
-            let owners = Owners::read(&part.shaders, &mut inputs, |error| terminal.warn(error));
+            let deadline = common.plan.assignment.as_ref().and_then(|(one, _)| one.deadline);
+            let deadline = deadline.filter(|_| !options.is_on_platform);
+            let owners = Owners::read(&part.shaders, &mut inputs, deadline, |error| terminal.warn(error));
             match (&part.name, common.plan.rubric.take()) {
                 (None, rubric) => work.rubrics = rubric.into(),
                 (Some(name), Some(rubric)) => work.rubrics.add(name.clone(), rubric),
@@ -159,7 +169,8 @@ impl Work {
                 if let (Ok(input), Some(name)) = (&mut input, &part.name) {
                     input.relative = Path::new(name).join(&input.relative);
                 }
-                let submitted = owners.find(&input).cloned();
+                let owner = owners.find(&input).cloned();
+                let (submitted, page) = owner.map(|owner| (owner.submitted, owner.page)).unzip();
                 let own = match own.transpose() {
                     Ok(own) => own,
                     Err(error) => {
@@ -179,12 +190,14 @@ impl Work {
                     seconds,
                     task,
                     submitted,
+                    page,
                     ..submission
                 });
             }
             work.tasks.push(common);
             work.tasks.extend(own_tasks);
         }
+        work.decisions = decisions.finish(&work.submissions, terminal);
         Ok(work)
     }
 
@@ -220,7 +233,16 @@ impl Work {
     ) -> Exit {
         let submissions = &self.submissions;
         let rubrics = std::mem::take(&mut self.rubrics);
-        let mut batch = Batch::new(&options.batch, rubrics, results, earlier, submissions, terminal);
+        let decisions = &self.decisions;
+        let mut batch = Batch::new(
+            &options.batch,
+            rubrics,
+            decisions,
+            results,
+            earlier,
+            submissions,
+            terminal,
+        );
         let tasks = self.tasks.iter();
         let checkers =
             tasks.map(|task| Checker::new(&options.check, &task.plan, &task.references, &task.features));

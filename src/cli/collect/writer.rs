@@ -4,8 +4,9 @@ use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use toyproof_classroom::collect::class::ClassAssignment;
-use toyproof_classroom::collect::collection::{Collection, Lateness};
-use toyproof_classroom::collect::roster::{Entry, Roster};
+use toyproof_classroom::collect::collection::Collection;
+use toyproof_classroom::collect::lateness::Lateness;
+use toyproof_classroom::collect::roster::{Entry, Roster, unknown_times};
 use toyproof_classroom::collect::storage::write_student;
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_report::{Detail, Layout};
@@ -34,10 +35,11 @@ impl Writer<'_> {
     pub(super) fn write(&self, collection: &Collection) -> Result<(), CliError> {
         let names = collection.students.iter().map(|own| own.name.as_str());
         let layout = Layout::new(names, self.terminal.width(), Detail::Normal);
+        let deadline = self.assignment.and_then(|assignment| assignment.deadline);
         let mut students = Vec::new();
         let mut unknown = 0;
         for own in &collection.students {
-            let lateness = own.submission.lateness(self.assignment);
+            let lateness = own.submission.time(self.assignment).lateness(deadline);
             unknown += u64::from(lateness == Lateness::Unknown);
             let (entry, notes) = write_student(self.folder, self.assignment, own, lateness)?;
             self.print(&entry, &notes, &layout);
@@ -47,6 +49,7 @@ impl Writer<'_> {
         let with_shader = grouped(with_shader.count() as u64);
         let roster = Roster {
             assignment: self.assignment.map(|assignment| assignment.name.clone()),
+            has_deadline: deadline.is_some(),
             students,
         };
         if let Err(error) = roster.write(self.folder) {
@@ -54,12 +57,7 @@ impl Writer<'_> {
             return Err(CliError::new("the list of students was not written"));
         }
         if unknown > 0 {
-            self.terminal.warn(format_args!(
-                "{}: {} {} as on time: the download does not state when",
-                path_name(self.folder),
-                grouped(unknown),
-                plural(unknown, "submission counts", "submissions count")
-            ));
+            self.terminal.warn(unknown_times(self.folder, unknown));
         }
         let count = roster.students.len() as u64;
         self.terminal.note(&format!(

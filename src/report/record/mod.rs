@@ -27,7 +27,8 @@ use super::departure::Departure;
 use super::reason::{Statement, state, state_reason};
 use super::unused::sentences;
 use super::{
-    FeatureRecord, FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord, StudentSubmission, Suspect,
+    DecisionRecord, FeatureRecord, FrameRecord, FunctionRecord, GrowthRecord, Repair, RulesRecord,
+    StudentSubmission, Suspect,
 };
 
 /// The JSON Schema of a [`Report`].
@@ -166,6 +167,9 @@ pub struct Record {
     /// The student and the assignment; null if no class is checked.
     #[serde(default)]
     pub submitted: Option<StudentSubmission>,
+    /// What a teacher decided instead of the check; null if nothing.
+    #[serde(default)]
+    pub decision: Option<DecisionRecord>,
     /// The diagnostics on the shader and its scene.
     pub diagnostics: Vec<diagnostic::Json>,
     /// The time of each stage.
@@ -283,6 +287,7 @@ impl Record {
             functions: Vec::new(),
             features: Vec::new(),
             submitted: None,
+            decision: None,
             diagnostics: Vec::new(),
             seconds: Seconds::default(),
         }

@@ -4,7 +4,7 @@ use super::*;
 use crate::frames::samples::in_frames;
 use crate::record::samples::{every_verdict, record};
 use crate::repair::samples::{repaired, suspected};
-use crate::{Hints, growth, repair, written};
+use crate::{Decision, Hints, growth, repair, written};
 
 #[test]
 fn reports_follow_the_schema_and_broken_ones_do_not() {
@@ -35,6 +35,11 @@ fn reports_follow_the_schema_and_broken_ones_do_not() {
         repaired().redacted(Hints::Line),
     ];
     records.extend(every_verdict());
+    records.push(repaired().with_decision(&Decision {
+        verdict: Some(Verdict::Correct),
+        points: Some(2.5),
+        reason: "the sheet was wrong".to_owned(),
+    }));
     let report = Report::new(Some("x".to_owned()), records);
     let mut json: serde_json::Value = serde_json::from_str(&written(|out| report.json(out))).unwrap();
     assert!(

@@ -1,16 +1,20 @@
 //! `toyproof new`
 
+mod pack;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use toyproof_classroom::assignment::{FILE_NAME, Model};
 use toyproof_classroom::function_test::Subject;
+use toyproof_classroom::pack::frame_name;
 use toyproof_diagnostic::path_name;
 use toyproof_image as image;
 use toyproof_project::files;
 use toyproof_scene as scene;
 use toyproof_verify::Expected;
 
+use self::pack::{PackArgs, new_pack};
 use super::inputs::{LanguageArgs, parse_time_limit};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::scenes::{parse_scene, read_scene};
@@ -44,6 +48,16 @@ enum What {
                            toyproof check homework --assignment shadows/assignment.toml"
     )]
     Assignment(AssignmentArgs),
+    /// Create what students get of an assignment: images, a shader to begin with, tests and requirements
+    ///
+    /// Nothing of the solution is in it: the shader has the functions that the assignment names, without
+    /// their bodies. README.md states frames, rules, points, and the commands with which students check their
+    /// shaders.
+    #[command(
+        after_long_help = "Examples:\n  toyproof new pack shadows -o shadows-for-students\n  \
+                           toyproof new pack shadows/assignment.toml -o shadows.zip"
+    )]
+    Pack(PackArgs),
     /// Create a class: its students, and the files, assignments and deadlines of its submissions, with
     /// comments
     #[command(after_long_help = "Example:\n  toyproof new class spring\n  \
@@ -124,6 +138,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     match &args.what {
         What::Scene(args) => new_scene(args, terminal)?,
         What::Assignment(args) => new_assignment(args, terminal)?,
+        What::Pack(args) => new_pack(args, terminal)?,
         What::Class(args) => new_class(args, terminal)?,
         What::Project(args) => new_project(args, terminal)?,
     }
@@ -160,7 +175,7 @@ fn new_scene(args: &SceneArgs, terminal: &Terminal) -> Result<(), CliError> {
 }
 
 fn new_class(args: &ClassArgs, terminal: &Terminal) -> Result<(), CliError> {
-    let text = include_str!("template/class.toml");
+    let text = include_str!("../template/class.toml");
     if let Some(path) = create_file(&args.name, args.output.as_deref(), text, terminal)? {
         let class = quoted(&path_name(&path));
         terminal.note(&format!("  edit {class}"));
@@ -204,11 +219,7 @@ const SCENE: &str = "scene.toml";
 fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), CliError> {
     let folder = args.output.clone().unwrap_or_else(|| PathBuf::from(&args.name));
     let name = path_name(&folder);
-    if folder.exists() {
-        return Err(CliError::new(format_args!(
-            "{name} already exists; choose another name, or another folder with `-o`"
-        )));
-    }
+    refuse_existing(&folder)?;
     let files = if files::is_shader(&args.from) {
         from_shader(args, terminal)?
     } else {
@@ -226,6 +237,17 @@ fn new_assignment(args: &AssignmentArgs, terminal: &Terminal) -> Result<(), CliE
     terminal.note(&format!("  edit {assignment}"));
     terminal.note(&format!("  toyproof check {}", quoted(&name)));
     terminal.note(&format!("  toyproof check SUBMISSIONS --assignment {assignment}"));
+    Ok(())
+}
+
+/// Refuses to change what exists.
+fn refuse_existing(path: &Path) -> Result<(), CliError> {
+    if path.exists() {
+        let name = path_name(path);
+        return Err(CliError::new(format_args!(
+            "{name} already exists; choose another name, or another folder with `-o`"
+        )));
+    }
     Ok(())
 }
 
@@ -291,7 +313,7 @@ fn load(model: &Model) -> Result<Vec<image::Frame>, CliError> {
 
 /// The image of a frame, as students should see it.
 fn thumbnail(index: usize, expected: &Expected, frame: &image::Frame) -> Result<(String, Vec<u8>), CliError> {
-    let name = format!("frame-{}.png", index + 1);
+    let name = frame_name(index);
     let bytes = image::encode(&expected.image(frame)?, name.as_ref())?;
     Ok((name, bytes))
 }
