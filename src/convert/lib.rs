@@ -36,7 +36,7 @@ pub use proof::{
 pub use prover::{ProofError, Prover, Reader, Readers, ShaderProof};
 use thiserror::Error;
 pub use tool::ToolError;
-use toyproof_diagnostic::{Code, Deadline, Files, Overdue};
+use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
@@ -53,10 +53,14 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
+    /// The text that was compiled: with included files, and what a host declares.
+    fn file(&self) -> FileId {
+        self.checked.tree[self.checked.main_image].at.span.file
+    }
+
     /// The author's text.
     fn text(&self) -> &str {
-        let at = self.checked.tree[self.checked.main_image].at;
-        self.files.get(at.span.file).text()
+        self.files.get(self.file()).text()
     }
 }
 
@@ -79,6 +83,19 @@ pub struct Converter {
     pub float: FloatMode,
     /// The time limit of each step.
     pub timeout: Duration,
+}
+
+/// The shader with its uniforms as variables instead of their values; `None` if it reads none that has one.
+fn with_uniforms(source: Source, deadline: &Deadline) -> Option<Checked> {
+    if source.checked.values_read.is_empty() {
+        return None;
+    }
+    let options = glsl::Options {
+        keeps_uniforms: true,
+        deadline: deadline.clone(),
+        ..source.checked.options()
+    };
+    glsl::check(source.files, source.file(), &options).ok()
 }
 
 /// A shader in the target language.
@@ -299,7 +316,9 @@ impl Converter {
     /// Writes WGSL that keeps the author's names and comments, and that naga reads.
     fn write_wgsl(&self, source: Source, translator: &mut Worker) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = wgsl::wgsl(source.checked, source.files, self.style, &deadline);
+        let kept = with_uniforms(source, &deadline);
+        let checked = kept.as_ref().unwrap_or(source.checked);
+        let text = wgsl::wgsl(checked, source.files, self.style, &deadline);
         let text = text.map_err(|failure| match failure {
             wgsl::WgslFailure::Overdue(overdue) => ConvertError::Overdue(overdue),
             wgsl::WgslFailure::Unprintable(why) => ConvertError::Unwritable(WgslError::Unprintable {

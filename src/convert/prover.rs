@@ -7,8 +7,8 @@ use rayon::ThreadPool;
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Files, Overdue, grouped, plural};
 use toyproof_eval::{Fault, Observed};
-use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
+use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
 use toyproof_gpu::browser::{self, Chromium, Text};
 use toyproof_gpu::{self as gpu, ShaderArtifact};
 use toyproof_image::{Frame, Image};
@@ -168,6 +168,9 @@ pub enum ProofError {
     /// The browser cannot be given one of the channels.
     #[error("in Chromium, only shaders whose channels are 2D textures can be tested")]
     BrowserChannel,
+    /// The browser is given shaders of ShaderToy, and the original cannot be written as one.
+    #[error("the original shader cannot be rendered with WebGL 2: {0}")]
+    BrowserHost(PortError),
     /// The browser does not render the original.
     #[error("the original shader cannot be rendered with WebGL 2: {0}")]
     BrowserOriginal(browser::BrowserFailure),
@@ -401,7 +404,17 @@ pub(super) fn in_browser(
     if source.checked.reads_textures() && !source.checked.channels.iter().all(is_flat) {
         return Err(ProofError::BrowserChannel);
     }
-    let original = browser::as_shadertoy(source.text());
+    let ported;
+    let original = if source.checked.dialect.calls_main_image() {
+        source.text()
+    } else {
+        // It has been compiled within the time limit, and is compiled once more.
+        let (to, deadline) = (Dialect::ShaderToy, Deadline::default());
+        let text = glsl::port(source.checked, source.files, to, &|_, _| None, &deadline);
+        ported = text.map_err(ProofError::BrowserHost)?;
+        &ported
+    };
+    let original = browser::as_shadertoy(original);
     let sampling = source.checked.sampling;
     let render_original = |browser: &mut Chromium| {
         let images = browser.render(Text::Glsl(&original), sampling, frames);

@@ -119,6 +119,9 @@ pub struct Options {
     pub dialect: Option<Dialect>,
     /// The values of uniforms that the shader declares.
     pub uniforms: Vec<UniformValue>,
+    /// Keeps uniforms with values as variables, of which the values are the initializers, for what is written in
+    /// another language. Otherwise the values take their places.
+    pub keeps_uniforms: bool,
     /// The tab of a project that the text is.
     pub stage: Stage,
     /// Calls [`ADDED_MAIN`], which has the form of `mainImage`, instead of the function that the host calls: for
@@ -187,6 +190,7 @@ impl Checked {
             lenient: self.lenient,
             dialect: Some(self.dialect),
             uniforms: self.uniforms.clone(),
+            keeps_uniforms: false,
             stage: self.stage,
             calls_added_main: false,
             channels: self.channels.map(Some),

@@ -42,7 +42,8 @@ Examples:
 
 Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of {} bytes \
 (std140), with these inputs at these bytes: {} (elements of arrays have 16 bytes each). The texture of channel K is at \
-binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared. \
+binding 1+2K, its sampler at 2+2K; only those that the shader uses are declared. In WGSL, uniforms of the author are \
+members of a block at binding 9, elsewhere constants. \
 The passes of a project go to a folder, with graph.json, which says how they are played.
 
 Exit code: 0 if every shader was written (with --verify: and proved), 1 if a shader is at fault, 2 for any other \

@@ -156,10 +156,21 @@ impl Checker<'_> {
             let message = format!("the value of the uniform `{name}` {problem}, but it is {ty}");
             self.error(Code::BadType, at, message);
         } else {
-            let value = Bound::Value(ty, given.components.clone());
-            self.bound.insert(variable, value);
+            self.set_value(variable, given.components.clone());
         }
         true
+    }
+
+    /// Gives a uniform a value.
+    fn set_value(&mut self, variable: VariableId, components: Vec<f64>) {
+        let Variable { ty, at, .. } = self.tree[variable];
+        let value = Bound::Value(ty, components);
+        match at.filter(|_| self.keeps_uniforms) {
+            Some(at) => self.tree[variable].initializer = Some(self.bound_value(value, at)),
+            None => {
+                self.bound.insert(variable, value);
+            }
+        }
     }
 
     /// Binds a uniform to the constant with which desktop GLSL initializes it.
@@ -174,8 +185,7 @@ impl Checker<'_> {
             Value::Float(value) => value,
         };
         let components = value.components().iter().map(component).collect();
-        let ty = self.tree[variable].ty;
-        self.bound.insert(variable, Bound::Value(ty, components));
+        self.set_value(variable, components);
     }
 
     /// The first channel to which no sampler is bound, and none with a known name in the text.

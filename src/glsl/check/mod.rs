@@ -57,6 +57,8 @@ pub(crate) struct Checker<'a> {
     pub(crate) values_read: HashSet<VariableId>,
     /// The values of uniforms that the caller gives.
     uniforms: &'a [UniformValue],
+    /// Whether uniforms with values stay variables.
+    keeps_uniforms: bool,
     /// The variable that holds the color, if the host runs `main`.
     pub(crate) output: Option<VariableId>,
     pub(crate) tree: Tree,
@@ -113,6 +115,7 @@ impl<'a> Checker<'a> {
             bound: HashMap::new(),
             values_read: HashSet::new(),
             uniforms: &options.uniforms,
+            keeps_uniforms: options.keeps_uniforms,
             output: None,
             tree: Tree::default(),
             scopes: Scopes::default(),

@@ -24,6 +24,10 @@ pub(super) fn lower_globals(cx: &mut LoweringContext) {
         let Some(value) = cx.tree[variable].initializer else {
             continue;
         };
+        // The value of a uniform is a literal.
+        if cx.tree[variable].kind == VariableKind::Uniform {
+            continue;
+        }
         let evaluated = naga_evaluates(&cx.tree, &globals, value);
         if !evaluated || matches!(cx.tree[variable].ty, Type::Array(_)) {
             cx.tree[variable].kind = VariableKind::Global;

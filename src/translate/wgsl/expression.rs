@@ -153,7 +153,10 @@ impl Writer<'_> {
         let tree = &self.cx.tree;
         let may_change = |kind: &ExprKind| match kind {
             ExprKind::Variable(variable) => match tree[*variable].kind {
-                VariableKind::Const | VariableKind::Input(_) | VariableKind::Channel(_) => false,
+                VariableKind::Const
+                | VariableKind::Input(_)
+                | VariableKind::Channel(_)
+                | VariableKind::Uniform => false,
                 VariableKind::Local | VariableKind::Parameter(Direction::In) => {
                     self.facts.is_memory(*variable)
                 }
@@ -214,6 +217,7 @@ impl Writer<'_> {
             VariableKind::BuiltIn(_) | VariableKind::BuiltInConstant => {
                 Err(Unprintable::Construct("this built-in variable"))
             }
+            VariableKind::Uniform if self.is_in_block(id) => Ok(self.uniform(id)),
             _ if is_out(self.cx, id) => Ok(Text::new(format!("*{}", self.variable(id)), Class::Unary)),
             _ => Ok(Text::primary(self.variable(id))),
         }

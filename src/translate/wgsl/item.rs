@@ -58,6 +58,9 @@ impl Writer<'_> {
         if matches!(variable.ty, Type::Sampler(_)) {
             return Err(Unprintable::Construct("a sampler that is not a channel"));
         }
+        if self.is_in_block(id) {
+            return self.add_uniform(id);
+        }
         let follows_blank_line = variable.at.is_some_and(|at| self.comments.follows_blank_line(at));
         if follows_blank_line || self.out.ends_with("}\n") {
             self.line("");
@@ -69,6 +72,8 @@ impl Writer<'_> {
         let name = self.variable(id);
         let word = match variable.kind {
             VariableKind::Const => "const",
+            // The host has no block for it.
+            VariableKind::Uniform if variable.initializer.is_some() => "const",
             _ => "var<private>",
         };
         let line = match variable.initializer {

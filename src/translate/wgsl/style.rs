@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
-    Direction, ExprId, ExprKind, Input, InputType, Place, Sampler, SamplerShape, Swizzle, Type, VariableId,
-    VariableKind,
+    Direction, ExprId, ExprKind, Input, InputType, Place, Sampler, SamplerShape, Scalar, Swizzle, Type,
+    Variable, VariableId, VariableKind,
 };
 
 use super::Unprintable;
-use super::writer::{Text, Writer};
+use super::writer::{Class, Text, Writer};
 use crate::print::Order;
 
 /// The kind of host that WGSL is written for.
@@ -33,12 +33,12 @@ pub enum Style {
 }
 
 // The names that the hosts and their substitutes declare.
-const PLAIN_NAMES: &str = "Inputs inputs main gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 iChannel0_sampler \
+const PLAIN_NAMES: &str = "Inputs inputs Uniforms uniforms main gl_FragCoord iChannel0 iChannel1 iChannel2 iChannel3 iChannel0_sampler \
     iChannel1_sampler iChannel2_sampler iChannel3_sampler";
 const WGPU_SHADERTOY_NAMES: &str = "Varyings ShadertoyInput input main shader_main gl_FragCoord i_mouse i_date i_resolution i_time \
     i_channel_resolution i_time_delta i_frame i_framerate i_channel0 i_channel1 i_channel2 \
     i_channel3 sampler0 sampler1 sampler2 sampler3 ToyproofFrame toyproof_frame";
-const COMPUTE_TOYS_NAMES: &str = "main_image gl_FragCoord screen time mouse custom dispatch channel0 channel1 pass_in pass_out \
+const COMPUTE_TOYS_NAMES: &str = "main main_image gl_FragCoord screen time mouse custom dispatch channel0 channel1 pass_in pass_out \
     nearest bilinear trilinear nearest_repeat bilinear_repeat trilinear_repeat Time Mouse Custom \
     DispatchInfo keyDown assert passStore passLoad passSampleLevelBilinearRepeat int uint float \
     int2 int3 int4 uint2 uint3 uint4 float2 float3 float4 bool2 bool3 bool4 float2x2 float3x3 \
@@ -211,6 +211,7 @@ impl Writer<'_> {
             // use naga, which does not check this.
             "derivatives" => self.uses_derivatives,
             "inputs" => !uniforms.is_empty(),
+            "uniforms" => !self.uniforms.is_empty(),
             "channels" => !channels.is_empty(),
             "position" => self.reads_position,
             "startup" => self.cx.startup_function.is_some(),
@@ -226,6 +227,7 @@ impl Writer<'_> {
         let startup = self.cx.startup_function.map(|startup| self.function(startup));
         let mut values = vec![
             ("$members", self.style.members(&uniforms)),
+            ("$uniforms", self.uniforms.join("\n    ")),
             ("$startup", startup.unwrap_or_default().to_owned()),
             ("$main_image", self.function(main_image).to_owned()),
         ];
@@ -234,6 +236,44 @@ impl Writer<'_> {
             values.push((name, shape.unwrap_or_default().to_owned()));
         }
         Ok(around_shader(self.style.template()).map(|part| fill(part, holds, &values)))
+    }
+
+    /// Whether a variable is a uniform of the author that is read from a block, as the host has one.
+    pub(super) fn is_in_block(&self, id: VariableId) -> bool {
+        let variable = &self.cx.tree[id];
+        let has_value = variable.kind == VariableKind::Uniform && variable.initializer.is_some();
+        has_value && self.style == Style::Plain
+    }
+
+    /// The code that reads a uniform of the author. Blocks have no `bool`: 0 is `false`.
+    pub(super) fn uniform(&self, id: VariableId) -> Text {
+        let member = format!("uniforms.{}", self.variable(id));
+        match self.cx.tree[id].ty {
+            Type::Scalar(Scalar::Bool) => Text::new(format!("{member} != 0u"), Class::Relation),
+            Type::Vector(Scalar::Bool, size) => {
+                Text::new(format!("{member} != vec{size}u()"), Class::Relation)
+            }
+            _ => Text::primary(member),
+        }
+    }
+
+    /// Adds a uniform of the author to the block.
+    pub(super) fn add_uniform(&mut self, id: VariableId) -> Result<(), Unprintable> {
+        let Variable { ty, initializer, .. } = self.cx.tree[id];
+        let initializer = initializer.ok_or(Unprintable::Construct("a uniform without a value"))?;
+        let value = self.value(initializer)?.code;
+        let (ty, value) = match ty {
+            Type::Scalar(Scalar::Bool) => ("u32".to_owned(), format!("u32({value})")),
+            Type::Vector(Scalar::Bool, size) => {
+                let ty = format!("vec{size}u");
+                let value = format!("{ty}({value})");
+                (ty, value)
+            }
+            _ => (self.type_name(ty), value),
+        };
+        self.uniforms
+            .push(format!("{}: {ty},{VALUE}{value}", self.variable(id)));
+        Ok(())
     }
 
     /// Checks that the host has a channel, with a texture of that shape.
@@ -391,6 +431,27 @@ fn channel_number(condition: &str) -> Option<u8> {
     condition.strip_prefix("channel")?.parse().ok()
 }
 
+/// The block of the author's uniforms, as the template declares it.
+const BLOCK: &str = "@group(0) @binding(9) var<uniform> uniforms: Uniforms;";
+
+/// What precedes the value of a uniform behind its member of the block.
+const VALUE: &str = " // ";
+
+/// A module whose uniforms of the author have the values in the comments: our host has no block for them.
+fn with_values(text: &str) -> String {
+    let Some((_, block)) = text.split_once("struct Uniforms {\n") else {
+        return text.to_owned();
+    };
+    let members = block.lines().take_while(|line| *line != "}");
+    let values = members.filter_map(|line| Some(line.split_once(VALUE)?.1));
+    let values: Vec<&str> = values.collect();
+    let variable = format!(
+        "var<private> uniforms: Uniforms = Uniforms({});",
+        values.join(", ")
+    );
+    text.replace(BLOCK, &variable)
+}
+
 /// A complete WGSL module.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HostedShader {
@@ -419,7 +480,7 @@ impl Style {
     pub fn hosted_in(self, text: &str, stage: Stage) -> HostedShader {
         let Some(host) = self.host_template() else {
             return HostedShader {
-                text: text.to_owned(),
+                text: with_values(text),
                 upside_down: false,
             };
         };
@@ -494,9 +555,10 @@ mod tests {
 
     #[test]
     fn templates_have_known_conditions_and_values_only() {
-        const CONDITIONS: [&str; 9] = [
+        const CONDITIONS: [&str; 10] = [
             "derivatives",
             "inputs",
+            "uniforms",
             "channels",
             "position",
             "startup",
@@ -505,8 +567,9 @@ mod tests {
             "image",
             "buffer",
         ];
-        const VALUES: [&str; 7] = [
+        const VALUES: [&str; 8] = [
             "$members",
+            "$uniforms",
             "$startup",
             "$main_image",
             "$shape0",

@@ -473,3 +473,45 @@ fn functions_of_constants_stay_where_every_compiler_computes_them_alike() {
     }
     assert!(text.contains("+ 0.7071068") && !text.contains("pow("), "{text}");
 }
+
+#[test]
+fn uniforms_of_the_author_are_a_block() {
+    let text = "#version 300 es\nprecision highp float;\nuniform float speed;\nuniform bool on;\nuniform vec2 size;\n\
+                out vec4 color;\nvoid main() { color = vec4(speed * size, on ? 1.0 : 0.0, 1.0); }\n";
+    let mut files = Files::default();
+    let file = files.add(File::new("a", text));
+    let value = |name: &str, components: &[f64]| toyproof_glsl::UniformValue {
+        name: name.to_owned(),
+        components: components.to_vec(),
+    };
+    let options = Options {
+        uniforms: vec![
+            value("speed", &[2.5]),
+            value("on", &[1.0]),
+            value("size", &[1.0, -2.0]),
+        ],
+        keeps_uniforms: true,
+        ..Options::default()
+    };
+    let checked = check(&files, file, &options).unwrap();
+    let print = |style| wgsl(&checked, &files, style, &Deadline::default()).unwrap();
+    let plain = print(Style::Plain);
+    let block = "struct Uniforms {\n    speed: f32, // 2.5\n    on: u32, // u32(true)\n    size: vec2f, // vec2f(1.0, -2.0)\n}\n";
+    assert!(plain.contains(block), "{plain}");
+    assert!(
+        plain.contains("uniforms.speed * uniforms.size") && plain.contains("uniforms.on != 0u"),
+        "{plain}"
+    );
+    // Our host has no such block.
+    let hosted = Style::Plain.hosted(&plain).text;
+    let values = "var<private> uniforms: Uniforms = Uniforms(2.5, u32(true), vec2f(1.0, -2.0));";
+    assert!(
+        hosted.contains(values) && !hosted.contains("@binding(9)"),
+        "{hosted}"
+    );
+    let bevy = print(Style::Bevy);
+    assert!(
+        bevy.contains("const speed: f32 = 2.5;") && bevy.contains("const on: bool = true;"),
+        "{bevy}"
+    );
+}

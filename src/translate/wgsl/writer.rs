@@ -43,6 +43,8 @@ pub(super) struct Writer<'a> {
     pub(super) helpers: BTreeMap<String, String>,
     /// The innermost expression that could not be printed.
     pub(super) failed_at: Option<Place>,
+    /// The members of the block of the author's uniforms, each with its value as a comment.
+    pub(super) uniforms: Vec<String>,
     /// Whether derivatives are used, explicitly or for implicit levels of detail.
     pub(super) uses_derivatives: bool,
     /// Whether `gl_FragCoord` is read other than by `mainImage`'s caller.
@@ -76,6 +78,7 @@ impl<'a> Writer<'a> {
             macros: BTreeMap::new(),
             helpers: BTreeMap::new(),
             failed_at: None,
+            uniforms: Vec::new(),
             uses_derivatives: false,
             reads_position: false,
         }

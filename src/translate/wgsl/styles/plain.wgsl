@@ -13,7 +13,13 @@ struct Inputs { //? inputs
 @group(0) @binding(6) var iChannel2_sampler: sampler; //? channel2
 @group(0) @binding(7) var iChannel3: texture_$shape3<f32>; //? channel3
 @group(0) @binding(8) var iChannel3_sampler: sampler; //? channel3
-//? inputs channels
+//? uniforms
+struct Uniforms { //? uniforms
+    $uniforms //? uniforms
+} //? uniforms
+//? uniforms
+@group(0) @binding(9) var<uniform> uniforms: Uniforms; //? uniforms
+//? inputs channels uniforms
 var<private> gl_FragCoord: vec4f; //? position
 //? position
 $shader
