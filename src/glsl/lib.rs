@@ -177,6 +177,8 @@ pub struct Checked {
     pub unexpanded_names: HashSet<String>,
     /// The uniforms with values that an expression reads.
     pub values_read: HashSet<VariableId>,
+    /// Whether the extension of derivatives is enabled, which WebGL 1 requires for them.
+    pub enables_derivatives: bool,
     /// The uniforms and varyings that have a value.
     pub(crate) bound: HashMap<VariableId, Bound>,
     /// The variable that holds the color, if the host runs `main`.
@@ -277,6 +279,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         expansions: text.expansions,
         unexpanded_names: text.unexpanded_names,
         values_read: text.values_read,
+        enables_derivatives: text.enables_derivatives,
         bound: text.bound,
         output: text.output,
     })
@@ -312,6 +315,7 @@ struct Text {
     expansions: Expansions,
     unexpanded_names: HashSet<String>,
     values_read: HashSet<VariableId>,
+    enables_derivatives: bool,
     bound: HashMap<VariableId, Bound>,
     output: Option<VariableId>,
 }
@@ -387,6 +391,7 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
             let names = text.unexpanded_names.iter();
             return Ok(Text {
                 values_read: checker.values_read,
+                enables_derivatives: text.enables_derivatives,
                 bound: checker.bound,
                 output: checker.output,
                 tree: checker.tree,

@@ -1,4 +1,5 @@
-//! Loops and indices of GLSL ES 1.00 beyond its Appendix A, to which WebGL 1 restricts shaders.
+//! What WebGL 1 refuses of GLSL ES 1.00: loops and indices beyond its Appendix A, and derivatives without their
+//! extension.
 
 use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{
@@ -16,6 +17,17 @@ pub(super) fn run(program: &Program, checked: &Checked, findings: &mut Findings)
     }
     let tree = program.tree;
     for &function in &program.functions {
+        for &expr in program.exprs(function) {
+            if let ExprKind::BuiltIn { function, .. } = tree[expr].kind
+                && function.is_derivative()
+                && !checked.enables_derivatives
+            {
+                let message = format!("WebGL 1 refuses `{}` without its extension", function.name());
+                findings.add(Code::BeyondAppendixA, tree[expr].at, message, |diagnostic| {
+                    diagnostic.help("begin with `#extension GL_OES_standard_derivatives : enable`")
+                });
+            }
+        }
         let mut counters = Vec::new();
         walk::each(
             tree[function].body.as_deref().unwrap_or_default(),

@@ -29,7 +29,11 @@ pub fn with_declarations(
     options: &mut Options,
 ) -> Result<FileId, Diagnostics> {
     let text = files.get(file).text();
-    let may_be_isf = options.dialect.is_none_or(|dialect| dialect == Dialect::Isf);
+    // A shader of ShaderToy may have taken the header along.
+    let may_be_isf = match options.dialect {
+        None => !text.contains("mainImage"),
+        Some(dialect) => dialect == Dialect::Isf,
+    };
     let declared = match header(text).filter(|_| may_be_isf) {
         Some(bytes) => {
             options.dialect = Some(Dialect::Isf);
@@ -87,7 +91,7 @@ fn header(text: &str) -> Option<(u32, u32)> {
 fn of_header(files: &mut Files, file: FileId, (start, end): (u32, u32)) -> Result<Declarations, Diagnostic> {
     let name = files.get(file).name().to_owned();
     let json = files.join_parts(name, &[Span::new(file, start, end)], "");
-    let root = json::parse(files, json).map_err(|error| *error)?;
+    let root = json::parse_lenient(files, json).map_err(|error| *error)?;
     let body = &files.get(file).text()[end as usize..];
     let mut declared = Declarations::default();
     let passes = root.get("PASSES").and_then(Node::as_array).unwrap_or_default();
@@ -99,13 +103,21 @@ fn of_header(files: &mut Files, file: FileId, (start, end): (u32, u32)) -> Resul
             .error("several passes of ISF are not supported")
             .help("write it as a project with buffers, see `toyproof new --help`"));
     }
-    if let Some(imported) = root.get("IMPORTED") {
-        return Err(imported
-            .error("imported images of ISF are not supported")
-            .help("declare an input of the type `image`, and name its file with --channel0"));
-    }
     for input in root.get("INPUTS").and_then(Node::as_array).unwrap_or_default() {
         declared.add_input(input)?;
+    }
+    // Images that come with the shader are bound like its inputs, after them.
+    let imported = root.get("IMPORTED").map(|imported| &imported.value);
+    let names: Vec<&str> = match imported {
+        Some(Value::Object(images)) => images.iter().map(|image| &*image.key).collect(),
+        Some(Value::Array(images)) => {
+            let names = images.iter().filter_map(|image| image.get("NAME")?.as_str());
+            names.collect()
+        }
+        _ => Vec::new(),
+    };
+    for name in names.into_iter().filter(|name| is_name(name)) {
+        declared.uniform("sampler2D", name, None);
     }
     let uses = |name: &str| body.contains(name);
     let is_used = |(name, _): &&(&str, &str)| {
@@ -327,6 +339,10 @@ mod tests {
         assert_eq!(values, ["level=[0.5]", "tint=[1.0, 0.5, 0.0, 1.0]", "mode=[2.0]"]);
         let error = declared("/*{ \"ISFVSN\": 2,\n \"PASSES\": [{ \"TARGET\": \"b\" }] }*/").unwrap_err();
         assert!(error.starts_with("a:2:13: error"), "{error}");
+        // The last of several values counts, images may come with the shader, and a shader of ShaderToy is none.
+        let text = "/*{ \"ISFVSN\": 1, \"ISFVSN\": 2, \"IMPORTED\": { \"mask\": { \"PATH\": \"m.png\" } } }*/ void main() {}";
+        assert_eq!(declared(text).unwrap().0, "uniform sampler2D mask;\n\n");
+        assert_eq!(declared(&text.replace("main", "mainImage")).unwrap().0, "");
         let error = declared("/*{ \"INPUTS\": [{ \"NAME\": \"a\", \"TYPE\": \"cube\" }] }*/").unwrap_err();
         assert!(error.contains("unknown type of an input, `cube`"), "{error}");
         assert_eq!(

@@ -20,6 +20,18 @@ const MAX_VALUES: usize = 100_000;
 /// # Errors
 /// The first error of the syntax, or a key that an object has twice.
 pub(crate) fn parse(files: &Files, file: FileId) -> Result<Node, Box<Diagnostic>> {
+    parse_with(files, file, false)
+}
+
+/// Parses a text in which the last of several values of a key may count, as in most other parsers.
+///
+/// # Errors
+/// The first error of the syntax.
+pub(crate) fn parse_lenient(files: &Files, file: FileId) -> Result<Node, Box<Diagnostic>> {
+    parse_with(files, file, true)
+}
+
+fn parse_with(files: &Files, file: FileId, is_lenient: bool) -> Result<Node, Box<Diagnostic>> {
     let text = files.get(file).text();
     let mut parser = Parser {
         text,
@@ -27,6 +39,7 @@ pub(crate) fn parse(files: &Files, file: FileId) -> Result<Node, Box<Diagnostic>
         at: 0,
         depth: 0,
         values: 0,
+        is_lenient,
     };
     let node = parser.value()?;
     parser.skip_blanks();
@@ -44,6 +57,8 @@ struct Parser<'t> {
     depth: usize,
     /// The number of values so far.
     values: usize,
+    /// Whether a key may have several values, of which the last counts.
+    is_lenient: bool,
 }
 
 type ParseResult<T> = Result<T, Box<Diagnostic>>;
@@ -130,7 +145,10 @@ impl Parser<'_> {
                 return Err(self.error("expected a key in double quotes", "write `\"key\": value`"));
             }
             let key = self.string()?;
-            if members.iter().any(|member| member.key == key) {
+            let earlier = members.iter().position(|member| member.key == key);
+            if let Some(earlier) = earlier.filter(|_| self.is_lenient) {
+                members.remove(earlier);
+            } else if earlier.is_some() {
                 let error = Diagnostic::new(Code::ProjectSyntax, format!("duplicate key `{key}`"));
                 return Err(error
                     .at(self.span_from(start))

@@ -284,7 +284,8 @@ macro_rules! projects {
 
     /// WebGL 1 unrolls loops on old hardware, so its shaders, in GLSL ES 1.00, have only `for` loops with a
     /// constant number of iterations, and arrays are indexed only by constants and the counters of such loops
-    /// (Appendix A). toyproof runs others as well; browsers refuse them. Leave a loop early with `break`.
+    /// (Appendix A). toyproof runs others as well; browsers refuse them. Leave a loop early with `break`. The
+    /// derivatives `dFdx`, `dFdy` and `fwidth` need `#extension GL_OES_standard_derivatives : enable`.
     ///
     /// Wrong:
     ///
@@ -310,7 +311,7 @@ macro_rules! projects {
     ///     gl_FragColor = vec4(sum / 640.0);
     /// }
     /// ```
-    BeyondAppendixA "W0031" "A loop or an index that WebGL 1 refuses",
+    BeyondAppendixA "W0031" "A loop, an index or a derivative that WebGL 1 refuses",
 
     /// `--uniform NAME=VALUE` sets a uniform that the shader declares, such as `uniform float speed;`. The
     /// shader declares no uniform of this name, so the value has no effect: the name may be misspelled.

@@ -28,9 +28,12 @@ pub(crate) const DIRECTIVES: [&str; 13] = [
 /// The directives that conditions consist of.
 const CONDITIONS: [&str; 6] = ["if", "ifdef", "ifndef", "elif", "else", "endif"];
 
+/// The extension of `dFdx`, `dFdy` and `fwidth`.
+const DERIVATIVES: &str = "GL_OES_standard_derivatives";
+
 /// The extensions of GLSL ES 1.00 that add functions or outputs to fragment shaders.
 const EXTENSIONS_OF_WEBGL_1: [&str; 4] = [
-    "GL_OES_standard_derivatives",
+    DERIVATIVES,
     "GL_EXT_shader_texture_lod",
     "GL_EXT_frag_depth",
     "GL_EXT_draw_buffers",
@@ -197,6 +200,9 @@ impl Preprocessor<'_> {
         };
         let version = self.wrapping.language.version;
         if version == Version::Es100 && EXTENSIONS_OF_WEBGL_1.contains(&name) {
+            if name == DERIVATIVES {
+                self.enables_derivatives = behavior != "disable";
+            }
             return Ok(());
         }
         // Browsers accept it anywhere in GLSL ES 1.00.

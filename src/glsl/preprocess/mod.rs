@@ -47,6 +47,8 @@ pub(crate) struct PreprocessorOutput {
     pub(crate) expansions: Expansions,
     /// The names in branches that are not compiled, and in the replacements of macros.
     pub(crate) unexpanded_names: HashSet<Symbol>,
+    /// Whether the extension of derivatives is enabled, which WebGL 1 requires for them.
+    pub(crate) enables_derivatives: bool,
     /// Errors and warnings.
     pub(crate) diagnostics: Vec<Diagnostic>,
     /// Whether errors made so much of the text unusable that the rest must not be parsed.
@@ -144,6 +146,7 @@ pub(crate) fn preprocess(
         control_comments: preprocessor.lexer.control_comments,
         expansions: preprocessor.expansions,
         unexpanded_names: preprocessor.unexpanded_names,
+        enables_derivatives: preprocessor.enables_derivatives,
         incomplete: preprocessor.gave_up || any_of(&LOSES_TEXT),
         lacks_names: any_of(&LOSES_NAMES),
         diagnostics,
@@ -249,6 +252,8 @@ struct Preprocessor<'a> {
     macros: HashMap<Symbol, Macro>,
     expansions: Expansions,
     unexpanded_names: HashSet<Symbol>,
+    /// Whether the extension of derivatives is enabled.
+    enables_derivatives: bool,
     /// The macro bodies being expanded, innermost last; below them the lexer.
     stream: Stream,
     /// The open `#if` groups.
@@ -287,6 +292,7 @@ impl<'a> Preprocessor<'a> {
             macros,
             expansions: Expansions::default(),
             unexpanded_names: HashSet::new(),
+            enables_derivatives: false,
             stream: Stream::Text(Vec::new()),
             groups: Vec::new(),
             line_start: true,

@@ -361,3 +361,26 @@ fn directions_that_are_never_normalized() {
         .is_empty()
     );
 }
+
+#[test]
+fn what_webgl_1_refuses() {
+    let head = "precision highp float;\nuniform float x;\n";
+    let main = |body: &str| format!("{head}void main() {{\n{body}\ngl_FragColor = vec4(x);\n}}");
+    let refused = |body: &str| warned(&main(body)).contains(&"W0031:4".to_owned());
+    assert!(refused("float a = 0.0; while (a < 9.0) a += 1.0;"));
+    assert!(refused("for (int i = 0; float(i) < x; i++) {}"));
+    assert!(!refused("for (int i = 0; i < 9; i++) {}"));
+    assert!(refused("float a[3]; a[0] = a[int(x)];"));
+    assert!(refused("float a = dFdx(x);"));
+    let enabled = format!(
+        "#extension GL_OES_standard_derivatives : enable\n{}",
+        main("float a = dFdx(x);")
+    );
+    assert!(
+        !warned(&enabled)
+            .iter()
+            .any(|warning| warning.starts_with("W0031"))
+    );
+    let newer = "#version 300 es\nprecision highp float;\nout vec4 c;\nvoid main() { c = vec4(dFdx(gl_FragCoord.x)); }";
+    assert!(warned(newer).is_empty(), "{:?}", warned(newer));
+}
