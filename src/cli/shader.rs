@@ -11,7 +11,7 @@ use toyproof_glsl::tree::VariableKind;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
 use toyproof_project::files::{self, IncludeFolders, Input, ReadError, Search, Texts, content_diagnostic};
-use toyproof_project::{CompiledProject, with_declarations};
+use toyproof_project::{CompiledProject, Declared, with_declarations};
 
 use super::inputs::{Deny, LanguageArgs};
 use super::scenes::with_builtin_hint;
@@ -253,7 +253,17 @@ fn read(
             let mut options = options.clone();
             let complete = includes.include(files, file, &options);
             let complete = complete.and_then(|file| with_declarations(files, file, &mut options));
-            let file = complete.map_err(|errors| Unusable::Invalid(errors.into()))?;
+            let file = match complete.map_err(|errors| Unusable::Invalid(errors.into()))? {
+                Declared::Shader(file) => file,
+                Declared::Project(project) => {
+                    *has_passes = !project.needed_by_image().is_empty();
+                    let compiled = CompiledProject::compile(*project, None, None, files, &options);
+                    let (project, of_project) =
+                        compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
+                    *lints = of_project;
+                    return Ok(Content::Project(project));
+                }
+            };
             let checked = glsl::check(files, file, &options)
                 .map_err(|errors| Unusable::Invalid(glsl::with_single_edit(files, file, errors, &options)))?;
             *lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));

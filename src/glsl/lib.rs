@@ -330,7 +330,11 @@ fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, Prep
         (wrapping, text)
     };
     if options.stage != Stage::Image {
-        return read(Dialect::ShaderToy);
+        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares.
+        let isf = options
+            .dialect
+            .filter(|&dialect| dialect == Dialect::Isf && options.stage == Stage::Buffer);
+        return read(isf.unwrap_or_default());
     }
     if let Some(dialect) = options.dialect {
         return read(dialect);

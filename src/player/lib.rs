@@ -145,6 +145,13 @@ impl Graph {
         }
     }
 
+    /// Makes each pass whose channel reads nothing read a texture that does not change.
+    pub fn bind_to_all(&mut self, channel: usize, medium: usize) {
+        for pass in &mut self.passes {
+            pass.inputs[channel].get_or_insert(Source::Medium(medium));
+        }
+    }
+
     /// Whether mipmaps of a buffer are made.
     pub fn has_mipmaps(&self, buffer: usize) -> bool {
         self.mipmaps[buffer]

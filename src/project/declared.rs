@@ -1,192 +1,80 @@
-//! Declarations that hosts write outside of the language: the JSON header of ISF (Interactive Shader Format 2),
-//! and `#iUniform` of the Shader Toy extension of editors. They become text in front of the shader, and values
-//! of its uniforms.
+//! Declarations that hosts write outside of the language: the JSON header of ISF, and `#iUniform` of the Shader Toy
+//! extension of editors. They become text in front of the shader, and values of its uniforms.
 
 use std::fmt::Write;
 
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span};
 use toyproof_glsl::{Dialect, Options, UniformValue};
 
-use crate::json;
+use crate::isf;
 use crate::node::{Node, Value};
+use crate::project::Project;
 
 /// What a host declares in front of a shader.
 #[derive(Debug, Default)]
-struct Declarations {
-    text: String,
-    uniforms: Vec<UniformValue>,
+pub(crate) struct Declarations {
+    pub(crate) text: String,
+    pub(crate) uniforms: Vec<UniformValue>,
 }
 
-/// Adds the text of a shader with what its host declares, and returns its id, or that of the file itself if
-/// there is nothing to declare. In the options, the values of uniforms that have none become those of the
-/// declarations.
+/// A text with what its host declares.
+#[derive(Debug)]
+pub enum Declared {
+    /// A shader with one pass.
+    Shader(FileId),
+    /// The passes of a shader of ISF.
+    Project(Box<Project>),
+}
+
+/// Adds the text of a shader with what its host declares, and returns it; the file itself if there is nothing to
+/// declare. In the options, the values of uniforms that have none become those of the declarations.
 ///
 /// # Errors
-/// A header or an annotation is malformed, or needs more than one pass.
+/// A header or an annotation is malformed, or a header has passes that cannot be rendered.
 pub fn with_declarations(
     files: &mut Files,
     file: FileId,
     options: &mut Options,
-) -> Result<FileId, Diagnostics> {
+) -> Result<Declared, Diagnostics> {
     let text = files.get(file).text();
     // A shader of ShaderToy may have taken the header along.
     let may_be_isf = match options.dialect {
         None => !text.contains("mainImage"),
         Some(dialect) => dialect == Dialect::Isf,
     };
-    let declared = match header(text).filter(|_| may_be_isf) {
-        Some(bytes) => {
-            options.dialect = Some(Dialect::Isf);
-            of_header(files, file, bytes)
-        }
-        None => of_annotations(files, file),
+    let declared = match isf::header(text).filter(|_| may_be_isf) {
+        Some(bytes) => isf::read(files, file, bytes, options),
+        None => of_annotations(files, file).map(|declared| {
+            options.add_uniforms(&declared.uniforms);
+            Declared::Shader(in_front_of(files, file, declared.text))
+        }),
     };
-    let Declarations { text, uniforms } = declared.map_err(|error| Diagnostics::new(vec![error], files))?;
-    if text.is_empty() {
-        return Ok(file);
-    }
-    options.add_uniforms(&uniforms);
-    let name = files.get(file).name().to_owned();
-    let declarations = files.add(File::new(format!("<declarations of {name}>"), text));
-    Ok(files.join(name, &[declarations, file]))
-}
-
-// ISF: <https://docs.isf.video/ref_json.html>, <https://docs.isf.video/ref_functions.html>.
-
-/// The inputs that ISF sets, by their names, with their declarations.
-const ISF_INPUTS: [(&str, &str); 8] = [
-    ("TIME", "uniform float TIME;"),
-    ("TIMEDELTA", "uniform float TIMEDELTA;"),
-    ("DATE", "uniform vec4 DATE;"),
-    ("FRAMEINDEX", "uniform int FRAMEINDEX;"),
-    ("PASSINDEX", "const int PASSINDEX = 0;"),
-    ("RENDERSIZE", "uniform vec2 RENDERSIZE;"),
-    ("isf_FragNormCoord", "in vec2 isf_FragNormCoord;"),
-    ("vv_FragNormCoord", "in vec2 vv_FragNormCoord;"),
-];
-
-/// The functions of images, which are macros since an image is a sampler.
-const ISF_FUNCTIONS: [(&str, &str); 5] = [
-    ("IMG_SIZE", "(image) vec2(textureSize(image, 0))"),
-    ("IMG_NORM_PIXEL", "(image, at) texture(image, at)"),
-    (
-        "IMG_PIXEL",
-        "(image, at) texture(image, (at) / vec2(textureSize(image, 0)))",
-    ),
-    ("IMG_THIS_PIXEL", "(image) texture(image, isf_FragNormCoord)"),
-    ("IMG_THIS_NORM_PIXEL", "(image) texture(image, isf_FragNormCoord)"),
-];
-
-/// The bytes of the header: the JSON in the comment at the beginning.
-fn header(text: &str) -> Option<(u32, u32)> {
-    let comment = text.trim_start().strip_prefix("/*")?;
-    let start = text.len() - comment.len();
-    let end = start + comment.find("*/")?;
-    let json = text[start..end].trim_start();
-    let is_header =
-        json.starts_with('{') && ["\"ISFVSN\"", "\"INPUTS\""].iter().any(|key| json.contains(key));
-    is_header.then_some((start as u32, end as u32))
-}
-
-fn of_header(files: &mut Files, file: FileId, (start, end): (u32, u32)) -> Result<Declarations, Diagnostic> {
-    let name = files.get(file).name().to_owned();
-    let json = files.join_parts(name, &[Span::new(file, start, end)], "");
-    let root = json::parse_lenient(files, json).map_err(|error| *error)?;
-    let body = &files.get(file).text()[end as usize..];
-    let mut declared = Declarations::default();
-    let passes = root.get("PASSES").and_then(Node::as_array).unwrap_or_default();
-    if let Some(pass) = passes
-        .iter()
-        .find(|pass| passes.len() > 1 || pass.get("TARGET").is_some())
-    {
-        return Err(pass
-            .error("several passes of ISF are not supported")
-            .help("write it as a project with buffers, see `toyproof new --help`"));
-    }
-    for input in root.get("INPUTS").and_then(Node::as_array).unwrap_or_default() {
-        declared.add_input(input)?;
-    }
-    // Images that come with the shader are bound like its inputs, after them.
-    let imported = root.get("IMPORTED").map(|imported| &imported.value);
-    let names: Vec<&str> = match imported {
-        Some(Value::Object(images)) => images.iter().map(|image| &*image.key).collect(),
-        Some(Value::Array(images)) => {
-            let names = images.iter().filter_map(|image| image.get("NAME")?.as_str());
-            names.collect()
-        }
-        _ => Vec::new(),
-    };
-    for name in names.into_iter().filter(|name| is_name(name)) {
-        declared.uniform("sampler2D", name, None);
-    }
-    let uses = |name: &str| body.contains(name);
-    let is_used = |(name, _): &&(&str, &str)| {
-        // Functions at the current pixel read its coordinates.
-        uses(name) || *name == "isf_FragNormCoord" && uses("IMG_THIS_")
-    };
-    for (_, declaration) in ISF_INPUTS.iter().filter(is_used) {
-        declared.line(declaration);
-    }
-    for (function, definition) in ISF_FUNCTIONS.iter().filter(is_used) {
-        declared.line(&format!("#define {function}{definition}"));
-    }
-    Ok(declared)
+    declared.map_err(|error| Diagnostics::new(vec![error], files))
 }
 
 impl Declarations {
-    fn line(&mut self, line: &str) {
+    pub(crate) fn line(&mut self, line: &str) {
         self.text += line;
         self.text.push('\n');
     }
 
-    fn uniform(&mut self, ty: &str, name: &str, components: Option<Vec<f64>>) {
+    pub(crate) fn uniform(&mut self, ty: &str, name: &str, components: Option<Vec<f64>>) {
         let _ = writeln!(self.text, "uniform {ty} {name};");
         self.uniforms.extend(components.map(|components| UniformValue {
             name: name.to_owned(),
             components,
         }));
     }
+}
 
-    /// Declares an element of `INPUTS`.
-    fn add_input(&mut self, input: &Node) -> Result<(), Diagnostic> {
-        let text = |key| input.get(key).and_then(Node::as_str);
-        let name = text("NAME").filter(|name| is_name(name));
-        let name = name.ok_or_else(|| input.error("an input needs a `NAME` that is a name in GLSL"))?;
-        let Some(ty) = text("TYPE") else {
-            return Err(input.error("an input needs a `TYPE`"));
-        };
-        let ty = match ty {
-            "float" => ("float", 1),
-            "long" => ("int", 1),
-            "bool" | "event" => ("bool", 1),
-            "point2D" => ("vec2", 2),
-            "color" => ("vec4", 4),
-            "image" | "audio" | "audioFFT" => {
-                self.uniform("sampler2D", name, None);
-                return Ok(());
-            }
-            other => {
-                let ty = input.get("TYPE").unwrap_or(input);
-                return Err(ty.error(format!("unknown type of an input, `{other}`")));
-            }
-        };
-        let (ty, size) = ty;
-        // Hosts start at the default, else at the minimum.
-        let first = |key| input.get(key).and_then(components);
-        let given = first("DEFAULT").or_else(|| first("MIN"));
-        let mut value = given.unwrap_or_else(|| vec![0.0; size]);
-        // A color without its opacity is opaque.
-        if size == 4 && value.len() == 3 {
-            value.push(1.0);
-        }
-        if ty == "int" {
-            for component in &mut value {
-                *component = component.trunc();
-            }
-        }
-        self.uniform(ty, name, Some(value));
-        Ok(())
+/// Adds a text behind its declarations; returns the file itself if there are none.
+pub(crate) fn in_front_of(files: &mut Files, file: FileId, declarations: String) -> FileId {
+    if declarations.is_empty() {
+        return file;
     }
+    let name = files.get(file).name().to_owned();
+    let declarations = files.add(File::new(format!("<declarations of {name}>"), declarations));
+    files.join(name, &[declarations, file])
 }
 
 /// The components of a number, a list of numbers, or a truth value.
@@ -205,7 +93,7 @@ pub(crate) fn components(node: &Node) -> Option<Vec<f64>> {
     }
 }
 
-fn is_name(text: &str) -> bool {
+pub(crate) fn is_name(text: &str) -> bool {
     let mut characters = text.chars();
     characters
         .next()
@@ -302,8 +190,10 @@ mod tests {
         let mut files = Files::default();
         let file = files.add(File::new("a", text));
         let mut options = Options::default();
-        let joined =
-            with_declarations(&mut files, file, &mut options).map_err(|errors| errors.to_string())?;
+        let joined = with_declarations(&mut files, file, &mut options);
+        let Declared::Shader(joined) = joined.map_err(|errors| errors.to_string())? else {
+            panic!("it has one pass");
+        };
         let joined = files.get(joined).text();
         let declarations = joined.strip_suffix(text).unwrap().to_owned();
         let values = options
@@ -311,44 +201,6 @@ mod tests {
             .iter()
             .map(|uniform| format!("{}={:?}", uniform.name, uniform.components));
         Ok((declarations, values.collect()))
-    }
-
-    #[test]
-    fn isf() {
-        let text = r#"/*{ "ISFVSN": "2", "INPUTS": [
-            { "NAME": "inputImage", "TYPE": "image" },
-            { "NAME": "level", "TYPE": "float", "DEFAULT": 0.5, "MIN": 0, "MAX": 1 },
-            { "NAME": "tint", "TYPE": "color", "DEFAULT": [1, 0.5, 0] },
-            { "NAME": "mode", "TYPE": "long", "VALUES": [0, 1], "MIN": 2 }
-        ] }*/
-        void main() { gl_FragColor = IMG_THIS_NORM_PIXEL(inputImage) * level + tint * float(mode) * TIME; }"#;
-        let (declarations, values) = declared(text).unwrap();
-        assert_eq!(
-            declarations.lines().collect::<Vec<_>>(),
-            [
-                "uniform sampler2D inputImage;",
-                "uniform float level;",
-                "uniform vec4 tint;",
-                "uniform int mode;",
-                "uniform float TIME;",
-                "in vec2 isf_FragNormCoord;",
-                "#define IMG_THIS_NORM_PIXEL(image) texture(image, isf_FragNormCoord)",
-                "",
-            ]
-        );
-        assert_eq!(values, ["level=[0.5]", "tint=[1.0, 0.5, 0.0, 1.0]", "mode=[2.0]"]);
-        let error = declared("/*{ \"ISFVSN\": 2,\n \"PASSES\": [{ \"TARGET\": \"b\" }] }*/").unwrap_err();
-        assert!(error.starts_with("a:2:13: error"), "{error}");
-        // The last of several values counts, images may come with the shader, and a shader of ShaderToy is none.
-        let text = "/*{ \"ISFVSN\": 1, \"ISFVSN\": 2, \"IMPORTED\": { \"mask\": { \"PATH\": \"m.png\" } } }*/ void main() {}";
-        assert_eq!(declared(text).unwrap().0, "uniform sampler2D mask;\n\n");
-        assert_eq!(declared(&text.replace("main", "mainImage")).unwrap().0, "");
-        let error = declared("/*{ \"INPUTS\": [{ \"NAME\": \"a\", \"TYPE\": \"cube\" }] }*/").unwrap_err();
-        assert!(error.contains("unknown type of an input, `cube`"), "{error}");
-        assert_eq!(
-            declared("/* { a comment } */ void main() {}").unwrap(),
-            (String::new(), vec![])
-        );
     }
 
     #[test]

@@ -42,6 +42,7 @@ pub mod files;
 mod folder;
 mod format;
 mod graph;
+mod isf;
 mod json;
 mod lint;
 mod media;
@@ -55,7 +56,7 @@ pub use toyproof_glsl::{Filter, Wrap};
 
 pub use self::check::{CheckedPass, CheckedProject, check};
 pub use self::compiled::CompiledProject;
-pub use self::declared::with_declarations;
+pub use self::declared::{Declared, with_declarations};
 pub use self::folder::PROJECT_FILE;
 pub use self::graph::{MissingMedium, Rendering, UnsupportedPass};
 pub use self::media::Medium;

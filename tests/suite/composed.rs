@@ -306,3 +306,37 @@ fn a_feature_earns_points_for_the_pixels_that_it_changes() {
         "{same:?}"
     );
 }
+
+#[test]
+fn passes_of_isf_are_buffers() {
+    let folder = tempfile::tempdir().unwrap();
+    let isf = "/*{ \"ISFVSN\": \"2\", \"PASSES\": [{ \"TARGET\": \"sum\", \"PERSISTENT\": true, \"FLOAT\": true }, {}] }*/
+void main() {
+    gl_FragColor = IMG_THIS_PIXEL(sum) * (PASSINDEX == 0 ? 0.5 : 1.0);
+    if (PASSINDEX == 0) gl_FragColor += vec4(isf_FragNormCoord, 0.25, 0.0);
+}
+";
+    let buffer = "void mainImage(out vec4 c, in vec2 p) {
+    c = texture(iChannel0, p / iResolution.xy) * 0.5 + vec4(p / iResolution.xy, 0.25, 0.0);
+}
+";
+    let image = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy); }\n";
+    let frames = [
+        ("a.fs", isf),
+        ("p/buffer-a.glsl", buffer),
+        ("p/image.glsl", image),
+    ];
+    write(folder.path(), &frames);
+    let (_, report) = check(folder.path(), &["a.fs", "--reference", "p", "--frame", "3"]);
+    let shader = &report["shaders"][0];
+    assert_eq!(
+        (&shader["verdict"], &shader["dialect"]["host"]),
+        (&"correct".into(), &"isf".into()),
+        "{shader}"
+    );
+    let (_, other) = check(
+        folder.path(),
+        &["a.fs", "--reference", "p/buffer-a.glsl", "--frame", "3"],
+    );
+    assert_eq!(other["shaders"][0]["verdict"], "wrong");
+}

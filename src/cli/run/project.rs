@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name};
 use toyproof_eval::{self as eval, PassFailure, Settings};
 use toyproof_eval_native::Program;
-use toyproof_glsl::{self as glsl, Filter};
+use toyproof_glsl::{self as glsl, Dialect, Filter};
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Source, State, Target};
@@ -381,7 +381,13 @@ impl Runner<'_> {
             if let Some(texture) = texture {
                 let has_mipmaps = passes.image().sampling[channel].filter == Filter::Mipmap;
                 let texture = texture.clone();
-                rendering.graph.bind_to_image(channel, rendering.media.len());
+                let medium = rendering.media.len();
+                // The passes of ISF have the same inputs.
+                if passes.image().dialect == Dialect::Isf {
+                    rendering.graph.bind_to_all(channel, medium);
+                } else {
+                    rendering.graph.bind_to_image(channel, medium);
+                }
                 rendering.media.push(if has_mipmaps {
                     texture.with_mipmaps()
                 } else {
