@@ -1,6 +1,7 @@
 //! `decisions.toml`: what a teacher decides on single shaders instead of the check.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
 use toyproof_report::{Decision, StudentSubmission};
@@ -69,10 +70,23 @@ impl Subject {
         }
     }
 
-    /// The key and the value that name them.
+    /// The value that names them.
     fn name(&self) -> &str {
         match self {
             Self::Shader(name) | Self::Student { student: name, .. } => name,
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.name())?;
+        match self {
+            Self::Student {
+                assignment: Some(assignment),
+                ..
+            } => write!(f, " in the assignment `{assignment}`"),
+            _ => Ok(()),
         }
     }
 }
@@ -95,7 +109,7 @@ impl Decisions {
                     return;
                 };
                 if decisions.iter().any(|other| other.subject == subject) {
-                    let message = format!("there are two decisions on `{}`", subject.name());
+                    let message = format!("there are two decisions on {subject}");
                     table.reject(table.span(), message, "remove one of them");
                 }
                 let line = files.position(table.span()).line;
@@ -130,35 +144,46 @@ impl Decisions {
     }
 
     /// A warning for each decision that is on none of these shaders, with advice if a name looks like a
-    /// typing error.
+    /// typing error, and for each that is on several students of one name.
     #[must_use]
-    pub fn unmatched(
+    pub fn warnings(
         &self,
         shaders: &[(String, Option<&StudentSubmission>)],
     ) -> Vec<(String, Option<String>)> {
-        let students: BTreeSet<&str> = shaders
-            .iter()
-            .filter_map(|(_, submitted)| Some(submitted.as_ref()?.student.as_str()))
-            .collect();
-        let matches = |one: &&DecidedShader| {
-            let has = |(shader, submitted): &(String, Option<&StudentSubmission>)| {
-                one.subject.has(shader, *submitted)
-            };
-            shaders.iter().any(has)
-        };
-        let unmatched = self.0.iter().filter(|one| !matches(one));
+        let students = shaders.iter().filter_map(|(_, submitted)| *submitted);
+        let students: BTreeSet<&str> = students.map(|one| one.student.as_str()).collect();
         let warning = |one: &DecidedShader| {
-            let name = one.subject.name();
-            let near = match &one.subject {
-                Subject::Shader(_) => nearest(name, shaders.iter().map(|(shader, _)| shader.as_str())),
-                Subject::Student { .. } => nearest(name, students.iter().copied()),
-            };
-            (
-                format!("{}: no shader matches the decision on `{name}`", one.place),
-                near.map(|near| format!("did you mean `{near}`?")),
-            )
+            let (name, subject) = (one.subject.name(), &one.subject);
+            let mut decided = shaders
+                .iter()
+                .filter(|(shader, submitted)| subject.has(shader, *submitted))
+                .peekable();
+            if decided.peek().is_none() {
+                let near = match subject {
+                    Subject::Shader(_) => nearest(name, shaders.iter().map(|(shader, _)| shader.as_str())),
+                    Subject::Student { .. } => nearest(name, students.iter().copied()),
+                };
+                let message = format!("{}: no shader matches the decision on {subject}", one.place);
+                let near = near.filter(|near| *near != name);
+                return Some((message, near.map(|near| format!("did you mean `{near}`?"))));
+            }
+            let is_of_student = matches!(subject, Subject::Student { .. });
+            let ids: BTreeSet<_> = decided
+                .filter_map(|(_, submitted)| submitted.as_ref()?.id.as_ref())
+                .collect();
+            (is_of_student && ids.len() > 1).then(|| {
+                let message = format!(
+                    "{}: the decision is on {} students named {subject}",
+                    one.place,
+                    ids.len()
+                );
+                (
+                    message,
+                    Some("give the number of one: `student = \"1234\"`".to_owned()),
+                )
+            })
         };
-        unmatched.map(warning).collect()
+        self.0.iter().filter_map(warning).collect()
     }
 }
 
@@ -206,7 +231,8 @@ fn decision(table: &mut Table, default: Option<&str>) -> Option<(Subject, Decisi
     let decision = Decision {
         verdict: verdict.map(|verdict| verdict.value),
         points: points.map(|points| points.value),
-        reason: reason?.value.trim().to_owned(),
+        // One line, as reports show it.
+        reason: reason?.value.split_whitespace().collect::<Vec<_>>().join(" "),
     };
     Some((subject?, decision))
 }
@@ -263,9 +289,9 @@ mod tests {
         )
         .unwrap();
         let anna = submitted("Anna", "torus");
-        let unmatched = decisions.unmatched(&[("hw/mai.glsl".to_owned(), Some(&anna))]);
+        let warnings = decisions.warnings(&[("hw/mai.glsl".to_owned(), Some(&anna))]);
         assert_eq!(
-            unmatched,
+            warnings,
             [
                 (
                     "decisions.toml:1: no shader matches the decision on `hw/mia.glsl`".to_owned(),
@@ -277,6 +303,27 @@ mod tests {
                 ),
             ]
         );
+    }
+
+    #[test]
+    fn a_name_of_several_students_is_a_warning() {
+        let text = "[[decision]]\nstudent = \"Anna\"\npoints = 1\nreason = \"a\n b\"\n";
+        let decisions = parse(&text.replace("\"a\n b\"", "\"\"\"a\n b\"\"\"")).unwrap();
+        let (one, mut other) = (submitted("Anna", "torus"), submitted("Anna", "torus"));
+        other.id = Some("8".to_owned());
+        let both = [
+            ("a.glsl".to_owned(), Some(&one)),
+            ("b.glsl".to_owned(), Some(&other)),
+        ];
+        let [(warning, _)] = &decisions.warnings(&both)[..] else {
+            panic!("one warning");
+        };
+        assert_eq!(
+            warning,
+            "decisions.toml:1: the decision is on 2 students named `Anna`"
+        );
+        assert!(decisions.warnings(&both[..1]).is_empty());
+        assert_eq!(decisions.find("a.glsl", Some(&one)).unwrap().reason, "a b");
     }
 
     #[test]
