@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
-use toyproof_report::{Decision, StudentSubmission};
+use toyproof_report::{Decision, StudentSubmission, optional_points};
 use toyproof_toml::{Format, Table};
 use toyproof_verify::Verdict;
 
@@ -16,9 +16,6 @@ static FORMAT: Format = Format {
     value_code: Code::AssignmentValue,
     aliases: &[],
 };
-
-/// The largest number of decided points: a larger number is a typing error.
-const MAX_POINTS: f64 = 1_000_000.0;
 
 /// The verdicts that can be decided. An `error` is not a shader's, and `ok` compares nothing.
 const VERDICTS: [(&str, Verdict); 8] = [
@@ -193,14 +190,8 @@ fn decision(table: &mut Table, default: Option<&str>) -> Option<(Subject, Decisi
     let student = table.optional::<String>("student");
     let assignment = table.optional::<String>("assignment");
     let verdict = table.choice("verdict", "verdict", &VERDICTS);
-    let points = table.optional::<f64>("points");
+    let points = optional_points(table);
     let reason = table.required::<String>("reason");
-    if let Some(points) = points
-        .as_ref()
-        .filter(|points| !(0.0..=MAX_POINTS).contains(&points.value))
-    {
-        table.reject_value("points", points, "must be a number from 0 to 1,000,000");
-    }
     if let Some(reason) = reason.as_ref().filter(|reason| reason.value.trim().is_empty()) {
         let help = "the author of the shader reads it";
         table.reject(reason.span, "`reason` is empty", help);
@@ -230,7 +221,7 @@ fn decision(table: &mut Table, default: Option<&str>) -> Option<(Subject, Decisi
     }
     let decision = Decision {
         verdict: verdict.map(|verdict| verdict.value),
-        points: points.map(|points| points.value),
+        points,
         // One line, as reports show it.
         reason: reason?.value.split_whitespace().collect::<Vec<_>>().join(" "),
     };
@@ -347,7 +338,7 @@ mod tests {
             ),
             (
                 "[[decision]]\nshader = \"a\"\nreason = \"a\"\npoints = -1",
-                "decisions.toml:4:10: error[E0506]: `points` must be a number from 0",
+                "decisions.toml:4:10: error[E0506]: `points` must be from 0 to 1,000,000, found -1",
             ),
             (
                 "[[decision]]\nshader = \"a\"\nstudent = \"b\"\nreason = \"a\"\npoints = 1",
