@@ -1,9 +1,10 @@
 //! `decisions.toml`: what a teacher decides on single shaders instead of the check.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use toyproof_diagnostic::{Code, Diagnostics, FileId, Files, nearest};
-use toyproof_report::{Decision, StudentSubmission};
+use toyproof_report::{Decision, StudentSubmission, optional_points};
 use toyproof_toml::{Format, Table};
 use toyproof_verify::Verdict;
 
@@ -15,9 +16,6 @@ static FORMAT: Format = Format {
     value_code: Code::AssignmentValue,
     aliases: &[],
 };
-
-/// The largest number of decided points: a larger number is a typing error.
-const MAX_POINTS: f64 = 1_000_000.0;
 
 /// The verdicts that can be decided. An `error` is not a shader's, and `ok` compares nothing.
 const VERDICTS: [(&str, Verdict); 8] = [
@@ -69,10 +67,23 @@ impl Subject {
         }
     }
 
-    /// The key and the value that name them.
+    /// The value that names them.
     fn name(&self) -> &str {
         match self {
             Self::Shader(name) | Self::Student { student: name, .. } => name,
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.name())?;
+        match self {
+            Self::Student {
+                assignment: Some(assignment),
+                ..
+            } => write!(f, " in the assignment `{assignment}`"),
+            _ => Ok(()),
         }
     }
 }
@@ -95,7 +106,7 @@ impl Decisions {
                     return;
                 };
                 if decisions.iter().any(|other| other.subject == subject) {
-                    let message = format!("there are two decisions on `{}`", subject.name());
+                    let message = format!("there are two decisions on {subject}");
                     table.reject(table.span(), message, "remove one of them");
                 }
                 let line = files.position(table.span()).line;
@@ -130,35 +141,46 @@ impl Decisions {
     }
 
     /// A warning for each decision that is on none of these shaders, with advice if a name looks like a
-    /// typing error.
+    /// typing error, and for each that is on several students of one name.
     #[must_use]
-    pub fn unmatched(
+    pub fn warnings(
         &self,
         shaders: &[(String, Option<&StudentSubmission>)],
     ) -> Vec<(String, Option<String>)> {
-        let students: BTreeSet<&str> = shaders
-            .iter()
-            .filter_map(|(_, submitted)| Some(submitted.as_ref()?.student.as_str()))
-            .collect();
-        let matches = |one: &&DecidedShader| {
-            let has = |(shader, submitted): &(String, Option<&StudentSubmission>)| {
-                one.subject.has(shader, *submitted)
-            };
-            shaders.iter().any(has)
-        };
-        let unmatched = self.0.iter().filter(|one| !matches(one));
+        let students = shaders.iter().filter_map(|(_, submitted)| *submitted);
+        let students: BTreeSet<&str> = students.map(|one| one.student.as_str()).collect();
         let warning = |one: &DecidedShader| {
-            let name = one.subject.name();
-            let near = match &one.subject {
-                Subject::Shader(_) => nearest(name, shaders.iter().map(|(shader, _)| shader.as_str())),
-                Subject::Student { .. } => nearest(name, students.iter().copied()),
-            };
-            (
-                format!("{}: no shader matches the decision on `{name}`", one.place),
-                near.map(|near| format!("did you mean `{near}`?")),
-            )
+            let (name, subject) = (one.subject.name(), &one.subject);
+            let mut decided = shaders
+                .iter()
+                .filter(|(shader, submitted)| subject.has(shader, *submitted))
+                .peekable();
+            if decided.peek().is_none() {
+                let near = match subject {
+                    Subject::Shader(_) => nearest(name, shaders.iter().map(|(shader, _)| shader.as_str())),
+                    Subject::Student { .. } => nearest(name, students.iter().copied()),
+                };
+                let message = format!("{}: no shader matches the decision on {subject}", one.place);
+                let near = near.filter(|near| *near != name);
+                return Some((message, near.map(|near| format!("did you mean `{near}`?"))));
+            }
+            let is_of_student = matches!(subject, Subject::Student { .. });
+            let ids: BTreeSet<_> = decided
+                .filter_map(|(_, submitted)| submitted.as_ref()?.id.as_ref())
+                .collect();
+            (is_of_student && ids.len() > 1).then(|| {
+                let message = format!(
+                    "{}: the decision is on {} students named {subject}",
+                    one.place,
+                    ids.len()
+                );
+                (
+                    message,
+                    Some("give the number of one: `student = \"1234\"`".to_owned()),
+                )
+            })
         };
-        unmatched.map(warning).collect()
+        self.0.iter().filter_map(warning).collect()
     }
 }
 
@@ -168,14 +190,8 @@ fn decision(table: &mut Table, default: Option<&str>) -> Option<(Subject, Decisi
     let student = table.optional::<String>("student");
     let assignment = table.optional::<String>("assignment");
     let verdict = table.choice("verdict", "verdict", &VERDICTS);
-    let points = table.optional::<f64>("points");
+    let points = optional_points(table);
     let reason = table.required::<String>("reason");
-    if let Some(points) = points
-        .as_ref()
-        .filter(|points| !(0.0..=MAX_POINTS).contains(&points.value))
-    {
-        table.reject_value("points", points, "must be a number from 0 to 1,000,000");
-    }
     if let Some(reason) = reason.as_ref().filter(|reason| reason.value.trim().is_empty()) {
         let help = "the author of the shader reads it";
         table.reject(reason.span, "`reason` is empty", help);
@@ -205,8 +221,9 @@ fn decision(table: &mut Table, default: Option<&str>) -> Option<(Subject, Decisi
     }
     let decision = Decision {
         verdict: verdict.map(|verdict| verdict.value),
-        points: points.map(|points| points.value),
-        reason: reason?.value.trim().to_owned(),
+        points,
+        // One line, as reports show it.
+        reason: reason?.value.split_whitespace().collect::<Vec<_>>().join(" "),
     };
     Some((subject?, decision))
 }
@@ -263,9 +280,9 @@ mod tests {
         )
         .unwrap();
         let anna = submitted("Anna", "torus");
-        let unmatched = decisions.unmatched(&[("hw/mai.glsl".to_owned(), Some(&anna))]);
+        let warnings = decisions.warnings(&[("hw/mai.glsl".to_owned(), Some(&anna))]);
         assert_eq!(
-            unmatched,
+            warnings,
             [
                 (
                     "decisions.toml:1: no shader matches the decision on `hw/mia.glsl`".to_owned(),
@@ -277,6 +294,27 @@ mod tests {
                 ),
             ]
         );
+    }
+
+    #[test]
+    fn a_name_of_several_students_is_a_warning() {
+        let text = "[[decision]]\nstudent = \"Anna\"\npoints = 1\nreason = \"a\n b\"\n";
+        let decisions = parse(&text.replace("\"a\n b\"", "\"\"\"a\n b\"\"\"")).unwrap();
+        let (one, mut other) = (submitted("Anna", "torus"), submitted("Anna", "torus"));
+        other.id = Some("8".to_owned());
+        let both = [
+            ("a.glsl".to_owned(), Some(&one)),
+            ("b.glsl".to_owned(), Some(&other)),
+        ];
+        let [(warning, _)] = &decisions.warnings(&both)[..] else {
+            panic!("one warning");
+        };
+        assert_eq!(
+            warning,
+            "decisions.toml:1: the decision is on 2 students named `Anna`"
+        );
+        assert!(decisions.warnings(&both[..1]).is_empty());
+        assert_eq!(decisions.find("a.glsl", Some(&one)).unwrap().reason, "a b");
     }
 
     #[test]
@@ -300,7 +338,7 @@ mod tests {
             ),
             (
                 "[[decision]]\nshader = \"a\"\nreason = \"a\"\npoints = -1",
-                "decisions.toml:4:10: error[E0506]: `points` must be a number from 0",
+                "decisions.toml:4:10: error[E0506]: `points` must be from 0 to 1,000,000, found -1",
             ),
             (
                 "[[decision]]\nshader = \"a\"\nstudent = \"b\"\nreason = \"a\"\npoints = 1",

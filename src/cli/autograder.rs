@@ -1,12 +1,12 @@
 //! `toyproof autograder`: what a grading platform runs for each submission.
 
-use std::ffi::OsStr;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use toyproof_classroom::autograder::Autograder;
+use toyproof_classroom::collect::naming::is_archive;
 use toyproof_diagnostic::path_name;
 use toyproof_report::platform::{PLATFORMS, Platform};
 
@@ -50,8 +50,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         None => std::env::current_exe().map_err(|error| format!("the program's own file: {error}"))?,
     };
     let autograder = Autograder::new(args.platform, &program, &path, &assignment)?;
-    let is_archive = |name: &OsStr| name.eq_ignore_ascii_case("zip");
-    if args.output.extension().is_some_and(is_archive) {
+    if is_archive(&args.output) {
         let archive = autograder.zip()?;
         terminal.write(&args.output, &archive)?;
         terminal.confirm(&args.output, &file_size(archive.len()));

@@ -229,7 +229,7 @@ pub(super) struct LanguageArgs {
     dialect: Option<DialectChoice>,
     /// The value of a uniform that the shader declares: `speed=2`, `color=1,0,0`
     #[arg(long, value_name = "NAME=X[,Y…]", value_parser = parse_uniform, allow_hyphen_values = true)]
-    uniform: Vec<UniformValue>,
+    pub(super) uniform: Vec<UniformValue>,
     /// A folder in which `#include "file"` is searched, after that of the shader
     #[arg(long, value_name = "DIR", hide_short_help = true)]
     include_dir: Vec<PathBuf>,

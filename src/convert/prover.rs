@@ -355,9 +355,10 @@ pub(super) fn validate(written: &TargetCode) -> Result<Option<String>, ToolError
         TargetCode::Glsl(text, dialect) => {
             let text = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text),
-                // Without a version, a host with WebGL compiles GLSL ES 1.00.
+                // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
+                // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),
-                _ => format!("#version 100\n{text}"),
+                _ => format!("#version 100\n{}", text.replace("\\\n", "")),
             };
             tool::validate(Target::Glsl, text.as_bytes())
         }

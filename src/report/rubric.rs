@@ -260,11 +260,11 @@ fn points(table: &mut Table) -> f64 {
     points.map_or(0.0, |points| valid_points(table, &points))
 }
 
-/// Reads the points of a table of an assignment; 0 if it gives none.
+/// Reads the points of a table, if it gives any.
 #[must_use]
-pub fn optional_points(table: &mut Table) -> f64 {
+pub fn optional_points(table: &mut Table) -> Option<f64> {
     let points = table.optional::<f64>("points");
-    points.map_or(0.0, |points| valid_points(table, &points))
+    points.map(|points| valid_points(table, &points))
 }
 
 /// Rejects points out of range.

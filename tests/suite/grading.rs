@@ -62,23 +62,19 @@ fn class() -> tempfile::TempDir {
         "I was ill.\n",
         NOON - 60,
     );
-    let run = toyproof(folder.path(), &["collect", "moodle", "-o", "hw"]);
+    let run = call(folder.path(), "collect moodle -o hw");
     assert_eq!(run.code, 0, "{}", run.stderr);
     folder
 }
 
-fn check(folder: &Path, rest: &[&str]) -> Run {
-    let common = [
-        "check",
-        "hw",
-        "--assignment",
-        "task",
-        "--device",
-        "cpu",
-        "--out",
-        "out",
-    ];
-    toyproof(folder, &[&common, rest].concat())
+/// Runs a command whose arguments have no spaces.
+fn call(folder: &Path, command: &str) -> Run {
+    toyproof(folder, &command.split_whitespace().collect::<Vec<_>>())
+}
+
+fn check(folder: &Path, rest: &str) -> Run {
+    let common = "check hw --assignment task --device cpu --out out";
+    call(folder, &format!("{common} {rest}"))
 }
 
 fn read(folder: &Path, name: &str) -> String {
@@ -101,14 +97,14 @@ fn marks(folder: &Path) -> Vec<String> {
 fn the_deadline_of_an_assignment_counts_for_a_collected_folder() {
     let folder = class();
     let folder = folder.path();
-    let run = check(folder, &["--search", "0"]);
+    let run = check(folder, "--search 0");
     assert_eq!(run.code, 1, "{}", run.stderr);
     assert!(run.stdout.contains("; late by 2 h 5 min"), "{}", run.stdout);
     // Of 12 points, Anna loses 10 %.
     assert_eq!(marks(folder), ["correct 10.8", "wrong 2", "missing 0"]);
 
     // A grading platform has a deadline of its own.
-    check(folder, &["--search", "0", "--autograder", "gradescope"]);
+    check(folder, "--search 0 --autograder gradescope");
     assert_eq!(marks(folder)[0], "correct 12");
 
     // A class has, too, unless it states none.
@@ -120,20 +116,9 @@ fn the_deadline_of_an_assignment_counts_for_a_collected_folder() {
         let class =
             format!("[[assignment]]\nname = \"disk\"\nfiles = [\"*\"]\nassignment = \"task\"\n{deadline}");
         fs::write(folder.join("class.toml"), class).unwrap();
-        let run = toyproof(
+        let run = call(
             folder,
-            &[
-                "check",
-                "moodle",
-                "--class",
-                "class.toml",
-                "--device",
-                "cpu",
-                "--search",
-                "0",
-                "--out",
-                "out",
-            ],
+            "check moodle --class class.toml --device cpu --search 0 --out out",
         );
         assert_eq!(run.code, 1, "{}", run.stderr);
         assert_eq!(marks(folder)[0], format!("correct {points}"), "{deadline}");
@@ -141,7 +126,7 @@ fn the_deadline_of_an_assignment_counts_for_a_collected_folder() {
 
     let wrong = ASSIGNMENT.replace("12:00:00Z", "12:00:00");
     fs::write(folder.join("task/assignment.toml"), wrong).unwrap();
-    let run = check(folder, &[]);
+    let run = check(folder, "");
     assert_eq!(run.code, 2);
     assert!(
         run.stderr.contains("assignment.toml:2:12") && run.stderr.contains("without an offset"),
@@ -160,8 +145,8 @@ fn submissions_without_a_time_count_as_on_time() {
     }
     fs::remove_dir_all(folder.join("moodle/Cy Fox_9_assignsubmission_file_")).unwrap();
     fs::remove_dir_all(folder.join("hw")).unwrap();
-    assert_eq!(toyproof(folder, &["collect", "moodle", "-o", "hw"]).code, 0);
-    let run = check(folder, &["--search", "0"]);
+    assert_eq!(call(folder, "collect moodle -o hw").code, 0);
+    let run = check(folder, "--search 0");
     let warning = "warning: hw: 2 submissions count as on time: the download does not state when";
     assert!(run.code == 0 && run.stderr.contains(warning), "{}", run.stderr);
 }
@@ -170,7 +155,7 @@ fn submissions_without_a_time_count_as_on_time() {
 fn decisions_are_in_every_report_and_survive_a_resumed_check() {
     let folder = class();
     let folder = folder.path();
-    let first = check(folder, &["--search", "0"]);
+    let first = check(folder, "--search 0");
     assert_eq!(first.code, 1, "{}", first.stderr);
     let results = read(folder, "out/results.jsonl");
     let decisions = "[[decision]]\nshader = \"hw/Bo-Lee/disk.glsl\"\nverdict = \"correct\"\nreason = \"the <sheet> was wrong\"\n\
@@ -178,7 +163,7 @@ fn decisions_are_in_every_report_and_survive_a_resumed_check() {
                      [[decision]]\nshader = \"hw/Cy-Fox\"\nverdict = \"correct\"\npoints = 5\nreason = \"on paper\"\n\
                      [[decision]]\nshader = \"hw/Bo-Le/disk.glsl\"\npoints = 1\nreason = \"none\"\n";
     fs::write(folder.join("task/decisions.toml"), decisions).unwrap();
-    let run = check(folder, &["--search", "0", "--resume"]);
+    let run = check(folder, "--search 0 --resume");
     assert_eq!(run.code, 0, "the decided verdicts count: {}", run.stderr);
     assert!(run.stderr.contains("2 of 3 results are reused"), "{}", run.stderr);
     assert!(
@@ -223,14 +208,14 @@ fn decisions_are_in_every_report_and_survive_a_resumed_check() {
 
     // Without the file, the verdicts are those of the check.
     fs::rename(folder.join("task/decisions.toml"), folder.join("mine.toml")).unwrap();
-    let run = check(folder, &["--search", "0", "--resume"]);
+    let run = check(folder, "--search 0 --resume");
     assert_eq!(
         (run.code, marks(folder)[1].as_str()),
         (1, "wrong 2"),
         "{}",
         run.stderr
     );
-    let run = check(folder, &["--search", "0", "--resume", "--decisions", "mine.toml"]);
+    let run = check(folder, "--search 0 --resume --decisions mine.toml");
     assert_eq!(run.code, 0, "{}", run.stderr);
 
     // The gradebook has the decided points.
@@ -239,16 +224,8 @@ fn decisions_are_in_every_report_and_survive_a_resumed_check() {
         "Identifier,Full name,Grade\nParticipant 8,Bo Lee,\n",
     )
     .unwrap();
-    let gradebook = [
-        "gradebook",
-        "grades.csv",
-        "--marks",
-        "out",
-        "-o",
-        "filled.csv",
-        "-q",
-    ];
-    assert_eq!(toyproof(folder, &gradebook).code, 0);
+    let gradebook = "gradebook grades.csv --marks out -o filled.csv -q";
+    assert_eq!(call(folder, gradebook).code, 0);
     assert!(read(folder, "filled.csv").contains("Bo Lee,10\r\n"));
 
     fs::write(
@@ -256,7 +233,7 @@ fn decisions_are_in_every_report_and_survive_a_resumed_check() {
         "[[decision]]\nshader = \"a\"\nverdict = \"god\"\nreason = \"b\"\n",
     )
     .unwrap();
-    let run = check(folder, &["--decisions", "mine.toml"]);
+    let run = check(folder, "--decisions mine.toml");
     assert!(
         run.code == 2 && run.stderr.contains("mine.toml:3:11"),
         "{}",
@@ -282,21 +259,8 @@ fn a_class_has_decisions_for_each_assignment() {
         "[[decision]]\nstudent = \"Anna Smith\"\npoints = 4\nreason = \"late bus\"\n",
     )
     .unwrap();
-    let check = [
-        "check",
-        "moodle",
-        "--class",
-        "class.toml",
-        "--device",
-        "cpu",
-        "--search",
-        "0",
-        "--out",
-        "out",
-        "--feedback",
-        "pages.zip",
-    ];
-    let run = toyproof(folder, &check);
+    let check = "check moodle --class class.toml --device cpu --search 0 --out out --feedback pages.zip";
+    let run = call(folder, check);
     assert_eq!(run.code, 1, "{}", run.stderr);
     let table = read(folder, "out/class.csv");
     let bo = table.lines().find(|line| line.starts_with("Bo Lee")).unwrap();
@@ -331,9 +295,9 @@ fn each_student_has_a_page_under_the_name_of_the_download() {
     write(&folder.join("canvas/foxzoe_LATE_12_34_disk.glsl"), canvas, NOON);
     write(&folder.join("canvas/roedan_13_35_disk.glsl"), SOLUTION, NOON);
     fs::remove_dir_all(folder.join("hw")).unwrap();
-    let collect = ["collect", "moodle", "canvas", "-o", "hw"];
-    assert_eq!(toyproof(folder, &collect).code, 0);
-    let run = check(folder, &["--feedback", "feedback.zip"]);
+    let collect = "collect moodle canvas -o hw";
+    assert_eq!(call(folder, collect).code, 0);
+    let run = check(folder, "--feedback feedback.zip");
     assert_eq!(run.code, 1, "{}", run.stderr);
     assert!(
         run.stderr.contains("feedback: feedback.zip (5 pages)"),
@@ -386,11 +350,11 @@ fn each_student_has_a_page_under_the_name_of_the_download() {
     }
 
     // All hints for the teacher are still none of the reference for students.
-    let run = check(folder, &["--resume", "--hints", "fix", "--feedback", "pages"]);
+    let run = check(folder, "--resume --hints fix --feedback pages");
     assert_eq!(run.code, 1, "{}", run.stderr);
     let bo = read(folder, "pages/Bo Lee_8_assignsubmission_file_/feedback.html");
     assert!(bo.contains("an edit of line 2") && !bo.contains("replace <code>"));
-    let run = check(folder, &["--resume", "--hints", "none", "--feedback", "pages"]);
+    let run = check(folder, "--resume --hints none --feedback pages");
     assert_eq!(run.code, 1, "{}", run.stderr);
     let hidden = read(folder, "pages/Bo Lee_8_assignsubmission_file_/feedback.html");
     assert!(!hidden.contains("an edit of line 2") && hidden.len() < bo.len());
@@ -401,7 +365,7 @@ fn each_student_has_a_page_under_the_name_of_the_download() {
         "[rubric]\nimages = \"none\"\nvisibility = \"hidden\"\n[rubric.compiles]",
     );
     fs::write(folder.join("task/assignment.toml"), assignment).unwrap();
-    check(folder, &["--search", "0", "--feedback", "pages"]);
+    check(folder, "--search 0 --feedback pages");
     let bare = read(folder, "pages/Bo Lee_8_assignsubmission_file_/feedback.html");
     assert!(!bare.contains("<script id=\"p0\"") && !bare.contains("Points:"));
 }
@@ -410,19 +374,10 @@ fn each_student_has_a_page_under_the_name_of_the_download() {
 fn feedback_needs_a_report_and_works_without_students() {
     let folder = class();
     let folder = folder.path();
-    let run = toyproof(folder, &["check", "task/solution.glsl", "--feedback", "pages"]);
+    let run = call(folder, "check task/solution.glsl --feedback pages");
     assert!(run.code == 2 && run.stderr.contains("--out"), "{}", run.stderr);
-    let check = [
-        "check",
-        "task/solution.glsl",
-        "--device",
-        "cpu",
-        "--out",
-        "out",
-        "--feedback",
-        "pages",
-    ];
-    let run = toyproof(folder, &check);
+    let check = "check task/solution.glsl --device cpu --out out --feedback pages";
+    let run = call(folder, check);
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(folder.join("pages/solution/feedback.html").is_file());
 }
@@ -431,7 +386,7 @@ fn feedback_needs_a_report_and_works_without_students() {
 fn a_pack_has_nothing_of_the_solution_and_its_commands_work() {
     let folder = class();
     let folder = folder.path();
-    let run = toyproof(folder, &["new", "pack", "task", "-o", "pack"]);
+    let run = call(folder, "new pack task -o pack");
     assert_eq!(run.code, 0, "{}", run.stderr);
     let names = [
         "frame-1.png",
@@ -449,10 +404,7 @@ fn a_pack_has_nothing_of_the_solution_and_its_commands_work() {
     }
     assert_eq!(fs::read_dir(folder.join("pack")).unwrap().count(), names.len());
     let readme = read(folder, "pack/README.md");
-    let commands: Vec<_> = readme
-        .lines()
-        .filter_map(|line| line.strip_prefix("toyproof "))
-        .collect();
+    let commands = commands(&readme);
     assert_eq!(
         commands,
         [
@@ -466,24 +418,18 @@ fn a_pack_has_nothing_of_the_solution_and_its_commands_work() {
     for (text, code) in [(read(folder, "pack/shader.glsl"), 1), (SOLUTION.to_owned(), 0)] {
         fs::write(pack.join("shader.glsl"), text).unwrap();
         for command in &commands {
-            let arguments: Vec<_> = command.split(' ').collect();
-            let device: &[&str] = if command.starts_with("check") {
-                &["--device", "cpu"]
-            } else {
-                &[]
-            };
-            let run = toyproof(&pack, &[&arguments[..], device].concat());
+            let run = call(&pack, &on_cpu(command));
             assert_eq!(run.code, code, "{command}: {run:?}");
             assert!(!run.stdout.contains("invalid"), "{run:?}");
         }
     }
 
-    let run = toyproof(folder, &["new", "pack", "task", "-o", "pack.zip"]);
+    let run = call(folder, "new pack task -o pack.zip");
     assert_eq!(run.code, 0, "{}", run.stderr);
     let packed = pages(folder, "pack.zip");
     assert_eq!(packed.keys().collect::<Vec<_>>().len(), names.len());
     assert_eq!(packed["README.md"], readme);
-    let again = toyproof(folder, &["new", "pack", "task", "-o", "pack"]);
+    let again = call(folder, "new pack task -o pack");
     assert!(
         again.code == 2 && again.stderr.contains("already exists"),
         "{}",
@@ -491,23 +437,66 @@ fn a_pack_has_nothing_of_the_solution_and_its_commands_work() {
     );
 }
 
+/// The commands in a pack's README, without the name of the program.
+fn commands(readme: &str) -> Vec<&str> {
+    let lines = readme.lines();
+    lines.filter_map(|line| line.strip_prefix("toyproof ")).collect()
+}
+
+/// The same command on the CPU.
+fn on_cpu(command: &str) -> String {
+    if command.starts_with("check") {
+        format!("{command} --device cpu")
+    } else {
+        command.to_owned()
+    }
+}
+
+#[test]
+fn the_images_of_a_pack_have_the_uniforms_of_their_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let solution = "precision highp float;\nuniform vec2 u_resolution;\nuniform mat2 turn;\nuniform float speed;\n\
+                    void main() {\n    vec2 p = turn * gl_FragCoord.xy / u_resolution;\n    \
+                    gl_FragColor = vec4(fract(speed * p), 0.5, 1.0);\n}\n";
+    write(&folder.join("task/solution.glsl"), solution, NOON);
+    let assignment = "reference = \"solution.glsl\"\n[uniforms]\nspeed = 0.5\n\
+                      [[frame]]\nsize = [16, 16]\nuniforms = { turn = [1, 0, 0, 1] }\n\
+                      [[frame]]\nsize = [16, 16]\nuniforms = { turn = [0, 1, 1, 0], speed = 1.5 }\n";
+    write(&folder.join("task/assignment.toml"), assignment, NOON);
+    let run = call(folder, "new pack task -o pack");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let starter = read(folder, "pack/shader.glsl");
+    assert!(
+        starter.contains("uniform mat2 turn;\nuniform float speed;\n"),
+        "{starter}"
+    );
+    let readme = read(folder, "pack/README.md");
+    assert!(
+        readme.contains("| `turn` = (0, 1, 1, 0), `speed` = 1.5 |"),
+        "{readme}"
+    );
+    fs::write(folder.join("pack/shader.glsl"), solution).unwrap();
+    for command in commands(&readme) {
+        let run = call(&folder.join("pack"), &on_cpu(command));
+        assert_eq!(run.code, 0, "{command}: {run:?}");
+    }
+}
+
 #[test]
 fn the_pack_of_a_scene_has_the_functions_of_exported_shaders() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    assert_eq!(
-        toyproof(folder, &["new", "assignment", "ball", "--from", "02-sphere"]).code,
-        0
-    );
+    assert_eq!(call(folder, "new assignment ball --from 02-sphere").code, 0);
     let path = folder.join("ball/assignment.toml");
     let text = fs::read_to_string(&path).unwrap();
     let test = "\n[rules]\nmust_define = [\"intersectSphere\"]\n";
     fs::write(&path, text + test).unwrap();
-    let run = toyproof(folder, &["new", "pack", "ball", "-o", "pack"]);
+    let run = call(folder, "new pack ball -o pack");
     assert_eq!(run.code, 0, "{}", run.stderr);
     let starter = read(folder, "pack/shader.glsl");
     assert!(starter.contains("intersectSphere("), "{starter}");
-    let run = toyproof(&folder.join("pack"), &["check", "shader.glsl", "--device", "cpu"]);
+    let run = call(&folder.join("pack"), "check shader.glsl --device cpu");
     assert_eq!(run.code, 0, "{}\n{starter}", run.stderr);
     assert!(!folder.join("pack/scene.toml").exists());
 }

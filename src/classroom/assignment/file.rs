@@ -300,7 +300,7 @@ const MAX_LINES: u32 = 1_000_000;
 
 fn rules(table: &mut Table) -> Rules {
     Rules {
-        points: optional_points(table),
+        points: optional_points(table).unwrap_or_default(),
         must_define: names(table, "must_define"),
         must_not_call: names(table, "must_not_call"),
         textures: table.optional("textures").is_none_or(|textures| textures.value),

@@ -183,7 +183,7 @@ fn add(
 /// Why a download cannot be read, and what to do instead.
 fn unreadable(download: &Path, error: &io::Error) -> String {
     let name = path_name(download);
-    let is_named_archive = download.to_str().is_some_and(is_archive);
+    let is_named_archive = is_archive(download);
     if error.kind() != io::ErrorKind::InvalidData || is_named_archive {
         return format!("{name}: {error}");
     }

@@ -90,10 +90,10 @@ fn by_place(first: &str, is_file: bool) -> NameParts {
     }
 }
 
-/// Whether a name is that of an archive.
+/// Whether a path is that of an archive.
 #[must_use]
-pub fn is_archive(name: &str) -> bool {
-    let extension = Path::new(name).extension();
+pub fn is_archive(path: impl AsRef<Path>) -> bool {
+    let extension = path.as_ref().extension();
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("zip"))
 }
 

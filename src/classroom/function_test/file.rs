@@ -94,7 +94,7 @@ fn function(table: &mut Table) -> FunctionTest {
     {
         table.reject_value("name", name, "must be the name of a function");
     }
-    let points = optional_points(table);
+    let points = optional_points(table).unwrap_or_default();
     let precisions = [
         ("f32", Precision::Single),
         ("f64", Precision::Double),

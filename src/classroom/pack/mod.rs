@@ -4,7 +4,7 @@
 
 mod starter;
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -82,7 +82,10 @@ pub fn pack(
     frames: Vec<PackedFrame>,
     commands: &[String],
 ) -> PackFiles {
-    let mut files = vec![(STARTER.to_owned(), starter(assignment, reference).into_bytes())];
+    let uniforms = frames.iter().flat_map(|frame| &frame.inputs.uniforms);
+    let uniforms: BTreeSet<&str> = uniforms.map(|uniform| uniform.name.as_str()).collect();
+    let starter = starter(assignment, reference, &uniforms);
+    let mut files = vec![(STARTER.to_owned(), starter.into_bytes())];
     let stem = STARTER.trim_end_matches(".glsl");
     if !assignment.functions.is_empty() {
         let tests = test_file(&assignment.functions);
@@ -106,15 +109,6 @@ fn readme(name: &str, assignment: &Assignment, frames: &[PackedFrame], commands:
     {
         let [width, height] = size;
         let _ = writeln!(text, "| `{image}` | {width}×{height} | {} |", described(inputs));
-    }
-    for uniform in &assignment.uniforms {
-        let components: Vec<_> = uniform.components.iter().map(f64::to_string).collect();
-        let _ = write!(
-            text,
-            "\nThe uniform `{}` is {}.\n",
-            uniform.name,
-            components.join(", ")
-        );
     }
     let mut requirements = assignment.rules.as_ref().map_or_else(Vec::new, rules);
     if !assignment.functions.is_empty() {
@@ -185,6 +179,16 @@ fn described(inputs: &FrameInputs) -> String {
                 .map_or(Channel::NOISE.into(), |path| path.to_string_lossy());
             parts.push(format!("`iChannel{index}` = `{name}`"));
         }
+    }
+    for uniform in &inputs.uniforms {
+        let value = match &uniform.components[..] {
+            [number] => number.to_string(),
+            numbers => format!(
+                "({})",
+                numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+            ),
+        };
+        parts.push(format!("`{}` = {value}", uniform.name));
     }
     parts.join(", ")
 }

@@ -20,8 +20,12 @@ const INPUTS: [(Input, &str); 5] = [
 ];
 
 /// The text of the shader. `reference` has the dialect and the signatures of the functions; without one, the
-/// shader is ShaderToy's, and names the functions in a comment.
-pub(super) fn starter(assignment: &Assignment, reference: Option<&Subject>) -> String {
+/// shader is ShaderToy's, and names the functions in a comment. `uniforms` have values in some frame.
+pub(super) fn starter(
+    assignment: &Assignment,
+    reference: Option<&Subject>,
+    uniforms: &BTreeSet<&str>,
+) -> String {
     let mut names: BTreeSet<&str> = assignment
         .functions
         .iter()
@@ -33,7 +37,7 @@ pub(super) fn starter(assignment: &Assignment, reference: Option<&Subject>) -> S
     let tested = assignment.functions.iter().map(|test| &test.name);
     names.extend(rules.chain(tested).map(String::as_str));
     let (head, main) = match reference.map(|reference| reference.checked) {
-        Some(checked) if !checked.dialect.calls_main_image() => main(checked, assignment),
+        Some(checked) if !checked.dialect.calls_main_image() => main(checked, uniforms),
         _ => (
             String::new(),
             "void mainImage(out vec4 fragColor, in vec2 fragCoord) {\n    \
@@ -68,15 +72,13 @@ pub(super) fn starter(assignment: &Assignment, reference: Option<&Subject>) -> S
 }
 
 /// The declarations of a shader whose host runs `main`, and its `main`.
-fn main(checked: &Checked, assignment: &Assignment) -> (String, String) {
-    let (version, output) = match checked.version {
-        Version::Es100 => (String::new(), false),
-        Version::Es300 => ("#version 300 es\n".to_owned(), true),
-        Version::Es310 => ("#version 310 es\n".to_owned(), true),
-        Version::Es320 => ("#version 320 es\n".to_owned(), true),
-        Version::Desktop(number) => (format!("#version {number}\n"), number >= 330),
+fn main(checked: &Checked, uniforms: &BTreeSet<&str>) -> (String, String) {
+    let output = match checked.version {
+        Version::Es100 => false,
+        Version::Es300 | Version::Es310 | Version::Es320 => true,
+        Version::Desktop(number) => number >= 330,
     };
-    let mut head = version;
+    let mut head = checked.version.directive();
     if !matches!(checked.version, Version::Desktop(_)) {
         head += "precision highp float;\n";
     }
@@ -86,15 +88,11 @@ fn main(checked: &Checked, assignment: &Assignment) -> (String, String) {
             let _ = writeln!(head, "uniform {ty} {name};");
         }
     }
-    for uniform in &assignment.uniforms {
-        let ty = match uniform.components.len() {
-            1 => "float",
-            2 => "vec2",
-            3 => "vec3",
-            4 => "vec4",
-            _ => continue,
-        };
-        let _ = writeln!(head, "uniform {ty} {};", uniform.name);
+    for (_, variable) in checked.tree.variables.iter() {
+        if variable.kind == VariableKind::Uniform && uniforms.contains(variable.name.as_str()) {
+            let declared = checked.tree.declaration(&variable.name, variable.ty);
+            let _ = writeln!(head, "uniform {declared};");
+        }
     }
     let color = if output {
         head += "out vec4 fragColor;\n";
@@ -132,7 +130,7 @@ fn structs(tree: &Tree, functions: &[&Function]) -> String {
     });
     let text = declared.map(|one| {
         let members = one.members.iter();
-        let members = members.map(|member| format!("    {} {};\n", tree.type_name(member.ty), member.name));
+        let members = members.map(|member| format!("    {};\n", tree.declaration(&member.name, member.ty)));
         format!("struct {} {{\n{}}};\n\n", one.name, members.collect::<String>())
     });
     text.collect()
@@ -154,7 +152,7 @@ fn stub(tree: &Tree, function: &Function) -> String {
         {
             let _ = writeln!(outputs, "    {} = {value};", parameter.name);
         }
-        let declared = format!("{direction}{} {}", tree.type_name(parameter.ty), parameter.name);
+        let declared = format!("{direction}{}", tree.declaration(&parameter.name, parameter.ty));
         declared.trim_end().to_owned()
     });
     let parameters: Vec<String> = parameters.collect();

@@ -55,13 +55,13 @@ impl DecisionFiles {
         Ok(())
     }
 
-    /// The decisions; warns of those that are on none of the submissions.
+    /// The decisions; warns of those that are on none of the submissions, or on several students.
     pub(super) fn finish(self, submissions: &[Submission], terminal: &Terminal) -> Decisions {
         let shaders: Vec<(String, Option<&StudentSubmission>)> = submissions
             .iter()
             .map(|submission| (submission.shown_name(), submission.submitted.as_ref()))
             .collect();
-        for (warning, help) in self.decisions.unmatched(&shaders) {
+        for (warning, help) in self.decisions.warnings(&shaders) {
             terminal.warn(warning);
             if let Some(help) = help {
                 terminal.help(help);

@@ -2,14 +2,14 @@
 
 use toyproof_classroom::assignment::Reference;
 use toyproof_diagnostic::path_name;
-use toyproof_image::Image;
+use toyproof_image::{FrameInputs, Image};
 use toyproof_report::FeatureRecord;
+use toyproof_verify::CheckResult;
 use toyproof_verify::compare::{Pixel, PixelStatus};
-use toyproof_verify::{CheckResult, Expected};
 
 use super::options::CheckOptions;
-use super::plan::{Plan, PlannedFrame};
-use super::reference::{References, expected_in};
+use super::plan::Plan;
+use super::reference::{References, expected_in, expected_of_scene};
 use crate::cli::reference::ReferenceArgs;
 use crate::cli::scenes::{parse_scene, read_scene};
 use crate::cli::{CliError, Terminal};
@@ -127,17 +127,13 @@ fn images(
     let expected = match reference {
         Reference::Scene(path) => {
             let scene = parse_scene(read_scene(path)?)?;
-            let with_size = |PlannedFrame { inputs, frame }: &mut PlannedFrame| {
-                let mut scene = scene.clone();
-                frame.size = inputs.size.unwrap_or(scene.film.size);
-                scene.film.size = frame.size;
-                Expected::from_scene(scene, frame)
-            };
-            frames.iter_mut().map(with_size).collect()
+            expected_of_scene(&scene, &mut frames)
         }
         Reference::Given { path, .. } => {
             let args = ReferenceArgs::given(path.clone());
-            let rendered = expected_in(&args, plan, &mut frames, options, terminal)?;
+            let language = |frame: &FrameInputs| plan.language(&options.language, frame);
+            let timeout = options.driver.timeout();
+            let rendered = expected_in(&args, &mut frames, language, timeout, terminal)?;
             rendered.expect("a path is given").1
         }
     };

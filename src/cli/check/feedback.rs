@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use toyproof_classroom::collect::naming::is_archive;
 use toyproof_classroom::collect::roster::FEEDBACK_NAME;
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::output;
@@ -42,10 +43,7 @@ pub(super) fn write(
         let of_student: Vec<_> = student.shaders.iter().map(|&index| submissions[index]).collect();
         page(report, student, &of_student, rubrics, options.students_hints)
     };
-    let is_archive = target
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("zip"));
-    let written = if is_archive {
+    let written = if is_archive(target) {
         write_archives(target, &students, page)
     } else {
         write_folder(target, &students, page)

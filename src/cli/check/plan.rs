@@ -35,11 +35,11 @@ pub(super) struct Plan {
 
 /// A frame in which shaders are checked.
 #[derive(Clone)]
-pub(super) struct PlannedFrame {
-    pub(super) inputs: FrameInputs,
+pub(in crate::cli) struct PlannedFrame {
+    pub(in crate::cli) inputs: FrameInputs,
     /// The inputs with loaded channels, in their size or the default one; a scene or a reference image may
     /// set another size.
-    pub(super) frame: Frame,
+    pub(in crate::cli) frame: Frame,
 }
 
 impl Plan {

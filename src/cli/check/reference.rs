@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, LazyLock};
+use std::time::Duration;
 
 use toyproof_classroom::function_test::is_test_file;
 use toyproof_diagnostic::{File, Files, path_name};
 use toyproof_eval as eval;
 use toyproof_explain::whole_image::OtherScenes;
-use toyproof_image::Image;
+use toyproof_image::{FrameInputs, Image};
 use toyproof_project::files::{self, Input, InputSource, OutsideLink, ReadError};
 use toyproof_scene::{self as scene, Scene};
 use toyproof_verify::{Expected, Failure};
@@ -16,6 +17,7 @@ use toyproof_verify::{Expected, Failure};
 use super::options::CheckOptions;
 use super::plan::{Plan, PlannedFrame, assignment_beside};
 use super::reference_cache::CachedReference;
+use crate::cli::inputs::LanguageArgs;
 use crate::cli::reference::{GivenReference, ReferenceArgs};
 use crate::cli::scenes::{builtin_scenes, parse_scene, read_scene, with_builtin_hint};
 use crate::cli::shader::Shader;
@@ -97,25 +99,23 @@ pub(super) enum References {
     Given(PreparedReference),
 }
 
-/// Reads a shader or an image, and renders it in the frames of a plan, which get the size of an image. A shader is
-/// read anew for each set of values of uniforms; that of the first frame is returned. `None` if the arguments name
-/// neither.
+/// Reads a shader or an image, and renders it in frames, which get the size of an image. A shader is read anew for
+/// each set of values of uniforms, with the language of its frames; that of the first frame is returned. `None` if
+/// the arguments name neither.
 ///
 /// # Errors
 /// Shaders cannot be compared with it.
-pub(super) fn expected_in(
+pub(in crate::cli) fn expected_in(
     args: &ReferenceArgs,
-    plan: &Plan,
     frames: &mut [PlannedFrame],
-    options: &CheckOptions,
+    language: impl Fn(&FrameInputs) -> LanguageArgs,
+    timeout: Duration,
     terminal: &Terminal,
 ) -> Result<Option<(GivenReference, Vec<Expected>)>, CliError> {
-    let timeout = options.driver.timeout();
     let mut first = None;
     let mut all = Vec::new();
     for alike in frames.chunk_by_mut(|a, b| a.inputs.uniforms == b.inputs.uniforms) {
-        let language = plan.language(&options.language, &alike[0].inputs);
-        let Some(given) = GivenReference::read(args, &language, timeout)? else {
+        let Some(given) = GivenReference::read(args, &language(&alike[0].inputs), timeout)? else {
             return Ok(None);
         };
         for PlannedFrame { inputs, frame } in &mut *alike {
@@ -128,6 +128,17 @@ pub(super) fn expected_in(
     Ok(first.map(|first| (first, all)))
 }
 
+/// Renders a scene in frames, which get its size unless they have one.
+pub(in crate::cli) fn expected_of_scene(scene: &Scene, frames: &mut [PlannedFrame]) -> Vec<Expected> {
+    let with_size = |PlannedFrame { inputs, frame }: &mut PlannedFrame| {
+        let mut scene = scene.clone();
+        frame.size = inputs.size.unwrap_or(scene.film.size);
+        scene.film.size = frame.size;
+        Expected::from_scene(scene, frame)
+    };
+    frames.iter_mut().map(with_size).collect()
+}
+
 impl References {
     /// Reads what shaders are compared with. The frames get the size of a reference image.
     pub(super) fn new(
@@ -136,8 +147,10 @@ impl References {
         terminal: &Terminal,
     ) -> Result<Self, CliError> {
         let mut frames = plan.frames.clone();
-        let Some((given, expected)) = expected_in(&plan.reference, plan, &mut frames, options, terminal)?
-        else {
+        let language = |frame: &FrameInputs| plan.language(&options.language, frame);
+        let timeout = options.driver.timeout();
+        let expected = expected_in(&plan.reference, &mut frames, language, timeout, terminal)?;
+        let Some((given, expected)) = expected else {
             let scenes = Scenes::new(plan.reference.scene.as_deref());
             scenes.check()?;
             return Ok(Self::Scenes(scenes));

@@ -1,24 +1,24 @@
 //! `toyproof new pack`: what students get of an assignment.
 
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use toyproof_classroom::assignment::{Assignment, Reference};
 use toyproof_classroom::autograder::assignment_name;
+use toyproof_classroom::collect::naming::is_archive;
 use toyproof_classroom::function_test::Subject;
 use toyproof_classroom::pack::{PackFiles, PackedFrame, STARTER, pack, pack_textures};
 use toyproof_diagnostic::{Deadline, File, Files, path_name};
 use toyproof_glsl as glsl;
-use toyproof_image::{Frame, FrameInputs};
+use toyproof_image::FrameInputs;
 use toyproof_project::archive::{self, Mode};
 use toyproof_scene as scene;
 use toyproof_verify::{Difference, Expected};
 
 use super::{quoted, refuse_existing, thumbnail};
-use crate::cli::check::read_assignment;
+use crate::cli::check::{PlannedFrame, expected_in, expected_of_scene, read_assignment};
 use crate::cli::inputs::{LanguageArgs, frame_flags, parse_time_limit};
-use crate::cli::reference::{GivenReference, ReferenceArgs};
+use crate::cli::reference::ReferenceArgs;
 use crate::cli::scenes::{parse_scene, read_scene};
 use crate::cli::{CliError, Terminal};
 
@@ -40,18 +40,23 @@ pub(super) struct PackArgs {
 pub(super) fn new_pack(args: &PackArgs, terminal: &Terminal) -> Result<(), CliError> {
     refuse_existing(&args.output)?;
     let (path, assignment) = read_assignment(&args.assignment)?;
-    let language = args.language.with_uniforms(&assignment.uniforms);
     let mut inputs = assignment.frames.clone();
-    let frames = inputs.iter().map(FrameInputs::load).collect::<Result<_, _>>()?;
+    for inputs in &mut inputs {
+        let of_frame = args.language.with_uniforms(&inputs.uniforms);
+        inputs.uniforms = of_frame.with_uniforms(&assignment.uniforms).uniform;
+    }
+    let loaded = inputs.iter().map(FrameInputs::load);
+    let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
     let mut files = pack_textures(&mut inputs)?;
+    let frames = inputs.into_iter().zip(loaded);
     let name = assignment_name(&path);
     let task = Task {
         args,
         assignment: &assignment,
-        language: &language,
         name: &name,
-        inputs,
-        frames,
+        frames: frames
+            .map(|(inputs, frame)| PlannedFrame { inputs, frame })
+            .collect(),
     };
     files.extend(match &assignment.reference {
         Reference::Scene(path) => task.of_scene(path)?,
@@ -62,18 +67,19 @@ pub(super) fn new_pack(args: &PackArgs, terminal: &Terminal) -> Result<(), CliEr
     for (file, _) in &files {
         terminal.note(&format!("  {file}"));
     }
-    terminal.note(&format!(
-        "next:\n  toyproof check {} --assignment {}",
-        quoted(&path_name(&args.output.join(STARTER))),
-        quoted(&path_name(&path))
-    ));
+    if !is_archive(&args.output) {
+        terminal.note(&format!(
+            "next:\n  toyproof check {} --assignment {}",
+            quoted(&path_name(&args.output.join(STARTER))),
+            quoted(&path_name(&path))
+        ));
+    }
     Ok(())
 }
 
 /// Writes the files into a folder or an archive.
 fn write(output: &Path, files: &PackFiles, terminal: &Terminal) -> Result<(), CliError> {
-    let is_archive = |extension: &OsStr| extension.eq_ignore_ascii_case("zip");
-    if output.extension().is_some_and(is_archive) {
+    if is_archive(output) {
         let entries = files.iter();
         let entries: Vec<_> = entries
             .map(|(name, bytes)| (name.as_str(), Mode::Plain, &bytes[..]))
@@ -91,12 +97,9 @@ fn write(output: &Path, files: &PackFiles, terminal: &Terminal) -> Result<(), Cl
 struct Task<'a> {
     args: &'a PackArgs,
     assignment: &'a Assignment,
-    language: &'a LanguageArgs,
     name: &'a str,
-    /// The inputs of the frames, whose textures are files of the pack.
-    inputs: Vec<FrameInputs>,
-    /// The frames with loaded textures.
-    frames: Vec<Frame>,
+    /// The frames, with the values of all uniforms. The textures of their inputs are files of the pack.
+    frames: Vec<PlannedFrame>,
 }
 
 impl Task<'_> {
@@ -104,12 +107,9 @@ impl Task<'_> {
     fn of_given(mut self, terminal: &Terminal) -> Result<PackFiles, CliError> {
         let timeout = self.args.timeout;
         let reference = ReferenceArgs::of(self.assignment);
-        let given = GivenReference::read(&reference, self.language, timeout)?;
-        let given = given.ok_or_else(CliError::silent)?;
-        for (frame, inputs) in self.frames.iter_mut().zip(&self.inputs) {
-            given.resize(frame, inputs.size)?;
-        }
-        let expected = given.expected(self.frames.iter(), timeout, terminal)?;
+        let language = |frame: &FrameInputs| self.args.language.with_uniforms(&frame.uniforms);
+        let expected = expected_in(&reference, &mut self.frames, language, timeout, terminal)?;
+        let (given, expected) = expected.ok_or_else(CliError::silent)?;
         let subject = given.shader().map(|(shader, checked)| Subject {
             checked,
             files: &shader.files,
@@ -122,13 +122,7 @@ impl Task<'_> {
     /// The files for a reference that is a scene. The signatures are those of the exported shader.
     fn of_scene(mut self, path: &Path) -> Result<PackFiles, CliError> {
         let scene = parse_scene(read_scene(path)?)?;
-        let mut expected = Vec::new();
-        for (frame, inputs) in self.frames.iter_mut().zip(&self.inputs) {
-            let mut scene = scene.clone();
-            frame.size = inputs.size.unwrap_or(scene.film.size);
-            scene.film.size = frame.size;
-            expected.push(Expected::from_scene(scene, frame));
-        }
+        let expected = expected_of_scene(&scene, &mut self.frames);
         let text = scene::export::shader(&scene).unwrap_or_default();
         let mut files = Files::default();
         let file = files.add(File::new(STARTER, text.as_str()));
@@ -148,43 +142,43 @@ impl Task<'_> {
 
     fn files(self, expected: &[Expected], reference: Option<&Subject>) -> Result<PackFiles, CliError> {
         let mut frames = Vec::new();
-        for (index, (expected, frame)) in expected.iter().zip(&self.frames).enumerate() {
-            let (image, png) = thumbnail(index, expected, frame)?;
+        for (index, (expected, planned)) in expected.iter().zip(self.frames).enumerate() {
+            let (image, png) = thumbnail(index, expected, &planned.frame)?;
             frames.push(PackedFrame {
-                inputs: self.inputs[index].clone(),
-                size: frame.size,
+                inputs: planned.inputs,
+                size: planned.frame.size,
                 image,
                 png,
             });
         }
-        let commands = self.commands(&frames);
+        let commands = commands(&self.args.language, self.assignment, &frames);
         Ok(pack(self.name, self.assignment, reference, frames, &commands))
     }
+}
 
-    /// The commands that check the shader of a student in each frame, and test its functions.
-    fn commands(&self, frames: &[PackedFrame]) -> Vec<String> {
-        let Assignment {
-            permitted, functions, ..
-        } = self.assignment;
-        let ids: Vec<_> = permitted.iter().copied().map(Difference::id).collect();
-        let permit = (!ids.is_empty()).then(|| format!("--permit {}", ids.join(",")));
-        let common: Vec<String> = self.language.flags().into_iter().chain(permit).collect();
-        let check = frames.iter().map(|frame| {
-            // The image has the size.
-            let inputs = FrameInputs {
-                size: None,
-                ..frame.inputs.clone()
-            };
-            let mut command = vec![format!("toyproof check {STARTER} --reference {}", frame.image)];
-            command.extend(frame_flags(&inputs));
-            command.extend(common.iter().cloned());
-            command.join(" ")
-        });
-        let test = (!functions.is_empty()).then(|| {
-            let flags = self.language.flags().into_iter();
-            let command = std::iter::once(format!("toyproof test {STARTER}")).chain(flags);
-            command.collect::<Vec<_>>().join(" ")
-        });
-        check.chain(test).collect()
-    }
+/// The commands that check the shader of a student in each frame, and test its functions.
+fn commands(language: &LanguageArgs, assignment: &Assignment, frames: &[PackedFrame]) -> Vec<String> {
+    let ids: Vec<_> = assignment.permitted.iter().copied().map(Difference::id).collect();
+    let permit = (!ids.is_empty()).then(|| format!("--permit {}", ids.join(",")));
+    // Those of each frame are among its inputs.
+    let mut without_uniforms = language.clone();
+    without_uniforms.uniform.clear();
+    let common: Vec<String> = without_uniforms.flags().into_iter().chain(permit).collect();
+    let check = frames.iter().map(|frame| {
+        // The image has the size.
+        let inputs = FrameInputs {
+            size: None,
+            ..frame.inputs.clone()
+        };
+        let mut command = vec![format!("toyproof check {STARTER} --reference {}", frame.image)];
+        command.extend(frame_flags(&inputs));
+        command.extend(common.iter().cloned());
+        command.join(" ")
+    });
+    let test = (!assignment.functions.is_empty()).then(|| {
+        let flags = language.with_uniforms(&assignment.uniforms).flags().into_iter();
+        let command = std::iter::once(format!("toyproof test {STARTER}")).chain(flags);
+        command.collect::<Vec<_>>().join(" ")
+    });
+    check.chain(test).collect()
 }

@@ -75,8 +75,12 @@ impl Checker<'_> {
         let Variable { ty, kind, name, .. } = &self.tree[variable];
         let (ty, kind) = (*ty, *kind);
         if kind == VariableKind::Output {
-            // Other outputs go to textures that nothing shows.
-            if self.output.is_none() && matches!(ty, VEC3 | VEC4) {
+            // Other outputs go to textures that nothing shows. Of an array, the first element is shown.
+            let shown = match ty {
+                Type::Array(id) => self.tree.array(id).element,
+                _ => ty,
+            };
+            if self.output.is_none() && matches!(shown, VEC3 | VEC4) {
                 self.tree[variable].kind = VariableKind::Global;
                 self.output = Some(variable);
             }
@@ -400,18 +404,17 @@ impl Checker<'_> {
 
     /// The value of an output as a color.
     fn shown_color(&mut self, output: VariableId, at: Place) -> ExprId {
-        let ty = self.tree[output].ty;
-        let value = self.push(ExprKind::Variable(output), ty, false, at);
-        match ty {
-            VEC3 => {
-                let one = self.number(1.0, at);
-                self.vector(vec![value, one], VEC4, at)
-            }
-            Type::Array(_) => {
-                let index = self.int_literal(0, at);
-                self.index(value, index, at)
-            }
-            _ => value,
+        let mut ty = self.tree[output].ty;
+        let mut value = self.push(ExprKind::Variable(output), ty, false, at);
+        if let Type::Array(id) = ty {
+            ty = self.tree.array(id).element;
+            let index = self.int_literal(0, at);
+            value = self.index(value, index, at);
         }
+        if ty == VEC3 {
+            let one = self.number(1.0, at);
+            value = self.vector(vec![value, one], VEC4, at);
+        }
+        value
     }
 }

@@ -348,6 +348,12 @@ impl Dialect {
         self.host().sets_any
     }
 
+    /// Whether the host declares a name, so that a shader cannot.
+    pub(crate) fn declares(self, name: &str) -> bool {
+        let mut all = SHADERTOY.iter().chain(self.host().inputs);
+        self.is_implicit() && all.any(|(input, _)| *input == name)
+    }
+
     /// The first input that the host sets to a value with this property: its name, and the value.
     pub(crate) fn sets(self, is_wanted: impl Fn(InputValue) -> bool) -> Option<(&'static str, InputValue)> {
         let host = self.host();

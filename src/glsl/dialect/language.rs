@@ -126,6 +126,16 @@ impl Version {
         }
     }
 
+    /// The line that selects it; empty for GLSL ES 1.00, which browsers assume.
+    #[must_use]
+    pub fn directive(self) -> String {
+        let es = if self.is_es() { " es" } else { "" };
+        match self {
+            Self::Es100 => String::new(),
+            _ => format!("#version {}{es}\n", self.number()),
+        }
+    }
+
     /// Whether it is a version of GLSL ES.
     pub(crate) fn is_es(self) -> bool {
         !matches!(self, Self::Desktop(_))

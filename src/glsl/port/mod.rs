@@ -24,7 +24,7 @@ pub enum PortError {
     #[error("{}", .0.message)]
     Host(Box<Diagnostic>),
     /// The written text is invalid in every version that the host compiles.
-    #[error("{host} does not compile it: {error}")]
+    #[error("it is not compiled by {host}: {error}")]
     Invalid {
         /// The name of the host.
         host: &'static str,

@@ -77,7 +77,7 @@ fn newer_features_need_a_newer_version() {
     assert!(written.ends_with("    outColor.a = 1.0;\n}\n"), "{written}");
     let error = ported(text, Dialect::GlslSandbox).unwrap_err();
     assert!(
-        error.starts_with("GLSL Sandbox does not compile it: GLSL ES 1.00:"),
+        error.starts_with("it is not compiled by GLSL Sandbox: GLSL ES 1.00:"),
         "{error}"
     );
     // Appendix A
@@ -248,4 +248,101 @@ fn between_hosts_that_run_main() {
     let written = ported(&text, Dialect::BookOfShaders).unwrap();
     let expected = "uniform vec2 u_resolution;\nvoid main() { gl_FragColor = vec4(((gl_FragCoord.xy / u_resolution - 0.5) * vec2(u_resolution.x / u_resolution.y, 1.0)).x); }\n";
     assert_eq!(written, expected);
+}
+
+#[test]
+fn what_the_other_host_declares_is_renamed() {
+    let text = "uniform float u_time;\nuniform vec3 iMouse, u_resolution;\nfloat iFrame = 0.5;\n\
+                void main() { gl_FragColor = vec4(iMouse * iFrame, u_time); }\n";
+    let written = ported(text, Dialect::ShaderToy).unwrap();
+    assert!(
+        written.starts_with("vec3 iMouse_;\nfloat iFrame_ = 0.5;\n"),
+        "{written}"
+    );
+    assert!(written.contains("vec4(iMouse_ * iFrame_, iTime)"), "{written}");
+}
+
+#[test]
+fn a_variable_does_not_hide_the_function_of_textures() {
+    let text = "precision highp float;\nuniform sampler2D u_tex0;\nvoid main() {\n    \
+                vec4 texture = texture2D(u_tex0, vec2(0.0));\n    \
+                gl_FragColor = texture + texture2D(u_tex0, vec2(1.0));\n}\n";
+    let written = ported(text, Dialect::ShaderToy).unwrap();
+    assert!(
+        written.contains("vec4 texture_ = texture(iChannel0, vec2(0.0));"),
+        "{written}"
+    );
+    assert!(
+        written.contains("texture_ + texture(iChannel0, vec2(1.0))"),
+        "{written}"
+    );
+}
+
+#[test]
+fn declarations_keep_their_precision_and_extensions_of_webgl_1_stay() {
+    let text = "#extension GL_OES_standard_derivatives : enable\nuniform highp vec2 u_resolution;\n\
+                uniform mediump float u_time;\nprecision mediump float;\n\
+                void main() { gl_FragColor = vec4(dFdx(u_resolution.x), u_time, 0.0, 1.0); }\n";
+    let written = ported(text, Dialect::GlslSandbox).unwrap();
+    let expected = "#extension GL_OES_standard_derivatives : enable\nuniform highp vec2 resolution;\n\
+                    uniform mediump float time;\n";
+    assert!(written.starts_with(expected), "{written}");
+}
+
+#[test]
+fn sizes_of_textures_are_declared_in_place_of_their_array() {
+    let text = "precision highp float;\nuniform vec3 iChannelResolution[4];\nuniform sampler2D iChannel1;\n\
+                void main() { gl_FragColor = texture2D(iChannel1, 1.0 / iChannelResolution[1].xy); }\n";
+    let written = ported(text, Dialect::BookOfShaders).unwrap();
+    assert!(
+        written.contains("float;\nuniform vec2 u_tex1Resolution;\n"),
+        "{written}"
+    );
+    assert!(written.contains("1.0 / u_tex1Resolution"), "{written}");
+}
+
+#[test]
+fn uniforms_with_values_become_constants() {
+    let text = "uniform float speed;\n#iUniform float speed = 2.0 in { 0.0, 10.0 }\n\
+                void mainImage(out vec4 c, in vec2 p) { c = vec4(speed * iTime); }\n";
+    let written = ported(text, Dialect::BookOfShaders).unwrap();
+    assert!(
+        written.contains("\nuniform float speed;\nvoid mainImage"),
+        "{written}"
+    );
+    let text = "#version 120\nuniform float u_time;\nuniform vec2 speed = vec2(2.0, 1.0);\n\
+                void main() { gl_FragColor = vec4(speed * u_time, 0.0, 1.0); }\n";
+    let written = ported(text, Dialect::WebGl).unwrap();
+    assert!(
+        written.contains("const vec2 speed = vec2(2.0, 1.0);"),
+        "{written}"
+    );
+}
+
+#[test]
+fn an_array_of_colors_shows_its_first_element() {
+    let text = "#version 300 es\nprecision highp float;\nuniform float u_time;\nout vec4 colors[1];\n\
+                void main() { colors[0] = vec4(u_time); }\n";
+    let written = ported(text, Dialect::ShaderToy).unwrap();
+    assert_eq!(
+        written,
+        "void mainImage(out vec4 fragColor, in vec2 fragCoord) { fragColor = vec4(iTime); }\n"
+    );
+    let written = ported(text, Dialect::WebGl).unwrap();
+    assert!(
+        written.contains("out vec4 colors[1];") && !written.contains("outColor"),
+        "{written}"
+    );
+    let text = "#define COLOR gl_FragData[0]\nprecision highp float;\nvoid main() { COLOR = vec4(1.0); }\n";
+    let written = ported(text, Dialect::ShaderToy).unwrap();
+    assert!(written.starts_with("vec4 outColor[4];\n"), "{written}");
+}
+
+#[test]
+fn line_ends_and_indentation_are_the_same_throughout() {
+    let text = "\t#define A 1.0\r\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(A); }\r\n";
+    let written = ported(text, Dialect::WebGl).unwrap();
+    assert!(written.starts_with("#ifdef GL_ES\n"), "{written}");
+    assert!(written.contains("\n\t#define A 1.0\nvoid"), "{written}");
+    assert!(!written.contains('\r'), "{written:?}");
 }

@@ -96,6 +96,13 @@ impl Tree {
         name + &dimensions.concat()
     }
 
+    /// A variable with its type, as every version of GLSL declares it: `float weights[4]`.
+    pub fn declaration(&self, name: &str, ty: Type) -> String {
+        let ty = self.type_name(ty);
+        let (element, dimensions) = ty.split_at(ty.find('[').unwrap_or(ty.len()));
+        format!("{element} {name}{dimensions}")
+    }
+
     /// The scalar type of each component of a value: columns, members and elements in order. Empty for `void`
     /// and samplers.
     pub fn scalars(&self, ty: Type) -> Vec<Scalar> {
