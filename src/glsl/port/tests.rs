@@ -124,6 +124,9 @@ fn what_the_host_does_not_set_is_an_error() {
     let written = ported(&mouse("iMouse.z"), Dialect::Three).unwrap();
     assert!(written.contains("uniform vec4 iMouse;"), "{written}");
     assert!(ported(&mouse("iMouse"), Dialect::BookOfShaders).is_err());
+    // Not an element of `iChannelResolution`.
+    let error = ported(&mouse("iMouse[0], iChannelResolution[0]"), Dialect::BookOfShaders);
+    assert_eq!(error.unwrap_err(), "`iMouse` is not set by The Book of Shaders");
     assert!(ported(&mouse("iSampleRate"), Dialect::BookOfShaders).is_err());
     assert!(
         ported(&mouse("iTime"), Dialect::Isf)
