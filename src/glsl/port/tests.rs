@@ -223,6 +223,21 @@ fn a_name_of_a_parameter_is_no_input() {
 }
 
 #[test]
+fn a_parameter_of_a_macro_is_no_input() {
+    let text = "#define UV(iResolution, p) ((p) / iResolution.xy)\n#define SIZE (iResolution.xy)\n\
+                void mainImage(out vec4 c, in vec2 p) { c = vec4(UV(iResolution, p), SIZE); }\n";
+    let written = ported(text, Dialect::BookOfShaders).unwrap();
+    assert!(
+        written.contains("#define UV(iResolution, p) ((p) / iResolution.xy)\n"),
+        "{written}"
+    );
+    assert!(
+        written.contains("    iResolution = vec3(u_resolution, 1.0);\n"),
+        "{written}"
+    );
+}
+
+#[test]
 fn macros_of_hosts_and_versions() {
     let text = "#ifdef GL_OES_standard_derivatives\n#extension GL_OES_standard_derivatives : enable\n#endif\n\
                 uniform vec2 u_resolution;\n\
