@@ -6,6 +6,7 @@ use crate::Checked;
 use crate::dialect::{Bound, Dialect, InputValue, Language, Version};
 use crate::keywords::{Interner, Word};
 use crate::source::Source;
+use crate::token::Punctuator;
 use crate::tree::{BuiltIn, ExprKind, Item, Type, VariableId, VariableKind};
 
 /// The value of a name that the host sets, or that the author declares for it.
@@ -68,6 +69,22 @@ pub(super) fn declared(checked: &Checked) -> HashMap<&str, usize> {
 pub(super) fn words<'a>(source: &Source<'a>) -> HashSet<&'a str> {
     let words = (0..source.len()).filter(|&index| source.symbol(index).is_some());
     words.map(|index| source.token_text(index)).collect()
+}
+
+/// The parameters of macros, which hide what has their names.
+pub(super) fn macro_parameters<'a>(source: &Source<'a>) -> HashSet<&'a str> {
+    let is_macro = |&index: &usize| {
+        source.is_in_directive(index)
+            && source.token_text(index) == "define"
+            && source.is(index + 2, Punctuator::LeftParen)
+            && source.span(index + 1).end == source.span(index + 2).start
+    };
+    let macros = (0..source.len()).filter(is_macro);
+    let parameters = macros.flat_map(|index| {
+        let all = index + 3..source.len();
+        all.take_while(|&index| !source.is(index, Punctuator::RightParen))
+    });
+    parameters.map(|index| source.token_text(index)).collect()
 }
 
 /// A name that begins like this one, and that the text does not have.

@@ -124,6 +124,9 @@ fn what_the_host_does_not_set_is_an_error() {
     let written = ported(&mouse("iMouse.z"), Dialect::Three).unwrap();
     assert!(written.contains("uniform vec4 iMouse;"), "{written}");
     assert!(ported(&mouse("iMouse"), Dialect::BookOfShaders).is_err());
+    // Not an element of `iChannelResolution`.
+    let error = ported(&mouse("iMouse[0], iChannelResolution[0]"), Dialect::BookOfShaders);
+    assert_eq!(error.unwrap_err(), "`iMouse` is not set by The Book of Shaders");
     assert!(ported(&mouse("iSampleRate"), Dialect::BookOfShaders).is_err());
     assert!(
         ported(&mouse("iTime"), Dialect::Isf)
@@ -216,6 +219,21 @@ fn a_name_of_a_parameter_is_no_input() {
         "vec2 mouse;\nfloat f(float mouse) { return mouse; }\n\
          void mainImage(out vec4 fragColor, in vec2 fragCoord) {\n    mouse = (iMouse.xy / iResolution.xy); \
          fragColor = vec4(mouse, f(0.5), 1.0); }\n"
+    );
+}
+
+#[test]
+fn a_parameter_of_a_macro_is_no_input() {
+    let text = "#define UV(iResolution, p) ((p) / iResolution.xy)\n#define SIZE (iResolution.xy)\n\
+                void mainImage(out vec4 c, in vec2 p) { c = vec4(UV(iResolution, p), SIZE); }\n";
+    let written = ported(text, Dialect::BookOfShaders).unwrap();
+    assert!(
+        written.contains("#define UV(iResolution, p) ((p) / iResolution.xy)\n"),
+        "{written}"
+    );
+    assert!(
+        written.contains("    iResolution = vec3(u_resolution, 1.0);\n"),
+        "{written}"
     );
 }
 

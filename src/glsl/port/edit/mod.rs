@@ -229,6 +229,7 @@ impl<'a> Port<'a> {
         self.globals.clear();
         let known = &self.known;
         self.writings.retain(|name, _| !known.contains_key(name));
+        let parameters = names::macro_parameters(self.source);
         let declared: HashMap<String, usize> = {
             let names = names::declared(self.checked).into_iter();
             names.map(|(name, count)| (name.to_owned(), count)).collect()
@@ -250,7 +251,8 @@ impl<'a> Port<'a> {
             let at = Place::plain(self.source.span(index));
             if !self.writings.contains_key(name) {
                 let is_declared = id.is_some_and(|id| self.checked.tree[id].at.is_some());
-                let is_shadowed = declared.get(name).copied().unwrap_or_default() > usize::from(is_declared);
+                let is_shadowed = declared.get(name).copied().unwrap_or_default() > usize::from(is_declared)
+                    || parameters.contains(name);
                 self.spell_input(name, value, is_shadowed, at)?;
             }
             if let Some(channel) = self.element(index)

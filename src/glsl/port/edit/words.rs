@@ -94,7 +94,8 @@ impl Port<'_> {
 
     /// The text in place of an input that is an expression, and the index of the last token that it replaces.
     pub(super) fn replacement(&self, index: usize, spelling: &Spelling) -> Option<(String, usize)> {
-        if spelling.whole().is_none()
+        // No other input has no component that the host sets.
+        if matches!(spelling, Spelling::Vector { same: 0, .. })
             && let Some(channel) = self.element(index)
             && let Some(element) = Inputs::new(self.to).channel_resolution(channel)
         {
