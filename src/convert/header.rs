@@ -47,8 +47,7 @@ pub fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofSta
             .iter()
             .position(|&byte| byte == b'\n')
             .map_or(0, |end| end + 1),
-        Target::Glsl => 0,
-        Target::Wgsl | Target::Msl | Target::Hlsl => 0,
+        Target::Glsl | Target::Wgsl | Target::Msl | Target::Hlsl => 0,
     };
     let head = header_text(name, status);
     bytes.splice(at..at, head.into_bytes());

@@ -2,6 +2,7 @@
 //! the same text. <https://docs.isf.video/ref_json.html>, <https://docs.isf.video/ref_functions.html>
 
 use std::collections::HashMap;
+use std::fmt::Write;
 
 use toyproof_diagnostic::{Diagnostic, File, FileId, Files, Span};
 use toyproof_glsl::{Dialect, Filter, Options, Wrap};
@@ -140,7 +141,7 @@ pub(crate) fn read(
     let mut text = |declared: &Declarations, index: usize| {
         let mut text = declared.text.clone();
         if uses("PASSINDEX") {
-            text += &format!("const int PASSINDEX = {index};\n");
+            let _ = writeln!(text, "const int PASSINDEX = {index};");
         }
         in_front_of(files, file, text)
     };
@@ -329,9 +330,8 @@ mod tests {
         assert_eq!(kinds, [PassKind::Buffer(Buffer::A), PassKind::Image]);
         for (index, pass) in project.passes.iter().enumerate() {
             let text = files.get(pass.file).text();
-            let declared =
-                format!("uniform sampler2D i;\nuniform sampler2D b;\nin vec2 isf_FragNormCoord;\n");
-            assert!(text.starts_with(&declared), "{text}");
+            let declared = "uniform sampler2D i;\nuniform sampler2D b;\nin vec2 isf_FragNormCoord;\n";
+            assert!(text.starts_with(declared), "{text}");
             assert!(
                 text.contains(&format!("const int PASSINDEX = {index};\n")),
                 "{text}"

@@ -136,13 +136,13 @@ impl Inputs {
                 }
             }
             InputValue::Float(input) => Spelling::Value(format!("float({})", self.name(input)?)),
-            InputValue::Mouse => match self.find(|value| value == InputValue::Mouse) {
-                Some((name, _)) => Spelling::Name(name),
-                None => {
-                    let mouse = self.spell(InputValue::First(Input::Mouse, 2))?;
-                    Spelling::Value(format!("({} / {})", mouse.whole()?, self.resolution()?))
+            InputValue::Mouse => {
+                if let Some((name, _)) = self.find(|of| of == value) {
+                    return Some(Spelling::Name(name));
                 }
-            },
+                let mouse = self.spell(InputValue::First(Input::Mouse, 2))?;
+                Spelling::Value(format!("({} / {})", mouse.whole()?, self.resolution()?))
+            }
             InputValue::Quad => Spelling::Value(format!("({})", self.quad()?)),
             InputValue::QuadInSpace => Spelling::Value(format!("vec3({}, 0.0)", self.quad()?)),
             InputValue::Surface => {
@@ -151,14 +151,14 @@ impl Inputs {
             }
             InputValue::SurfaceSize => Spelling::Value(self.surface_size()?),
             InputValue::Texture(_) => Spelling::Name(self.find(|of| of == value)?.0),
-            InputValue::TextureSize(channel) => match self.find(|of| of == value) {
-                Some((name, _)) => Spelling::Name(name),
-                None => {
-                    let name = self.name(Input::ChannelResolution)?;
-                    let size = format!("{name}[{channel}]");
-                    vector(Some(format!("{size}.xy")), &size, 2, 3)
+            InputValue::TextureSize(channel) => {
+                if let Some((name, _)) = self.find(|of| of == value) {
+                    return Some(Spelling::Name(name));
                 }
-            },
+                let name = self.name(Input::ChannelResolution)?;
+                let size = format!("{name}[{channel}]");
+                vector(Some(format!("{size}.xy")), &size, 2, 3)
+            }
             InputValue::Constant(values) => Spelling::Value(constant(values)),
         })
     }

@@ -131,11 +131,10 @@ impl Port<'_> {
         }
         let open = self.source.span(self.body.start);
         let at = Span::new(open.file, open.end, open.end);
-        let lines: String = self
-            .globals
-            .iter()
-            .map(|(_, value)| format!("\n    {value}"))
-            .collect();
+        let mut lines = String::new();
+        for (_, value) in &self.globals {
+            let _ = write!(lines, "\n    {value}");
+        }
         self.edits.push((at, lines));
     }
 
@@ -173,8 +172,8 @@ impl Port<'_> {
 }
 
 fn function(head: &str, lines: &[String]) -> String {
-    let lines: String = lines.iter().map(|line| format!("    {line}\n")).collect();
-    format!("void {head} {{\n{lines}}}\n")
+    let lines = lines.join("\n    ");
+    format!("void {head} {{\n    {lines}\n}}\n")
 }
 
 /// The text without conditions of `GL_ES` in which nothing is left, and without the empty line behind them.
@@ -189,17 +188,14 @@ fn without_empty_conditions(text: &str) -> String {
             "#ifdef GL_ES" | "#if defined(GL_ES)" | "#if defined GL_ES"
         );
         let next = (at + 1..lines.len()).find(|&next| !lines[next].trim().is_empty());
-        match next.filter(|&next| is_condition && lines[next].trim() == "#endif") {
-            Some(end) => {
-                at = end + 1;
-                if lines.get(at).is_some_and(|line| line.trim().is_empty()) {
-                    at += 1;
-                }
-            }
-            None => {
-                kept += lines[at];
+        if let Some(end) = next.filter(|&next| is_condition && lines[next].trim() == "#endif") {
+            at = end + 1;
+            if lines.get(at).is_some_and(|line| line.trim().is_empty()) {
                 at += 1;
             }
+        } else {
+            kept += lines[at];
+            at += 1;
         }
     }
     kept

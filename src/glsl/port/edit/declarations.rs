@@ -59,7 +59,7 @@ impl Port<'_> {
             while last < end && (depth > 0 || !source.is(last, Punctuator::Comma)) {
                 match source.punctuator(last) {
                     Some(Punctuator::LeftParen | Punctuator::LeftBracket | Punctuator::LeftBrace) => {
-                        depth += 1
+                        depth += 1;
                     }
                     Some(Punctuator::RightParen | Punctuator::RightBracket | Punctuator::RightBrace) => {
                         depth = depth.saturating_sub(1);

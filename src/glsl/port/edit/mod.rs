@@ -179,10 +179,10 @@ impl<'a> Port<'a> {
         let is_element = |index: usize| {
             source.is(index + 1, Punctuator::LeftBracket) && source.token_text(index + 2) == "0"
         };
-        const VECTOR: Type = Type::Vector(Scalar::Float, 4);
-        let is_vector = variable.ty == VECTOR;
+        let vector = Type::Vector(Scalar::Float, 4);
+        let is_vector = variable.ty == vector;
         let is_array =
-            matches!(variable.ty, Type::Array(id) if self.checked.tree.array(id).element == VECTOR);
+            matches!(variable.ty, Type::Array(id) if self.checked.tree.array(id).element == vector);
         let is_local = |index: usize| {
             self.body.contains(&index)
                 && !source.is_in_directive(index)

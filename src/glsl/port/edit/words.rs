@@ -175,13 +175,12 @@ impl Port<'_> {
                     return last + 1;
                 }
             }
-            Some(Writing::Global) => {}
             None if source.is(index + 1, Punctuator::LeftParen) => {
                 if let Some(other) = self.texture_function(name) {
                     self.edits.push((span, other.to_owned()));
                 }
             }
-            None => {}
+            Some(Writing::Global) | None => {}
         }
         index + 1
     }
