@@ -101,7 +101,7 @@ Exit code: 0 on success, 1 if a shader is at fault or images differ, 2 for any o
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Check(check::Args),
+    Check(Box<check::Args>),
     Test(test::Args),
     Merge(check::MergeArgs),
     Collect(collect::Args),

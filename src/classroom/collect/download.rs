@@ -108,7 +108,7 @@ enum Place {
 
 impl Item {
     fn is_archive(&self) -> bool {
-        self.path.last().is_some_and(|name| is_archive(name))
+        self.path.last().is_some_and(is_archive)
     }
 }
 

@@ -36,10 +36,10 @@ fn table(test: &FunctionTest) -> String {
     };
     if !assertions.is_empty() {
         let tests = assertions.iter();
-        let tests: String = tests
-            .map(|test| format!("    {},\n", string(test.text())))
+        let tests: Vec<_> = tests
+            .map(|test| format!("    {},", string(test.text())))
             .collect();
-        let _ = writeln!(table, "tests = [\n{tests}]");
+        let _ = writeln!(table, "tests = [\n{}\n]", tests.join("\n"));
     }
     let list = |literals: &[Literal]| {
         let texts: Vec<_> = literals.iter().map(literal_text).collect();

@@ -128,8 +128,7 @@ fn readme(name: &str, assignment: &Assignment, frames: &[PackedFrame], commands:
         requirements.push(format!("These differences are permitted: {}.", ids.join(", ")));
     }
     if !requirements.is_empty() {
-        let items: String = requirements.iter().map(|item| format!("- {item}\n")).collect();
-        let _ = write!(text, "\n## Requirements\n\n{items}");
+        let _ = writeln!(text, "\n## Requirements\n\n- {}", requirements.join("\n- "));
     }
     text += &points(assignment);
     if let Some(deadline) = assignment.deadline {
@@ -145,9 +144,9 @@ fn readme(name: &str, assignment: &Assignment, frames: &[PackedFrame], commands:
         commands.join("\n")
     );
     if !assignment.functions.is_empty() {
-        let _ = write!(
+        let _ = writeln!(
             text,
-            "The tests of functions are in `{}{SUFFIX}`.\n",
+            "The tests of functions are in `{}{SUFFIX}`.",
             STARTER.trim_end_matches(".glsl")
         );
     }
@@ -243,11 +242,12 @@ fn points(assignment: &Assignment) -> String {
         .filter(|(_, points)| *points > 0.0)
         .collect();
     let total: f64 = rows.iter().map(|(_, points)| points).sum();
-    let rows: String = rows
-        .iter()
-        .map(|(name, points)| format!("| {name} | {points} |\n"))
-        .collect();
-    format!("\n## Points\n\n| for | points |\n|---|---|\n{rows}| total | {total} |\n")
+    let mut table = "\n## Points\n\n| for | points |\n|---|---|\n".to_owned();
+    for (name, points) in rows {
+        let _ = writeln!(table, "| {name} | {points} |");
+    }
+    let _ = writeln!(table, "| total | {total} |");
+    table
 }
 
 /// A moment at its place: `2026-03-01 23:59 (UTC+01:00)`.

@@ -149,7 +149,7 @@ fn parse(arguments: &[String], out: &Path) -> Result<Args, CliError> {
         .chain(["--shard".into(), "1/1".into(), "--out".into(), out.into()])
         .chain(after.iter().map(OsString::from));
     match Cli::try_parse_from(all).map(|cli| cli.command) {
-        Ok(Command::Check(check)) => Ok(check),
+        Ok(Command::Check(check)) => Ok(*check),
         _ => Err(format!("the arguments in {MANIFEST_NAME} are not those of `toyproof {NAME}`").into()),
     }
 }

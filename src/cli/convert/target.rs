@@ -47,7 +47,7 @@ pub(super) enum StyleName {
     BookOfShaders,
     /// GLSL for GLSL Sandbox
     GlslSandbox,
-    /// GLSL for a ShaderMaterial of three.js, or for p5.js
+    /// GLSL for three.js or p5.js
     Three,
     /// GLSL for a page with WebGL that sets ShaderToy's inputs as uniforms
     Webgl,
