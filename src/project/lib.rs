@@ -42,7 +42,6 @@ pub mod files;
 mod folder;
 mod format;
 mod graph;
-mod isf;
 mod json;
 mod lint;
 mod media;

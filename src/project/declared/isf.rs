@@ -7,7 +7,7 @@ use std::fmt::Write;
 use toyproof_diagnostic::{Diagnostic, File, FileId, Files, Span};
 use toyproof_glsl::{Dialect, Filter, Options, Wrap};
 
-use crate::declared::{Declarations, Declared, components, in_front_of, is_name};
+use super::declarations::{Declarations, Declared, components, in_front_of, is_name};
 use crate::format::{Format, Wrapper};
 use crate::json;
 use crate::node::{Node, Value};
@@ -38,7 +38,7 @@ const ISF_FUNCTIONS: [(&str, &str); 5] = [
 ];
 
 /// The bytes of the header: the JSON in the comment at the beginning.
-pub(crate) fn header(text: &str) -> Option<(u32, u32)> {
+pub(super) fn header(text: &str) -> Option<(u32, u32)> {
     let comment = text.trim_start().strip_prefix("/*")?;
     let start = text.len() - comment.len();
     let end = start + comment.find("*/")?;
@@ -92,7 +92,7 @@ fn passes(root: &Node) -> Result<Vec<IsfPass>, Diagnostic> {
 ///
 /// # Errors
 /// The header is malformed, or has passes that cannot be rendered.
-pub(crate) fn read(
+pub(super) fn read(
     files: &mut Files,
     file: FileId,
     (start, end): (u32, u32),

@@ -1,30 +1,15 @@
 //! Declarations that hosts write outside of the language: the JSON header of ISF, and `#iUniform` of the Shader Toy
 //! extension of editors. They become text in front of the shader, and values of its uniforms.
 
-use std::fmt::Write;
+mod declarations;
+mod isf;
 
-use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span};
-use toyproof_glsl::{Dialect, Options, UniformValue};
+use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, FileId, Files, Span};
+use toyproof_glsl::{Dialect, Options};
 
-use crate::isf;
-use crate::node::{Node, Value};
-use crate::project::Project;
-
-/// What a host declares in front of a shader.
-#[derive(Debug, Default)]
-pub(crate) struct Declarations {
-    pub(crate) text: String,
-    pub(crate) uniforms: Vec<UniformValue>,
-}
-
-/// A text with what its host declares.
-#[derive(Debug)]
-pub enum Declared {
-    /// A shader with one pass.
-    Shader(FileId),
-    /// The passes of a shader of ISF.
-    Project(Box<Project>),
-}
+pub use self::declarations::Declared;
+pub(crate) use self::declarations::components;
+use self::declarations::{Declarations, in_front_of, is_name};
 
 /// Adds the text of a shader with what its host declares, and returns it; the file itself if there is nothing to
 /// declare. In the options, the values of uniforms that have none become those of the declarations.
@@ -50,55 +35,6 @@ pub fn with_declarations(
         }),
     };
     declared.map_err(|error| Diagnostics::new(vec![error], files))
-}
-
-impl Declarations {
-    pub(crate) fn line(&mut self, line: &str) {
-        self.text += line;
-        self.text.push('\n');
-    }
-
-    pub(crate) fn uniform(&mut self, ty: &str, name: &str, components: Option<Vec<f64>>) {
-        let _ = writeln!(self.text, "uniform {ty} {name};");
-        self.uniforms.extend(components.map(|components| UniformValue {
-            name: name.to_owned(),
-            components,
-        }));
-    }
-}
-
-/// Adds a text behind its declarations; returns the file itself if there are none.
-pub(crate) fn in_front_of(files: &mut Files, file: FileId, declarations: String) -> FileId {
-    if declarations.is_empty() {
-        return file;
-    }
-    let name = files.get(file).name().to_owned();
-    let declarations = files.add(File::new(format!("<declarations of {name}>"), declarations));
-    files.join(name, &[declarations, file])
-}
-
-/// The components of a number, a list of numbers, or a truth value.
-pub(crate) fn components(node: &Node) -> Option<Vec<f64>> {
-    match &node.value {
-        Value::Number(number) => Some(vec![number.parse().ok()?]),
-        Value::Bool(value) => Some(vec![f64::from(*value)]),
-        Value::Array(nodes) => nodes
-            .iter()
-            .map(|node| match &node.value {
-                Value::Number(number) => number.parse().ok(),
-                _ => None,
-            })
-            .collect(),
-        _ => None,
-    }
-}
-
-pub(crate) fn is_name(text: &str) -> bool {
-    let mut characters = text.chars();
-    characters
-        .next()
-        .is_some_and(|first| first.is_ascii_alphabetic() || first == '_')
-        && characters.all(|character| character.is_ascii_alphanumeric() || character == '_')
 }
 
 // The Shader Toy extension: <https://github.com/stevensona/shader-toy>.
@@ -183,6 +119,8 @@ fn numbers(text: &str) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::File;
+
     use super::*;
 
     /// The declarations of a text and the values of its uniforms, or the error.
