@@ -353,14 +353,19 @@ pub(super) fn validate(written: &TargetCode) -> Result<Option<String>, ToolError
         TargetCode::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
         TargetCode::Naga { target, bytes, .. } => tool::validate(*target, bytes),
         TargetCode::Glsl(text, dialect) => {
-            let text = match dialect {
+            let complete = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),
-                _ => format!("#version 100\n{}", text.replace("\\\n", "")),
+                _ if text.contains("\\\n") => {
+                    let joined = format!("#version 100\n{}", text.replace("\\\n", ""));
+                    let validator = tool::validate(Target::Glsl, joined.as_bytes())?;
+                    return Ok(validator.map(|tool| format!("{tool}, with continued lines joined,")));
+                }
+                _ => format!("#version 100\n{text}"),
             };
-            tool::validate(Target::Glsl, text.as_bytes())
+            tool::validate(Target::Glsl, complete.as_bytes())
         }
         // Only their hosts complete them.
         TargetCode::Wgsl(..) | TargetCode::Lowered(_) => Ok(None),

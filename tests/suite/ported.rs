@@ -78,3 +78,21 @@ fn what_a_host_does_not_have_is_refused_with_its_place() {
         "{stderr}"
     );
 }
+
+#[test]
+fn continued_lines_are_accepted_as_browsers_do() {
+    if !require_driver() || !require_program("glslangValidator") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let text = "#define COLOR(a) vec4(a, \\\n    fract(iTime), 1.0)\n\
+                void mainImage(out vec4 c, in vec2 p) { c = COLOR(p / iResolution.xy); }\n";
+    fs::write(folder.path().join("color.glsl"), text).unwrap();
+    let rows = convert(folder.path(), &["color.glsl"], "three", "color.frag");
+    assert_eq!(rows[0].1["status"], "proved", "{rows:?}");
+    let written = fs::read_to_string(folder.path().join("color.frag")).unwrap();
+    assert!(
+        written.contains(", with continued lines joined, accepts it."),
+        "{written}"
+    );
+}
