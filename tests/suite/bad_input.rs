@@ -12,7 +12,7 @@ use crate::requirements::require_driver;
 const MAIN: &str = "void mainImage(out vec4 c, in vec2 p)";
 /// Compiles slowly on lavapipe: a large array in registers.
 const SLOW_TO_COMPILE: &str =
-    "float a[4096]; for (int i = 0; i < 4096; i++) a[i] = p.x; c = vec4(a[int(p.x)]);";
+    "float a[8192]; for (int i = 0; i < 8192; i++) a[i] = p.x; c = vec4(a[int(p.x)]);";
 const SPHERE: &str = "[[sphere]]\ncenter = [0.0, 0.0, -6.0]\nradius = 1.5\nmaterial = { model = \"facing\", color = [1.0, 1.0, 0.0] }\n";
 
 fn folder(files: &[(&str, &str)]) -> TempDir {

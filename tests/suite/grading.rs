@@ -473,7 +473,7 @@ fn the_images_of_a_pack_have_the_uniforms_of_their_frames() {
     );
     let readme = read(folder, "pack/README.md");
     assert!(
-        readme.contains("| `turn` = (0, 1, 1, 0), `speed` = 1.5 |"),
+        readme.contains("| `speed` = 1.5, `turn` = (0, 1, 1, 0) |"),
         "{readme}"
     );
     fs::write(folder.join("pack/shader.glsl"), solution).unwrap();

@@ -286,10 +286,10 @@ mod tests {
         assert_eq!(
             declarations.lines().collect::<Vec<_>>(),
             [
-                "uniform sampler2D inputImage;",
                 "uniform float level;",
                 "uniform vec4 tint;",
                 "uniform int mode;",
+                "uniform sampler2D inputImage;",
                 "uniform float TIME;",
                 "in vec2 isf_FragNormCoord;",
                 "#define IMG_THIS_NORM_PIXEL(image) texture(image, isf_FragNormCoord)",
