@@ -77,7 +77,8 @@ pub fn port(
     )));
     for &version in own.chain(versions) {
         deadline.check()?;
-        let text = Port::new(checked, &source, to, version)?.text();
+        let port = Port::new(checked, &source, to, version).map_err(PortError::Host)?;
+        let text = port.text();
         match check_written(text, checked, (to, version), refusal, deadline) {
             Ok(text) => return Ok(text),
             Err(problem) => error = problem,

@@ -8,7 +8,6 @@ use std::collections::{HashMap, HashSet};
 
 use toyproof_diagnostic::{Diagnostic, Span};
 
-use super::PortError;
 use super::input::{Inputs, Spelling};
 use super::names::{self, Known};
 use crate::Checked;
@@ -81,7 +80,7 @@ impl<'a> Port<'a> {
         source: &'a Source<'a>,
         to: Dialect,
         version: Version,
-    ) -> Result<Self, PortError> {
+    ) -> Result<Self, Box<Diagnostic>> {
         let words = names::words(source);
         let mut port = Self {
             checked,
@@ -107,9 +106,9 @@ impl<'a> Port<'a> {
         if let Err(error) = port.spell_inputs(false) {
             // A page of the author's own may set all of the mouse.
             if !to.sets_any() {
-                return Err(PortError::Host(error));
+                return Err(error);
             }
-            port.spell_inputs(true).map_err(PortError::Host)?;
+            port.spell_inputs(true)?;
         }
         port.rename(&words);
         Ok(port)
