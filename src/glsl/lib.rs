@@ -119,13 +119,13 @@ pub struct Options {
     pub dialect: Option<Dialect>,
     /// The values of uniforms that the shader declares.
     pub uniforms: Vec<UniformValue>,
-    /// Keeps uniforms with values as variables, of which the values are the initializers, for what is written in
-    /// another language. Otherwise the values take their places.
+    /// Keeps uniforms with values as variables, of which the values are the initializers, for what is
+    /// written in another language. Otherwise the values take their places.
     pub keeps_uniforms: bool,
     /// The tab of a project that the text is.
     pub stage: Stage,
-    /// Calls [`ADDED_MAIN`], which has the form of `mainImage`, instead of the function that the host calls: for
-    /// a shader to which code was added that calls its functions.
+    /// Calls [`ADDED_MAIN`], which has the form of `mainImage`, instead of the function that the host calls:
+    /// for a shader to which code was added that calls its functions.
     pub calls_added_main: bool,
     /// The shapes of the textures bound to `iChannel0` to `iChannel3`. An unknown shape is inferred from use:
     /// `sampler2D`, or the shape that the first lookup that does not fit a `sampler2D` requires.

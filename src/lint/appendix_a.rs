@@ -1,5 +1,5 @@
-//! What WebGL 1 refuses of GLSL ES 1.00: loops and indices beyond its Appendix A, and derivatives without their
-//! extension.
+//! What WebGL 1 refuses of GLSL ES 1.00: loops and indices beyond its Appendix A, and derivatives without
+//! their extension.
 
 use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{

@@ -43,8 +43,8 @@ pub(in crate::cli) struct PlannedFrame {
 }
 
 impl Plan {
-    /// The options of the language for a frame: the user's values of uniforms, else those of the frame, else those
-    /// of the assignment.
+    /// The options of the language for a frame: the user's values of uniforms, else those of the frame, else
+    /// those of the assignment.
     pub(super) fn language(&self, given: &LanguageArgs, frame: &FrameInputs) -> LanguageArgs {
         given.with_uniforms(&frame.uniforms).with_uniforms(&self.uniforms)
     }

@@ -99,9 +99,9 @@ pub(super) enum References {
     Given(PreparedReference),
 }
 
-/// Reads a shader or an image, and renders it in frames, which get the size of an image. A shader is read anew for
-/// each set of values of uniforms, with the language of its frames; that of the first frame is returned. `None` if
-/// the arguments name neither.
+/// Reads a shader or an image, and renders it in frames, which get the size of an image. A shader is read
+/// anew for each set of values of uniforms, with the language of its frames; that of the first frame is
+/// returned. `None` if the arguments name neither.
 ///
 /// # Errors
 /// Shaders cannot be compared with it.

@@ -29,8 +29,8 @@ use crate::cli::shader::{Shader, Unusable, denied};
 pub(super) struct ShaderCheck<'a> {
     checker: &'a Checker<'a>,
     context: &'a mut WorkerContext,
-    /// The shader from the frame with this index on: values of uniforms are part of it. The first is that of the first
-    /// frame.
+    /// The shader from the frame with this index on: values of uniforms are part of it. The first is that of
+    /// the first frame.
     shaders: &'a [(usize, Shader)],
     /// That of the frame in progress.
     shader: &'a Shader,

@@ -1,5 +1,6 @@
-//! ISF (Interactive Shader Format 2): a JSON header declares the inputs of a shader and its passes, all of which run
-//! the same text. <https://docs.isf.video/ref_json.html>, <https://docs.isf.video/ref_functions.html>
+//! ISF (Interactive Shader Format 2): a JSON header declares the inputs of a shader and its passes, all of
+//! which run the same text. <https://docs.isf.video/ref_json.html>,
+//! <https://docs.isf.video/ref_functions.html>
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -253,25 +254,8 @@ fn add_input(declared: &mut Declarations, input: &Node) -> Result<Option<String>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::declared::tests::declared;
     use crate::declared::with_declarations;
-
-    /// The declarations of a text and the values of its uniforms, or the error.
-    fn declared(text: &str) -> Result<(String, Vec<String>), String> {
-        let mut files = Files::default();
-        let file = files.add(File::new("a", text));
-        let mut options = Options::default();
-        let joined = with_declarations(&mut files, file, &mut options);
-        let Declared::Shader(joined) = joined.map_err(|errors| errors.to_string())? else {
-            panic!("it has one pass");
-        };
-        let joined = files.get(joined).text();
-        let declarations = joined.strip_suffix(text).unwrap().to_owned();
-        let values = options
-            .uniforms
-            .iter()
-            .map(|uniform| format!("{}={:?}", uniform.name, uniform.components));
-        Ok((declarations, values.collect()))
-    }
 
     #[test]
     fn isf() {
@@ -297,7 +281,8 @@ mod tests {
             ]
         );
         assert_eq!(values, ["level=[0.5]", "tint=[1.0, 0.5, 0.0, 1.0]", "mode=[2.0]"]);
-        // The last of several values counts, images may come with the shader, and a shader of ShaderToy is none.
+        // The last of several values counts, images may come with the shader, and a shader of ShaderToy is
+        // none.
         let text = "/*{ \"ISFVSN\": 1, \"ISFVSN\": 2, \"IMPORTED\": { \"mask\": { \"PATH\": \"m.png\" } } }*/ void main() {}";
         assert_eq!(declared(text).unwrap().0, "uniform sampler2D mask;\n\n");
         assert_eq!(declared(&text.replace("main", "mainImage")).unwrap().0, "");

@@ -1,5 +1,5 @@
-//! Declarations that hosts write outside of the language: the JSON header of ISF, and `#iUniform` of the Shader Toy
-//! extension of editors. They become text in front of the shader, and values of its uniforms.
+//! Declarations that hosts write outside of the language: the JSON header of ISF, and `#iUniform` of the
+//! Shader Toy extension of editors. They become text in front of the shader, and values of its uniforms.
 
 mod declarations;
 mod isf;
@@ -11,8 +11,9 @@ pub use self::declarations::Declared;
 pub(crate) use self::declarations::components;
 use self::declarations::{Declarations, in_front_of, is_name};
 
-/// Adds the text of a shader with what its host declares, and returns it; the file itself if there is nothing to
-/// declare. In the options, the values of uniforms that have none become those of the declarations.
+/// Adds the text of a shader with what its host declares, and returns it; the file itself if there is
+/// nothing to declare. In the options, the values of uniforms that have none become those of the
+/// declarations.
 ///
 /// # Errors
 /// A header or an annotation is malformed, or a header has passes that cannot be rendered.
@@ -124,7 +125,7 @@ mod tests {
     use super::*;
 
     /// The declarations of a text and the values of its uniforms, or the error.
-    fn declared(text: &str) -> Result<(String, Vec<String>), String> {
+    pub(super) fn declared(text: &str) -> Result<(String, Vec<String>), String> {
         let mut files = Files::default();
         let file = files.add(File::new("a", text));
         let mut options = Options::default();

@@ -221,7 +221,8 @@ impl<'a> Port<'a> {
         declared.is_some_and(|at| at.span == self.source.span(index))
     }
 
-    /// Determines the text of each input that the shader reads; `reads_click`: where the mouse was clicked, too.
+    /// Determines the text of each input that the shader reads; `reads_click`: where the mouse was clicked,
+    /// too.
     fn spell_inputs(&mut self, reads_click: bool) -> Result<(), Box<Diagnostic>> {
         self.inputs = Inputs::new(self.to);
         self.inputs.reads_click = reads_click;

@@ -227,15 +227,20 @@ impl Port<'_> {
     /// Removes a statement, with its line and the comment behind it if nothing else stands there.
     pub(super) fn remove_line(&mut self, span: Span) {
         let text = self.source.text;
-        let start = text[..span.start as usize].rfind('\n').map_or(0, |at| at + 1);
-        let end = text[span.end as usize..]
-            .find('\n')
-            .map_or(text.len(), |at| span.end as usize + at + 1);
-        let before = text[start..span.start as usize].trim();
-        let after = text[span.end as usize..end].trim();
-        let is_alone = before.is_empty() && (after.is_empty() || after.starts_with("//"));
-        let whole = Span::new(self.source.file, start as u32, end as u32);
-        self.edits
-            .push((if is_alone { whole } else { span }, String::new()));
+        let before = text[..span.start as usize].trim_end_matches([' ', '\t']);
+        let after = text[span.end as usize..].trim_start_matches([' ', '\t', '\r']);
+        let begins_line = before.is_empty() || before.ends_with('\n');
+        let ends_line = after.is_empty() || after.starts_with('\n') || after.starts_with("//");
+        let removed = if begins_line && ends_line {
+            let rest = after.find('\n').map_or("", |end| &after[end + 1..]);
+            Span::new(
+                self.source.file,
+                before.len() as u32,
+                (text.len() - rest.len()) as u32,
+            )
+        } else {
+            span
+        };
+        self.edits.push((removed, String::new()));
     }
 }
