@@ -18,16 +18,25 @@
 //!
 //! - `stand_in`: the table of stand-ins.
 //! - `field`: periodic grids of numbers, and noise; `picture`: materials made of them.
-//! - `blue_noise`, `font`, `volume`, `film`: further textures; `cube`: environments and their cube maps.
+//! - `blue_noise`, `font`, `film`: further textures; `cube`: environments and their cube maps, and those from
+//!   files.
+//! - `animation`, `volume`: films and volumes from files; `folder`: a folder of copies of the site's media.
 
+mod animation;
 mod blue_noise;
 mod cube;
+mod error;
 mod field;
 mod film;
+mod folder;
 mod font;
 mod picture;
 mod stand_in;
 mod volume;
 
-pub use self::cube::{face_direction, face_position};
+pub use self::animation::{Film, MAX_FRAMES, sequence_files};
+pub use self::cube::{face_direction, face_position, read_cube};
+pub use self::error::MediaError;
+pub use self::folder::{MediaFolder, MediumNames, with_components};
 pub use self::stand_in::{Content, StandIn};
+pub use self::volume::read_volume;

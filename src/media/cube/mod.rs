@@ -3,6 +3,7 @@
 
 mod basilica;
 mod buildings;
+mod file;
 mod forest;
 
 use std::sync::LazyLock;
@@ -12,6 +13,7 @@ use toyproof_image::{Image, pcg};
 
 pub(crate) use self::basilica::basilica;
 pub(crate) use self::buildings::{GALLERY, LONDON};
+pub use self::file::read_cube;
 pub(crate) use self::forest::forest;
 use crate::field::{mix, unit};
 use crate::picture::{Color, in_levels};
