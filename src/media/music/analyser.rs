@@ -52,7 +52,8 @@ pub(super) fn spectrum_level(magnitude: f64) -> u8 {
 
 /// The byte of a sample (§1.8.3, `getByteTimeDomainData`).
 pub(super) fn wave_level(sample: f32) -> u8 {
-    (128.0 * (1.0 + f64::from(sample))).floor() as u8
+    // In f32, as browsers compute it.
+    (128.0 * (1.0 + sample)).floor() as u8
 }
 
 #[cfg(test)]

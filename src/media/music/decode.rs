@@ -146,6 +146,29 @@ mod tests {
         assert_eq!(decode(&path).unwrap(), (vec![1.5], 48_000));
     }
 
+    /// 0.4 s of 1000 Hz at 8000 samples per second, computed and encoded by:
+    /// `ffmpeg -f lavfi -i "sine=frequency=1000:sample_rate=8000:duration=0.4" -af volume=4 -q:a 0 tone.ogg`
+    #[test]
+    fn a_tone_in_an_ogg_vorbis_file_is_decoded() {
+        let (samples, rate) = vorbis(std::io::Cursor::new(include_bytes!("tone.ogg"))).unwrap();
+        assert_eq!(rate, 8000);
+        assert!(samples.len().abs_diff(3200) < 256, "{}", samples.len());
+        // In the middle, the sound is a sine of the amplitude 1/2 with a period of eight samples.
+        let middle = &samples[1000..2000];
+        let part = |phase: f64| -> f64 {
+            let weighted = middle.iter().enumerate().map(|(n, x)| {
+                let turns = n as f64 / 8.0 + phase;
+                f64::from(*x) * (std::f64::consts::TAU * turns).cos()
+            });
+            weighted.sum::<f64>() * 2.0 / middle.len() as f64
+        };
+        let amplitude = part(0.0).hypot(part(0.25));
+        let mean_square = middle.iter().map(|x| f64::from(x * x)).sum::<f64>() / middle.len() as f64;
+        assert!((amplitude - 0.5).abs() < 0.03, "{amplitude}");
+        // The rest is what the lossy format adds.
+        assert!((mean_square - amplitude * amplitude / 2.0).abs() < 0.002, "{mean_square}");
+    }
+
     #[test]
     fn what_is_not_a_sound_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
