@@ -8,7 +8,7 @@ use toyproof_image::{Image, pcg};
 
 use crate::{Content, StandIn};
 
-/// Mean and standard deviation of the components of the site's pictures, in 8-bit levels, measured on its
+/// Mean and standard deviation of the components of the site's images, in 8-bit levels, measured on its
 /// files, and the slope of their spectra as [`slope`] measures it.
 #[rustfmt::skip]
 const SITE: &[(&str, [u8; 3], [u8; 3], f64)] = &[
@@ -34,47 +34,47 @@ const FOUR_COMPONENTS: [&str; 6] = ["Xsf3zn", "XdXGzn", "XsBSR3", "4dXGzr", "Xsf
 /// Size and number of the images of each stand-in, and a hash of their texels.
 #[rustfmt::skip]
 const EXPECTED: &[(&str, [u32; 2], usize, u32)] = &[
-    ("4dfGRn", [512, 512], 1, 0x8076feba),
-    ("Xsf3zn", [256, 256], 1, 0x80f3f82d),
-    ("XdX3Rn", [1024, 1024], 1, 0x6c2ddd7d),
-    ("4dXGzr", [1024, 1024], 1, 0x4c0dac5c),
-    ("4dXGRn", [512, 512], 1, 0x866ae3ec),
-    ("4dXGzn", [256, 256], 1, 0xc3af8519),
-    ("4sf3Rr", [512, 512], 1, 0x4b9be479),
-    ("XsBSR3", [1024, 1024], 1, 0x18c64d2d),
-    ("4sXGRn", [512, 512], 1, 0x56e28cc0),
-    ("XsfGRn", [1024, 1024], 1, 0x6f2ea91f),
-    ("XdfGRn", [512, 512], 1, 0x74f12324),
-    ("4sfGRn", [1024, 1024], 1, 0x417b3b32),
-    ("4sf3Rn", [64, 64], 1, 0x3b6b31e1),
-    ("XdXGzn", [64, 64], 1, 0xd99361f2),
-    ("4dX3Rn", [512, 512], 1, 0xe12a3c01),
-    ("Xdf3zn", [8, 8], 1, 0x8edf73dc),
-    ("XsX3Rn", [1024, 1024], 1, 0x3fccd728),
-    ("Xsf3Rr", [1024, 1024], 1, 0x01165685),
-    ("4df3Rr", [1024, 1024], 1, 0xaac2830d),
-    ("Xsf3Rn", [256, 32], 1, 0xc8e940ad),
-    ("XdXGzr", [1024, 1024], 1, 0x706d9e86),
-    ("XsXGRn", [1024, 1024], 1, 0x68a61e1e),
-    ("XsfGzn", [512, 512], 6, 0xfa070c4d),
-    ("4sfGzn", [64, 64], 6, 0x5c4bd96e),
-    ("XsX3zn", [256, 256], 6, 0x317b338a),
-    ("4sX3zn", [64, 64], 6, 0xe2819e0a),
-    ("XdX3zn", [256, 256], 6, 0xba452e38),
-    ("4dX3zn", [64, 64], 6, 0x501a440e),
-    ("4sfGRr", [32, 32], 32, 0x300d7c62),
-    ("XdX3Rr", [32, 32], 32, 0x18894785),
-    ("Xdf3Rn", [512, 396], 1, 0x15d651af),
-    ("XdfGRr", [512, 396], 1, 0x15d651af),
-    ("4sX3Rn", [320, 240], 1, 0x34b1889e),
-    ("4df3zn", [320, 240], 1, 0xd7b57e9f),
-    ("4sf3zn", [640, 480], 1, 0x1a7ec195),
+    ("4dfGRn", [512, 512], 1, 0x8076_feba),
+    ("Xsf3zn", [256, 256], 1, 0x80f3_f82d),
+    ("XdX3Rn", [1024, 1024], 1, 0x6c2d_dd7d),
+    ("4dXGzr", [1024, 1024], 1, 0x809b_9f50),
+    ("4dXGRn", [512, 512], 1, 0x866a_e3ec),
+    ("4dXGzn", [256, 256], 1, 0xc3af_8519),
+    ("4sf3Rr", [512, 512], 1, 0x4b9b_e479),
+    ("XsBSR3", [1024, 1024], 1, 0x18c6_4d2d),
+    ("4sXGRn", [512, 512], 1, 0x56e2_8cc0),
+    ("XsfGRn", [1024, 1024], 1, 0x6f2e_a91f),
+    ("XdfGRn", [512, 512], 1, 0x74f1_2324),
+    ("4sfGRn", [1024, 1024], 1, 0x417b_3b32),
+    ("4sf3Rn", [64, 64], 1, 0x3b6b_31e1),
+    ("XdXGzn", [64, 64], 1, 0xd993_61f2),
+    ("4dX3Rn", [512, 512], 1, 0xe12a_3c01),
+    ("Xdf3zn", [8, 8], 1, 0x8edf_73dc),
+    ("XsX3Rn", [1024, 1024], 1, 0x3fcc_d728),
+    ("Xsf3Rr", [1024, 1024], 1, 0x0116_5685),
+    ("4df3Rr", [1024, 1024], 1, 0xaac2_830d),
+    ("Xsf3Rn", [256, 32], 1, 0xc8e9_40ad),
+    ("XdXGzr", [1024, 1024], 1, 0x706d_9e86),
+    ("XsXGRn", [1024, 1024], 1, 0x68a6_1e1e),
+    ("XsfGzn", [512, 512], 6, 0xfa07_0c4d),
+    ("4sfGzn", [64, 64], 6, 0x5c4b_d96e),
+    ("XsX3zn", [256, 256], 6, 0x317b_338a),
+    ("4sX3zn", [64, 64], 6, 0xe281_9e0a),
+    ("XdX3zn", [256, 256], 6, 0xba45_2e38),
+    ("4dX3zn", [64, 64], 6, 0x501a_440e),
+    ("4sfGRr", [32, 32], 32, 0x300d_7c62),
+    ("XdX3Rr", [32, 32], 32, 0x1889_4785),
+    ("Xdf3Rn", [512, 396], 1, 0x15d6_51af),
+    ("XdfGRr", [512, 396], 1, 0x15d6_51af),
+    ("4sX3Rn", [320, 240], 1, 0x34b1_889e),
+    ("4df3zn", [320, 240], 1, 0xd7b5_7e9f),
+    ("4sf3zn", [640, 480], 1, 0x1a7e_c195),
 ];
 
 /// The images of a stand-in; of a film, its first.
 fn images(stand_in: &StandIn) -> Vec<Image> {
     match stand_in.content {
-        Content::Picture(compute) => vec![compute()],
+        Content::Texture(compute) => vec![compute()],
         Content::Cube(compute) => compute().to_vec(),
         Content::Volume(compute) => compute(),
         Content::Film(compute) => vec![compute(0.0)],
@@ -144,8 +144,8 @@ fn tone(image: &Image) -> [[f64; 2]; 3] {
     })
 }
 
-/// Checks the properties of a picture of the table.
-fn check_picture(id: &str, image: &Image) {
+/// Checks the properties of a image of the table.
+fn check_material(id: &str, image: &Image) {
     let Some(&(_, mean, deviation, site_slope)) = SITE.iter().find(|row| row.0 == id) else {
         return;
     };
@@ -189,7 +189,7 @@ fn stand_ins_have_the_sizes_the_components_and_the_look_of_the_sites_media_and_t
         } else if !FOUR_COMPONENTS.contains(&id) {
             assert!(texels().all(|texel| texel[3] == 1.0), "{id}");
         }
-        check_picture(id, &images[0]);
+        check_material(id, &images[0]);
         // A view of a street has an end, as the site's. White noise and figures have no neighbors.
         if SITE.iter().any(|row| row.0 == id && id != "4dfGRn") || ["4sf3Rr", "XsBSR3"].contains(&id) {
             for ratio in seams(&images[0]) {
@@ -211,7 +211,8 @@ fn figures() {
         let milliseconds = 1e3 * start.elapsed().as_secs_f64();
         let ([width, height], count) = (images[0].size(), images.len());
         let hash = checksum(&images);
-        println!("(\"{id}\", [{width}, {height}], {count}, {hash:#010x}), {milliseconds:.0} ms");
+        let (high, low) = (hash >> 16, hash & 0xffff);
+        println!("(\"{id}\", [{width}, {height}], {count}, 0x{high:04x}_{low:04x}), {milliseconds:.0} ms");
         for (at, image) in images.iter().enumerate().take(6) {
             let texel = |x, y| image::Rgba(image.get(x, height - 1 - y).map(toyproof_image::quantize));
             let file = folder.join(format!("{id}_{at}.png"));

@@ -5,13 +5,13 @@ use toyproof_image::Image;
 use toyproof_math::native;
 
 use crate::field::{Field, hash, smoothstep, unit};
-use crate::picture::{Color, blend, in_levels, scaled};
+use crate::material::{Color, blend, in_levels, scaled};
 
-/// Where a picture is computed: positions from −1 to 1 upwards, wider than that to the right.
+/// Where a image is computed: positions from −1 to 1 upwards, wider than that to the right.
 type Position = [f32; 2];
 
-/// An opaque picture from colors at the centers of its pixels.
-fn picture([width, height]: [u32; 2], color: impl Fn(Position) -> Color + Sync) -> Image {
+/// An opaque image from colors at the centers of its pixels.
+fn render([width, height]: [u32; 2], color: impl Fn(Position) -> Color + Sync) -> Image {
     let row = |y: u32| {
         let color = &color;
         (0..width).map(move |x| {
@@ -40,7 +40,7 @@ pub(crate) fn green_screen(seconds: f64) -> Image {
     let beat = seconds * 1.25;
     let (sway, bounce) = (0.12 * sine(beat / 2.0), 0.05 * sine(beat).abs());
     let (left, right) = (0.55 * sine(beat), 0.55 * sine(beat + 0.4));
-    picture([512, 396], |[x, y]| {
+    render([512, 396], |[x, y]| {
         let y = y - bounce;
         let light = 1.0 - 0.14 * (x * x + y * y);
         // The body leans; the feet stay.
@@ -87,7 +87,7 @@ pub(crate) fn old_film(seconds: f64) -> Image {
     let random = |what| unit(hash(301, number, what));
     let (flicker, scratch) = (0.92 + 0.10 * random(0), 2.6 * random(1) - 1.3);
     let (turn, step) = (sine(seconds / 6.0), sine(seconds * 0.9));
-    picture([320, 240], |[x, y]| {
+    render([320, 240], |[x, y]| {
         let wall = 0.52 + 0.10 * smoothstep(0.2, 0.9, y) - 0.16 * (x * x + y * y);
         let is_floor = y < -0.62;
         let is_window = (x + 0.75).abs() < 0.27 && (y - 0.25).abs() < 0.38;
@@ -133,7 +133,7 @@ pub(crate) fn landscape(seconds: f64) -> Image {
     let clouds = Field::fractal(256, [4, 8], 303, 0.6);
     // The clouds are periodic: they return after 64 s.
     let drift = ((seconds / 64.0 - (seconds / 64.0).floor()) * 256.0) as f32;
-    picture([320, 240], |[x, y]| {
+    render([320, 240], |[x, y]| {
         let cloud = |height: f32| {
             smoothstep(
                 0.2,
@@ -173,7 +173,7 @@ pub(crate) fn landscape(seconds: f64) -> Image {
 pub(crate) fn camera(seconds: f64) -> Image {
     let (turn, nod) = (0.06 * sine(seconds / 5.0), 0.03 * sine(seconds / 3.0));
     let is_blinking = (seconds / 4.0 - (seconds / 4.0).floor()) < 0.04;
-    picture([640, 480], |[x, y]| {
+    render([640, 480], |[x, y]| {
         let wall = scaled(
             [0.66, 0.64, 0.60],
             1.0 - 0.16 * (x * x + y * y) + 0.10 * smoothstep(0.0, 1.2, x),

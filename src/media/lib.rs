@@ -5,7 +5,7 @@
 //! use toyproof_media::{Content, StandIn};
 //!
 //! let bayer = StandIn::find("Xdf3zn").unwrap();
-//! let Content::Picture(compute) = bayer.content else { unreachable!("a texture") };
+//! let Content::Texture(compute) = bayer.content else { unreachable!("a texture") };
 //! let image = compute();
 //! assert_eq!(image.size(), [8, 8]);
 //! assert_eq!(image.get(0, 7), [0.0, 0.0, 0.0, 1.0]);
@@ -17,7 +17,7 @@
 //! # Parts
 //!
 //! - `stand_in`: the table of stand-ins.
-//! - `field`: periodic grids of numbers, and noise; `picture`: materials made of them.
+//! - `field`: periodic grids of numbers, and noise; `material`: materials made of them.
 //! - `blue_noise`, `font`, `film`: further textures; `cube`: environments and their cube maps, and those from
 //!   files.
 //! - `animation`, `volume`: films and volumes from files; `folder`: a folder of copies of the site's media.
@@ -33,8 +33,8 @@ mod figures;
 mod film;
 mod folder;
 mod font;
+mod material;
 mod music;
-mod picture;
 mod stand_in;
 mod volume;
 

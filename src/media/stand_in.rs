@@ -3,7 +3,7 @@
 use toyproof_image::{Image, Noise};
 
 use crate::cube::{GALLERY, basilica, blurred, forest, sharp};
-use crate::{blue_noise, film, font, picture, volume};
+use crate::{blue_noise, film, font, material, volume};
 
 /// A computed medium in place of one of the site's, which may not be distributed.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub struct StandIn {
 #[derive(Debug, Clone, Copy)]
 pub enum Content {
     /// A two-dimensional texture.
-    Picture(fn() -> Image),
+    Texture(fn() -> Image),
     /// The faces +X −X +Y −Y +Z −Z of a cube map, each as its file shows it. Without `vflip`, the texel
     /// that [`crate::face_direction`] gives the direction of is at `(u, v)` of its image.
     Cube(fn() -> [Image; 6]),
@@ -55,28 +55,28 @@ const fn row(id: &'static str, content: Content, description: &'static str) -> S
 
 #[rustfmt::skip]
 const STAND_INS: &[StandIn] = &[
-    row("4dfGRn", Content::Picture(picture::street), "a computed street between houses, not the site's photograph of London"),
-    row("Xsf3zn", Content::Picture(|| Noise::RgbaMedium.image()), "other random numbers with the same shifts between components"),
-    row("XdX3Rn", Content::Picture(picture::glass_stones), "a computed picture of glass stones, not the site's"),
-    row("4dXGzr", Content::Picture(font::font), "the same codes, sizes and distances with the glyphs of DejaVu Sans"),
-    row("4dXGRn", Content::Picture(picture::rock_tiles), "a computed wall of stones, not the site's photograph"),
-    row("4dXGzn", Content::Picture(|| Noise::GrayMedium.image()), "other random numbers"),
-    row("4sf3Rr", Content::Picture(picture::pebbles), "computed heights of pebbles, not the site's"),
-    row("XsBSR3", Content::Picture(blue_noise::blue_noise), "other random numbers with a blue spectrum, repeated after 128 texels"),
-    row("4sXGRn", Content::Picture(picture::rusty_metal), "a computed picture of rusty metal, not the site's photograph"),
-    row("XsfGRn", Content::Picture(picture::wood), "a computed picture of wood, not the site's photograph"),
-    row("XdfGRn", Content::Picture(picture::stars), "a computed picture of stars and dust, not the site's"),
-    row("4sfGRn", Content::Picture(picture::lichen), "a computed picture of slate with lichen, not the site's photograph"),
-    row("4sf3Rn", Content::Picture(|| Noise::GraySmall.image()), "other random numbers"),
-    row("XdXGzn", Content::Picture(|| Noise::RgbaSmall.image()), "other random numbers"),
-    row("4dX3Rn", Content::Picture(picture::woven_straw), "a computed weave of straw, not the site's photograph"),
-    row("Xdf3zn", Content::Picture(|| Noise::Bayer.image()), "the same thresholds of ordered dithering"),
-    row("XsX3Rn", Content::Picture(picture::pitted_rust), "a computed picture of pitted rust, not the site's photograph"),
-    row("Xsf3Rr", Content::Picture(picture::blue_stone), "a computed picture of gray stone, not the site's photograph"),
-    row("4df3Rr", Content::Picture(picture::rose_marble), "a computed picture of marble, not the site's photograph"),
-    row("Xsf3Rn", Content::Picture(picture::running_cat), "another cat, in the same six frames of 40 texels"),
-    row("XdXGzr", Content::Picture(picture::blotches), "computed blotches of paint, not the site's photograph"),
-    row("XsXGRn", Content::Picture(picture::bark), "a computed picture of bark, not the site's photograph"),
+    row("4dfGRn", Content::Texture(material::street), "a computed street between houses, not the site's photograph of London"),
+    row("Xsf3zn", Content::Texture(|| Noise::RgbaMedium.image()), "other random numbers with the same shifts between components"),
+    row("XdX3Rn", Content::Texture(material::glass_stones), "a computed image of glass stones, not the site's"),
+    row("4dXGzr", Content::Texture(font::font), "the same codes, sizes and distances with the glyphs of DejaVu Sans"),
+    row("4dXGRn", Content::Texture(material::rock_tiles), "a computed wall of stones, not the site's photograph"),
+    row("4dXGzn", Content::Texture(|| Noise::GrayMedium.image()), "other random numbers"),
+    row("4sf3Rr", Content::Texture(material::pebbles), "computed heights of pebbles, not the site's"),
+    row("XsBSR3", Content::Texture(blue_noise::blue_noise), "other random numbers with a blue spectrum, repeated after 128 texels"),
+    row("4sXGRn", Content::Texture(material::rusty_metal), "a computed image of rusty metal, not the site's photograph"),
+    row("XsfGRn", Content::Texture(material::wood), "a computed image of wood, not the site's photograph"),
+    row("XdfGRn", Content::Texture(material::stars), "a computed image of stars and dust, not the site's"),
+    row("4sfGRn", Content::Texture(material::lichen), "a computed image of slate with lichen, not the site's photograph"),
+    row("4sf3Rn", Content::Texture(|| Noise::GraySmall.image()), "other random numbers"),
+    row("XdXGzn", Content::Texture(|| Noise::RgbaSmall.image()), "other random numbers"),
+    row("4dX3Rn", Content::Texture(material::woven_straw), "a computed weave of straw, not the site's photograph"),
+    row("Xdf3zn", Content::Texture(|| Noise::Bayer.image()), "the same thresholds of ordered dithering"),
+    row("XsX3Rn", Content::Texture(material::pitted_rust), "a computed image of pitted rust, not the site's photograph"),
+    row("Xsf3Rr", Content::Texture(material::blue_stone), "a computed image of gray stone, not the site's photograph"),
+    row("4df3Rr", Content::Texture(material::rose_marble), "a computed image of marble, not the site's photograph"),
+    row("Xsf3Rn", Content::Texture(material::running_cat), "another cat, in the same six frames of 40 texels"),
+    row("XdXGzr", Content::Texture(material::blotches), "computed blotches of paint, not the site's photograph"),
+    row("XsXGRn", Content::Texture(material::bark), "a computed image of bark, not the site's photograph"),
     row("XsfGzn", Content::Cube(|| sharp(512, |d| GALLERY.color(d))), "a computed court between houses, not the site's photograph"),
     row("4sfGzn", Content::Cube(|| blurred(64, |d| GALLERY.color(d))), "a computed court between houses, blurred, not the site's photograph"),
     row("XsX3zn", Content::Cube(|| sharp(256, forest)), "a computed forest, not the site's photograph"),
@@ -89,5 +89,5 @@ const STAND_INS: &[StandIn] = &[
     row("XdfGRr", Content::Film(film::green_screen), "a computed figure before a green screen, not the site's video"),
     row("4sX3Rn", Content::Film(film::landscape), "a computed landscape, not the site's video"),
     row("4df3zn", Content::Film(film::old_film), "a computed black-and-white film, not the site's video"),
-    row("4sf3zn", Content::Film(film::camera), "a computed face, not the picture of a camera"),
+    row("4sf3zn", Content::Film(film::camera), "a computed face, not the image of a camera"),
 ];

@@ -4,9 +4,9 @@
 //!
 //! - red: coverage of the texel, 0 to 1
 //! - green, blue: the direction of the gradient of the distance, 0.5 + 0.5·g, to the right and downwards
-//! - alpha: the distance to the outline, 0.5 + d/64, d in texels, negative inside, up to 1 in empty cells
+//! - alpha: the distance to the outline, (127 + 4·d)/255, d in texels, negative inside, up to 1 in empty cells
 //!
-//! So `alpha − 0.5` is the distance in cells. Rows of codes run downwards; capital letters stand on a line 50
+//! So `alpha − 127/255`, as shaders write it, is nearly the distance in cells. Rows of codes run downwards; capital letters stand on a line 50
 //! texels below the top of their cell, are 37 texels high, and are centered.
 
 mod outline;
@@ -17,7 +17,7 @@ use toyproof_image::Image;
 use ttf_parser::Face;
 
 use self::outline::{Outline, glyph};
-use crate::picture::in_levels;
+use crate::material::in_levels;
 
 /// The side of a cell in texels.
 const CELL: usize = 64;
@@ -75,7 +75,7 @@ fn cell(outline: &Outline) -> Vec<[f32; 4]> {
             (0.5 - distance).clamp(0.0, 1.0),
             0.5 + 0.5 * x,
             0.5 + 0.5 * y,
-            (0.5 + distance / CELL as f32).clamp(0.0, 1.0),
+            ((127.0 + 4.0 * distance) / 255.0).clamp(0.0, 1.0),
         ])
     };
     outline.distances(CELL).into_iter().map(texel).collect()
@@ -118,7 +118,7 @@ mod tests {
         for (x, [coverage, gradient, _, alpha]) in row.into_iter().enumerate() {
             let from_center = x as f32 + 0.5 - center;
             let expected = from_center.abs() - ink / 2.0;
-            let distance = 64.0 * (alpha - 0.5);
+            let distance = (255.0 * alpha - 127.0) / 4.0;
             // Near the ends of the stem, the ends are not nearer in this row; a level is a quarter of a texel.
             assert!(
                 (distance - expected).abs() < 0.3,

@@ -45,14 +45,14 @@ struct Stone {
     inside: f32,
 }
 
-/// The stone at a position of the wall, in texels. Rows are as high as a sixth or a twelfth of the picture.
+/// The stone at a position of the wall, in texels. Rows are as high as a sixth or a twelfth of the image.
 fn stone(x: f32, y: f32) -> Stone {
     /// The lower edges of the rows, and the upper edge of the last.
     const ROWS: [f32; 9] = [0.0, 44.0, 128.0, 171.0, 256.0, 341.0, 384.0, 470.0, 512.0];
     let (x, y) = (x.rem_euclid(512.0), y.rem_euclid(512.0));
     let row = ROWS.partition_point(|&edge| edge <= y).clamp(1, 8) - 1;
     let mut vertical = (y - ROWS[row]).min(ROWS[row + 1] - y);
-    // Stones of a row have widths between 1/8 and 1/4 of the picture.
+    // Stones of a row have widths between 1/8 and 1/4 of the image.
     let count = if ROWS[row + 1] - ROWS[row] > 60.0 { 5 } else { 6 };
     let width = 512.0 / count as f32;
     let edge = |at: i32| {

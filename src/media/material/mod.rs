@@ -1,4 +1,4 @@
-//! Pictures of the materials that `ShaderToy`'s photographs show.
+//! Images of the materials that `ShaderToy`'s photographs show.
 //!
 //! Each is computed, and resembles its photograph only in the kind of the material, in size, and in the mean
 //! and standard deviation of each component, which were measured on the site's files. All continue across
@@ -43,14 +43,14 @@ pub(crate) fn ramp(stops: &[(f32, Color)], t: f32) -> Color {
     }
 }
 
-/// Mean and standard deviation of each component of a picture, in 8-bit levels.
+/// Mean and standard deviation of each component of a image, in 8-bit levels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tone {
     pub(crate) mean: [u8; 3],
     pub(crate) deviation: [u8; 3],
 }
 
-/// An opaque picture of 8-bit values with the given mean and standard deviation, from colors on any scale.
+/// An opaque image of 8-bit values with the given mean and standard deviation, from colors on any scale.
 pub(crate) fn toned(side: usize, tone: Tone, color: impl Fn(usize, usize) -> Color + Sync) -> Image {
     let mut colors = vec![[0.0; 3]; side * side];
     colors.par_chunks_mut(side).enumerate().for_each(|(y, row)| {
@@ -81,7 +81,7 @@ pub(crate) fn in_levels(color: [f32; 4]) -> [f32; 4] {
     color.map(|component| f32::from(quantize(component)) / 255.0)
 }
 
-/// A picture of one component, which reads as (r, 0, 0, 1), with the given mean and standard deviation.
+/// A image of one component, which reads as (r, 0, 0, 1), with the given mean and standard deviation.
 pub(crate) fn toned_red(
     side: usize,
     mean: u8,

@@ -51,7 +51,7 @@ pub(crate) fn woven_straw() -> Image {
         let (center, half_width) = (random(0) * SIDE as f32, 0.7 + 1.3 * random(1));
         let brightness = 0.45 + 0.55 * random(2);
         let first = (random(3) * SIDE as f32) as usize;
-        // Few stalks are as long as the picture.
+        // Few stalks are as long as the image.
         let length = ((0.35 + random(4)) * SIDE as f32).min(SIDE as f32) as usize;
         for step in 0..length {
             let along = (first + step) % SIDE;
