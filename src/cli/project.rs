@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Files, all_of, path_name};
-use toyproof_player::Target;
 use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
 use toyproof_project::{CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_verify::Failure;
@@ -29,14 +28,6 @@ pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rende
 pub(super) fn rendering(project: &CompiledProject, kind: PassKind) -> Result<Rendering, Failure> {
     let rendering = project.rendering(kind);
     rendering.map_err(|error| Failure::Unrendered(error.to_string()))
-}
-
-/// What the pass of a kind renders, if it is rendered.
-pub(super) fn target(kind: PassKind) -> Target {
-    match kind {
-        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
-        _ => Target::Image,
-    }
 }
 
 /// The files of the images that an input with these texts reads from its folder, if it is a project.

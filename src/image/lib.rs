@@ -15,7 +15,8 @@
 //! # Parts
 //!
 //! - `rgb8`: images as displayed, in 8 bits.
-//! - `texture`: textures with mipmaps; `noise`: substitutes for ShaderToy's noise textures.
+//! - `texture`: images, [cube maps](cube) and volumes with mipmaps; `noise`: substitutes for ShaderToy's
+//!   noise textures.
 //! - `frame`: ShaderToy's inputs of one frame and their uniform block.
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
@@ -23,6 +24,7 @@
 //! - `output`: atomic writing of files.
 //! - [`input`]: the only place that opens files of others: regular files only.
 
+pub mod cube;
 mod file;
 mod frame;
 mod frame_inputs;
@@ -44,7 +46,7 @@ pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;
 pub use script::{InputEvent, Script};
 use serde::{Deserialize, Serialize};
-pub use texture::Texture;
+pub use texture::{Component, Shape, Texels, Texture};
 use thiserror::Error;
 use toyproof_diagnostic::grouped;
 

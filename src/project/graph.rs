@@ -7,7 +7,7 @@ use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{Image, Noise, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 
-use crate::pass::{Buffer, Input, Pass, PassKind, Source, SourceType};
+use crate::pass::{Input, Pass, PassKind, Source, SourceType};
 use crate::project::Project;
 
 /// The passes that render the image of a project.
@@ -46,15 +46,18 @@ impl Project {
     /// If a pass is needed that cannot be rendered.
     pub fn rendering(&self, shown: &[PassKind]) -> Result<Rendering, UnsupportedPass> {
         let needed = self.needed_by(&[&[PassKind::Image], shown].concat());
-        let unable = [PassKind::CubeA, PassKind::Sound];
-        if let Some(&kind) = needed.iter().find(|kind| unable.contains(kind)) {
+        if let Some(&kind) = needed.iter().find(|kind| **kind == PassKind::Sound) {
             return Err(UnsupportedPass(kind));
         }
         let is_rendered = |kind: PassKind| needed.contains(&kind);
         let passes = (0..self.passes.len()).filter(|&at| is_rendered(self.passes[at].kind));
         let mut passes: Vec<usize> = passes.collect();
-        // Buffers keep the order of the file.
-        passes.sort_by_key(|&at| self.passes[at].kind == PassKind::Image);
+        // Buffers keep the order of the file; Cube A and the image follow them.
+        passes.sort_by_key(|&at| match self.passes[at].kind {
+            PassKind::Buffer(_) => 0,
+            PassKind::CubeA => 1,
+            PassKind::Image | PassKind::Sound => 2,
+        });
         let mut media = Media {
             images: &self.images,
             textures: Vec::new(),
@@ -65,18 +68,17 @@ impl Project {
             .iter()
             .map(|&at| &self.passes[at])
             .map(|pass| player::Pass {
-                target: match pass.kind {
-                    PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
-                    _ => Target::Image,
-                },
+                target: pass.kind.target(),
                 inputs: [0, 1, 2, 3]
                     .map(|channel| media.source(pass.inputs[channel].as_ref()?, (pass.kind, channel))),
             });
         let nodes = nodes.collect();
         let mut mipmaps = [false; BUFFERS];
         for input in self.rendered_inputs() {
-            if let (Source::Buffer(buffer), Filter::Mipmap) = (&input.source, input.sampler.filter) {
-                mipmaps[*buffer as usize] = true;
+            if let (Some(Target::Buffer(buffer)), Filter::Mipmap) =
+                (input.source.pass().map(PassKind::target), input.sampler.filter)
+            {
+                mipmaps[buffer] = true;
             }
         }
         Ok(Rendering {
@@ -95,26 +97,24 @@ impl Project {
             let Some(input) = input else {
                 return Sampling::default();
             };
-            let Source::Buffer(buffer) = input.source else {
+            if input.source.pass().is_none() {
                 return Sampling {
                     filter: input.sampler.filter,
                     wrap: input.sampler.wrap,
                 };
-            };
-            let reads = |input: &&Input| input.source == Source::Buffer(buffer);
+            }
+            let reads = |other: &&Input| other.source == input.source;
             let highest = pass.inputs.iter().flatten().rfind(reads);
             Sampling {
                 filter: highest.map_or(input.sampler.filter, |input| input.sampler.filter),
-                wrap: self.wrap(buffer),
+                wrap: self.wrap(&input.source),
             }
         })
     }
 
     /// The wrap of a buffer.
-    fn wrap(&self, buffer: Buffer) -> Wrap {
-        let readers = self
-            .rendered_inputs()
-            .filter(|input| input.source == Source::Buffer(buffer));
+    fn wrap(&self, buffer: &Source) -> Wrap {
+        let readers = self.rendered_inputs().filter(|input| input.source == *buffer);
         // Inputs without spans are assumed, and all the same.
         let last = readers.max_by_key(|input| input.span.map(|span| span.start));
         last.map_or(Wrap::Clamp, |input| input.sampler.wrap)
@@ -148,10 +148,11 @@ struct TextureKey {
 impl Media<'_> {
     /// The source of an input in the graph; `None` for black.
     fn source(&mut self, input: &Input, reader: (PassKind, usize)) -> Option<player::Source> {
-        match input.source {
-            Source::Buffer(buffer) => return Some(player::Source::Buffer(buffer as usize)),
-            Source::Keyboard => return Some(player::Source::Keyboard),
-            _ => {}
+        if let Some(Target::Buffer(buffer)) = input.source.pass().map(PassKind::target) {
+            return Some(player::Source::Buffer(buffer));
+        }
+        if input.source == Source::Keyboard {
+            return Some(player::Source::Keyboard);
         }
         let images = self.images;
         let found = input.source.file().and_then(|path| images.get(path));

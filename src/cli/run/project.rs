@@ -20,15 +20,15 @@ use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader
 use super::state::{self, Owner};
 use super::{Precision, RenderedImage, Runner, draw_error, is_too_large, pass_error, shader_error};
 use crate::cli::inputs::short_device;
-use crate::cli::project::{pass_shader, target};
+use crate::cli::project::pass_shader;
 use crate::cli::sequence::{FrameEnd, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{CliError, Exit, Terminal};
 
-/// Parses the name of a pass whose texture can be shown: `image`, or `buffer-a` to `buffer-d`.
+/// Parses the name of a pass whose texture can be shown: `image`, `buffer-a` to `buffer-d`, or `cube-a`.
 pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     let shown = Tab::ALL.into_iter().filter_map(|tab| match tab {
-        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_))) => Some((tab.name(), kind)),
+        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_) | PassKind::CubeA)) => Some((tab.name(), kind)),
         _ => None,
     });
     let shown: Vec<_> = shown.collect();
@@ -101,7 +101,7 @@ impl Playback<'_> {
         wanted: Option<Target>,
     ) -> Result<Option<Image>, FrameFailure> {
         let frame = clock.frame(number);
-        let shown = |texture: Option<&Texture>| Some((*texture?.to_single()[0]).clone());
+        let shown = |texture: Option<&Texture>| Some(Image::clone(&texture?.stack()));
         match self {
             Self::Device(playback) => {
                 let wanted = wanted.as_slice();
@@ -302,7 +302,7 @@ impl Runner<'_> {
             playback,
             graph: &rendering.graph,
             clock,
-            target: target(kind),
+            target: kind.target(),
             next,
             has_history,
             terminal: self.terminal,

@@ -264,9 +264,9 @@ fn open<'a>(
 
 /// The number of pixels whose bits differ. The sign of a zero and the bits of NaN are open.
 fn differing(evaluated: &Texture, rendered: &Image) -> usize {
-    let evaluated = evaluated.to_single();
+    let evaluated = evaluated.stack();
     let is_open = |a: f32, b: f32| a == b || a.is_nan() && b.is_nan();
     let differs = |(a, b): &(&[f32; 4], &[f32; 4])| !a.iter().zip(*b).all(|(&a, &b)| is_open(a, b));
-    let pairs = evaluated[0].pixels().iter().zip(rendered.pixels());
+    let pairs = evaluated.pixels().iter().zip(rendered.pixels());
     pairs.filter(differs).count()
 }

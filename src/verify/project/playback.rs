@@ -113,7 +113,7 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
     /// The state after a frame.
     #[must_use]
     pub fn state(&self, frame: i32) -> State {
-        let copy = |texture: &Texture| Ok(texture.cropped(texture.size()));
+        let copy = |texture: &Texture| Ok(texture.clone().without_mipmaps());
         let Ok::<State, std::convert::Infallible>(state) = self.player.state(frame, copy);
         state
     }
@@ -213,16 +213,18 @@ impl<'a> DevicePlayback<'a> {
             .flat_map(|&buffer| [Readback::Last(Target::Buffer(buffer)), Readback::Other(buffer)]);
         let wanted: Vec<_> = buffers.chain([Readback::Last(Target::Image)]).collect();
         let images = self.driver.play(None, &wanted)?;
-        let mut images = images.into_iter().map(Texture::from);
+        let mut images = images.into_iter();
         let mut buffers = [const { None }; BUFFERS];
         for buffer in used {
-            buffers[buffer] = images.next().zip(images.next()).map(<[Texture; 2]>::from);
+            let textures = images.next().zip(images.next());
+            let textures = textures.map(<[Image; 2]>::from);
+            buffers[buffer] = textures.map(|pair| pair.map(|image| Target::Buffer(buffer).texture(image)));
         }
         Ok(State {
             frame: frame.frame,
             size: frame.size,
             buffers,
-            image: images.next(),
+            image: images.next().map(Texture::from),
         })
     }
 }
