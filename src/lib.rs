@@ -84,12 +84,14 @@ pub use toyproof_explain as explain;
 pub use toyproof_glsl as glsl;
 #[cfg(feature = "gpu")]
 pub use toyproof_gpu as gpu;
-#[cfg(any(feature = "eval", feature = "tracer", feature = "gpu"))]
+#[cfg(any(feature = "eval", feature = "media", feature = "tracer", feature = "gpu"))]
 pub use toyproof_image as image;
 #[cfg(feature = "lab")]
 pub use toyproof_lab as lab;
 pub use toyproof_lint as lint;
 pub use toyproof_math as math;
+#[cfg(feature = "media")]
+pub use toyproof_media as media;
 #[cfg(feature = "eval")]
 pub use toyproof_player as player;
 #[cfg(feature = "project")]

@@ -1,10 +1,14 @@
-//! PNG (8 bits) and EXR (32-bit floats) files.
+//! Image files: PNG (8 bits) and EXR (32-bit floats) are written; JPEG, GIF and Radiance HDR are read, too.
 
 use std::borrow::Cow;
+use std::fs::File;
 use std::io::{self, BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
+use image::{
+    DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader, Limits,
+    Rgba32FImage,
+};
 use thiserror::Error;
 
 use super::{Image, MAX_SIDE, Rgb8Image, check_size, input, quantize};
@@ -185,26 +189,27 @@ fn in_memory(
     }
 }
 
-/// Reads a PNG or an EXR; 8- and 16-bit values become `value / max`, without any transfer function.
+/// Reads an image file, of a film its first frame; 8- and 16-bit values become `value / max`, without any
+/// transfer function. A photograph is turned upright if it says how it was taken.
 ///
 /// # Errors
 /// [`ImageError::Unreadable`], also for images over the size limit.
 pub fn read(path: &Path) -> Result<Image, ImageError> {
-    let decoded = decode(path)?;
-    let [width, height] = [decoded.width(), decoded.height()];
+    Ok(from_decoded(decode(path)?))
+}
+
+/// An image from a decoder's, whose rows run downwards.
+pub fn from_decoded(decoded: DynamicImage) -> Image {
     let rgba: Rgba32FImage = match decoded {
         DynamicImage::ImageRgba32F(floats) => floats,
         other => other.into_rgba32f(),
     };
-    let pixels = rgba
-        .rows()
-        .rev()
-        .flat_map(|row| row.map(|pixel| pixel.0))
-        .collect();
-    Ok(Image::new(width, height, pixels))
+    let rows = rgba.rows().rev();
+    let pixels = rows.flat_map(|row| row.map(|pixel| pixel.0)).collect();
+    Image::new(rgba.width(), rgba.height(), pixels)
 }
 
-/// Reads a PNG or an EXR as 8-bit RGB.
+/// Reads an image file as 8-bit RGB.
 ///
 /// # Errors
 /// As [`read`].
@@ -227,7 +232,42 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
         path: path.to_owned(),
         error,
     };
-    let mut reader = input::open(path)
+    let mut reader = open_image(path)?;
+    reader.limits(decoder_limits());
+    let mut decoder = reader
+        .into_decoder()
+        .map_err(|error| unreadable(error.to_string()))?;
+    // Before any memory is taken for the pixels.
+    let (width, height) = decoder.dimensions();
+    check_size(width.into(), height.into()).map_err(|error| unreadable(error.to_string()))?;
+    let orientation = decoder.orientation();
+    let decoded = orientation.and_then(|orientation| {
+        let mut decoded = DynamicImage::from_decoder(decoder)?;
+        decoded.apply_orientation(orientation);
+        Ok(decoded)
+    });
+    decoded.map_err(|error| unreadable(error.to_string()))
+}
+
+/// The limits of decoders: [`MAX_SIDE`], and one gigabyte.
+pub fn decoder_limits() -> Limits {
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(1 << 30);
+    limits
+}
+
+/// Opens an image file of a format that is read.
+///
+/// # Errors
+/// [`ImageError::Unreadable`], also for the palettes that no decoder accepts.
+pub fn open_image(path: &Path) -> Result<ImageReader<BufReader<File>>, ImageError> {
+    let unreadable = |error: String| ImageError::Unreadable {
+        path: path.to_owned(),
+        error,
+    };
+    let reader = input::open(path)
         .and_then(|file| ImageReader::new(BufReader::new(file)).with_guessed_format())
         .map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => unreadable("no such file".to_owned()),
@@ -235,18 +275,13 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
         })?;
     match reader.format() {
         Some(ImageFormat::Png) => check_palette(path).map_err(unreadable)?,
-        Some(ImageFormat::OpenExr) => {}
-        _ => return Err(unreadable("only PNG and EXR are supported".to_owned())),
+        Some(ImageFormat::Gif | ImageFormat::Hdr | ImageFormat::Jpeg | ImageFormat::OpenExr) => {}
+        _ => {
+            let supported = "only PNG, JPEG, EXR, Radiance HDR and GIF are supported";
+            return Err(unreadable(supported.to_owned()));
+        }
     }
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(1 << 30);
-    reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| unreadable(error.to_string()))?;
-    check_size(decoded.width().into(), decoded.height().into())
-        .map_err(|error| unreadable(error.to_string()))?;
-    Ok(decoded)
+    Ok(reader)
 }
 
 /// Rejects palettes of PNGs on which the decoder panics (png 0.18.1).
@@ -330,6 +365,30 @@ mod tests {
         let path = folder.path().join("a.png");
         std::fs::write(&path, "not an image").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("as an image"));
+    }
+
+    #[test]
+    fn photographs_radiance_pictures_and_the_first_frame_of_a_film_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let gray = image::RgbImage::from_fn(16, 8, |x, y| {
+            image::Rgb([if y < 4 { 51 } else { 204 }, 102, (x / 8 * 255) as u8])
+        });
+        for (name, tolerance) in [("a.jpg", 40), ("a.gif", 4), ("a.png", 0)] {
+            let path = folder.path().join(name);
+            gray.save(&path).unwrap();
+            let read = read_shown(&path).unwrap();
+            assert_eq!(read.size(), [16, 8]);
+            // The corners, far from edges, which JPEG blurs: the lower left and the upper right.
+            for ((x, y), expected) in [((1, 1), [204, 102, 0]), ((14, 6), [51, 102, 255])] {
+                let found = read.rows().nth(y).unwrap()[x];
+                let difference = (0..3).map(|i| found[i].abs_diff(expected[i])).max();
+                assert!(difference <= Some(tolerance), "{name}: {found:?}");
+            }
+        }
+        let path = folder.path().join("a.hdr");
+        let bright = image::Rgb32FImage::from_pixel(9, 3, image::Rgb([8.0, 0.5, 0.25]));
+        bright.save(&path).unwrap();
+        assert_eq!(super::read(&path).unwrap().get(8, 2), [8.0, 0.5, 0.25, 1.0]);
     }
 
     #[test]

@@ -20,7 +20,7 @@
 //! - `frame`: ShaderToy's inputs of one frame and their uniform block.
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
-//! - `file`: PNG and EXR, the only place that flips rows and quantizes.
+//! - `file`: image files, the only place that flips rows and quantizes.
 //! - `output`: atomic writing of files.
 //! - [`input`]: the only place that opens files of others: regular files only.
 
@@ -37,7 +37,10 @@ mod rgb8;
 mod script;
 mod texture;
 
-pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown, write_png};
+pub use file::{
+    ImageError, check_extension, decoder_limits, encode, encode_shown, from_decoded, open_image, read,
+    read_shown, write_png,
+};
 pub use frame::{FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs, UniformValue};
 pub use inputs::{BLOCK_BYTES, Input, InputType};
