@@ -233,6 +233,11 @@ pub(super) struct LanguageArgs {
     /// A folder in which `#include "file"` is searched, after that of the shader
     #[arg(long, value_name = "DIR", hide_short_help = true)]
     include_dir: Vec<PathBuf>,
+    /// A folder of copies of ShaderToy's media, which projects then read instead of computed ones
+    ///
+    /// A file has the name of a medium (`rock-tiles.jpg`), or the name that it has on the site.
+    #[arg(long, value_name = "DIR", value_parser = parse_media, hide_short_help = true)]
+    media: Option<Arc<MediaFolder>>,
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
     ///
     /// A comment `// toyproof: allow(W0005)` in the shader takes precedence.

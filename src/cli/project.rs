@@ -18,6 +18,7 @@ pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rende
         checked: project.checked_of(rendering).collect(),
         graph: &rendering.graph,
         media: &rendering.media,
+        films: &rendering.films,
     }
 }
 
@@ -30,7 +31,7 @@ pub(super) fn rendering(project: &CompiledProject, kind: PassKind) -> Result<Ren
     rendering.map_err(|error| Failure::Unrendered(error.to_string()))
 }
 
-/// The files of the images that an input with these texts reads from its folder, if it is a project.
+/// The files of the media that an input with these texts reads from its folder, if it is a project.
 pub(super) fn image_files(input: &Input, texts: Texts) -> Vec<PathBuf> {
     let (Texts::Project(texts @ ProjectTexts::Folder { .. }), Some(folder)) = (texts, input.path()) else {
         return Vec::new();
@@ -38,7 +39,7 @@ pub(super) fn image_files(input: &Input, texts: Texts) -> Vec<PathBuf> {
     let Ok(project) = texts.parse(&mut Files::default()) else {
         return Vec::new();
     };
-    let names = project.image_inputs().map(|(_, name)| name);
+    let names = project.media_files();
     names
         .filter_map(|name| files::project_image(folder, name).ok())
         .collect()

@@ -10,6 +10,7 @@ use toyproof_diagnostic::{
 use toyproof_glsl::tree::VariableKind;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_lint::{Lints, lint};
+use toyproof_media::MediaFolder;
 use toyproof_project::files::{self, IncludeFolders, Input, ReadError, Search, Texts, content_diagnostic};
 use toyproof_project::{CompiledProject, Declared, with_declarations};
 
@@ -136,7 +137,7 @@ impl Shader {
                 let includes = IncludeFolders::of(found, language.include_folders());
                 let content = read(
                     found,
-                    &includes,
+                    (&includes, language.media()),
                     &mut files,
                     &mut lints,
                     &mut has_passes,
@@ -241,7 +242,7 @@ pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Dia
 
 fn read(
     found: &Input,
-    includes: &IncludeFolders,
+    (includes, media): (&IncludeFolders, Option<&MediaFolder>),
     files: &mut Files,
     lints: &mut Lints,
     has_passes: &mut bool,
@@ -257,7 +258,7 @@ fn read(
                 Declared::Shader(file) => file,
                 Declared::Project(project) => {
                     *has_passes = !project.needed_by_image().is_empty();
-                    let compiled = CompiledProject::compile(*project, None, None, files, &options);
+                    let compiled = CompiledProject::compile(*project, (None, media), None, files, &options);
                     let (project, of_project) =
                         compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
                     *lints = of_project;
@@ -276,7 +277,7 @@ fn read(
             *has_passes = !project.needed_by_image().is_empty();
             // JSON of the site is a project without a folder, and has its texts in itself.
             let includes = folder.is_some().then_some(includes);
-            let compiled = CompiledProject::compile(project, folder.as_deref(), includes, files, options);
+            let compiled = CompiledProject::compile(project, (folder.as_deref(), media), includes, files, options);
             let (project, of_project) = compiled.map_err(invalid)?;
             *lints = of_project;
             Ok(Content::Project(project))

@@ -70,11 +70,17 @@ impl<'a, N: Number> PassRenderer<'a, N> {
 /// A frame with these channels, some of which read `media`.
 #[must_use]
 pub fn bound(frame: &Frame, channels: [Channel<'_, Texture>; 4], media: &[Texture]) -> Frame {
+    let moving = |channel: &Channel<'_, Texture>| match channel {
+        Channel::Moving(number) => frame.moving.get(*number),
+        _ => None,
+    };
     Frame {
+        channel_times: channels.each_ref().map(|channel| moving(channel).map_or(0.0, |(_, time)| *time)),
         channels: channels.map(|channel| match channel {
             Channel::Unbound => None,
             Channel::Texture(texture) => Some(texture.clone()),
             Channel::Medium(number) => media.get(number).cloned(),
+            Channel::Moving(number) => frame.moving.get(number).map(|(texture, _)| texture.clone()),
             Channel::Keyboard => Some(frame.keys.texture()),
         }),
         ..frame.clone()

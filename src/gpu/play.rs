@@ -124,6 +124,7 @@ impl PassRenderer {
             Channel::Texture(PassTexture { target, cube: None }) => (shape == Shape::D2)
                 .then(|| (view(target, shape), [target.width(), target.height(), 1])),
             Channel::Medium(number) => of_uploads(self.media.get(*number)?),
+            Channel::Moving(number) => of_uploads(&Uploads::new(frame.moving.get(*number)?.0.clone())),
             Channel::Keyboard => of_uploads(&Uploads::new(frame.keys.texture())),
         }
     }
@@ -277,6 +278,14 @@ impl Renderer for PassRenderer {
     ) -> Result<PassTexture, Failure> {
         self.device.with_error_scopes(|| {
             let (compiled, sampling) = (&self.passes[pass], self.sampling[pass]);
+            let times = channels.each_ref().map(|channel| match channel {
+                Channel::Moving(number) => frame.moving.get(*number).map_or(0.0, |(_, time)| *time),
+                _ => 0.0,
+            });
+            let frame = &Frame {
+                channel_times: times,
+                ..frame.clone()
+            };
             let channels = std::array::from_fn(|channel| {
                 self.bound(&channels[channel], frame, compiled.layout.shape(channel))
             });

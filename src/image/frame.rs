@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::inputs::VECTOR_BYTES;
-use crate::{BLOCK_BYTES, Input, Keys, Script, Texture};
+use crate::{BLOCK_BYTES, Input, Keys, MovingTextures, Script, Texture};
 
 /// All inputs of a shader for the frame that it renders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,8 +32,15 @@ pub struct Frame {
     /// The user's actions over the frames of a run, which determine the mouse and the keyboard of this frame.
     #[serde(skip)]
     pub script: Option<Arc<Script>>,
+    /// The textures of all frames that change, which determine those of this frame.
+    #[serde(skip)]
+    pub films: MovingTextures,
+    /// The textures of this frame that change, with their `iChannelTime` in seconds.
+    pub moving: Vec<(Texture, f32)>,
     /// The textures of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.
     pub channels: [Option<Texture>; 4],
+    /// `iChannelTime`, in seconds.
+    pub channel_times: [f32; 4],
 }
 
 impl Default for Frame {
@@ -50,7 +57,10 @@ impl Default for Frame {
             date: [0.0; 4],
             keys: Keys::default(),
             script: None,
+            films: MovingTextures::default(),
+            moving: Vec::new(),
             channels: [const { None }; 4],
+            channel_times: [0.0; 4],
         }
     }
 }
@@ -71,11 +81,12 @@ pub const FRAME_RATE: f32 = 60.0;
 pub const SAMPLE_RATE: f32 = 44_100.0;
 
 impl Frame {
-    /// The frame with another number and time, with the mouse and the keyboard that it has by the script.
+    /// The frame with another number and time, with the mouse and the keyboard that it has by the script, and
+    /// the textures that change.
     #[must_use]
     pub fn at(&self, number: i32, time: f32) -> Self {
         let scripted = self.script.as_ref();
-        Self {
+        let frame = Self {
             frame: number,
             time,
             mouse: scripted
@@ -83,6 +94,12 @@ impl Frame {
                 .unwrap_or(self.mouse),
             keys: scripted.map_or(self.keys, |script| script.keys(number)),
             ..self.clone()
+        };
+        let films = self.films.0.iter();
+        let moving = films.map(|film| (film.texture(&frame), film.position(&frame)));
+        Self {
+            moving: moving.collect(),
+            ..frame
         }
     }
 
@@ -118,7 +135,8 @@ impl Frame {
             Input::Mouse => self.mouse[at],
             Input::Date => self.date[at],
             Input::SampleRate => SAMPLE_RATE,
-            Input::Frame | Input::ChannelTime => 0.0,
+            Input::ChannelTime => self.channel_times[at],
+            Input::Frame => 0.0,
         }
     }
 

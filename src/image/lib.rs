@@ -19,6 +19,7 @@
 //!   noise textures.
 //! - `frame`: ShaderToy's inputs of one frame and their uniform block.
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
+//! - `moving`: textures that change from frame to frame.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
 //! - `file`: image files, the only place that flips rows and quantizes.
 //! - `output`: atomic writing of files.
@@ -31,6 +32,7 @@ mod frame_inputs;
 pub mod input;
 mod inputs;
 mod keys;
+mod moving;
 mod noise;
 pub mod output;
 mod rgb8;
@@ -45,6 +47,7 @@ pub use frame::{FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs, UniformValue};
 pub use inputs::{BLOCK_BYTES, Input, InputType};
 pub use keys::{KeySet, Keys};
+pub use moving::{Moving, MovingTextures};
 pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;
 pub use script::{InputEvent, Script};

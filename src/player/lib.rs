@@ -140,6 +140,8 @@ pub enum Source {
     Buffer(usize),
     /// The texture with this number among those that do not change.
     Medium(usize),
+    /// The texture with this number among those that change from frame to frame.
+    Moving(usize),
     /// The keyboard.
     Keyboard,
 }
@@ -202,7 +204,7 @@ impl Source {
     fn buffer(self) -> Option<usize> {
         match self {
             Self::Buffer(number) => Some(number),
-            Self::Medium(_) | Self::Keyboard => None,
+            Self::Medium(_) | Self::Moving(_) | Self::Keyboard => None,
         }
     }
 }

@@ -55,6 +55,8 @@ pub enum Channel<'a, T> {
     Texture(&'a T),
     /// The texture with this number among those that do not change.
     Medium(usize),
+    /// The texture with this number among those of the frame that change.
+    Moving(usize),
     /// The keyboard of the frame.
     Keyboard,
 }
@@ -255,6 +257,7 @@ fn channels<'t, T>(
     graph.passes()[pass].inputs.map(|input| match input {
         None => Channel::Unbound,
         Some(Source::Medium(medium)) => Channel::Medium(medium),
+        Some(Source::Moving(number)) => Channel::Moving(number),
         Some(Source::Keyboard) => Channel::Keyboard,
         Some(Source::Buffer(buffer)) => texture(buffer).map_or(Channel::Unbound, Channel::Texture),
     })

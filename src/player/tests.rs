@@ -35,6 +35,7 @@ impl Renderer for Recorder {
             Channel::Unbound => None,
             Channel::Texture(name) => Some((*name).clone()),
             Channel::Medium(number) => Some(format!("medium{number}")),
+            Channel::Moving(number) => Some(format!("moving{number}")),
             Channel::Keyboard => Some("keyboard".to_owned()),
         });
         let reads: Vec<_> = reads.collect();

@@ -377,7 +377,7 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
         common,
         passes,
         uniforms,
-        images: HashMap::new(),
+        media: LoadedMedia::default(),
         document: Document {
             root,
             format,

@@ -1,14 +1,13 @@
 //! The rendered parts of a project: its passes in the site's order, the textures that they read, and how they
 //! sample them.
 
-use std::collections::HashMap;
-
 use toyproof_glsl::{Filter, Sampling, Wrap};
-use toyproof_image::{Image, Noise, Texture};
+use toyproof_image::{MovingTextures, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 
-use crate::pass::{Input, Pass, PassKind, Source, SourceType};
+use crate::pass::{Input, Pass, PassKind, Source};
 use crate::project::Project;
+use crate::textures::{MissingMedium, Textures};
 
 /// The passes that render the image of a project.
 #[derive(Debug, Clone)]
@@ -19,19 +18,10 @@ pub struct Rendering {
     pub passes: Vec<usize>,
     /// The textures that do not change.
     pub media: Vec<Texture>,
-    /// The inputs whose media are replaced, or are black, without repetitions.
-    pub replaced: Vec<MissingMedium>,
-}
-
-/// An input whose medium is not available.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MissingMedium {
-    /// The source that would be read.
-    pub source: Source,
-    /// Whether a texture with the same properties takes its place; otherwise the channel is black.
-    pub has_stand_in: bool,
-    /// The passes that read the texture, each with the number of the channel.
-    pub readers: Vec<(PassKind, usize)>,
+    /// The textures that change from frame to frame.
+    pub films: MovingTextures,
+    /// The inputs whose media of the site are not available, without repetitions.
+    pub missing: Vec<MissingMedium>,
 }
 
 /// Why the image of a project cannot be rendered: a part of a sentence, after the name of the image.
@@ -58,19 +48,20 @@ impl Project {
             PassKind::CubeA => 1,
             PassKind::Image | PassKind::Sound => 2,
         });
-        let mut media = Media {
-            images: &self.images,
-            textures: Vec::new(),
-            known: Vec::new(),
-            replaced: Vec::new(),
-        };
+        let mut textures = Textures::new(&self.media);
         let nodes = passes
             .iter()
             .map(|&at| &self.passes[at])
             .map(|pass| player::Pass {
                 target: pass.kind.target(),
-                inputs: [0, 1, 2, 3]
-                    .map(|channel| media.source(pass.inputs[channel].as_ref()?, (pass.kind, channel))),
+                inputs: [0, 1, 2, 3].map(|channel| {
+                    let input = pass.inputs[channel].as_ref()?;
+                    match (&input.source, input.source.pass().map(PassKind::target)) {
+                        (_, Some(Target::Buffer(buffer))) => Some(player::Source::Buffer(buffer)),
+                        (Source::Keyboard, _) => Some(player::Source::Keyboard),
+                        _ => textures.source(input, (pass.kind, channel)),
+                    }
+                }),
             });
         let nodes = nodes.collect();
         let mut mipmaps = [false; BUFFERS];
@@ -84,8 +75,9 @@ impl Project {
         Ok(Rendering {
             graph: Graph::new(nodes, mipmaps),
             passes,
-            media: media.textures,
-            replaced: media.replaced,
+            media: textures.media,
+            films: MovingTextures(textures.moving),
+            missing: textures.missing,
         })
     }
 
@@ -125,90 +117,4 @@ impl Project {
         let passes = self.passes.iter().filter(|pass| pass.kind != PassKind::Sound);
         passes.flat_map(|pass| pass.inputs.iter().flatten())
     }
-}
-
-/// The textures that do not change, as they are found.
-struct Media<'a> {
-    /// The images of the project's folder.
-    images: &'a HashMap<String, Image>,
-    textures: Vec<Texture>,
-    /// The properties of the textures, in their order.
-    known: Vec<TextureKey>,
-    replaced: Vec<MissingMedium>,
-}
-
-/// The properties by which textures that do not change differ.
-#[derive(PartialEq)]
-struct TextureKey {
-    source: Source,
-    has_mipmaps: bool,
-    is_flipped: bool,
-}
-
-impl Media<'_> {
-    /// The source of an input in the graph; `None` for black.
-    fn source(&mut self, input: &Input, reader: (PassKind, usize)) -> Option<player::Source> {
-        if let Some(Target::Buffer(buffer)) = input.source.pass().map(PassKind::target) {
-            return Some(player::Source::Buffer(buffer));
-        }
-        if input.source == Source::Keyboard {
-            return Some(player::Source::Keyboard);
-        }
-        let images = self.images;
-        let found = input.source.file().and_then(|path| images.get(path));
-        let noise = noise(&input.source);
-        if found.is_none() {
-            let mut replaced = self.replaced.iter_mut();
-            match replaced.find(|replaced| replaced.source == input.source) {
-                Some(replaced) => replaced.readers.push(reader),
-                None => self.replaced.push(MissingMedium {
-                    source: input.source.clone(),
-                    has_stand_in: noise.is_some(),
-                    readers: vec![reader],
-                }),
-            }
-        }
-        let has_mipmaps = input.sampler.filter == Filter::Mipmap;
-        let key = TextureKey {
-            source: input.source.clone(),
-            has_mipmaps,
-            is_flipped: input.sampler.vflip,
-        };
-        if let Some(known) = self.known.iter().position(|known| *known == key) {
-            return Some(player::Source::Medium(known));
-        }
-        // An image stands upright if it is flipped on its way to the texture.
-        let upright = found.cloned().or_else(|| noise.map(Noise::image));
-        let image = upright.map(|image| {
-            if input.sampler.vflip {
-                image
-            } else {
-                image.upside_down()
-            }
-        });
-        let texture = Texture::from(image?);
-        self.textures.push(if has_mipmaps {
-            texture.with_mipmaps()
-        } else {
-            texture
-        });
-        self.known.push(key);
-        Some(player::Source::Medium(self.known.len() - 1))
-    }
-}
-
-/// The substitute for a texture of the site.
-fn noise(source: &Source) -> Option<Noise> {
-    let medium = source
-        .medium()
-        .filter(|medium| medium.source_type == SourceType::Texture)?;
-    Some(match medium.name {
-        "RGBA Noise Medium" => Noise::RgbaMedium,
-        "RGBA Noise Small" => Noise::RgbaSmall,
-        "Gray Noise Medium" => Noise::GrayMedium,
-        "Gray Noise Small" => Noise::GraySmall,
-        "Bayer" => Noise::Bayer,
-        "Blue Noise" => Noise::Blue,
-        _ => return None,
-    })
 }

@@ -43,7 +43,7 @@ impl Project {
             passes,
             knows_inputs: true,
             uniforms: Vec::new(),
-            images: HashMap::new(),
+            media: LoadedMedia::default(),
             document: Document {
                 root,
                 format,

@@ -206,6 +206,7 @@ fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let channels = image.inputs.map(|input| match input {
         None | Some(Source::Buffer(_)) => Channel::Unbound,
         Some(Source::Medium(number)) => Channel::Medium(number),
+        Some(Source::Moving(number)) => Channel::Moving(number),
         Some(Source::Keyboard) => Channel::Keyboard,
     });
     Some(eval::bound(frame, channels, &rendering.media))

@@ -187,7 +187,7 @@ pub(super) fn read(
         passes: project_passes,
         knows_inputs: true,
         uniforms: Vec::new(),
-        images: HashMap::new(),
+        media: LoadedMedia::default(),
     })))
 }
 

@@ -139,7 +139,7 @@ impl<'a> BufferLints<'a> {
                 || pass
                     .inputs
                     .iter()
-                    .any(|input| matches!(input, Some(Source::Medium(_) | Source::Keyboard)));
+                    .any(|input| matches!(input, Some(Source::Medium(_) | Source::Moving(_) | Source::Keyboard)));
             if !self.buffers[number].are_zero || is_driven {
                 return None;
             }

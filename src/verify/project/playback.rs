@@ -8,7 +8,7 @@ use toyproof_eval::{Number, PassFailure, PassRenderer, Refusal, Settings, Undefi
 use toyproof_eval_native::Program;
 use toyproof_glsl::tree::{BuiltIn, ExprKind};
 use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
-use toyproof_image::{Frame, Image, Texture};
+use toyproof_image::{Frame, Image, MovingTextures, Texture};
 use toyproof_player::{BUFFERS, ChannelSampling, DriverFailure, Graph, Player, Readback, State, Target};
 use toyproof_translate::FloatMode;
 
@@ -23,9 +23,21 @@ pub struct PassShader<'a> {
     pub graph: &'a Graph,
     /// The textures that do not change.
     pub media: &'a [Texture],
+    /// The textures that change from frame to frame.
+    pub films: &'a MovingTextures,
 }
 
 impl PassShader<'_> {
+    /// The frame with the textures of the shader that change.
+    #[must_use]
+    pub fn with_films(&self, frame: &Frame) -> Frame {
+        let frame = Frame {
+            films: self.films.clone(),
+            ..frame.clone()
+        };
+        frame.at(frame.frame, frame.time)
+    }
+
     /// Whether a pass looks up texels with a filter: in strict arithmetic many operations, which drivers
     /// compile better than the evaluator.
     #[must_use]
