@@ -21,6 +21,7 @@
 //! - `blue_noise`, `font`, `film`: further textures; `cube`: environments and their cube maps, and those from
 //!   files.
 //! - `animation`, `volume`: films and volumes from files; `folder`: a folder of copies of the site's media.
+//! - `music`: the spectrum and the wave of a sound file.
 
 mod animation;
 mod blue_noise;
@@ -30,6 +31,7 @@ mod field;
 mod film;
 mod folder;
 mod font;
+mod music;
 mod picture;
 mod stand_in;
 mod volume;
@@ -38,5 +40,6 @@ pub use self::animation::{Film, MAX_FRAMES, sequence_files};
 pub use self::cube::{face_direction, face_position, read_cube};
 pub use self::error::MediaError;
 pub use self::folder::{MediaFolder, MediumNames, with_components};
+pub use self::music::{Music, silent_music};
 pub use self::stand_in::{Content, StandIn};
 pub use self::volume::read_volume;
