@@ -13,6 +13,7 @@ use toyproof_glsl::{self as glsl, Dialect, UniformValue};
 use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
 use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
+use toyproof_media::MediaFolder;
 use toyproof_project as project;
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
@@ -165,6 +166,12 @@ pub(super) fn resized(frames: &[FrameInputs], size: Option<[u32; 2]>) -> Vec<Fra
         }
     }
     resized
+}
+
+/// Lists a folder of media.
+fn parse_media(path: &str) -> Result<Arc<MediaFolder>, String> {
+    let opened = MediaFolder::open(Path::new(path)).map(Arc::new);
+    opened.map_err(|error| error.to_string())
 }
 
 /// Reads a script of the mouse and the keyboard.
@@ -391,6 +398,11 @@ impl LanguageArgs {
         let folders = folders.map(|folder| format!("--include-dir {}", shell_word(&path_name(folder))));
         let flags = lenient.into_iter().chain(dialect).chain(uniforms);
         flags.chain(folders).collect()
+    }
+
+    /// The user's copies of the site's media.
+    pub(super) fn media(&self) -> Option<&MediaFolder> {
+        self.media.as_deref()
     }
 
     /// The folders in which included files are searched.

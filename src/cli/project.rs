@@ -18,7 +18,7 @@ pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rende
         checked: project.checked_of(rendering).collect(),
         graph: &rendering.graph,
         media: &rendering.media,
-        films: &rendering.films,
+        films: rendering.films.clone(),
     }
 }
 

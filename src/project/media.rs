@@ -192,6 +192,7 @@ fn file_type(path: &str) -> Option<SourceType> {
         "png" | "jpg" | "jpeg" | "hdr" | "exr" => Some(SourceType::Texture),
         "gif" | "apng" => Some(SourceType::Video),
         "bin" => Some(SourceType::Volume),
+        "wav" | "ogg" => Some(SourceType::Music),
         _ => None,
     }
 }

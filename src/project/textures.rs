@@ -2,14 +2,16 @@
 //! place of the site's.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use toyproof_diagnostic::{Code, Diagnostic};
+use toyproof_diagnostic::{Code, Diagnostic, Span};
 use toyproof_glsl::Filter;
 use toyproof_image::{self as image, Frame, Image, Moving, Texture};
 use toyproof_media::{
-    Content, Film, MediaFolder, MediumNames, StandIn, read_cube, read_volume, silence, with_components,
+    Content, Film, MediaFolder, MediumNames, Music, StandIn, read_cube, read_volume, silent_music,
+    with_components,
 };
 use toyproof_player as player;
 
@@ -24,6 +26,7 @@ pub(crate) enum Loaded {
     Cube(Box<[Image; 6]>),
     Volume(Vec<Image>),
     Film(Arc<Film>),
+    Music(Arc<Music>),
 }
 
 /// The files that inputs read, by the paths or names of their sources.
@@ -108,6 +111,9 @@ fn load(path: &Path, source: &Source) -> Result<Loaded, String> {
         SourceType::Video | SourceType::Webcam => {
             Loaded::Film(Arc::new(Film::open(path).map_err(|error| error.to_string())?))
         }
+        SourceType::Music | SourceType::MusicStream | SourceType::Mic => {
+            Loaded::Music(Arc::new(Music::open(path).map_err(|error| error.to_string())?))
+        }
         _ => {
             let image = image::read(path).map_err(|error| error.to_string())?;
             Loaded::Picture(match source.medium() {
@@ -125,8 +131,39 @@ pub struct MissingMedium {
     pub source: Source,
     /// What takes its place, in a few words; `None` if the channel is black.
     pub stand_in: Option<&'static str>,
+    /// Where the first input that reads it stands.
+    pub span: Option<Span>,
     /// The passes that read the texture, each with the number of the channel.
     pub readers: Vec<(PassKind, usize)>,
+}
+
+impl MissingMedium {
+    /// The message about it.
+    #[must_use]
+    pub fn diagnostic(&self) -> Diagnostic {
+        let code = match self.stand_in {
+            Some(_) => Code::StandIn,
+            None => Code::UnboundChannel,
+        };
+        let diagnostic = Diagnostic::new(code, self.to_string());
+        match self.span {
+            Some(span) => diagnostic.at(span),
+            None => diagnostic,
+        }
+    }
+}
+
+impl fmt::Display for MissingMedium {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.source.medium() {
+            Some(medium) => write!(f, "“{}” of ShaderToy", medium.name)?,
+            None => write!(f, "a {} of ShaderToy", self.source.source_type().name())?,
+        }
+        match self.stand_in {
+            Some(stand_in) => write!(f, " is replaced: {stand_in}"),
+            None => f.write_str(" is not available, so that its channel is black"),
+        }
+    }
 }
 
 /// The textures of a graph, as they are found.
@@ -178,6 +215,7 @@ impl<'a> Textures<'a> {
                 None => self.missing.push(MissingMedium {
                     source: input.source.clone(),
                     stand_in: description(&input.source, stand_in),
+                    span: input.span,
                     readers: vec![reader],
                 }),
             }
@@ -235,6 +273,7 @@ fn of_file(content: &Loaded, key: &TextureKey) -> Found {
         Loaded::Picture(picture) => flat(picture.clone(), key.is_flipped),
         Loaded::Cube(faces) => cube(faces, key.is_flipped),
         Loaded::Volume(slices) => volume(slices),
+        Loaded::Music(music) => return Found::Moving(Arc::new(MovingMusic(Arc::clone(music)))),
         Loaded::Film(film) => {
             return Found::Moving(Arc::new(MovingFilm {
                 film: FilmSource::File(Arc::clone(film)),
@@ -329,13 +368,27 @@ impl Moving for MovingFilm {
     }
 }
 
+/// A piece of music, of which a shader reads the spectrum and the wave.
+#[derive(Debug)]
+struct MovingMusic(Arc<Music>);
+
+impl Moving for MovingMusic {
+    fn texture(&self, frame: &Frame) -> Texture {
+        self.0.texture(frame.time.into()).into()
+    }
+
+    fn position(&self, frame: &Frame) -> f32 {
+        frame.time
+    }
+}
+
 /// The sound of the site's player when it is muted: it follows the time.
 #[derive(Debug)]
 struct MutedSound;
 
 impl Moving for MutedSound {
     fn texture(&self, frame: &Frame) -> Texture {
-        silence(frame.time).into()
+        silent_music(frame.time.into()).into()
     }
 
     /// The site's player is then at 10 seconds.

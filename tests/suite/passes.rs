@@ -105,13 +105,6 @@ fn cases() -> Vec<Case> {
     folders().iter().filter_map(|folder| read(folder).ok()).collect()
 }
 
-fn target(pass: PassKind) -> Target {
-    match pass {
-        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
-        _ => Target::Image,
-    }
-}
-
 impl Case {
     /// Renders all that is needed for any answer.
     fn rendering(&self) -> Rendering {
@@ -125,6 +118,7 @@ impl Case {
             checked: rendering.passes.iter().map(|&at| &self.passes[at]).collect(),
             graph: &rendering.graph,
             media: &rendering.media,
+            films: rendering.films.clone(),
         }
     }
 
@@ -146,7 +140,7 @@ impl Case {
     /// The passes that are expected after a frame.
     fn targets(&self, frame: i32) -> Vec<Target> {
         let now = self.expected.iter().filter(|expected| expected.frame == frame);
-        now.map(|expected| target(expected.pass)).collect()
+        now.map(|expected| expected.pass.target()).collect()
     }
 
     /// Renders on the evaluator, and returns what differs from the answers.
@@ -158,7 +152,7 @@ impl Case {
         for frame in 0..=self.last_frame() {
             playback.render(&clock.frame(frame)).unwrap();
             for expected in self.expected.iter().filter(|expected| expected.frame == frame) {
-                match playback.texture(target(expected.pass)) {
+                match playback.texture(expected.pass.target()) {
                     Some(texture) => faults.extend(expected.difference(texture)),
                     None => faults.push(format!("{} is not rendered", expected.pass)),
                 }

@@ -10,7 +10,7 @@ use toyproof_explain::{self as explain, Findings, Options};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_image::{FRAME_RATE, Frame};
-use toyproof_project::{CompiledProject, PassKind};
+use toyproof_project::{CompiledProject, MissingMedium, PassKind};
 use toyproof_report::{CheckedFrame, DialectRecord, FrameResult, GrowthRecord, Record};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, bind, default_frame};
@@ -307,6 +307,8 @@ impl<'a> ShaderCheck<'a> {
             pool: self.context.pool.as_ref(),
         };
         let rendering = rendering(passes, PassKind::Image)?;
+        let missing = rendering.missing.iter().map(MissingMedium::diagnostic);
+        self.report(missing.collect(), &self.shader.files);
         let pass_shader = pass_shader(passes, &rendering);
         let Some(mut bound) = bind(&pass_shader, frame, self.reference.is_some(), renderers)? else {
             return Ok(None);

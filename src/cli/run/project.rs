@@ -39,22 +39,17 @@ pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     })
 }
 
-/// Reports the inputs whose media are replaced or black. `bound` are the channels of the image that the user
+/// Reports the media of the site that are not available. `bound` are the channels of the image that the user
 /// gives a texture.
-fn report_replaced(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
+fn report_missing(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
     let is_bound = |&(pass, channel): &(PassKind, usize)| pass == PassKind::Image && bound[channel].is_some();
-    let replaced = rendering.replaced.iter();
-    for replaced in replaced.filter(|replaced| !replaced.readers.iter().all(is_bound)) {
-        let medium = replaced.source.medium();
-        let source = medium.map_or_else(
-            || format!("a {}", replaced.source.source_type().name()),
-            |medium| format!("“{}”", medium.name),
-        );
-        terminal.warn(if replaced.has_stand_in {
-            format!("{name}: {source} of ShaderToy is replaced by a texture with similar values")
-        } else {
-            format!("{name}: {source} of ShaderToy is not available, so that its channel is black")
-        });
+    let missing = rendering.missing.iter();
+    for missing in missing.filter(|missing| !missing.readers.iter().all(is_bound)) {
+        let message = format!("{name}: {missing}");
+        match missing.stand_in {
+            Some(_) => terminal.note(&message),
+            None => terminal.warn(message),
+        }
     }
 }
 
@@ -224,7 +219,7 @@ impl Runner<'_> {
         let rendering = self.rendering(shader, passes, kind)?;
         if self.args.frames.is_none()
             && self.args.state.is_none()
-            && let Some(frame) = bound(&rendering, &self.clock(self.frame.frame).frame(self.frame.frame))
+            && let Some(frame) = bound(&rendering, &self.clock_of(&rendering, self.frame.frame).frame(self.frame.frame))
         {
             return self.one_image(shader, &frame, path).map(|()| Exit::Success);
         }
@@ -233,6 +228,13 @@ impl Runner<'_> {
         let exit = self.render_passes(&mut worker, shader, passes, (kind, &rendering), path);
         self.worker = worker;
         exit
+    }
+
+    /// The inputs of all frames of a project; the one with this number has the time that the user gives.
+    fn clock_of(&self, rendering: &Rendering, number: i32) -> Clock {
+        let mut clock = self.clock(number);
+        clock.inputs.films = rendering.films.clone();
+        clock
     }
 
     /// Renders the passes over frames.
@@ -254,7 +256,7 @@ impl Runner<'_> {
             (Some(sequence), Some(frames)) => sequence.first_missing().unwrap_or(frames.first()),
             _ => self.args.frame.number(has_history, self.args.fps),
         };
-        let clock = self.clock(if sequence.is_some() { 0 } else { first });
+        let clock = self.clock_of(rendering, if sequence.is_some() { 0 } else { first });
         let owner = Owner::new(passes, rendering, &shader.files, &clock);
         let state = self.state(shader, &scheduled, &owner, first)?;
         let next = self.next(state.as_ref(), first, has_history);
@@ -377,7 +379,7 @@ impl Runner<'_> {
         let rendering = passes.rendering(kind);
         let mut rendering =
             rendering.map_err(|error| refusal(shader, error, "`toyproof check` compiles all its tabs"))?;
-        report_replaced(&rendering, &self.frame.channels, &shader.name, self.terminal);
+        report_missing(&rendering, &self.frame.channels, &shader.name, self.terminal);
         for (channel, texture) in self.frame.channels.iter().enumerate() {
             if let Some(texture) = texture {
                 let has_mipmaps = passes.image().sampling[channel].filter == Filter::Mipmap;

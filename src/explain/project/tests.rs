@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use toyproof_diagnostic::{File, FileId, Files};
 use toyproof_glsl::{self as glsl, Checked, Stage};
-use toyproof_image::Frame;
+use toyproof_image::{Frame, MovingTextures};
 use toyproof_lint::Lints;
 use toyproof_player::{BUFFERS, Graph, Pass, Source, Target};
 use toyproof_verify::project::bind::{bind_reference, clock};
@@ -59,6 +59,7 @@ impl Compiled {
             checked: self.checked.iter().collect(),
             graph: &self.graph,
             media: &[],
+            films: MovingTextures::default(),
         }
     }
 }

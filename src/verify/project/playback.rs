@@ -24,7 +24,7 @@ pub struct PassShader<'a> {
     /// The textures that do not change.
     pub media: &'a [Texture],
     /// The textures that change from frame to frame.
-    pub films: &'a MovingTextures,
+    pub films: MovingTextures,
 }
 
 impl PassShader<'_> {
