@@ -16,7 +16,7 @@ use toyproof_verify::Expected;
 
 use super::inputs::check_output;
 use super::reference::ill_conditioned;
-use super::run::{Precision, default_image, encode};
+use super::run::{Precision, default_output, encode};
 use super::scenes::{parse_scene, read_scene};
 use super::sequence::{
     Destination, FilmFile, FrameEnd, FrameStream, NumberedFiles, Output, Sequence, SequenceArgs,
@@ -110,7 +110,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         return Err(error.with_help("choose --sampler independent, stratified or sobol"));
     }
     terminal.detail(&format!("the scene requires {requirements}"));
-    let output = args.output.clone().unwrap_or_else(|| default_image(&args.scene));
+    let output = args
+        .output
+        .clone()
+        .unwrap_or_else(|| default_output(&args.scene, &args.sequence));
     let mut previous = PreviousTracers::default();
     let Some(sequence) = open_sequence(&scene, args, &output, terminal)? else {
         let frame_time = FrameTime {

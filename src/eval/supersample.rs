@@ -93,7 +93,11 @@ impl Program {
                 for (sum, &component) in sum.iter_mut().zip(color) {
                     // The comparison is false for NaN, which is displayed as 0.
                     let displayed = if component > 0.0 { component.min(1.0) } else { 0.0 };
-                    *sum += f64::from(if supersampling.clamps { displayed } else { component });
+                    *sum += f64::from(if supersampling.clamps {
+                        displayed
+                    } else {
+                        component
+                    });
                 }
             }
         }
@@ -135,13 +139,17 @@ mod tests {
         for (columns, rows) in [(16, 1), (8, 2), (4, 4), (2, 8), (1, 16)] {
             let mut boxes: Vec<_> = offsets
                 .iter()
-                .map(|[x, y]| [(x + 0.5) * f64::from(columns), (y + 0.5) * f64::from(rows)].map(|at| at as u32))
+                .map(|[x, y]| {
+                    [(x + 0.5) * f64::from(columns), (y + 0.5) * f64::from(rows)].map(|at| at as u32)
+                })
                 .collect();
             boxes.sort_unstable();
             boxes.dedup();
             assert_eq!(boxes.len(), 16, "{columns}×{rows}");
         }
-        let mean = offsets.iter().fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
+        let mean = offsets
+            .iter()
+            .fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
         assert_eq!(mean, [0.0; 2]);
     }
 
@@ -161,7 +169,12 @@ mod tests {
     /// Of N = 2ᵏ samples, the share beyond a straight edge that is parallel to an axis is right to 1/N.
     #[test]
     fn an_edge_has_the_share_that_it_covers() {
-        let image = render("c = vec4(step(3.3, p.x), step(2.75, p.y), 0.0, 1.0);", [8, 8], 64, false);
+        let image = render(
+            "c = vec4(step(3.3, p.x), step(2.75, p.y), 0.0, 1.0);",
+            [8, 8],
+            64,
+            false,
+        );
         let [x, y, ..] = image.get(3, 2);
         assert!((x - 0.7).abs() <= 1.0 / 64.0, "{x}");
         assert_eq!(y, 0.25);

@@ -183,7 +183,10 @@ mod tests {
         let mut frames = Vec::new();
         while let Some(frame) = decoder.read_next_frame().unwrap() {
             for (at, pixel) in frame.buffer.as_chunks::<4>().0.iter().enumerate() {
-                let (x, y) = (at as u16 % frame.width + frame.left, at as u16 / frame.width + frame.top);
+                let (x, y) = (
+                    at as u16 % frame.width + frame.left,
+                    at as u16 / frame.width + frame.top,
+                );
                 if pixel[3] > 0 {
                     canvas[usize::from(y) * usize::from(width) + usize::from(x)] =
                         [pixel[0], pixel[1], pixel[2]];
@@ -257,7 +260,10 @@ mod tests {
             let (bytes, shown) = encode(&frames, rate, Plays::Count(1));
             let (decoded, _) = decode(&bytes);
             let delays: Vec<_> = decoded.iter().map(|(_, delay)| u64::from(*delay)).collect();
-            assert!(delays.iter().all(|delay| *delay >= MIN_DELAY), "{rate}: {delays:?}");
+            assert!(
+                delays.iter().all(|delay| *delay >= MIN_DELAY),
+                "{rate}: {delays:?}"
+            );
             assert_eq!(delays.iter().sum::<u64>(), total, "{rate}: {delays:?}");
             assert_eq!(decoded.len() as u32, shown, "{rate}");
         }

@@ -220,7 +220,11 @@ mod tests {
             .map(|at| [(at >> 8) as u8, at as u8, 80, 255])
             .collect();
         let palette = palette(pixels.clone());
-        assert!(palette.len() <= MAX_COLORS && palette.len() > 250, "{}", palette.len());
+        assert!(
+            palette.len() <= MAX_COLORS && palette.len() > 250,
+            "{}",
+            palette.len()
+        );
         let error = error(&pixels, &palette);
         assert!(error < 6.54 * 1.05, "{error}");
         assert!(error > 6.54 * 0.95, "the limit is tight: {error}");

@@ -47,7 +47,11 @@ impl FrameStore {
             std::fs::create_dir_all(folder).map_err(unwritable)?;
         }
         let mut options = OpenOptions::new();
-        options.read(true).write(true).create(true).truncate(!is_continued);
+        options
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(!is_continued);
         let mut file = options.open(path).map_err(unwritable)?;
         if !is_continued {
             file.write_all(head.as_bytes()).map_err(unwritable)?;

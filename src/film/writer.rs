@@ -76,12 +76,7 @@ impl FilmWriter {
         Ok(Self {
             path: path.to_owned(),
             folder: None,
-            store: FrameStore::open(
-                Path::new(&name),
-                settings.size,
-                settings.keeps_alpha,
-                fingerprint,
-            )?,
+            store: FrameStore::open(Path::new(&name), settings.size, settings.keeps_alpha, fingerprint)?,
             settings,
         })
     }
@@ -134,9 +129,7 @@ impl FilmWriter {
 
     /// The number of encoded frames of the whole film, of which [`Self::finish`] reports the progress.
     pub fn steps(&self) -> u32 {
-        self.settings
-            .frames
-            .saturating_mul(self.settings.repetitions())
+        self.settings.frames.saturating_mul(self.settings.repetitions())
     }
 
     fn encode(&mut self, file: &Path, progress: &mut dyn FnMut(u32) -> bool) -> Result<Film, FilmError> {

@@ -74,7 +74,9 @@ pub fn encode_transparent(image: &Image, path: &Path) -> Result<Vec<u8>, ImageEr
         Format::Png => {
             let rows = image.rows().rev();
             let rows = rows.map(|row| row.iter().map(|pixel| pixel.map(quantize)).collect());
-            in_memory(path, |bytes| png(image.size(), rows.map(Cow::<[_]>::Owned), bytes))
+            in_memory(path, |bytes| {
+                png(image.size(), rows.map(Cow::<[_]>::Owned), bytes)
+            })
         }
         Format::Exr => encode(image, path),
     }

@@ -35,7 +35,10 @@ mod rgb8;
 mod script;
 mod texture;
 
-pub use file::{ImageError, check_extension, encode, encode_shown, encode_transparent, read, read_shown, stream_png, write_png};
+pub use file::{
+    ImageError, check_extension, encode, encode_shown, encode_transparent, read, read_shown, stream_png,
+    write_png,
+};
 pub use frame::{FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs, UniformValue};
 pub use inputs::{BLOCK_BYTES, Input, InputType};

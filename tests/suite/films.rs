@@ -63,7 +63,11 @@ fn probe(folder: &Path, file: &str) -> String {
 /// The frames of a film as ffmpeg decodes them, in RGB, top row first.
 fn decode(folder: &Path, file: &str, size: usize) -> Vec<Vec<u8>> {
     let convert = "-vf scale=in_color_matrix=bt709:in_range=limited:flags=accurate_rnd+full_chroma_int";
-    let convert = if file.ends_with("gif") || file.ends_with("png") { "" } else { convert };
+    let convert = if file.ends_with("gif") || file.ends_with("png") {
+        ""
+    } else {
+        convert
+    };
     let bytes = tool(
         folder,
         "ffmpeg",
@@ -107,7 +111,10 @@ fn films_have_the_length_the_rate_and_the_colors_of_their_frames() {
         }
         if let "a.mp4" | "a.webm" = file {
             for tag in ["range=tv", "space=bt709", "transfer=bt709", "primaries=bt709"] {
-                assert!(probed.contains(&format!("color_{tag}")), "{file}: {tag}: {probed}");
+                assert!(
+                    probed.contains(&format!("color_{tag}")),
+                    "{file}: {tag}: {probed}"
+                );
             }
             let duration = probed.lines().find_map(|line| line.strip_prefix("duration="));
             let duration: f64 = duration.unwrap().parse().unwrap();
@@ -181,7 +188,10 @@ fn scenes_are_filmed_at_their_rate_and_time() {
 
 #[test]
 fn standard_output_takes_frames() {
-    let folder = folder(&[("s.glsl", "void mainImage(out vec4 c, in vec2 p) { c = vec4(iFrame == 1, 0, 1, 0.2); }")]);
+    let folder = folder(&[(
+        "s.glsl",
+        "void mainImage(out vec4 c, in vec2 p) { c = vec4(iFrame == 1, 0, 1, 0.2); }",
+    )]);
     let arguments = "run s.glsl -o - --to rgba --frames 0..1 --size 2x1 --device cpu";
     let output = |arguments: &str| {
         let mut command = crate::program::command(folder.path());
@@ -216,7 +226,11 @@ fn an_interrupted_film_goes_on() {
     assert!(!folder.join("a.gif").exists() && folder.join("a.gif.frames").exists());
     // The same flags find the two frames. What a frame may take is one of them.
     let again = run(folder, &format!("{arguments} 0.5s"));
-    assert!(again.stderr.contains("resuming: 2 of 4 frames exist already"), "{}", again.stderr);
+    assert!(
+        again.stderr.contains("resuming: 2 of 4 frames exist already"),
+        "{}",
+        again.stderr
+    );
     fs::write(folder.join("s.glsl"), text.replace("iFrame == 2", "iFrame == 9")).unwrap();
     let other = render_film(folder, &format!("{arguments} 60s"));
     assert!(!other.stderr.contains("resuming"), "{}", other.stderr);
@@ -235,9 +249,15 @@ fn a_repeated_film_warns_of_a_visible_seam() {
     };
     let warning = "the last frame does not lead into the first";
     assert!(!film("2", "--loop forever").contains(warning), "a whole period");
-    assert!(film("1.5", "--loop forever").contains(warning), "three quarters of one");
+    assert!(
+        film("1.5", "--loop forever").contains(warning),
+        "three quarters of one"
+    );
     assert!(film("1.5", "--loop 2").contains(warning));
-    assert!(!film("1.5", "").contains(warning), "no one wants it to be repeated");
+    assert!(
+        !film("1.5", "").contains(warning),
+        "no one wants it to be repeated"
+    );
     assert!(!film("1.5", "--loop 1").contains(warning));
 }
 
@@ -259,7 +279,10 @@ fn what_a_format_lacks_is_reported() {
     );
     refused("-o - --duration 1 --to mp4", "standard output takes", "-o");
     refused("-o a.png --loop 2", "--loop is for films", "--duration");
-    let run = render_film(folder.path(), "run bars.glsl -o a.gif --duration 1 --fps 60 --size 8x8");
+    let run = render_film(
+        folder.path(),
+        "run bars.glsl -o a.gif --duration 1 --fps 60 --size 8x8",
+    );
     assert!(run.stderr.contains("shows 40 of the frames"), "{}", run.stderr);
 }
 
@@ -268,7 +291,14 @@ fn a_missing_ffmpeg_is_reported_before_anything_is_rendered() {
     let folder = folder(&[("bars.glsl", BARS)]);
     let mut command = crate::program::command(folder.path());
     command.env("PATH", folder.path()).args([
-        "run", "bars.glsl", "-o", "a.mp4", "--duration", "1000", "--device", "cpu",
+        "run",
+        "bars.glsl",
+        "-o",
+        "a.mp4",
+        "--duration",
+        "1000",
+        "--device",
+        "cpu",
     ]);
     let run = crate::program::run(&mut command);
     assert_eq!(run.code, 2, "{}", run.stderr);
@@ -288,7 +318,11 @@ fn an_mp4_of_odd_sides_repeats_its_edges() {
     let folder = folder(&[("bars.glsl", BARS)]);
     let folder = folder.path();
     let run = render_film(folder, "run bars.glsl -o a.mp4 --frames 0..2 --size 33x17");
-    assert!(run.stderr.contains("34×18") && run.stderr.contains("even sides"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("34×18") && run.stderr.contains("even sides"),
+        "{}",
+        run.stderr
+    );
     assert!(probe(folder, "a.mp4").contains("width=34\nheight=18"));
     render_film(folder, "run bars.glsl -o a.webm --frames 0..2 --size 33x17");
     assert!(probe(folder, "a.webm").contains("width=33\nheight=17"));
@@ -307,7 +341,10 @@ fn a_transparent_webm_has_the_alpha_of_its_frames() {
     let half = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1, 0.5, 0, p.x / iResolution.x); }";
     let folder = folder(&[("half.glsl", half)]);
     let folder = folder.path();
-    render_film(folder, "run half.glsl -o a.webm --frames 0..2 --size 64x32 --transparent");
+    render_film(
+        folder,
+        "run half.glsl -o a.webm --frames 0..2 --size 64x32 --transparent",
+    );
     let bytes = tool(
         folder,
         "ffmpeg",
@@ -317,7 +354,11 @@ fn a_transparent_webm_has_the_alpha_of_its_frames() {
     for x in 0..64 {
         let expected = 255.0 * (x as f64 + 0.5) / 64.0;
         // Alpha is coded in full range, at a quality that errs by few levels on a ramp.
-        assert!((f64::from(bytes[64 * 16 + x]) - expected).abs() < 6.0, "{x}: {}", bytes[64 * 16 + x]);
+        assert!(
+            (f64::from(bytes[64 * 16 + x]) - expected).abs() < 6.0,
+            "{x}: {}",
+            bytes[64 * 16 + x]
+        );
     }
 }
 
@@ -326,7 +367,11 @@ fn samples_are_the_mean_of_a_larger_image() {
     let edge = "void mainImage(out vec4 c, in vec2 p) {
         c = vec4(step(0.4 * p.x + 1.3, p.y), iResolution.x / 64.0, length(p) < 9.0 ? 5.0 : 0.0, 1.0);
     }";
-    let folder = folder(&[("edge.glsl", edge), ("sum/buffer-a.glsl", SUM), ("sum/image.glsl", edge)]);
+    let folder = folder(&[
+        ("edge.glsl", edge),
+        ("sum/buffer-a.glsl", SUM),
+        ("sum/image.glsl", edge),
+    ]);
     let folder = folder.path();
     let image = |arguments: &str| {
         let run = render_film(folder, &format!("run {arguments} -o a.exr"));
@@ -335,7 +380,9 @@ fn samples_are_the_mean_of_a_larger_image() {
     let (samples, stderr) = image("edge.glsl --size 16x16 --samples 256");
     assert!(stderr.contains("256 samples per pixel"), "{stderr}");
     // With iResolution.x in place of a number, the larger image would be another.
-    let larger = edge.replace("in vec2 p) {", "in vec2 q) { vec2 p = q / 16.0;").replace("iResolution.x", "16.0");
+    let larger = edge
+        .replace("in vec2 p) {", "in vec2 q) { vec2 p = q / 16.0;")
+        .replace("iResolution.x", "16.0");
     fs::write(folder.join("larger.glsl"), larger).unwrap();
     let (larger, _) = image("larger.glsl --size 256x256");
     for y in 0..16 {
@@ -348,7 +395,10 @@ fn samples_are_the_mean_of_a_larger_image() {
             // Both are quadratures with 256 points of a pixel that an edge divides: one row of a grid is 1/16.
             for (component, scale) in [1.0, 1.0, 5.0].into_iter().enumerate() {
                 let found = f64::from(samples.get(x, y)[component]);
-                assert!((found - mean[component]).abs() <= scale / 16.0, "{x}, {y}: {found} {mean:?}");
+                assert!(
+                    (found - mean[component]).abs() <= scale / 16.0,
+                    "{x}, {y}: {found} {mean:?}"
+                );
             }
         }
     }
@@ -356,7 +406,11 @@ fn samples_are_the_mean_of_a_larger_image() {
     assert!(of_project == samples, "the image of a project");
     let refused = run(folder, "run edge.glsl -o a.png --samples 4 --float fast");
     assert_eq!(refused.code, 2);
-    assert!(refused.stderr.contains("--samples needs the evaluator"), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("--samples needs the evaluator"),
+        "{}",
+        refused.stderr
+    );
 }
 
 #[test]
@@ -377,7 +431,11 @@ fn alpha_is_kept_only_if_it_is_wanted() {
 
 #[test]
 fn an_image_in_bands_is_the_same_and_may_be_wider_than_drivers_render() {
-    let folder = folder(&[("bars.glsl", BARS), ("sum/buffer-a.glsl", SUM), ("sum/image.glsl", SHOW)]);
+    let folder = folder(&[
+        ("bars.glsl", BARS),
+        ("sum/buffer-a.glsl", SUM),
+        ("sum/image.glsl", SHOW),
+    ]);
     let folder = folder.path();
     render_film(folder, "run bars.glsl -o a.png --size 130x77");
     let run_tiled = render_film(folder, "run bars.glsl -o b.png --size 130x77 --tile");
@@ -391,7 +449,10 @@ fn an_image_in_bands_is_the_same_and_may_be_wider_than_drivers_render() {
         ("run sum -o c.png --size 20000x3", "buffers of 20000×3 pixels"),
         ("run bars.glsl -o c.exr --size 20000x3", "only PNG"),
         ("run bars.glsl -o c.gif --duration 1 --size 20000x3", "too large"),
-        ("run bars.glsl -o c.png --size 300000x3", "262,144 pixels per side"),
+        (
+            "run bars.glsl -o c.png --size 300000x3",
+            "262,144 pixels per side",
+        ),
     ] {
         let run = run(folder, arguments);
         assert_eq!(run.code, 2, "{arguments}: {}", run.stderr);

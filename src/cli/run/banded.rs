@@ -11,7 +11,7 @@ use toyproof_eval_native::Program;
 use toyproof_image::output::{self, MakeError};
 use toyproof_image::{self as image, Frame, Image};
 
-use super::{Precision, Runner, check_evaluated, image_failure, ImageFailure};
+use super::{ImageFailure, Precision, Runner, check_evaluated, image_failure};
 use crate::cli::CliError;
 use crate::cli::shader::Shader;
 use crate::cli::terminal::file_size;
@@ -30,7 +30,12 @@ impl From<io::Error> for BandFailure {
 
 impl Runner<'_> {
     /// Checks that an image can be rendered in bands, if it must be.
-    pub(super) fn check_banded(&self, shader: &Shader, has_history: bool, path: &Path) -> Result<(), CliError> {
+    pub(super) fn check_banded(
+        &self,
+        shader: &Shader,
+        has_history: bool,
+        path: &Path,
+    ) -> Result<(), CliError> {
         let [width, height] = self.frame.size;
         let is_png = path == Path::new("-")
             || path
@@ -54,7 +59,12 @@ impl Runner<'_> {
     }
 
     /// Renders an image into its file, band by band.
-    pub(super) fn banded_image(&mut self, shader: &Shader, frame: &Frame, path: &Path) -> Result<(), CliError> {
+    pub(super) fn banded_image(
+        &mut self,
+        shader: &Shader,
+        frame: &Frame,
+        path: &Path,
+    ) -> Result<(), CliError> {
         self.check_banded(shader, false, path)?;
         match self.args.precision {
             Precision::F32 => self.stream_bands::<f32>(shader, frame, path),
@@ -67,7 +77,8 @@ impl Runner<'_> {
         let start = Instant::now();
         let limit = self.args.driver.explicit_timeout();
         let program = Program::prepared_within(checked, UndefinedPolicy::Plain, Some(limit));
-        let program = program.map_err(|refusal| self.band_error(BandFailure::Evaluator(refusal.into()), shader, path))?;
+        let program = program
+            .map_err(|refusal| self.band_error(BandFailure::Evaluator(refusal.into()), shader, path))?;
         let settings = Settings::<N> {
             deadline: Some(start + limit),
             interrupt: Some(self.terminal.interrupt_flag()),
@@ -91,16 +102,15 @@ impl Runner<'_> {
         let mut bytes = 0;
         let written = if path == Path::new("-") {
             let mut failure = None;
-            self.terminal.stream(|out| {
-                match image::stream_png(frame.size, alpha, bands, out) {
+            self.terminal
+                .stream(|out| match image::stream_png(frame.size, alpha, bands, out) {
                     Ok(()) => Ok(()),
                     Err(BandFailure::Output(error)) => Err(error),
                     Err(evaluator) => {
                         failure = Some(evaluator);
                         Ok(())
                     }
-                }
-            })?;
+                })?;
             failure.map_or(Ok(()), |failure| Err(MakeError::Content(failure)))
         } else {
             let folder = (path != self.output && path.starts_with(self.output)).then_some(self.output);

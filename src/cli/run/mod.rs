@@ -132,7 +132,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
     let output = match (&args.output, &inputs[..]) {
         (Some(output), _) => output.clone(),
-        (None, [Ok(input)]) if !several => default_image(&input.relative),
+        (None, [Ok(input)]) if !several => default_output(&input.relative, &args.sequence),
         (None, _) => PathBuf::from("."),
     };
     let standard = output == Path::new("-");
@@ -215,7 +215,9 @@ fn supersampling(args: &Args, output: &Path) -> Result<Option<Supersampling>, Cl
     if args.pass.is_some_and(|pass| pass != PassKind::Image) {
         return Err(CliError::new("buffers are not supersampled").with_help("leave out --samples or --pass"));
     }
-    let is_exr = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    let is_exr = output
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     Ok(Some(Supersampling::new(args.samples, !is_exr)))
 }
 
@@ -224,7 +226,9 @@ fn check_evaluated(args: &Args, what: &str) -> Result<(), CliError> {
     if args.driver.may_be_evaluated() && args.driver.float() == FloatMode::Strict {
         return Ok(());
     }
-    let error = CliError::new(format_args!("{what} needs the evaluator on the CPU, with strict arithmetic"));
+    let error = CliError::new(format_args!(
+        "{what} needs the evaluator on the CPU, with strict arithmetic"
+    ));
     Err(error.with_help("leave out --device and --float: strict images have the same bits on every device"))
 }
 
@@ -234,9 +238,9 @@ fn names_folder(path: &Path) -> bool {
     path.is_dir() || text.ends_with(std::path::is_separator) || path.extension().is_none()
 }
 
-/// The default name of an image, in the current folder.
-pub(in crate::cli) fn default_image(input: &Path) -> PathBuf {
-    Path::new(input.file_name().unwrap_or_default()).with_extension("png")
+/// The default name of an image or a film, in the current folder.
+pub(in crate::cli) fn default_output(input: &Path, sequence: &SequenceArgs) -> PathBuf {
+    Path::new(input.file_name().unwrap_or_default()).with_extension(sequence.extension())
 }
 
 /// Encodes an image for a file, by its extension, or as PNG for standard output; in PNG perhaps with alpha.

@@ -302,7 +302,15 @@ impl Runner<'_> {
         };
         let clock = self.clock(if sequence.is_some() { 0 } else { first });
         let owner = Owner::new(passes, rendering, &shader.files, &clock);
-        let state = self.state(shader, &scheduled, &owner, first)?;
+        // If all frames exist, they only remain to be encoded.
+        let is_rendered = sequence
+            .as_ref()
+            .is_some_and(|sequence| sequence.first_missing().is_none());
+        let state = if is_rendered {
+            None
+        } else {
+            self.state(shader, &scheduled, &owner, first)?
+        };
         let next = self.next(state.as_ref(), first, has_history);
         self.report_history(shader, next, first);
         // With a state, the frame in progress is finished, so that it can be written.
@@ -324,12 +332,15 @@ impl Runner<'_> {
             Renderer::Evaluator(compiled) => {
                 programs = compiled;
                 let supersampling = self.supersampling.clone();
-                samples = programs.last().zip(supersampling).map(|(program, supersampling)| ImageSamples {
-                    program,
-                    supersampling,
-                    limit,
-                    interrupt,
-                });
+                samples = programs
+                    .last()
+                    .zip(supersampling)
+                    .map(|(program, supersampling)| ImageSamples {
+                        program,
+                        supersampling,
+                        limit,
+                        interrupt,
+                    });
                 match self.args.precision {
                     Precision::F32 => {
                         let settings = Settings {

@@ -116,7 +116,9 @@ impl SequenceArgs {
             }
             if self.plays.is_some() {
                 let error = CliError::new("--loop is for films");
-                return Err(error.with_help("add --duration S, and name a .gif, .apng, .mp4 or .webm with -o"));
+                return Err(
+                    error.with_help("add --duration S, and name a .gif, .apng, .mp4 or .webm with -o")
+                );
             }
             check_image_extension(path)?;
             return Ok(Output::Image);
@@ -127,12 +129,15 @@ impl SequenceArgs {
         let output = match format {
             Some(format) if is_standard && format.is_stream() => {
                 if !matches!(self.plays, None | Some(Plays::Endless | Plays::Count(1))) {
-                    return Err(CliError::new("standard output takes each frame once, without --loop"));
+                    return Err(CliError::new(
+                        "standard output takes each frame once, without --loop",
+                    ));
                 }
                 Output::Stream(frames, format)
             }
             _ if is_standard => {
-                let error = CliError::new("standard output takes a single image, or frames as --to y4m or rgba");
+                let error =
+                    CliError::new("standard output takes a single image, or frames as --to y4m or rgba");
                 return Err(error.with_help("name a file with -o"));
             }
             Some(format) => Output::Film(frames, format),
@@ -233,7 +238,11 @@ mod tests {
             ("a.gif", Format::Gif),
             ("a.mp4", Format::Mp4),
         ] {
-            assert_eq!(output(path, &second), Ok(Output::Film(frames(24), format)), "{path}");
+            assert_eq!(
+                output(path, &second),
+                Ok(Output::Film(frames(24), format)),
+                "{path}"
+            );
         }
         assert_eq!(
             output("a.png", &[&two[..], &["--to", "webm"]].concat()),
@@ -252,10 +261,22 @@ mod tests {
             ("a.gif", vec![], "GIF is a film"),
             ("a.jpg", vec![], "unsupported image format"),
             ("a.jpg", vec!["--duration", "1"], "unsupported image format"),
-            ("-", vec!["--duration", "1"], "standard output takes a single image"),
-            ("-", vec!["--duration", "1", "--to", "gif"], "standard output takes"),
+            (
+                "-",
+                vec!["--duration", "1"],
+                "standard output takes a single image",
+            ),
+            (
+                "-",
+                vec!["--duration", "1", "--to", "gif"],
+                "standard output takes",
+            ),
             ("a.png", vec!["--loop", "2"], "--loop is for films"),
-            ("a.png", vec!["--frames", "0..1", "--loop", "2"], "not for numbered files"),
+            (
+                "a.png",
+                vec!["--frames", "0..1", "--loop", "2"],
+                "not for numbered files",
+            ),
             (
                 "a.mp4",
                 vec!["--duration", "86400", "--fps", "1000000"],

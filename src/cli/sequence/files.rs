@@ -59,7 +59,12 @@ impl NumberedFiles {
     }
 
     /// Prepares a sequence, reading the record of an interrupted run.
-    pub(in crate::cli) fn resume(frames: Frames, output: &Path, fingerprint: &str, terminal: &Terminal) -> Self {
+    pub(in crate::cli) fn resume(
+        frames: Frames,
+        output: &Path,
+        fingerprint: &str,
+        terminal: &Terminal,
+    ) -> Self {
         let record = output.with_extension("sequence");
         let next = input::read(&record)
             .ok()
@@ -220,7 +225,8 @@ mod tests {
         assert_eq!(first, [0, 1, 2]);
         let render = |fingerprint: &str, most: usize| {
             let mut made = Vec::new();
-            let sequence = NumberedFiles::resume(parse_frames("0..3").unwrap(), &output, fingerprint, &terminal);
+            let sequence =
+                NumberedFiles::resume(parse_frames("0..3").unwrap(), &output, fingerprint, &terminal);
             let whole = sequence.render(&terminal, |one, _| {
                 made.push(one.frame);
                 std::fs::write(&one.path, "").unwrap();

@@ -68,9 +68,12 @@ impl FilmFile {
         let start = Instant::now();
         let existing = u64::from(self.writer.existing());
         let missing = self.first_missing().unwrap_or(i32::MAX)..=self.frames.last;
-        render_each((self.frames, existing), missing, terminal, |&number, interrupted| {
-            frame(number, Destination::Film(&mut self.writer), interrupted)
-        })?;
+        render_each(
+            (self.frames, existing),
+            missing,
+            terminal,
+            |&number, interrupted| frame(number, Destination::Film(&mut self.writer), interrupted),
+        )?;
         self.finish(terminal, start)
     }
 
