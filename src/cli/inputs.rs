@@ -12,7 +12,7 @@ use toyproof_diagnostic::{Code, Deadline, Files, Severity, human, one_of, path_n
 use toyproof_glsl::{self as glsl, Dialect, UniformValue};
 use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
-use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
+use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_banded_size, check_size};
 use toyproof_media::MediaFolder;
 use toyproof_project as project;
 use toyproof_project::files;
@@ -466,6 +466,11 @@ impl DriverArgs {
         self.device == DeviceSelector::Gpu(AdapterSelector::Auto)
     }
 
+    /// Returns whether the evaluator may render, although there is a driver.
+    pub(super) fn may_be_evaluated(&self) -> bool {
+        self.device == DeviceSelector::Cpu || self.may_fall_back()
+    }
+
     /// Returns whether the evaluator renders the same bits as the driver that would be selected, on the same
     /// processor.
     pub(super) fn is_evaluator_equal(&self) -> bool {
@@ -549,6 +554,17 @@ pub(super) fn parse_seconds<T: FromStr + Into<f64> + Copy>(text: &str) -> Result
 }
 
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let [width, height] = parse_sides(text)?;
+    check_size(width, height).map_err(|error| error.to_string())
+}
+
+/// Parses the size of an image that may be rendered in bands.
+pub(super) fn parse_banded_size(text: &str) -> Result<[u32; 2], String> {
+    let [width, height] = parse_sides(text)?;
+    check_banded_size(width, height).map_err(|error| error.to_string())
+}
+
+fn parse_sides(text: &str) -> Result<[u64; 2], String> {
     let (width, height) = text
         .split_once(['x', 'X', '×'])
         .ok_or("expected WIDTHxHEIGHT, such as 640x360")?;
@@ -556,7 +572,7 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
         side.parse::<u64>()
             .map_err(|_| format!("`{side}` is not a number of pixels"))
     };
-    check_size(side(width)?, side(height)?).map_err(|error| error.to_string())
+    Ok([side(width)?, side(height)?])
 }
 
 pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {

@@ -8,7 +8,7 @@ use toyproof_diagnostic::{
     Code, Deadline, Diagnostic, Diagnostics, FileId, Files, Severity, grouped, nearest, path_name, plural,
 };
 use toyproof_glsl::tree::VariableKind;
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::{self as glsl, Checked, Stage};
 use toyproof_lint::{Lints, lint};
 use toyproof_media::MediaFolder;
 use toyproof_project::files::{self, IncludeFolders, Input, ReadError, Search, Texts, content_diagnostic};
@@ -204,6 +204,16 @@ impl Shader {
             }
             Unusable::Unreadable(error) => CliError::new(error),
         })
+    }
+
+    /// Makes the image keep the alpha that it writes, as a buffer does; on the site it is 1.
+    pub(super) fn keep_alpha(&mut self) {
+        let image = match &mut self.content {
+            Ok(Content::Shader(checked)) => checked,
+            Ok(Content::Project(project)) => project.image_mut(),
+            Err(_) => return,
+        };
+        image.stage = Stage::Buffer;
     }
 
     /// The tree of an image that reads no other passes, which a command needs.

@@ -84,6 +84,7 @@ mod parametric;
 mod passes;
 mod program;
 mod render;
+mod supersample;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -102,6 +103,7 @@ pub use parametric::{ParametricProgram, Point, PointEvaluator};
 pub use passes::{PassFailure, PassRenderer, bound};
 pub use program::Program;
 pub use render::{Rendered, RenderedF32};
+pub use supersample::Supersampling;
 pub use trace::PixelDebugger;
 
 /// What a compiler to machine code is given, and implements.

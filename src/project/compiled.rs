@@ -82,4 +82,14 @@ impl CompiledProject {
         let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
         image.expect("every project has an image").1
     }
+
+    /// The tree of the image, to change it.
+    ///
+    /// # Panics
+    /// Never: every project has an image.
+    pub fn image_mut(&mut self) -> &mut Checked {
+        let mut passes = self.project.passes.iter().zip(&mut self.checked);
+        let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
+        image.expect("every project has an image").1
+    }
 }
