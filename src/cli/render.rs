@@ -153,6 +153,7 @@ fn open_sequence<'t>(
     let sequence = &args.sequence;
     Ok(Some(match sequence.output(output)? {
         Output::Image => return Ok(None),
+        Output::Sound(_) => return Err(CliError::new("a scene has no sound")),
         Output::Files(frames) => {
             Sequence::Files(NumberedFiles::resume(frames, output, &fingerprint, terminal))
         }

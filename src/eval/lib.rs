@@ -84,6 +84,7 @@ mod parametric;
 mod passes;
 mod program;
 mod render;
+mod sound;
 mod supersample;
 #[cfg(test)]
 mod tests;
@@ -103,6 +104,7 @@ pub use parametric::{ParametricProgram, Point, PointEvaluator};
 pub use passes::{PassFailure, PassRenderer, bound};
 pub use program::Program;
 pub use render::{Rendered, RenderedF32};
+pub use sound::SOUND_COLUMNS;
 pub use supersample::Supersampling;
 pub use trace::PixelDebugger;
 

@@ -5,7 +5,7 @@ use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{MovingTextures, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 
-use crate::pass::{Input, Pass, PassKind, Source};
+use crate::pass::{Input, Pass, PassKind, Source, SourceType};
 use crate::project::Project;
 use crate::textures::{MissingMedium, Textures};
 
@@ -75,6 +75,31 @@ impl Project {
         Ok(Rendering {
             graph: Graph::new(nodes, mipmaps),
             passes,
+            media: textures.media,
+            films: MovingTextures(textures.moving),
+            missing: textures.missing,
+        })
+    }
+
+    /// The sound, as a graph of one pass, with the textures that it reads; `None` if there is none. The site
+    /// binds neither buffers nor cube maps to it.
+    #[must_use]
+    pub fn sound(&self) -> Option<Rendering> {
+        let at = self.passes.iter().position(|pass| pass.kind == PassKind::Sound)?;
+        let pass = &self.passes[at];
+        let mut textures = Textures::new(&self.media);
+        let inputs = [0, 1, 2, 3].map(|channel| {
+            let input = pass.inputs[channel].as_ref()?;
+            let is_bound = input.source.pass().is_none() && input.source.source_type() != SourceType::Cubemap;
+            is_bound.then(|| textures.source(input, (pass.kind, channel))).flatten()
+        });
+        let pass = player::Pass {
+            target: Target::Image,
+            inputs,
+        };
+        Some(Rendering {
+            graph: Graph::new(vec![pass], [false; BUFFERS]),
+            passes: vec![at],
             media: textures.media,
             films: MovingTextures(textures.moving),
             missing: textures.missing,

@@ -2,6 +2,7 @@
 
 mod banded;
 mod project;
+mod sound;
 mod state;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -617,6 +618,10 @@ impl<'a> Runner<'a> {
         };
         Ok(Some(match output {
             Output::Image => return Ok(None),
+            Output::Sound(_) => {
+                let error = CliError::new("only projects have a sound");
+                return Err(error.with_help("its tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`"));
+            }
             Output::Files(frames) => {
                 Sequence::Files(NumberedFiles::resume(frames, path, fingerprint, self.terminal))
             }

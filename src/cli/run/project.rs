@@ -41,7 +41,7 @@ pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
 
 /// Reports the media of the site that are not available. `bound` are the channels of the image that the user
 /// gives a texture.
-fn report_missing(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
+pub(super) fn report_missing(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
     let is_bound = |&(pass, channel): &(PassKind, usize)| pass == PassKind::Image && bound[channel].is_some();
     let missing = rendering.missing.iter();
     for missing in missing.filter(|missing| !missing.readers.iter().all(is_bound)) {
@@ -238,7 +238,7 @@ impl Run<'_> {
 
 /// The frame of a project whose image reads no other pass, with the sources of its channels; `None` if there
 /// are other passes.
-fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
+pub(super) fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let [image] = rendering.graph.passes() else {
         return None;
     };
@@ -259,9 +259,12 @@ impl Runner<'_> {
         passes: &CompiledProject,
         path: &Path,
     ) -> Result<Exit, CliError> {
+        let output = self.args.sequence.output(path)?;
+        if let Output::Sound(seconds) = output {
+            return self.sound(shader, passes, seconds, path).map(|()| Exit::Success);
+        }
         let kind = self.args.pass.unwrap_or(PassKind::Image);
         let rendering = self.rendering(shader, passes, kind)?;
-        let output = self.args.sequence.output(path)?;
         if self.is_banded() {
             let is_single = rendering.graph.passes().len() == 1 && self.args.state.is_none();
             self.check_banded(shader, !is_single, path)?;
@@ -280,7 +283,7 @@ impl Runner<'_> {
     }
 
     /// The inputs of all frames of a project; the one with this number has the time that the user gives.
-    fn clock_of(&self, rendering: &Rendering, number: i32) -> Clock {
+    pub(super) fn clock_of(&self, rendering: &Rendering, number: i32) -> Clock {
         let mut clock = self.clock(number);
         clock.inputs.films = rendering.films.clone();
         clock

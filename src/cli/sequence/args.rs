@@ -79,6 +79,8 @@ pub(in crate::cli) enum Output {
     Film(Frames, Format),
     /// Frames on standard output.
     Stream(Frames, Format),
+    /// The sound, of this length in seconds if it is given.
+    Sound(Option<f64>),
 }
 
 impl SequenceArgs {
@@ -108,6 +110,14 @@ impl SequenceArgs {
     /// What is written to an output.
     pub(in crate::cli) fn output(&self, path: &Path) -> Result<Output, CliError> {
         let is_standard = path == Path::new("-");
+        let is_sound = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("wav"));
+        if is_sound && self.to.is_none() {
+            if self.frames.is_some() || self.plays.is_some() {
+                let error = CliError::new("a sound has no frames, and is not repeated");
+                return Err(error.with_help("--duration 60 computes a minute"));
+            }
+            return Ok(Output::Sound(self.duration));
+        }
         let format = self.to.map(Format::from).or_else(|| Format::from_path(path));
         let Some(frames) = self.frames()? else {
             if let Some(format) = format {
