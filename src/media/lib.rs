@@ -28,6 +28,8 @@ mod blue_noise;
 mod cube;
 mod error;
 mod field;
+#[cfg(test)]
+mod figures;
 mod film;
 mod folder;
 mod font;

@@ -166,7 +166,10 @@ mod tests {
         let mean_square = middle.iter().map(|x| f64::from(x * x)).sum::<f64>() / middle.len() as f64;
         assert!((amplitude - 0.5).abs() < 0.03, "{amplitude}");
         // The rest is what the lossy format adds.
-        assert!((mean_square - amplitude * amplitude / 2.0).abs() < 0.002, "{mean_square}");
+        assert!(
+            (mean_square - amplitude * amplitude / 2.0).abs() < 0.002,
+            "{mean_square}"
+        );
     }
 
     #[test]

@@ -16,7 +16,10 @@ pub fn silent_music(seconds: f64) -> Image {
 
 fn spectrum(bin: f64, seconds: f64) -> f64 {
     if bin < 3.0 {
-        #[expect(clippy::approx_constant, reason = "the site's constant, which is not exactly 2π")]
+        #[expect(
+            clippy::approx_constant,
+            reason = "the site's constant, which is not exactly 2π"
+        )]
         let [sine] = double::sin([6.2831 * seconds]);
         let beat = 0.5 + 0.5 * sine;
         return beat * beat * beat * beat * (1.0 - bin / 3.0);

@@ -75,7 +75,7 @@ pub(crate) fn woven_straw() -> Image {
     }
     toned(SIDE, tone, |x, y| {
         let at = (x as isize, y as isize);
-        let rough = 1.0 + 0.12 * grain.get(at.0, at.1) + 0.08 * patches.get(at.0, at.1);
+        let rough = 1.0 + 0.06 * grain.get(at.0, at.1) + 0.20 * patches.get(at.0, at.1);
         ramp(
             &[
                 (0.0, [0.05, 0.04, 0.03]),
@@ -100,7 +100,7 @@ fn wave(seed: u32, t: f32) -> f32 {
 pub(crate) fn glass_stones() -> Image {
     const SIDE: usize = 1024;
     let bends = [131, 132].map(|seed| Field::fractal(SIDE, [4, 4], seed, 0.5));
-    let clouds = Field::fractal(SIDE, [8, 8], 133, 0.55);
+    let clouds = Field::fractal(SIDE, [8, 8], 133, 0.75);
     let glass: [Color; 5] = [
         [0.10, 0.42, 0.30],
         [0.12, 0.24, 0.46],

@@ -81,7 +81,7 @@ fn stone(x: f32, y: f32) -> Stone {
 /// The heights of pebbles of several sizes that lie upon one another.
 pub(crate) fn pebbles() -> Image {
     const SIDE: usize = 512;
-    let heaps = [(6, 1.0), (11, 0.62), (19, 0.38), (32, 0.22)];
+    let heaps = [(6, 1.0), (9, 0.75), (14, 0.5), (22, 0.33), (36, 0.2)];
     let heaps = heaps.map(|(cells, height)| (Points::new([cells; 2], 20 + cells), height));
     let bends = [25, 26].map(|seed| Field::fractal(SIDE, [16, 16], seed, 0.5));
     let heights = Field::new(SIDE, |x, y| {
@@ -90,8 +90,8 @@ pub(crate) fn pebbles() -> Image {
         let layer = |(points, height): &(Points, f32)| {
             let pebble = points.nearest(u, v);
             // A part of the places is empty, so that smaller pebbles show.
-            let size = 0.25 + 0.35 * unit(pcg(pebble.id));
-            let is_there = unit(pcg(pebble.id + 1)) < 0.62;
+            let size = 0.3 + 0.35 * unit(pcg(pebble.id));
+            let is_there = unit(pcg(pebble.id + 1)) < 0.7;
             let dome = 1.0 - (pebble.first / size) * (pebble.first / size);
             let border = smoothstep(0.0, 0.4, pebble.second - pebble.first);
             if is_there && dome > 0.0 {
@@ -110,10 +110,10 @@ pub(crate) fn pebbles() -> Image {
 pub(crate) fn lichen() -> Image {
     const SIDE: usize = 1024;
     let bends = [31, 32].map(|seed| Field::fractal(SIDE, [4, 4], seed, 0.6));
-    let ridges = Field::fractal(SIDE, [2, 16], 33, 0.85).warped([&bends[0], &bends[1]], 24.0);
+    let ridges = Field::fractal(SIDE, [2, 16], 33, 0.72).warped([&bends[0], &bends[1]], 24.0);
     let light = ridges.lit().normalized();
-    let spots = Field::fractal(SIDE, [8, 8], 34, 0.85);
-    let crumbs = Field::fractal(SIDE, [128, 128], 35, 0.9);
+    let spots = Field::fractal(SIDE, [8, 8], 34, 0.75);
+    let crumbs = Field::fractal(SIDE, [64, 64], 35, 0.75);
     let tone = Tone {
         mean: [80, 85, 80],
         deviation: [51, 51, 52],
@@ -143,8 +143,8 @@ pub(crate) fn lichen() -> Image {
 /// A worn stone of bluish gray with brown veils.
 pub(crate) fn blue_stone() -> Image {
     const SIDE: usize = 1024;
-    let surface = Field::fractal(SIDE, [8, 8], 41, 0.95);
-    let light = Field::fractal(SIDE, [32, 32], 42, 0.85).lit().normalized();
+    let surface = Field::fractal(SIDE, [8, 8], 41, 0.88);
+    let light = Field::fractal(SIDE, [32, 32], 42, 0.75).lit().normalized();
     let veils = Field::fractal(SIDE, [4, 4], 43, 0.85);
     let tone = Tone {
         mean: [116, 113, 110],

@@ -9,8 +9,8 @@ use crate::field::{Field, Points, hash, smoothstep, unit};
 pub(crate) fn bark() -> Image {
     const SIDE: usize = 1024;
     let bends = [61, 62].map(|seed| Field::fractal(SIDE, [8, 8], seed, 0.7));
-    let surface = Field::fractal(SIDE, [4, 8], 63, 0.9);
-    let light = Field::fractal(SIDE, [16, 32], 64, 0.85).lit().normalized();
+    let surface = Field::fractal(SIDE, [4, 8], 63, 0.82);
+    let light = Field::fractal(SIDE, [16, 32], 64, 0.65).lit().normalized();
     let plates = Points::new([5, 12], 65);
     let pits = Points::new([48, 48], 66);
     let tone = Tone {
@@ -47,7 +47,7 @@ pub(crate) fn bark() -> Image {
 /// Orange rust full of dark holes.
 pub(crate) fn pitted_rust() -> Image {
     const SIDE: usize = 1024;
-    let surface = Field::fractal(SIDE, [16, 16], 71, 0.78);
+    let surface = Field::fractal(SIDE, [16, 16], 71, 0.7);
     let light = surface.lit().normalized();
     let sizes = Field::fractal(SIDE, [8, 8], 72, 0.8);
     let holes = [(26, 73), (52, 74)].map(|(cells, seed)| Points::new([cells; 2], seed));
@@ -137,7 +137,7 @@ pub(crate) fn blotches() -> Image {
 /// Brown dust with golden specks and bright points, as a sky full of stars.
 pub(crate) fn stars() -> Image {
     const SIDE: usize = 512;
-    let dust = Field::fractal(SIDE, [8, 8], 101, 0.95);
+    let dust = Field::fractal(SIDE, [8, 8], 101, 0.88);
     let clouds = Field::fractal(SIDE, [4, 4], 102, 0.75);
     let points = [(9, 104), (24, 105), (60, 106)].map(|(cells, seed)| Points::new([cells; 2], seed));
     let tone = Tone {
@@ -158,7 +158,7 @@ pub(crate) fn stars() -> Image {
         );
         // Specks of one texel; points with a glow of a few.
         let speck = unit(hash(103, x as u32, y as u32));
-        let gold = 0.55 * smoothstep(0.95, 1.0, speck + 0.03 * clouds.get(at.0, at.1));
+        let gold = 0.4 * smoothstep(0.95, 1.0, speck + 0.03 * clouds.get(at.0, at.1));
         let glow = |points: &Points, share: f32| {
             let star = points.nearest(u, v);
             let brightness = (unit(pcg(star.id)) - 1.0 + share) / share;
