@@ -36,8 +36,8 @@ Examples:
 pub(super) struct Args {
     /// The scene: a file, or a name listed by `toyproof scenes`
     scene: PathBuf,
-    /// The image: .png (8 bits), .exr (floats), or - for PNG on standard output; or a film: .gif, .apng, .mp4,
-    /// .webm, .y4m [default: SCENE.png in the current folder]
+    /// The image: .png (8 bits), .exr (floats), or - for PNG on standard output; or a film: .gif, .apng,
+    /// .mp4, .webm, .y4m [default: SCENE.png in the current folder]
     #[arg(short, long, value_name = "IMAGE|FILM")]
     output: Option<PathBuf>,
     /// The number type of the tracer

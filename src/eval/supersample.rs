@@ -15,20 +15,21 @@ use crate::program::Program;
 pub struct Supersampling {
     /// Offsets from the center of a pixel in pixels, from −½ to ½.
     offsets: Vec<[f64; 2]>,
-    /// Whether each color is clamped to [0, 1] before the mean, as it is displayed: otherwise one bright sample
-    /// would decide the color of a pixel at its edge.
+    /// Whether each color is clamped to [0, 1] before the mean, as it is displayed: otherwise one bright
+    /// sample would decide the color of a pixel at its edge.
     clamps: bool,
 }
 
 impl Supersampling {
-    /// The first `count` points of Sobol's (0, 2)-sequence: of 2ᵏ samples, each column, each row and each box of
-    /// the same area has its share. `clamps`: whether colors are clamped to [0, 1] before the mean. One sample is
-    /// at the center.
+    /// The first `count` points of Sobol's (0, 2)-sequence: of 2ᵏ samples, each column, each row and each box
+    /// of the same area has its share. `clamps`: whether colors are clamped to [0, 1] before the mean. One
+    /// sample is at the center.
     ///
-    /// I. M. Sobol', “On the distribution of points in a cube and the approximate evaluation of integrals”, USSR
-    /// Computational Mathematics and Mathematical Physics 7(4), 1967. The points are moved by half of the distance
-    /// of their coordinates, so that their mean is the center if there are 2ᵏ of them. All coordinates are
-    /// multiples of a power of two, and exact in float32 in images of up to 2²³ samples per side.
+    /// I. M. Sobol', “On the distribution of points in a cube and the approximate evaluation of integrals”,
+    /// USSR Computational Mathematics and Mathematical Physics 7(4), 1967. The points are moved by half of
+    /// the distance of their coordinates, so that their mean is the center if there are 2ᵏ of them. All
+    /// coordinates are multiples of a power of two, and exact in float32 in images of up to 2²³ samples per
+    /// side.
     #[must_use]
     pub fn new(count: u32, clamps: bool) -> Self {
         let count = count.max(1);
@@ -64,8 +65,8 @@ fn second(mut at: u32) -> u32 {
 }
 
 impl Program {
-    /// Renders a band of rows of a frame with several samples in each pixel, as [`Self::render_rows`] does with
-    /// one. Derivatives are those of samples with the same offset.
+    /// Renders a band of rows of a frame with several samples in each pixel, as [`Self::render_rows`] does
+    /// with one. Derivatives are those of samples with the same offset.
     ///
     /// # Errors
     /// As [`Self::render`].

@@ -1,8 +1,8 @@
-//! Mixing of a palette's colors in patterns of 4×4 pixels. The color of a pixel depends only on its own color and
-//! position, so that what does not move does not flicker, and is not stored again.
+//! Mixing of a palette's colors in patterns of 4×4 pixels. The color of a pixel depends only on its own color
+//! and position, so that what does not move does not flicker, and is not stored again.
 //!
-//! The method is that of T. Knoll (US patent 6,606,166, expired in 2019): for each color, a list of 16 colors of
-//! the palette whose mean is near it, ordered by luminance, of which a threshold matrix selects one.
+//! The method is that of T. Knoll (US patent 6,606,166, expired in 2019): for each color, a list of 16 colors
+//! of the palette whose mean is near it, ordered by luminance, of which a threshold matrix selects one.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,8 @@ use crate::frame::DisplayFrame;
 /// The number of colors of a list, and of thresholds.
 const LEVELS: usize = 16;
 
-/// The matrix of B. E. Bayer, “An optimum method for two-level rendition of continuous-tone pictures”, IEEE ICC 1973.
+/// The matrix of B. E. Bayer, “An optimum method for two-level rendition of continuous-tone pictures”, IEEE
+/// ICC 1973.
 const THRESHOLDS: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
 
 /// The share of the error of the colors so far that the next color of a list corrects. With all of it, lists

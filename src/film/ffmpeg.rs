@@ -1,5 +1,5 @@
-//! MP4 and `WebM` by the ffmpeg that is installed, which reads Y'CbCr from a pipe. It is a program of its own, so
-//! that neither its licence nor its faults are those of this one.
+//! MP4 and `WebM` by the ffmpeg that is installed, which reads Y'CbCr from a pipe. It is a program of its
+//! own, so that neither its licence nor its faults are those of this one.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -56,8 +56,8 @@ pub(crate) fn check(format: Format) -> Result<(), FilmError> {
     Ok(())
 }
 
-/// Whether a version is older than [`MIN_VERSION`]: `5.1.9-0+deb12u1`, `n6.0`. Those of development (`N-119000-g…`,
-/// `2024-01-01-git-…`) count as new.
+/// Whether a version is older than [`MIN_VERSION`]: `5.1.9-0+deb12u1`, `n6.0`. Those of development
+/// (`N-119000-g…`, `2024-01-01-git-…`) count as new.
 fn is_older(version: &str) -> bool {
     let number = version.trim_start_matches('n').split('.').next();
     number

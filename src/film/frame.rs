@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use toyproof_image::{Image, quantize};
 
-/// A frame in 8 bits for each of red, green, blue and alpha, top row first. Colors are not multiplied by alpha.
+/// A frame in 8 bits for each of red, green, blue and alpha, top row first. Colors are not multiplied by
+/// alpha.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct DisplayFrame {
     pub(crate) size: [u32; 2],
@@ -37,8 +38,8 @@ impl DisplayFrame {
     }
 }
 
-/// The smallest rectangle that contains all pixels in which two images of one width differ; `None` if they are
-/// equal.
+/// The smallest rectangle that contains all pixels in which two images of one width differ; `None` if they
+/// are equal.
 pub(crate) fn changed<T: PartialEq>(before: &[T], after: &[T], width: u32) -> Option<Rectangle> {
     let width = width as usize;
     let pairs = before.chunks(width).zip(after.chunks(width));

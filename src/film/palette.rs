@@ -1,5 +1,5 @@
-//! The colors of a film of at most 255: those of sampled frames, divided where this reduces the error most, and
-//! then improved as k-means does.
+//! The colors of a film of at most 255: those of sampled frames, divided where this reduces the error most,
+//! and then improved as k-means does.
 
 use std::collections::BTreeSet;
 
@@ -211,9 +211,9 @@ mod tests {
         assert_eq!(palette(Vec::new()), [[0; 3]]);
     }
 
-    /// A plane of colors has 65,536 of them. A square grid of 255 cells has cells of 256/√255 levels, whose root
-    /// mean square distance from the center is 256/√(255·6) = 6.54 levels, and no palette has less than 0.98 of
-    /// that, which hexagons have. Rounding of the palette to integers adds √(3/12) at most.
+    /// A plane of colors has 65,536 of them. A square grid of 255 cells has cells of 256/√255 levels, whose
+    /// root mean square distance from the center is 256/√(255·6) = 6.54 levels, and no palette has less than
+    /// 0.98 of that, which hexagons have. Rounding of the palette to integers adds √(3/12) at most.
     #[test]
     fn many_colors_have_the_error_of_a_grid() {
         let pixels: Vec<_> = (0..=u16::MAX)

@@ -14,8 +14,8 @@ pub struct Seam {
 
 impl Seam {
     /// Whether a viewer notices the repetition: the last frame differs from the first by half more than any
-    /// frame from its successor. The step of a periodic motion at its seam is like the steps next to it, and half
-    /// more allows for their unevenness. Half a level is what rounding to 8 bits contributes.
+    /// frame from its successor. The step of a periodic motion at its seam is like the steps next to it, and
+    /// half more allows for their unevenness. Half a level is what rounding to 8 bits contributes.
     pub fn is_visible(self) -> bool {
         self.jump > 1.5 * self.largest_step + 0.5
     }

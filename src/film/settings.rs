@@ -105,7 +105,8 @@ pub struct FrameRate {
 
 impl FrameRate {
     /// The fraction of two numbers up to 65,535 that approximates `rate`, in frames per second, to a relative
-    /// error of 10⁻⁹ or as well as its continued fraction does. Rates outside of 1/65,535 to 65,535 become these.
+    /// error of 10⁻⁹ or as well as its continued fraction does. Rates outside of 1/65,535 to 65,535 become
+    /// these.
     pub fn nearest(rate: f64) -> Self {
         let limit = f64::from(u16::MAX);
         let rate = rate.clamp(1.0 / limit, limit);

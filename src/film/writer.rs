@@ -39,8 +39,8 @@ pub fn check(settings: &FilmSettings) -> Result<(), FilmError> {
     }
 }
 
-/// A film whose frames are rendered. They are kept in `PATH.frames` until the film is complete; one frame is in
-/// memory at a time.
+/// A film whose frames are rendered. They are kept in `PATH.frames` until the film is complete; one frame is
+/// in memory at a time.
 #[derive(Debug)]
 pub struct FilmWriter {
     path: PathBuf,
@@ -64,8 +64,9 @@ pub struct Film {
 }
 
 impl FilmWriter {
-    /// Starts a film, or goes on with an interrupted one. `fingerprint` is a line that identifies all that the
-    /// frames depend on: those of an interrupted film with another fingerprint, size or transparency are dropped.
+    /// Starts a film, or goes on with an interrupted one. `fingerprint` is a line that identifies all that
+    /// the frames depend on: those of an interrupted film with another fingerprint, size or transparency are
+    /// dropped.
     ///
     /// # Errors
     /// Those of [`check`], and if the frames cannot be written.
@@ -106,8 +107,8 @@ impl FilmWriter {
             .push(&DisplayFrame::new(image, self.settings.keeps_alpha))
     }
 
-    /// Encodes the frames, and replaces the file at the film's path by the complete film. `progress` is called
-    /// with the number of encoded frames, and returns whether to go on.
+    /// Encodes the frames, and replaces the file at the film's path by the complete film. `progress` is
+    /// called with the number of encoded frames, and returns whether to go on.
     ///
     /// # Errors
     /// Why there is no film. The frames are kept, so that encoding them can be tried again.

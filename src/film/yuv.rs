@@ -5,9 +5,9 @@ use crate::frame::DisplayFrame;
 /// Weights of red, green and blue in luma: Recommendation ITU-R BT.709-6, item 3.2.
 const WEIGHTS: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
-/// The planes Y', Cb and Cr of a frame, and alpha, if it is kept. Sides of `size` that exceed those of the frame
-/// repeat its edges. Chroma has half of the sides, rounded up, and its samples are at the left luma samples and
-/// between the rows, which is what decoders assume of MPEG-4 and VP9.
+/// The planes Y', Cb and Cr of a frame, and alpha, if it is kept. Sides of `size` that exceed those of the
+/// frame repeat its edges. Chroma has half of the sides, rounded up, and its samples are at the left luma
+/// samples and between the rows, which is what decoders assume of MPEG-4 and VP9.
 pub(crate) fn planes(frame: &DisplayFrame, [width, height]: [u32; 2], keeps_alpha: bool) -> Vec<u8> {
     let [frame_width, frame_height] = frame.size.map(|side| side as usize);
     let [width, height] = [width, height].map(|side| side as usize);
@@ -114,8 +114,8 @@ mod tests {
         assert!(padded[36..].iter().all(|&alpha| alpha == 99));
     }
 
-    /// A step in red between the third and the fourth column: the second chroma sample is at the third column, and
-    /// has a quarter of the fourth.
+    /// A step in red between the third and the fourth column: the second chroma sample is at the third
+    /// column, and has a quarter of the fourth.
     #[test]
     fn chroma_is_at_the_left_luma_sample() {
         let mut frame = flat([0, 0, 0], [4, 2]);

@@ -105,8 +105,8 @@ pub fn write_png(image_rgb8: &Rgb8Image, out: &mut dyn Write) -> io::Result<()> 
     png(image_rgb8.size(), image_rgb8.rows().rev().map(Cow::Borrowed), out)
 }
 
-/// Writes a PNG of which only a band of rows is in memory at a time. The bands come from the top down; they have
-/// the width of the image, and together its height.
+/// Writes a PNG of which only a band of rows is in memory at a time. The bands come from the top down; they
+/// have the width of the image, and together its height.
 ///
 /// # Errors
 /// Those of `out` and of the bands.
@@ -155,8 +155,8 @@ impl Format {
     }
 }
 
-/// Writes a PNG of red, green and blue, and perhaps alpha, from rows in top-down order. The fast compression makes noise a third larger, so that an
-/// image which it does not make smaller is stored as it is.
+/// Writes a PNG of red, green and blue, and perhaps alpha, from rows in top-down order. The fast compression
+/// makes noise a third larger, so that an image which it does not make smaller is stored as it is.
 fn png<'a, const N: usize>(
     size: [u32; 2],
     rows: impl Iterator<Item = Cow<'a, [[u8; N]]>> + Clone,

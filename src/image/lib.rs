@@ -62,8 +62,8 @@ pub const MAX_SIDE: u32 = 16_384;
 /// Maximum number of pixels of an image: slightly more than one 8K frame (7680×4320).
 pub const MAX_PIXELS: u64 = 1 << 25;
 
-/// Maximum side of an image that is rendered in bands and never in memory as a whole, in pixels. Up to 2²³, float32
-/// holds the centers of pixels exactly; the limit is that of the memory of a band.
+/// Maximum side of an image that is rendered in bands and never in memory as a whole, in pixels. Up to 2²³,
+/// float32 holds the centers of pixels exactly; the limit is that of the memory of a band.
 pub const MAX_BANDED_SIDE: u32 = 1 << 18;
 
 /// An image of linear RGBA floats, bottom row first. Colors are nominally in [0, 1] but are stored unchanged,

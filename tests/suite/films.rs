@@ -1,4 +1,5 @@
-//! Films of `run` and `render`: GIF and APNG, which are decoded here, and MP4, WebM and Y4M, which ffmpeg decodes.
+//! Films of `run` and `render`: GIF and APNG, which are decoded here, and MP4, WebM and Y4M, which ffmpeg
+//! decodes.
 
 use std::fs;
 use std::path::Path;
@@ -120,9 +121,9 @@ fn films_have_the_length_the_rate_and_the_colors_of_their_frames() {
             let duration: f64 = duration.unwrap().parse().unwrap();
             assert!((duration - 0.8).abs() < 0.001, "{file}: {duration}");
         }
-        // The middle of each bar in the upper half, where nothing moves. Limited range rounds a component by up
-        // to 255/219/2 levels of luma and 255/224 of chroma, with weights up to 1.86, and coding adds a little;
-        // GIF and APNG are exact.
+        // The middle of each bar in the upper half, where nothing moves. Limited range rounds a component by
+        // up to 255/219/2 levels of luma and 255/224 of chroma, with weights up to 1.86, and coding adds a
+        // little; GIF and APNG are exact.
         let most = if pixels == "yuv420p" { 6 } else { 0 };
         for (number, frame) in decode(folder, file, 64 * 32).iter().enumerate() {
             for bar in 0..8 {
@@ -392,7 +393,8 @@ fn samples_are_the_mean_of_a_larger_image() {
                 let color = larger.get(16 * x + at % 16, 16 * y + at / 16);
                 (0..3).for_each(|component| mean[component] += f64::from(color[component]) / 256.0);
             }
-            // Both are quadratures with 256 points of a pixel that an edge divides: one row of a grid is 1/16.
+            // Both are quadratures with 256 points of a pixel that an edge divides: one row of a grid is
+            // 1/16.
             for (component, scale) in [1.0, 1.0, 5.0].into_iter().enumerate() {
                 let found = f64::from(samples.get(x, y)[component]);
                 assert!(

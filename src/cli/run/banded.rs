@@ -1,5 +1,5 @@
-//! `toyproof run` of an image that is larger than memory, or than drivers render: its bands of rows are written one
-//! after the other.
+//! `toyproof run` of an image that is larger than memory, or than drivers render: its bands of rows are
+//! written one after the other.
 
 use std::io;
 use std::path::Path;

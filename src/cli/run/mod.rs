@@ -53,11 +53,11 @@ pub(in crate::cli) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// The image (.png or .exr), the film (.gif, .apng, .mp4, .webm, .y4m), a folder, or - for PNG on standard
-    /// output [default: NAME.png in the current folder]
+    /// The image (.png or .exr), the film (.gif, .apng, .mp4, .webm, .y4m), a folder, or - for PNG on
+    /// standard output [default: NAME.png in the current folder]
     ///
-    /// A name without an extension is that of a folder. Films need --duration or --frames; ffmpeg writes .mp4 and
-    /// .webm.
+    /// A name without an extension is that of a folder. Films need --duration or --frames; ffmpeg writes .mp4
+    /// and .webm.
     #[arg(short, long, value_name = "IMAGE|FILM|DIR")]
     output: Option<PathBuf>,
     /// The number type of floats; f64 runs on the CPU
@@ -68,14 +68,15 @@ pub(in crate::cli) struct Args {
     format: Format,
     /// Samples per pixel, of which the image has the mean
     ///
-    /// Supersampling with a box filter, on the CPU: the positions in a pixel are those of Sobol's (0, 2)-sequence.
-    /// Each color is clamped to [0, 1] before the mean, except in .exr. Buffers of projects are not supersampled.
+    /// Supersampling with a box filter, on the CPU: the positions in a pixel are those of the
+    /// (0, 2)-sequence of Sobol'. Each color is clamped to [0, 1] before the mean, except in .exr. Buffers are
+    /// not supersampled.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096), hide_default_value = true)]
     samples: u32,
     /// Render a PNG in bands of rows that are written one after the other
     ///
-    /// Images above the limits of drivers (16,384 pixels per side, 33 million in total) are rendered so anyway. The
-    /// memory is that of a band. Runs on the CPU.
+    /// Images above the limits of drivers (16,384 pixels per side, 33 million in total) are rendered so
+    /// anyway. The memory is that of a band. Runs on the CPU.
     #[arg(long, hide_short_help = true, conflicts_with_all = ["frames", "duration"])]
     tile: bool,
     /// Keep the alpha that the shader writes: in .png, .exr, .apng, .webm and rgba; ShaderToy sets it to 1
@@ -271,7 +272,8 @@ struct WrittenImage {
     precision: &'static str,
     device: String,
     seconds: f64,
-    /// The number of frames of a film, of which `frame` and `time` are those of the first one that was rendered.
+    /// The number of frames of a film, of which `frame` and `time` are those of the first one that was
+    /// rendered.
     #[serde(skip_serializing_if = "Option::is_none")]
     frames: Option<u64>,
 }
@@ -598,8 +600,8 @@ impl Runner<'_> {
 }
 
 impl<'a> Runner<'a> {
-    /// Starts the sequence of an output, or goes on with an interrupted one with the same fingerprint; `None` for
-    /// a single image.
+    /// Starts the sequence of an output, or goes on with an interrupted one with the same fingerprint; `None`
+    /// for a single image.
     fn open_sequence(
         &self,
         output: Output,

@@ -36,8 +36,8 @@ pub(in crate::cli) struct SequenceArgs {
     pub(in crate::cli) fps: f64,
     /// How often a film is played: a number, or `forever` [default: forever in GIF and APNG, else 1]
     ///
-    /// Formats without such a number contain the frames this often; `forever` leaves it to the player. If a film
-    /// is repeated, its last frame is compared with its first.
+    /// Formats without such a number contain the frames this often; `forever` leaves it to the player. If a
+    /// film is repeated, its last frame is compared with its first.
     #[arg(long = "loop", value_name = "N|forever", value_parser = parse_plays, hide_short_help = true)]
     plays: Option<Plays>,
     /// The format of a film, whatever the extension; y4m and rgba also on standard output (`-o -`)

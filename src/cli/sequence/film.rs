@@ -30,8 +30,8 @@ impl FrameSink for FilmWriter {
 }
 
 impl FilmFile {
-    /// Starts a film, or goes on with an interrupted one with the same fingerprint. `output` is its path, or the
-    /// folder that the user named.
+    /// Starts a film, or goes on with an interrupted one with the same fingerprint. `output` is its path, or
+    /// the folder that the user named.
     pub(in crate::cli) fn open(
         (args, frames): (&SequenceArgs, Frames),
         settings: FilmSettings,

@@ -4,7 +4,8 @@
 //! # Parts
 //!
 //! - `args`: the flags of `run` and `render` that select frames.
-//! - `files`: numbered images; `film`: films; `stream`: standard output. All are rendered by [`Sequence::render`].
+//! - `files`: numbered images; `film`: films; `stream`: standard output. All are rendered by
+//!   [`Sequence::render`].
 
 mod args;
 mod files;
