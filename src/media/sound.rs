@@ -53,7 +53,7 @@ mod tests {
         assert_eq!(sample_level(1.0 - 1.0 / 32_768.0), i16::MAX);
         assert_eq!(sample_level(f32::NAN), 0);
         // The low byte of 65,536 is 0, and the high one the largest.
-        assert_eq!(sample_level(1.0), 65_280 - 32_767);
+        assert_eq!(i32::from(sample_level(1.0)), 65_280 - 32_767);
         assert_eq!(sample_level(-1.0 - 1.0 / 32_768.0), 255 - 32_767);
         for infinite in [f32::INFINITY, f32::NEG_INFINITY] {
             let _ = sample_level(infinite);

@@ -69,7 +69,7 @@ impl From<FilmFormat> for Format {
 }
 
 /// What a command writes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::cli) enum Output {
     /// One image.
     Image,
