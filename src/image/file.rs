@@ -69,6 +69,23 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     }
 }
 
+/// Encodes an image as [`encode`] does, and keeps alpha in PNG. Colors are not multiplied by it.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_transparent(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
+    match Format::from_path(path)? {
+        Format::Png => {
+            let rows = image.rows().rev();
+            let rows = rows.map(|row| row.iter().map(|pixel| pixel.map(quantize)).collect());
+            in_memory(path, |bytes| {
+                png(image.size(), rows.map(Cow::<[_]>::Owned), bytes)
+            })
+        }
+        Format::Exr => encode(image, path),
+    }
+}
+
 /// Encodes an image of 8 bits as [`encode`] does.
 ///
 /// # Errors
@@ -88,6 +105,40 @@ pub fn write_png(image_rgb8: &Rgb8Image, out: &mut dyn Write) -> io::Result<()> 
     png(image_rgb8.size(), image_rgb8.rows().rev().map(Cow::Borrowed), out)
 }
 
+/// Writes a PNG of which only a band of rows is in memory at a time. The bands come from the top down; they
+/// have the width of the image, and together its height.
+///
+/// # Errors
+/// Those of `out` and of the bands.
+pub fn stream_png<E: From<io::Error>>(
+    [width, height]: [u32; 2],
+    keeps_alpha: bool,
+    bands: impl IntoIterator<Item = Result<Image, E>>,
+    out: &mut dyn Write,
+) -> Result<(), E> {
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(if keeps_alpha {
+        png::ColorType::Rgba
+    } else {
+        png::ColorType::Rgb
+    });
+    encoder.set_compression(png::Compression::Fast);
+    let mut encoder = encoder.write_header().map_err(io::Error::from)?;
+    let mut rows = encoder.stream_writer().map_err(io::Error::from)?;
+    for band in bands {
+        let band = band?;
+        for row in band.rows().rev() {
+            let values = row.iter().flat_map(|pixel| {
+                let components = if keeps_alpha { 4 } else { 3 };
+                pixel.map(quantize).into_iter().take(components)
+            });
+            rows.write_all(&values.collect::<Vec<u8>>())?;
+        }
+    }
+    rows.finish().map_err(io::Error::from)?;
+    Ok(())
+}
+
 enum Format {
     Png,
     Exr,
@@ -104,16 +155,16 @@ impl Format {
     }
 }
 
-/// Writes a PNG from rows in top-down order. The fast compression makes noise a third larger, so that an
-/// image which it does not make smaller is stored as it is.
-fn png<'a>(
+/// Writes a PNG of red, green and blue, and perhaps alpha, from rows in top-down order. The fast compression
+/// makes noise a third larger, so that an image which it does not make smaller is stored as it is.
+fn png<'a, const N: usize>(
     size: [u32; 2],
-    rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>> + Clone,
+    rows: impl Iterator<Item = Cow<'a, [[u8; N]]>> + Clone,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut compressed = LimitedBuffer {
         bytes: Vec::new(),
-        limit: stored_size(size),
+        limit: stored_size(size, N),
         is_exceeded: false,
     };
     let written = png_with(png::Compression::Fast, size, rows.clone(), &mut compressed);
@@ -126,21 +177,25 @@ fn png<'a>(
 }
 
 /// The size of the PNG of an image that is stored in one chunk, in bytes.
-fn stored_size([width, height]: [u32; 2]) -> usize {
+fn stored_size([width, height]: [u32; 2], components: usize) -> usize {
     /// The signature, the chunks of the size and of the end, and the framing of the pixels.
     const AROUND: usize = 68;
     // Each row begins with the number of its filter.
-    AROUND + (3 * width as usize + 1) * height as usize
+    AROUND + (components * width as usize + 1) * height as usize
 }
 
-fn png_with<'a>(
+fn png_with<'a, const N: usize>(
     compression: png::Compression,
     [width, height]: [u32; 2],
-    rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>>,
+    rows: impl Iterator<Item = Cow<'a, [[u8; N]]>>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut encoder = png::Encoder::new(out, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if N == 4 {
+        png::ColorType::Rgba
+    } else {
+        png::ColorType::Rgb
+    });
     encoder.set_depth(png::BitDepth::Eight);
     // Filters are those of the compression: adaptive ones, or none.
     encoder.set_compression(compression);
@@ -333,6 +388,41 @@ mod tests {
     }
 
     #[test]
+    fn bands_make_the_same_image() {
+        let pixel = |at: u32| [at as f32 / 35.0, 0.5, 1.0, at as f32 / 70.0];
+        let image = Image::new(7, 5, (0..35).map(pixel).collect());
+        let band = |rows: std::ops::Range<u32>| {
+            let pixels = (rows.start * 7..rows.end * 7).map(pixel).collect();
+            Ok::<_, io::Error>(Image::new(7, rows.len() as u32, pixels))
+        };
+        for keeps_alpha in [false, true] {
+            let mut streamed = Vec::new();
+            let bands = [3..5, 0..3].map(band);
+            stream_png([7, 5], keeps_alpha, bands, &mut streamed).unwrap();
+            let path = Path::new("a.png");
+            let whole = if keeps_alpha {
+                encode_transparent(&image, path)
+            } else {
+                encode(&image, path)
+            };
+            let decode = |bytes: &[u8]| image::load_from_memory(bytes).unwrap();
+            assert_eq!(decode(&streamed), decode(&whole.unwrap()));
+        }
+    }
+
+    #[test]
+    fn alpha_is_kept_where_it_is_wanted() {
+        let pixels = vec![[1.0, 0.0, 0.2, 0.5], [0.0, 0.0, 0.0, 0.0]];
+        let image = Image::new(2, 1, pixels);
+        let read = |bytes: Vec<u8>| image::load_from_memory(&bytes).unwrap();
+        let path = Path::new("a.png");
+        let kept = read(encode_transparent(&image, path).unwrap()).into_rgba8();
+        assert_eq!(kept.get_pixel(0, 0).0, [255, 0, 51, 128]);
+        assert_eq!(kept.get_pixel(1, 0).0, [0; 4]);
+        assert!(!read(encode(&image, path).unwrap()).color().has_alpha());
+    }
+
+    #[test]
     fn no_png_is_larger_than_its_pixels() {
         let noise = |at: u32| {
             let hash = (at + 1).wrapping_mul(2_654_435_761);
@@ -346,7 +436,7 @@ mod tests {
             let bytes = encode_shown(&image, Path::new("a.png")).unwrap();
             // The framing of the parts of a stored image takes less than a hundredth of it, and 22 bytes at
             // the end.
-            let most = stored_size(image.size()) * 101 / 100 + 22;
+            let most = stored_size(image.size(), 3) * 101 / 100 + 22;
             assert!(bytes.len() <= most, "{size}: {} above {most}", bytes.len());
             let read = image::load_from_memory(&bytes).unwrap().into_rgb8();
             let rows = image.rows().rev().flatten().copied();

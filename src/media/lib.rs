@@ -21,7 +21,7 @@
 //! - `blue_noise`, `font`, `film`: further textures; `cube`: environments and their cube maps, and those from
 //!   files.
 //! - `animation`, `volume`: films and volumes from files; `folder`: a folder of copies of the site's media.
-//! - `music`: the spectrum and the wave of a sound file.
+//! - `music`: the spectrum and the wave of a sound file; `sound`: sounds of shaders as files.
 
 mod animation;
 mod blue_noise;
@@ -35,6 +35,7 @@ mod folder;
 mod font;
 mod material;
 mod music;
+mod sound;
 mod stand_in;
 mod volume;
 
@@ -43,5 +44,6 @@ pub use self::cube::{face_direction, face_position, read_cube};
 pub use self::error::MediaError;
 pub use self::folder::{MediaFolder, MediumNames, with_components};
 pub use self::music::{Music, silent_music};
+pub use self::sound::{SAMPLE_RATE, SOUND_SECONDS, sample_level, wav};
 pub use self::stand_in::{Content, StandIn};
 pub use self::volume::read_volume;

@@ -1,8 +1,6 @@
 //! The folder of a project: a file for each tab, and `project.toml`, which holds the rest of the site's JSON,
 //! key by key in the same order. The source of an input is written by name: `source = "buffer-a"`.
 
-use std::collections::HashMap;
-
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest, one_of};
@@ -16,6 +14,7 @@ use crate::node::{Member, Node, Value};
 use crate::pass::{Buffer, PassKind, SourceType, Tab};
 use crate::project::{Document, Project};
 use crate::read::{Renderpass, default_sampler, read};
+use crate::textures::LoadedMedia;
 
 /// The name of the file next to the tabs.
 pub const PROJECT_FILE: &str = "project.toml";
@@ -377,7 +376,7 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
         common,
         passes,
         uniforms,
-        images: HashMap::new(),
+        media: LoadedMedia::default(),
         document: Document {
             root,
             format,

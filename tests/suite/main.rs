@@ -39,6 +39,7 @@ mod exported;
 mod fair_verdicts;
 mod fairness;
 mod fault_names;
+mod films;
 mod function_tests;
 mod fuzzed;
 mod generated;
