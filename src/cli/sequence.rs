@@ -1,5 +1,6 @@
 //! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -37,6 +38,10 @@ pub(super) struct SequenceFrame {
 impl Frames {
     pub(super) fn first(self) -> i32 {
         self.first
+    }
+
+    pub(super) fn numbers(self) -> RangeInclusive<i32> {
+        self.first..=self.last
     }
 
     fn count(self) -> u64 {

@@ -16,6 +16,7 @@ mod browser;
 mod code_hosts;
 mod collected;
 mod commands;
+mod comparing;
 mod composed;
 mod containment;
 mod conversion;

@@ -184,7 +184,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
 }
 
 /// Parses a number of frames in a second.
-fn parse_rate(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn parse_rate(text: &str) -> Result<f64, String> {
     parse_number(text, 0.001..=1e6, "a number from 0.001 to 1000000")
 }
 
@@ -554,7 +554,7 @@ pub(in crate::cli) fn evaluation_error(failure: &eval::Failure, shader: &Shader)
 }
 
 /// Why the evaluator failed, and in which pass of a project.
-fn pass_error(failure: &eval::Failure, pass: Option<Target>, shader: &Shader) -> CliError {
+pub(in crate::cli) fn pass_error(failure: &eval::Failure, pass: Option<Target>, shader: &Shader) -> CliError {
     let tab = pass.map_or_else(String::new, |pass| format!("{pass}: "));
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
         let mut diagnostic = glsl::overdue(*overdue);
