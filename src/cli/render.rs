@@ -7,13 +7,13 @@ use std::time::Instant;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
-use toyproof_image::{FRAME_RATE, Frame, Image};
+use toyproof_image::{ExrAttributes, FRAME_RATE, Frame, Image, encode_exr};
 use toyproof_project::files;
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
-use toyproof_tracer::{Backend, Tracer};
-use toyproof_verify::Expected;
+use toyproof_tracer::{Backend, Layers, Tracer};
+use toyproof_verify::{Expected, Quantization};
 
-use super::inputs::check_output;
+use super::inputs::{check_output, shell_word};
 use super::reference::ill_conditioned;
 use super::run::{Precision, check_image_extension, default_image, encode};
 use super::scenes::{parse_scene, read_scene};
@@ -50,6 +50,13 @@ pub(super) struct Args {
     /// The error is estimated for every tile of 16x16 pixels. This needs a stochastic sampler.
     #[arg(long, value_name = "ERROR", value_parser = parse_max_error, conflicts_with = "samples", allow_negative_numbers = true)]
     max_error: Option<f64>,
+    /// Add depth, normals, albedo, object numbers and the variance of the samples to an EXR, as channels of
+    /// their own
+    ///
+    /// The channels are Z, Normal.X to Normal.Z, Albedo.R to Albedo.B, id, and variance.R to variance.B if
+    /// there are several samples. Readers of colors ignore them.
+    #[arg(long, conflicts_with = "max_error")]
+    layers: bool,
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = inputs::parse_size)]
     size: Option<[u32; 2]>,
@@ -111,6 +118,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     terminal.detail(&format!("the scene requires {requirements}"));
     let output = args.output.clone().unwrap_or_else(|| default_image(&args.scene));
     check_image_extension(&output)?;
+    if args.layers && Quantization::of_file(&output) != Some(Quantization::Float) {
+        let error = CliError::new("only an EXR file has layers");
+        return Err(error.with_help(format_args!(
+            "write one with -o {}",
+            shell_word(&path_name(&output.with_extension("exr")))
+        )));
+    }
     let mut previous = PreviousTracers::default();
     match args.frames {
         None => {
@@ -126,7 +140,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         }
         Some(frames) => {
             // Identifies the rendering: a record of a different scene or settings is ignored.
-            let fingerprint = format!("{scene:?} {:?} {:?}", args.precision, args.max_error);
+            let fingerprint = format!(
+                "{scene:?} {:?} {:?} {}",
+                args.precision, args.max_error, args.layers
+            );
             let sequence = Sequence::resume(frames, &output, &fingerprint, terminal);
             sequence.render(terminal, |one, _| {
                 let frame_time = FrameTime {
@@ -158,15 +175,14 @@ fn render_frame(
     terminal: &Terminal,
 ) -> Result<(), CliError> {
     let start = Instant::now();
-    let rendered = match args.precision {
-        Precision::F32 => trace(scene, frame_time, &mut previous.single, args, terminal),
-        Precision::F64 => trace(scene, frame_time, &mut previous.double, args, terminal),
+    let bytes = match args.precision {
+        Precision::F32 => traced_file(scene, frame_time, &mut previous.single, (args, path), terminal)?,
+        Precision::F64 => traced_file(scene, frame_time, &mut previous.double, (args, path), terminal)?,
     };
-    let bytes = encode(&rendered, path)?;
     terminal.write(path, &bytes)?;
     // The frames of a sequence are confirmed together.
     if args.frames.is_none() {
-        let [width, height] = rendered.size();
+        let [width, height] = scene.film.size;
         let samples = match args.max_error {
             Some(error) => format!("error below {error}"),
             None => format!(
@@ -185,6 +201,54 @@ fn render_frame(
         warn_if_ill_conditioned(scene, frame_time, args, terminal);
     }
     Ok(())
+}
+
+/// Traces the scene, and encodes the file of its image.
+fn traced_file<T: Backend>(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &mut Option<Tracer<T>>,
+    (args, path): (&Args, &Path),
+    terminal: &Terminal,
+) -> Result<Vec<u8>, CliError> {
+    if !args.layers {
+        let image = trace(scene, frame_time, previous, args, terminal);
+        return Ok(encode(&image, path)?);
+    }
+    let tracer = moved_tracer(scene, frame_time, previous);
+    let bar = rows_bar(scene, args, terminal);
+    let layers = tracer.render_layers(|| bar.inc(1));
+    bar.finish_and_clear();
+    let words = std::env::args_os().skip(1);
+    let words: Vec<String> = words.map(|word| shell_word(&word.to_string_lossy())).collect();
+    let attributes = ExrAttributes {
+        software: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
+        scene: path_name(&args.scene),
+        command: format!("toyproof {}", words.join(" ")),
+        comments: Layers::DESCRIPTION.to_owned(),
+    };
+    Ok(encode_exr(&layers.color, layers.channels(), &attributes, path)?)
+}
+
+/// The tracer of a frame, made from that of the previous one, if there is any.
+fn moved_tracer<'a, T: Backend>(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &'a mut Option<Tracer<T>>,
+) -> &'a Tracer<T> {
+    let tracer = match previous.take() {
+        Some(previous) => previous.moved(scene, frame_time),
+        None => Tracer::at(scene, frame_time),
+    };
+    previous.insert(tracer)
+}
+
+/// The progress bar over the rows of an image; that of a sequence is over its frames.
+fn rows_bar(scene: &Scene, args: &Args, terminal: &Terminal) -> ProgressBar {
+    match args.frames {
+        None => terminal.bar(u64::from(scene.film.size[1]), "rows"),
+        Some(_) => ProgressBar::hidden(),
+    }
 }
 
 /// Warns of pixels whose color rounding decides.
@@ -219,17 +283,8 @@ fn trace<T: Backend>(
     args: &Args,
     terminal: &Terminal,
 ) -> Image {
-    let tracer = match previous.take() {
-        Some(previous) => previous.moved(scene, frame_time),
-        None => Tracer::at(scene, frame_time),
-    };
-    let tracer = &*previous.insert(tracer);
-    let rows = u64::from(scene.film.size[1]);
-    let bar = match args.frames {
-        None => terminal.bar(rows, "rows"),
-        // The sequence has its own progress bar.
-        Some(_) => ProgressBar::hidden(),
-    };
+    let tracer = moved_tracer(scene, frame_time, previous);
+    let bar = rows_bar(scene, args, terminal);
     let Some(max_error) = args.max_error else {
         let start = Instant::now();
         let rendered = tracer.render(|| bar.inc(1));
