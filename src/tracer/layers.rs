@@ -228,3 +228,135 @@ impl Spread {
         self.squares.map(|sum| sum / (self.count - 1.0).max(1.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::scene;
+
+    /// A film, a camera and one sphere with a radius of 1.5 around (0, 0, −6).
+    fn sphere(film: &str, camera: &str) -> String {
+        format!(
+            "[film]\nsize = [24, 16]\n{film}[camera]\n{camera}[background]\ncolor = [0.25, 0.5, 1.0]\n[[sphere]]\n\
+             center = [0, 0, -6]\nradius = 1.5\nmaterial = {{ model = \"facing\", color = [1, 0.5, 0] }}\n"
+        )
+    }
+
+    fn layers(text: &str) -> (Tracer<f64>, Layers) {
+        let tracer = Tracer::<f64>::new(&scene(text));
+        let layers = tracer.render_layers(|| ());
+        (tracer, layers)
+    }
+
+    /// Values in f64 that were rounded to f32.
+    fn assert_rounded(value: f32, expected: f64) {
+        let difference = (f64::from(value) - expected).abs();
+        assert!(
+            difference <= 1e-7 * expected.abs().max(1e-3),
+            "{value} is not {expected}"
+        );
+    }
+
+    /// One ray per pixel: o + t·d with |o + t·d − c| = r is solved in closed form.
+    #[test]
+    fn layers_of_a_sphere_follow_from_its_equation() {
+        let (tracer, layers) = layers(&sphere("", ""));
+        assert_eq!(layers.color, tracer.render(|| ()));
+        assert_eq!(layers.variance, None);
+        let mut hits = 0;
+        for at in 0..24 * 16 {
+            // The screen is at z = −2, from −1 to 1 horizontally.
+            let (fx, fy) = (f64::from(at % 24) + 0.5, f64::from(at / 24) + 0.5);
+            let screen = [2.0 * fx / 24.0 - 1.0, (2.0 * fy / 16.0 - 1.0) / 1.5, -2.0];
+            let length = screen.iter().map(|part| part * part).sum::<f64>().sqrt();
+            let direction = screen.map(|part| part / length);
+            let along = -6.0 * direction[2];
+            let discriminant = along * along - (36.0 - 2.25);
+            let at = at as usize;
+            if discriminant <= 0.0 {
+                assert_eq!((layers.depth[at], layers.object[at]), (BACKGROUND_DEPTH, 0));
+                assert_eq!((layers.normal[at], layers.albedo[at]), ([0.0; 3], [0.0; 3]));
+                continue;
+            }
+            hits += 1;
+            let t = along - discriminant.sqrt();
+            let normal = [t * direction[0], t * direction[1], t * direction[2] + 6.0].map(|part| part / 1.5);
+            assert_rounded(layers.depth[at], -t * direction[2]);
+            for (value, expected) in layers.normal[at].into_iter().zip(normal) {
+                assert_rounded(value, expected);
+            }
+            assert_eq!((layers.albedo[at], layers.object[at]), ([1.0, 0.5, 0.0], 1));
+        }
+        assert!((20..200).contains(&hits), "{hits}");
+    }
+
+    #[test]
+    fn depth_is_along_the_viewing_direction_of_any_camera() {
+        // From (8, 0, −6), the sphere is 6.5 away in the direction −x; parallel rays meet it there in all pixels
+        // around the middle.
+        for camera in [
+            "eye = [8, 0, -6]\nlook_at = [0, 0, -6]\n",
+            "eye = [8, 0, -6]\nlook_at = [0, 0, -6]\nprojection = \"parallel\"\nwidth = 0.001\n",
+        ] {
+            let text = sphere("", camera).replace("[24, 16]", "[1, 1]");
+            let (_, layers) = layers(&text);
+            assert_rounded(layers.depth[0], 6.5);
+            assert_rounded(layers.normal[0][0], 1.0);
+        }
+    }
+
+    #[test]
+    fn layers_are_means_of_the_samples_of_the_image() {
+        let (tracer, layers) = layers(&sphere("sampler = \"independent\"\nsamples = 16\n", ""));
+        assert_eq!(layers.color, tracer.render(|| ()), "to the bit");
+        let variance = layers.variance.unwrap();
+        let mut mixed = 0;
+        for at in 0..24 * 16 {
+            let pixel = [at % 24, at / 24];
+            let sample = |index| Sample {
+                pixel,
+                index,
+                count: 16,
+                set: 0,
+            };
+            let colors: Vec<_> = (0..16)
+                .map(|index| tracer.sample(sample(index), &Exact).to_array())
+                .collect();
+            let ids: Vec<_> = (0..16)
+                .map(|index| tracer.primary(tracer.film.sampler, sample(index)).0.id()[1])
+                .collect();
+            let hits = ids.iter().flatten().count();
+            let at = at as usize;
+            mixed += usize::from(hits > 0 && hits < 16);
+            assert_eq!(
+                layers.object[at],
+                u32::from(hits > 8),
+                "of equals, the background"
+            );
+            assert_rounded(layers.albedo[at][0], hits as f64 / 16.0);
+            assert_eq!(layers.depth[at] == BACKGROUND_DEPTH, hits == 0);
+            for component in 0..3 {
+                let mean = colors.iter().map(|color| color[component]).sum::<f64>() / 16.0;
+                let squares = colors.iter().map(|color| (color[component] - mean).powi(2));
+                assert_rounded(variance[at][component], squares.sum::<f64>() / 15.0);
+            }
+        }
+        assert!(mixed > 10, "{mixed}");
+    }
+
+    #[test]
+    fn figures_have_colors_and_numbers_after_the_objects() {
+        let figure = "[[figure]]\noutline = \"disk\"\ncenter = [0, 0]\nradius = 0.01\ncolor = [0, 2, 0.5]\n";
+        let text = sphere("", "").replace("[24, 16]", "[1, 1]") + figure;
+        let (_, layers) = layers(&text);
+        assert_eq!((layers.object[0], layers.albedo[0]), (2, [0.0, 1.0, 0.5]));
+        assert_eq!((layers.depth[0], layers.normal[0]), (BACKGROUND_DEPTH, [0.0; 3]));
+        let names: Vec<_> = layers.channels().iter().map(|channel| channel.name).collect();
+        assert_eq!(
+            names,
+            [
+                "Z", "id", "Normal.X", "Normal.Y", "Normal.Z", "Albedo.R", "Albedo.G", "Albedo.B"
+            ]
+        );
+    }
+}

@@ -51,6 +51,7 @@ mod hostile;
 mod hostile_class;
 mod interpreted;
 mod large_batch;
+mod layers;
 mod limits;
 mod literals;
 mod lookups;
