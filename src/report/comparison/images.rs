@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 use toyproof_diagnostic::{grouped, magnitude, plural};
 use toyproof_metrics::Metric;
-use toyproof_verify::compare::{Comparison, Criteria, MaxDiffering, PairDifference};
+use toyproof_verify::compare::{Agreement, Comparison, Criteria, MaxDiffering, PairDifference};
 
 use crate::place;
 
@@ -49,13 +49,13 @@ pub struct ComparedImages {
     /// The value of the metric; null if none is measured, and if it is infinite.
     value: Option<f64>,
     #[serde(skip)]
-    texts: Texts,
+    limits: Limits,
 }
 
 /// What the lines for people need.
 #[derive(Debug, Clone, Default)]
-struct Texts {
-    tolerance: String,
+struct Limits {
+    agreement: Option<Agreement>,
     max_differing: Option<MaxDiffering>,
     metric: Option<(Metric, Option<f64>)>,
 }
@@ -74,8 +74,8 @@ impl ComparedImages {
             size: Some(difference.size),
             comparison: Some(comparison),
             value: difference.value,
-            texts: Texts {
-                tolerance: difference.tolerance(),
+            limits: Limits {
+                agreement: Some(difference.agreement),
                 max_differing: criteria.max_differing,
                 metric: criteria.metric.map(|metric| (metric, criteria.limit)),
             },
@@ -111,7 +111,7 @@ impl ComparedImages {
             size: None,
             comparison: None,
             value: None,
-            texts: Texts::default(),
+            limits: Limits::default(),
         }
     }
 
@@ -173,28 +173,28 @@ impl ComparedImages {
     }
 
     fn counts(&self) -> Option<String> {
-        let comparison = self.comparison.as_ref()?;
-        let (pixels, tolerance) = (grouped(comparison.pixels), &self.texts.tolerance);
-        let is_in_levels = tolerance.ends_with("255");
+        let (comparison, agreement) = (self.comparison.as_ref()?, self.limits.agreement?);
+        let (pixels, tolerance) = (grouped(comparison.pixels), tolerance(&agreement));
         Some(match comparison.differing {
             0 if comparison.max_abs == 0.0 => format!("all {pixels} pixels are equal"),
-            0 if is_in_levels => format!("all {pixels} pixels agree to within {tolerance}"),
+            0 if agreement.is_in_levels() => format!("all {pixels} pixels agree to within {tolerance}"),
             0 => format!(
                 "all {pixels} pixels agree to within {}",
                 magnitude(comparison.max_abs)
             ),
             differing => {
-                let limit = self.texts.max_differing.map_or_else(String::new, |most| {
-                    let verb = if self.status.agrees() { "within" } else { "limit" };
-                    match verb {
-                        "within" => format!(", within the limit of {most}"),
-                        _ => format!("; the limit is {most}"),
+                let limit = self.limits.max_differing.map(|most| {
+                    if self.status.agrees() {
+                        format!(", within the limit of {most}")
+                    } else {
+                        format!("; the limit is {most}")
                     }
                 });
                 format!(
-                    "{} of {pixels} pixels {} by more than {tolerance}{limit}; the largest difference is {:.4} ({} of 255)",
+                    "{} of {pixels} pixels {} by more than {tolerance}{}; the largest difference is {:.4} ({} of 255)",
                     grouped(differing),
                     plural(differing, "differs", "differ"),
+                    limit.unwrap_or_default(),
                     comparison.max_abs,
                     comparison.max_8bit
                 )
@@ -204,7 +204,7 @@ impl ComparedImages {
 
     /// The metric with its limit: `FLIP is 0.0312, within the limit of 0.05`.
     fn metric(&self) -> Option<String> {
-        let ((metric, limit), value) = (self.texts.metric?, self.value?);
+        let ((metric, limit), value) = (self.limits.metric?, self.value?);
         let unit = if metric == Metric::Psnr { " dB" } else { "" };
         let shown = match metric {
             Metric::Psnr if value.is_infinite() => "infinite".to_owned(),
@@ -224,6 +224,21 @@ impl ComparedImages {
             metric.title(),
             limit.unwrap_or_default()
         ))
+    }
+}
+
+/// A tolerance: `one level of 255`, `2.5 levels of 255`, or `0.001` between floats.
+fn tolerance(agreement: &Agreement) -> String {
+    let short = |number: f64| {
+        let text = format!("{number:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    if !agreement.is_in_levels() {
+        return short(agreement.tolerance);
+    }
+    match short(agreement.tolerance * 255.0).as_str() {
+        "1" => "one level of 255".to_owned(),
+        levels => format!("{levels} levels of 255"),
     }
 }
 

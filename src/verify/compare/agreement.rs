@@ -64,6 +64,12 @@ impl Agreement {
         }
     }
 
+    /// Whether one of the images has only 8 bits, so that its differences are read in levels.
+    #[must_use]
+    pub fn is_in_levels(&self) -> bool {
+        self.quantization.contains(&Quantization::EightBit)
+    }
+
     /// The largest difference of a component of colors that agree, in [0, 1]. Two images of 8 bits hold exact
     /// levels; if only one does, its rounding adds half a level.
     #[must_use]

@@ -162,28 +162,6 @@ impl PairDifference {
             None => difference(self.size, &self.levels, SEEN_BY_EYE),
         }
     }
-
-    /// The tolerance in words: `one level of 255`, `2.5 levels of 255`, `0.001`.
-    #[must_use]
-    pub fn tolerance(&self) -> String {
-        let Agreement {
-            tolerance,
-            quantization,
-        } = self.agreement;
-        let levels = tolerance * 255.0;
-        if !quantization.contains(&Quantization::EightBit) {
-            return format!("{tolerance:.4}")
-                .trim_end_matches('0')
-                .trim_end_matches('.')
-                .to_owned();
-        }
-        if (levels - 1.0).abs() < 1e-9 {
-            return "one level of 255".to_owned();
-        }
-        let text = format!("{levels:.3}");
-        let text = text.trim_end_matches('0').trim_end_matches('.');
-        format!("{text} levels of 255")
-    }
 }
 
 impl std::fmt::Display for MaxDiffering {
