@@ -59,6 +59,7 @@ mod lookups;
 mod machine_code;
 mod marches;
 mod math;
+mod media;
 mod miscompiles;
 mod nesting;
 mod page;
