@@ -3,7 +3,7 @@
 
 use std::io::{self, Read, Write};
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::JoinHandle;
 
 use crate::FilmError;
@@ -28,25 +28,33 @@ fn encoder(format: Format) -> &'static str {
     }
 }
 
+/// The version of the ffmpeg that is installed; `None` if there is none.
+pub fn version() -> Option<String> {
+    let output = run(&["-version"])?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let version = text.strip_prefix("ffmpeg version ").unwrap_or_default();
+    Some(version.split_whitespace().next().unwrap_or("unknown").to_owned())
+}
+
+/// Runs ffmpeg; `None` if there is none.
+fn run(arguments: &[&str]) -> Option<Output> {
+    let mut command = Command::new(PROGRAM);
+    command.args(arguments).stdin(Stdio::null());
+    command.output().ok()
+}
+
 /// Checks that an ffmpeg is installed that can write the format.
 ///
 /// # Errors
 /// [`FilmError::NoFfmpeg`], [`FilmError::OldFfmpeg`], [`FilmError::NoEncoder`].
 pub(crate) fn check(format: Format) -> Result<(), FilmError> {
-    let run = |arguments: &[&str]| {
-        let mut command = Command::new(PROGRAM);
-        command.args(arguments).stdin(Stdio::null());
-        command.output().map_err(|_| FilmError::NoFfmpeg(format))
-    };
-    let version = run(&["-version"])?;
-    let version = String::from_utf8_lossy(&version.stdout).into_owned();
-    let version = version.strip_prefix("ffmpeg version ").unwrap_or_default();
-    let version = version.split_whitespace().next().unwrap_or_default();
-    if is_older(version) {
-        return Err(FilmError::OldFfmpeg(version.to_owned(), format));
+    let version = version().ok_or(FilmError::NoFfmpeg(format))?;
+    if is_older(&version) {
+        return Err(FilmError::OldFfmpeg(version, format));
     }
     let name = encoder(format);
-    let help = run(&["-hide_banner", "-h", &format!("encoder={name}")])?;
+    let help = run(&["-hide_banner", "-h", &format!("encoder={name}")]);
+    let help = help.ok_or(FilmError::NoFfmpeg(format))?;
     if !help.stdout.starts_with(format!("Encoder {name} ").as_bytes()) {
         return Err(FilmError::NoEncoder {
             encoder: name,

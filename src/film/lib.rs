@@ -44,6 +44,7 @@ mod writer;
 mod yuv;
 
 pub use error::FilmError;
+pub use ffmpeg::version as ffmpeg_version;
 pub use seam::Seam;
 pub use settings::{FilmSettings, Format, FrameRate, Plays};
 pub use writer::{Film, FilmWriter, StreamWriter, check};

@@ -1,7 +1,9 @@
 //! `toyproof run` of an image that is larger than memory, or than drivers render: its bands of rows are
 //! written one after the other.
 
-use std::io;
+use std::fs::OpenOptions;
+use std::io::{self, BufWriter, Write};
+use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
@@ -11,8 +13,9 @@ use toyproof_eval_native::Program;
 use toyproof_image::output::{self, MakeError};
 use toyproof_image::{self as image, Frame, Image};
 
-use super::{ImageFailure, Precision, Runner, check_evaluated, image_failure};
+use super::{ImageFailure, Precision, RenderedBy, Runner, check_evaluated, image_failure};
 use crate::cli::CliError;
+use crate::cli::sequence::StandardOutput;
 use crate::cli::shader::Shader;
 use crate::cli::terminal::file_size;
 
@@ -72,20 +75,29 @@ impl Runner<'_> {
         }
     }
 
-    fn stream_bands<N: Number>(&self, shader: &Shader, frame: &Frame, path: &Path) -> Result<(), CliError> {
+    fn stream_bands<N: Number>(
+        &mut self,
+        shader: &Shader,
+        frame: &Frame,
+        path: &Path,
+    ) -> Result<(), CliError> {
         let checked = shader.require_image()?;
         let start = Instant::now();
-        let limit = self.args.driver.explicit_timeout();
+        let (args, terminal) = (self.args, self.terminal);
+        let limit = args.driver.explicit_timeout();
         let program = Program::prepared_within(checked, UndefinedPolicy::Plain, Some(limit));
-        let program = program
-            .map_err(|refusal| self.band_error(BandFailure::Evaluator(refusal.into()), shader, path))?;
+        let program =
+            program.map_err(|refusal| band_error(BandFailure::Evaluator(refusal.into()), shader, path))?;
         let settings = Settings::<N> {
             deadline: Some(start + limit),
-            interrupt: Some(self.terminal.interrupt_flag()),
+            interrupt: Some(terminal.interrupt_flag()),
             ..Settings::plain()
         };
-        let bar = self.terminal.bar(u64::from(frame.size[1]), "rows");
-        let band = |rows: std::ops::Range<u32>| -> Result<Image, BandFailure> {
+        let bar = terminal.bar(u64::from(frame.size[1]), "rows");
+        let band = |rows: Range<u32>| -> Result<Image, BandFailure> {
+            if terminal.is_closed() {
+                return Err(io::Error::from(io::ErrorKind::BrokenPipe).into());
+            }
             let count = rows.len() as u64;
             let rendered = match &self.supersampling {
                 None => program
@@ -98,55 +110,60 @@ impl Runner<'_> {
         };
         let bands: Vec<_> = frame.bands().collect();
         let bands = bands.into_iter().rev().map(band);
-        let alpha = self.args.transparent;
+        let alpha = args.transparent;
         let mut bytes = 0;
         let written = if path == Path::new("-") {
-            let mut failure = None;
-            self.terminal
-                .stream(|out| match image::stream_png(frame.size, alpha, bands, out) {
-                    Ok(()) => Ok(()),
-                    Err(BandFailure::Output(error)) => Err(error),
-                    Err(evaluator) => {
-                        failure = Some(evaluator);
-                        Ok(())
-                    }
-                })?;
-            failure.map_or(Ok(()), |failure| Err(MakeError::Content(failure)))
+            let mut out = BufWriter::new(StandardOutput(terminal));
+            let streamed = image::stream_png(frame.size, alpha, bands, &mut out);
+            streamed
+                .and_then(|()| Ok(out.flush()?))
+                .map_err(MakeError::Content)
         } else {
             let folder = (path != self.output && path.starts_with(self.output)).then_some(self.output);
             output::make(folder, path, |file| {
-                let mut out = io::BufWriter::new(std::fs::OpenOptions::new().write(true).open(file)?);
+                let mut out = BufWriter::new(OpenOptions::new().write(true).open(file)?);
                 image::stream_png(frame.size, alpha, bands, &mut out)?;
-                io::Write::flush(&mut out)?;
+                out.flush()?;
                 bytes = file.metadata()?.len();
                 Ok::<(), BandFailure>(())
             })
         };
         bar.finish_and_clear();
+        // The reader of standard output has all it wants.
+        if terminal.is_closed() {
+            return Ok(());
+        }
         written.map_err(|error| match error {
             MakeError::Output(error) => CliError::new(format_args!("cannot write {error}")),
-            MakeError::Content(failure) => self.band_error(failure, shader, path),
+            MakeError::Content(failure) => band_error(failure, shader, path),
         })?;
         let [width, height] = frame.size;
+        let rendered = RenderedBy {
+            device: "CPU",
+            seconds: start.elapsed().as_secs_f64(),
+        };
         let facts = format!(
-            "{width}×{height}, {} on CPU, in bands, {}, {:.2} s",
-            self.args.precision.name(),
+            "{width}×{height}, {}{} on CPU, in bands, {}, {:.2} s",
+            self.samples(),
+            args.precision.name(),
             file_size(bytes as usize),
-            start.elapsed().as_secs_f64()
+            rendered.seconds
         );
-        self.terminal.confirm(path, &facts);
+        terminal.confirm(path, &facts);
+        self.record(&rendered, frame, &shader.name, path);
         Ok(())
     }
+}
 
-    fn band_error(&self, failure: BandFailure, shader: &Shader, path: &Path) -> CliError {
-        match failure {
-            BandFailure::Output(error) => {
-                CliError::new(format_args!("cannot write {}: {error}", path_name(path)))
-            }
-            BandFailure::Evaluator(failure) => match image_failure(&failure, shader) {
-                ImageFailure::Failed(error) => error,
-                ImageFailure::Interrupted => CliError::silent(),
-            },
+/// Why there is no image.
+fn band_error(failure: BandFailure, shader: &Shader, path: &Path) -> CliError {
+    match failure {
+        BandFailure::Output(error) => {
+            CliError::new(format_args!("cannot write {}: {error}", path_name(path)))
         }
+        BandFailure::Evaluator(failure) => match image_failure(&failure, shader) {
+            ImageFailure::Failed(error) => error,
+            ImageFailure::Interrupted => CliError::silent(),
+        },
     }
 }

@@ -285,6 +285,12 @@ struct RenderedImage {
     seconds: f64,
 }
 
+/// What rendered an image, and how long.
+struct RenderedBy<'a> {
+    device: &'a str,
+    seconds: f64,
+}
+
 struct Runner<'a> {
     args: &'a Args,
     terminal: &'a Terminal,
@@ -565,13 +571,18 @@ impl Runner<'_> {
         let [width, height] = rendered.image.size();
         let precision = self.args.precision.name();
         let (device, seconds) = (short_device(&rendered.device), rendered.seconds);
-        let samples = match self.args.samples {
-            1 => String::new(),
-            samples => format!("{} samples per pixel, ", grouped(u64::from(samples))),
-        };
+        let samples = self.samples();
         let facts = format!("{width}×{height}, {samples}{precision} on {device}, {size}, {seconds:.2} s");
         self.terminal.confirm(path, &facts);
         Ok(())
+    }
+
+    /// The number of samples of a pixel, if there are several.
+    fn samples(&self) -> String {
+        match self.args.samples {
+            1 => String::new(),
+            samples => format!("{} samples per pixel, ", grouped(u64::from(samples))),
+        }
     }
 
     /// Writes an image; returns the size of the file in bytes.
@@ -584,18 +595,27 @@ impl Runner<'_> {
     ) -> Result<usize, CliError> {
         let bytes = encode(&rendered.image, path, self.args.transparent)?;
         self.terminal.write_output(self.output, path, &bytes)?;
+        let by = RenderedBy {
+            device: &rendered.device,
+            seconds: rendered.seconds,
+        };
+        self.record(&by, frame, shader, path);
+        Ok(bytes.len())
+    }
+
+    /// Records a written image.
+    fn record(&mut self, by: &RenderedBy<'_>, frame: &Frame, shader: &str, path: &Path) {
         self.images.push(WrittenImage {
             shader: shader.to_owned(),
             output: path_name(path),
-            size: rendered.image.size(),
+            size: frame.size,
             frame: frame.frame,
             time: frame.time,
             precision: self.args.precision.name(),
-            device: rendered.device.clone(),
-            seconds: rendered.seconds,
+            device: by.device.to_owned(),
+            seconds: by.seconds,
             frames: None,
         });
-        Ok(bytes.len())
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) use args::{Output, SequenceArgs, parse_rate};
 pub(super) use files::NumberedFiles;
 pub(super) use film::FilmFile;
 use indicatif::ProgressBar;
-pub(super) use stream::FrameStream;
+pub(super) use stream::{FrameStream, StandardOutput};
 use toyproof_diagnostic::grouped;
 use toyproof_image::Image;
 

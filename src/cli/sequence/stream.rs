@@ -18,7 +18,7 @@ pub(in crate::cli) struct FrameStream<'a> {
 
 /// Standard output, as the terminal writes it.
 #[derive(Debug)]
-struct StandardOutput<'a>(&'a Terminal);
+pub(in crate::cli) struct StandardOutput<'a>(pub(in crate::cli) &'a Terminal);
 
 impl Write for StandardOutput<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
