@@ -216,10 +216,11 @@ struct Spread {
 impl Spread {
     fn add(&mut self, sample: [f64; 3]) {
         self.count += 1.0;
-        for at in 0..3 {
-            let deviation = sample[at] - self.mean[at];
-            self.mean[at] += deviation / self.count;
-            self.squares[at] += deviation * (sample[at] - self.mean[at]);
+        let sums = self.mean.iter_mut().zip(&mut self.squares);
+        for ((mean, squares), sample) in sums.zip(sample) {
+            let deviation = sample - *mean;
+            *mean += deviation / self.count;
+            *squares += deviation * (sample - *mean);
         }
     }
 

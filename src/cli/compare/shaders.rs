@@ -3,6 +3,7 @@
 use std::ops::{ControlFlow, RangeInclusive};
 use std::path::Path;
 
+use indicatif::ProgressBar;
 use toyproof_diagnostic::Deadline;
 use toyproof_explain::equality::{Pair, PairFailure};
 use toyproof_glsl::{Checked, Filter};
@@ -33,8 +34,7 @@ pub(super) fn compare(
         return Err(error.with_help("compare their images with --tolerance, --max-differing or --metric"));
     }
     let shaders = [load(args, &args.a, terminal)?, load(args, &args.b, terminal)?];
-    let inputs = args.frame.inputs();
-    let frame = inputs.load()?;
+    let frame = args.frame.inputs().load()?;
     let passes = [
         Passes::new(&shaders[0], &frame)?,
         Passes::new(&shaders[1], &frame)?,
@@ -48,59 +48,105 @@ pub(super) fn compare(
             .start(args.frames.map_or(*frames.start(), |_| 0), args.fps),
         inputs: frame,
     };
-    let failed = |failure: PairFailure| {
-        let shader = &shaders[failure.shader];
-        let pass = shader.project().map(|_| failure.target);
-        pass_error(&failure.failure, pass, shader).with_exit(Exit::Error)
+    let pair =
+        Pair::new(passes.each_ref(), args.timeout).map_err(|failure| pair_error(&failure, &shaders))?;
+    let bar = terminal.bar(u64::from(frames.end().abs_diff(*frames.start())) + 1, "frames");
+    let session = Session {
+        shaders: &shaders,
+        pair: &pair,
+        clock: &clock,
+        frames,
+        bar: &bar,
     };
-    let pair = Pair::new(passes.each_ref(), args.timeout).map_err(failed)?;
-    let count = u64::from(frames.end().abs_diff(*frames.start())) + 1;
-    let bar = terminal.bar(count, "frames");
-    let first = *frames.start();
-    let step = |number: i32| bar.set_position((number - first).max(0) as u64);
-    if by_images {
+    let report = if by_images {
+        session.compare_images(args, criteria, terminal)
+    } else {
+        session.compare_bits(args)
+    };
+    bar.finish_and_clear();
+    report
+}
+
+/// Two shaders that are compared in some frames.
+struct Session<'a> {
+    shaders: &'a [Shader; 2],
+    pair: &'a Pair<'a>,
+    clock: &'a Clock,
+    frames: RangeInclusive<i32>,
+    bar: &'a ProgressBar,
+}
+
+impl Session<'_> {
+    /// Shows that a frame begins.
+    fn step(&self, number: i32) {
+        self.bar
+            .set_position((number - self.frames.start()).max(0) as u64);
+    }
+
+    /// Compares the images of all frames; the image of differences is that of the first frame that does not
+    /// agree.
+    fn compare_images(
+        &self,
+        args: &Args,
+        criteria: &Criteria,
+        terminal: &Terminal,
+    ) -> Result<ComparisonReport, CliError> {
         let mut compared = Vec::new();
         let mut failure = None;
         let mut difference_image = None;
-        let played = pair.images(&clock, frames, step, |number, images| {
-            match compare_pair(images, [Quantization::Float; 2], criteria) {
-                Ok(difference) => {
-                    if !difference.agrees && difference_image.is_none() {
-                        difference_image = Some(difference.image());
+        let step = |number| self.step(number);
+        let played =
+            self.pair.images(
+                self.clock,
+                self.frames.clone(),
+                step,
+                |number, images| match compare_pair(images, [Quantization::Float; 2], criteria) {
+                    Ok(difference) => {
+                        if !difference.agrees && difference_image.is_none() {
+                            difference_image = Some(difference.image());
+                        }
+                        compared.push(ComparedImages::new(&difference, criteria).in_frame(number));
+                        ControlFlow::Continue(())
                     }
-                    compared.push(ComparedImages::new(&difference, criteria).in_frame(number));
-                    ControlFlow::Continue(())
-                }
-                Err(error) => {
-                    failure = Some(error);
-                    ControlFlow::Break(())
-                }
-            }
-        });
-        bar.finish_and_clear();
-        played.map_err(failed)?;
+                    Err(error) => {
+                        failure = Some(error);
+                        ControlFlow::Break(())
+                    }
+                },
+            );
+        played.map_err(|failure| pair_error(&failure, self.shaders))?;
         if let Some(error) = failure {
             return Err(error.into());
         }
         if let (Some(path), Some(difference)) = (&args.diff, difference_image) {
             terminal.write(path, &image::encode_shown(&difference, path)?)?;
         }
-        return Ok(ComparisonReport::of_images(args.names(), criteria, compared));
+        Ok(ComparisonReport::of_images(args.names(), criteria, compared))
     }
-    let found = pair.first_difference(&clock, frames.clone(), step);
-    bar.finish_and_clear();
-    let found = found.map_err(failed)?;
-    let texts = [&shaders[0].files, &shaders[1].files];
-    let names = |targets: Vec<Target>| targets.iter().map(ToString::to_string).collect();
-    let compared = ComparedShaders {
-        frames: [*frames.start(), *frames.end()],
-        size: clock.inputs.size,
-        passes: names(pair.common_passes()),
-        only_in_a: names(pair.other_passes(0)),
-        only_in_b: names(pair.other_passes(1)),
-        first: found.map(|found| FirstDifferenceRecord::new(&found, texts)),
-    };
-    Ok(ComparisonReport::of_shaders(args.names(), compared))
+
+    fn compare_bits(&self, args: &Args) -> Result<ComparisonReport, CliError> {
+        let step = |number| self.step(number);
+        let found = self.pair.first_difference(self.clock, self.frames.clone(), step);
+        let found = found.map_err(|failure| pair_error(&failure, self.shaders))?;
+        let files = self.shaders.each_ref().map(|shader| &shader.files);
+        let names = |targets: Vec<Target>| targets.iter().map(ToString::to_string).collect();
+        let compared = ComparedShaders {
+            frames: [*self.frames.start(), *self.frames.end()],
+            size: self.clock.inputs.size,
+            passes: names(self.pair.common_passes()),
+            only_in_a: names(self.pair.other_passes(0)),
+            only_in_b: names(self.pair.other_passes(1)),
+            first: found.map(|found| FirstDifferenceRecord::new(&found, files)),
+        };
+        Ok(ComparisonReport::of_shaders(args.names(), compared))
+    }
+}
+
+/// The error of a shader that is not rendered; in a project, with its pass.
+fn pair_error(failure: &PairFailure, shaders: &[Shader; 2]) -> CliError {
+    let shader = &shaders[failure.shader];
+    let pass = shader.project().map(|_| failure.target);
+    pass_error(&failure.failure, pass, shader).with_exit(Exit::Error)
 }
 
 /// Reads a shader that compiles; its warnings are not the subject.

@@ -86,7 +86,12 @@ fn lab([x, y, z]: [f64; 3]) -> [f64; 3] {
 /// The distance `HyAB` of two colors: of large color differences, people judge lightness and chroma
 /// separately.
 pub(super) fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (a[0] - b[0]).abs() + (a[1] - b[1]).hypot(a[2] - b[2])
+    (a[0] - b[0]).abs() + length(a[1] - b[1], a[2] - b[2])
+}
+
+/// The length of a vector of moderate numbers, for which `f64::hypot` takes much longer.
+pub(super) fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 fn product(matrix: &[[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {

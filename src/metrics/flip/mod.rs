@@ -13,7 +13,7 @@ mod high_dynamic_range;
 
 use toyproof_image::Image;
 
-use self::color::{ColorSpaces, hyab, linear_of_srgb};
+use self::color::{ColorSpaces, hyab, length, linear_of_srgb};
 pub(crate) use self::high_dynamic_range::high_dynamic_range;
 use crate::band::{Band, Border, Kernel, Plane, in_bands};
 use crate::map::{self, ErrorMap};
@@ -173,7 +173,7 @@ impl Flip {
                 across.along_columns(&self.gaussian, rows),
                 blurred.along_columns(derivative, rows),
             ];
-            x.combine(&y, f64::hypot)
+            x.combine(&y, length)
         });
         (0..gradients[0].values().len())
             .map(move |at| gradients.each_ref().map(|gradient| gradient.values()[at]))

@@ -73,14 +73,18 @@ impl ShaderPlace {
 
     /// ``wave.glsl, line 3: `p.x * 7.0` is 2.5, which other.glsl does not compute``
     fn describe(&self, other: &str) -> String {
-        let parts: Vec<String> = self
-            .value
-            .iter()
-            .map(|&part| digits(part, NumberType::Single))
-            .collect();
+        /// The largest number of components that are shown: a structure or an array may have many.
+        const SHOWN: usize = 4;
+        let parts = self.value.iter().take(SHOWN);
+        let mut parts: Vec<String> = parts.map(|&part| digits(part, NumberType::Single)).collect();
+        if self.value.len() > SHOWN {
+            parts.push("…".to_owned());
+        }
         let value = match &parts[..] {
-            [only] => only.clone(),
-            _ => format!("({})", parts.join(", ")),
+            // An assignment of integers.
+            [] => String::new(),
+            [only] => format!(" is {only}"),
+            _ => format!(" is ({})", parts.join(", ")),
         };
         let reason = if self.is_unknown {
             format!(", which {other} does not compute")
@@ -88,7 +92,7 @@ impl ShaderPlace {
             String::new()
         };
         format!(
-            "{}, line {}: {} is {value}{reason}",
+            "{}, line {}: {}{value}{reason}",
             self.file, self.range.line, self.text
         )
     }
