@@ -12,7 +12,7 @@ use toyproof_image::{Image, check_size, decoder_limits, from_decoded, input, ope
 use crate::MediaError;
 
 /// The most frames of a film, an hour at 30 frames per second.
-pub const MAX_FRAMES: usize = 108_000;
+const MAX_FRAMES: usize = 108_000;
 
 /// The most memory that the frames of a film may take, in bytes: a minute of 640×480 at 15 frames per second.
 const MAX_BYTES: usize = 1 << 30;

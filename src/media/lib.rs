@@ -39,8 +39,8 @@ mod sound;
 mod stand_in;
 mod volume;
 
-pub use self::animation::{Film, MAX_FRAMES, sequence_files};
-pub use self::cube::{face_direction, face_position, read_cube};
+pub use self::animation::{Film, sequence_files};
+pub use self::cube::read_cube;
 pub use self::error::MediaError;
 pub use self::folder::{MediaFolder, MediumNames, with_components};
 pub use self::music::{Music, silent_music};

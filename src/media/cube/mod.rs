@@ -21,11 +21,10 @@ use crate::material::{Color, in_levels};
 /// A direction or a position: x to the right, y up, z towards the viewer, right-handed.
 pub(crate) type Vector = [f32; 3];
 
-/// The direction of a point of a face, `u` to the right and `v` upwards in the file, each from 0 to 1.
-///
-/// Faces are +X −X +Y −Y +Z −Z. The file's first row is `t = 0` of OpenGL (4.6 §8.13, table 8.19), as it is
-/// uploaded without `vflip`. The length of the result is between 1 and √3.
-pub fn face_direction(face: usize, u: f32, v: f32) -> Vector {
+/// The direction of a point of a face, `u` to the right and `v` upwards in its file, each from 0 to 1, as
+/// [`toyproof_image::cube::texel_direction`] has it for the centers of texels. The file's first row is t = 0. The
+/// length is between 1 and √3.
+fn face_direction(face: usize, u: f32, v: f32) -> Vector {
     let (s, t) = (2.0 * u - 1.0, 1.0 - 2.0 * v);
     match face {
         0 => [1.0, -t, -s],
@@ -35,22 +34,6 @@ pub fn face_direction(face: usize, u: f32, v: f32) -> Vector {
         4 => [s, -t, 1.0],
         _ => [-s, -t, -1.0],
     }
-}
-
-/// The face and the position on it, `u` and `v`, that a direction samples: the inverse of
-/// [`face_direction`].
-pub fn face_position([x, y, z]: Vector) -> (usize, f32, f32) {
-    let [ax, ay, az] = [x, y, z].map(f32::abs);
-    let (face, s, t, major) = if ax >= ay && ax >= az {
-        if x > 0.0 { (0, -z, -y, ax) } else { (1, z, -y, ax) }
-    } else if ay >= az {
-        if y > 0.0 { (2, x, z, ay) } else { (3, x, -z, ay) }
-    } else if z > 0.0 {
-        (4, x, -y, az)
-    } else {
-        (5, -x, -y, az)
-    };
-    (face, 0.5 + 0.5 * s / major, 0.5 - 0.5 * t / major)
 }
 
 /// A unit vector.
@@ -169,27 +152,18 @@ fn lattice(position: Vector, shift: u32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_image::cube::texel_direction;
+
     use super::*;
 
     #[test]
-    fn faces_have_the_directions_of_cube_a() {
-        // The rays of the site's Cube A, with v from the first row: (1, 1 − 2v, 1 − 2u) on +X, and so on.
-        let (u, v) = (0.3, 0.9);
-        let (across, down) = (2.0 * u - 1.0, 2.0 * (1.0 - v) - 1.0);
-        let rays = [
-            [1.0, -down, -across],
-            [-1.0, -down, across],
-            [across, 1.0, down],
-            [across, -1.0, -down],
-            [across, -down, 1.0],
-            [-across, -down, -1.0],
-        ];
-        for (face, ray) in rays.into_iter().enumerate() {
-            let direction = face_direction(face, u, v);
-            assert!((0..3).all(|i| (direction[i] - ray[i]).abs() < 1e-6), "{face}");
-            let (back, back_u, back_v) = face_position(direction);
-            assert_eq!(back, face);
-            assert!((back_u - u).abs() < 1e-6 && (back_v - v).abs() < 1e-6, "{face}");
+    fn faces_have_the_directions_of_textures() {
+        for face in 0..6 {
+            for (x, y) in [(0, 0), (3, 0), (1, 2)] {
+                let direction = face_direction(face, (x as f32 + 0.5) / 4.0, (y as f32 + 0.5) / 4.0);
+                let expected = texel_direction(face as u32, [x, 3 - y], 4);
+                assert_eq!(direction.map(f64::from), expected, "{face}");
+            }
         }
     }
 
@@ -208,26 +182,14 @@ mod tests {
     #[test]
     fn environments_continue_across_the_edges_of_faces() {
         for environment in [forest, basilica, |direction| GALLERY.color(direction)] {
-            let maps = sharp(64, environment);
-            let texel = |direction: Vector| {
-                let (face, u, v) = face_position(direction);
-                let at = |coordinate: f32| ((coordinate * 64.0) as u32).min(63);
-                maps[face].get(at(u), at(v))
-            };
-            let difference = |a: Vector, b: Vector| {
-                let (a, b) = (texel(a), texel(b));
-                (0..3).map(|i| (a[i] - b[i]).abs()).sum::<f32>()
-            };
-            // Half a texel on both sides of the edges of +Z, and a texel apart inside of it.
-            let (mut across, mut inside) = (0.0, 0.0);
-            for at in 0..64 {
-                let along = (at as f32 + 0.5) / 32.0 - 1.0;
-                let near = 1.0 - 0.5 / 32.0;
-                across += difference([near, along, 1.0], [1.0, along, near]);
-                across += difference([along, near, 1.0], [along, 1.0, near]);
-                inside += difference([near, along, 1.0], [near - 1.0 / 32.0, along, 1.0]);
-                inside += difference([along, near, 1.0], [along, near - 1.0 / 32.0, 1.0]);
-            }
+            let [right, _, above, _, front, _] = sharp(64, environment);
+            let difference = |a: [f32; 4], b: [f32; 4]| (0..3).map(|i| (a[i] - b[i]).abs()).sum::<f32>();
+            let sum = |edge: &dyn Fn(u32) -> f32| (0..64).map(edge).sum::<f32>();
+            let across = sum(&|at| difference(front.get(63, at), right.get(0, at)))
+                + sum(&|at| difference(front.get(at, 63), above.get(at, 0)));
+            let inside = sum(&|at| difference(front.get(63, at), front.get(62, at)))
+                + sum(&|at| difference(front.get(at, 63), front.get(at, 62)));
+            // Neighbors are as far apart across an edge as inside; 1 is a hundredth for each of 128 pairs.
             assert!(across < 2.0 * inside + 1.0, "{across} of {inside}");
         }
     }
