@@ -365,7 +365,7 @@ impl Runner<'_> {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
         }
         let fingerprint = self.fingerprint(hasher);
-        let Some(sequence) = self.open_sequence(output, path, &fingerprint)? else {
+        let Some(sequence) = self.open_sequence(output, path, &fingerprint, None)? else {
             return Ok(());
         };
         let clock = self.clock(0);
@@ -621,12 +621,13 @@ impl Runner<'_> {
 
 impl<'a> Runner<'a> {
     /// Starts the sequence of an output, or goes on with an interrupted one with the same fingerprint; `None`
-    /// for a single image.
+    /// for a single image. `sound` is the file of a film's sound.
     fn open_sequence(
         &self,
         output: Output,
         path: &Path,
         fingerprint: &str,
+        sound: Option<&Path>,
     ) -> Result<Option<Sequence<'a>>, CliError> {
         if output != Output::Image {
             // Frames are in memory as a whole.
@@ -636,6 +637,7 @@ impl<'a> Runner<'a> {
         let args = &self.args.sequence;
         let settings = |frames, format| FilmSettings {
             keeps_alpha: self.args.transparent,
+            sound: sound.map(Path::to_owned),
             ..args.film(frames, format, self.frame.size)
         };
         Ok(Some(match output {

@@ -282,6 +282,24 @@ impl Runner<'_> {
         exit
     }
 
+    /// The sound of a film of a project, if it has one and the film can have it.
+    fn film_sound(
+        &self,
+        shader: &Shader,
+        passes: &CompiledProject,
+        output: Output,
+    ) -> Result<Option<tempfile::NamedTempFile>, CliError> {
+        let Output::Film(frames, format) = output else {
+            return Ok(None);
+        };
+        if !format.has_sound() {
+            return Ok(None);
+        }
+        let fps = self.args.sequence.fps;
+        let from = self.args.frame.start(0, fps) + f64::from(frames.first()) / fps;
+        self.sound_of_film(shader, passes, (from, frames.count() as f64 / fps))
+    }
+
     /// The inputs of all frames of a project; the one with this number has the time that the user gives.
     pub(super) fn clock_of(&self, rendering: &Rendering, number: i32) -> Clock {
         let mut clock = self.clock(number);
@@ -300,7 +318,9 @@ impl Runner<'_> {
     ) -> Result<Exit, CliError> {
         let scheduled = pass_shader(passes, rendering);
         let fingerprint = self.fingerprint_of_project(shader, passes);
-        let sequence = self.open_sequence(output, path, &fingerprint)?;
+        let sound = self.film_sound(shader, passes, output)?;
+        let sound = sound.as_ref().map(tempfile::NamedTempFile::path);
+        let sequence = self.open_sequence(output, path, &fingerprint, sound)?;
         let has_history = rendering.graph.passes().len() > 1;
         let first = match (&sequence, self.args.sequence.frames()?) {
             (Some(sequence), Some(frames)) => sequence.first_missing().unwrap_or(frames.first()),

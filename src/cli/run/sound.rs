@@ -1,5 +1,6 @@
 //! `toyproof run` of the sound of a project.
 
+use std::io::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
@@ -25,6 +26,25 @@ const MEASURED_ROWS: u32 = 8;
 /// An error of float32 of more than this part of full scale can be heard: −60 dB.
 const AUDIBLE: f32 = 1e-3;
 
+/// A compiled sound, with what it reads.
+struct Sound {
+    program: Program,
+    frame: Frame,
+}
+
+/// The WAV file of samples.
+fn file(samples: &[[f32; 2]]) -> Result<Vec<u8>, CliError> {
+    let levels: Vec<_> = samples.iter().map(|sample| sample.map(sample_level)).collect();
+    wav(&levels).map_err(CliError::new)
+}
+
+fn failed(failure: &eval::Failure, shader: &Shader) -> CliError {
+    match image_failure(failure, shader) {
+        ImageFailure::Failed(error) => error,
+        ImageFailure::Interrupted => CliError::silent(),
+    }
+}
+
 impl Runner<'_> {
     /// Computes the sound of a project, and writes it as a WAV file.
     pub(super) fn sound(
@@ -34,31 +54,14 @@ impl Runner<'_> {
         seconds: Option<f64>,
         path: &Path,
     ) -> Result<(), CliError> {
-        let Some(rendering) = passes.project.sound() else {
+        let Some(sound) = self.prepared_sound(shader, passes)? else {
             let error = CliError::new(format_args!("{}: there is no {}", shader.name, PassKind::Sound));
             return Err(error.with_help("the tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`"));
         };
-        report_missing(&rendering, &[const { None }; 4], &shader.name, self.terminal);
-        let frame = self.clock_of(&rendering, 0).frame(0);
-        let frame = bound(&rendering, &frame).unwrap_or(frame);
-        let checked = &passes.checked[rendering.passes[0]];
-        let limit = self.args.driver.explicit_timeout();
-        let program = Program::prepared_within(checked, UndefinedPolicy::Plain, Some(limit));
-        let failed = |failure: &eval::Failure| match image_failure(failure, shader) {
-            ImageFailure::Failed(error) => error,
-            ImageFailure::Interrupted => CliError::silent(),
-        };
-        let program = program.map_err(|refusal| failed(&refusal.into()))?;
-        let seconds = seconds.unwrap_or(SOUND_SECONDS);
-        let count = (seconds * f64::from(SAMPLE_RATE)).round().max(1.0) as usize;
         let start = Instant::now();
-        let samples = match self.args.precision {
-            Precision::F32 => self.samples::<f32>(&program, &frame, count),
-            Precision::F64 => self.samples::<f64>(&program, &frame, count),
-        };
-        let samples = samples.map_err(|failure| failed(&failure))?;
-        let levels: Vec<_> = samples.iter().map(|sample| sample.map(sample_level)).collect();
-        let bytes = wav(&levels).map_err(CliError::new)?;
+        let samples = self.all_samples(&sound, seconds.unwrap_or(SOUND_SECONDS), shader)?;
+        let count = samples.len();
+        let bytes = file(&samples)?;
         self.terminal.write(path, &bytes)?;
         let facts = format!(
             "{:.1} s, {SAMPLE_RATE} Hz, stereo, {} on CPU, {}, {:.2} s",
@@ -69,26 +72,70 @@ impl Runner<'_> {
         );
         self.terminal.confirm(path, &facts);
         if self.args.precision == Precision::F32 {
-            let error = self.precision(&program, &frame, &samples).map_err(|failure| failed(&failure))?;
+            let error = self.precision(&sound, &samples).map_err(|failure| failed(&failure, shader))?;
             self.report_precision(error, count, shader);
         }
         Ok(())
     }
 
-    /// The samples, block by block.
-    fn samples<N: Number>(
+    /// Writes the sound of a film of a project from a time on, in seconds, to a temporary file; `None` if the
+    /// project has no sound.
+    pub(super) fn sound_of_film(
         &self,
-        program: &Program,
-        frame: &Frame,
-        count: usize,
-    ) -> Result<Vec<[f32; 2]>, eval::Failure> {
+        shader: &Shader,
+        passes: &CompiledProject,
+        (from, seconds): (f64, f64),
+    ) -> Result<Option<tempfile::NamedTempFile>, CliError> {
+        let Some(sound) = self.prepared_sound(shader, passes)? else {
+            return Ok(None);
+        };
+        let from = from.max(0.0);
+        let samples = self.all_samples(&sound, from + seconds, shader)?;
+        let first = (from * f64::from(SAMPLE_RATE)) as usize;
+        let bytes = file(&samples[first.min(samples.len() - 1)..])?;
+        let temporary = tempfile::Builder::new().prefix("toyproof-").suffix(".wav").tempfile();
+        let temporary = temporary.and_then(|mut temporary| {
+            temporary.write_all(&bytes)?;
+            Ok(temporary)
+        });
+        temporary.map(Some).map_err(|error| CliError::new(format_args!("a temporary file: {error}")))
+    }
+
+    /// Compiles the sound of a project, if it has one.
+    fn prepared_sound(&self, shader: &Shader, passes: &CompiledProject) -> Result<Option<Sound>, CliError> {
+        let Some(rendering) = passes.project.sound() else {
+            return Ok(None);
+        };
+        report_missing(&rendering, &[const { None }; 4], &shader.name, self.terminal);
+        let frame = self.clock_of(&rendering, 0).frame(0);
+        let checked = &passes.checked[rendering.passes[0]];
+        let limit = self.args.driver.explicit_timeout();
+        let program = Program::prepared_within(checked, UndefinedPolicy::Plain, Some(limit));
+        Ok(Some(Sound {
+            program: program.map_err(|refusal| failed(&refusal.into(), shader))?,
+            frame: bound(&rendering, &frame).unwrap_or(frame),
+        }))
+    }
+
+    /// The samples of the first seconds of a sound.
+    fn all_samples(&self, sound: &Sound, seconds: f64, shader: &Shader) -> Result<Vec<[f32; 2]>, CliError> {
+        let count = (seconds * f64::from(SAMPLE_RATE)).round().max(1.0) as usize;
+        let samples = match self.args.precision {
+            Precision::F32 => self.samples::<f32>(sound, count),
+            Precision::F64 => self.samples::<f64>(sound, count),
+        };
+        samples.map_err(|failure| failed(&failure, shader))
+    }
+
+    /// The samples, block by block.
+    fn samples<N: Number>(&self, sound: &Sound, count: usize) -> Result<Vec<[f32; 2]>, eval::Failure> {
         let rows = count.div_ceil(SOUND_COLUMNS as usize) as u32;
         let bar = self.terminal.bar(u64::from(rows), "rows of samples");
         let mut samples = Vec::with_capacity(count);
         for first in (0..rows).step_by(BLOCK_ROWS as usize) {
             let block = first..(first + BLOCK_ROWS).min(rows);
             bar.inc(block.len() as u64);
-            samples.extend(program.sound(frame, block, &self.sound_settings::<N>())?);
+            samples.extend(sound.program.sound(&sound.frame, block, &self.sound_settings::<N>())?);
         }
         bar.finish_and_clear();
         samples.truncate(count);
@@ -104,16 +151,12 @@ impl Runner<'_> {
     }
 
     /// The largest difference between float32 and double precision at the end of the sound.
-    fn precision(
-        &self,
-        program: &Program,
-        frame: &Frame,
-        samples: &[[f32; 2]],
-    ) -> Result<f32, eval::Failure> {
+    fn precision(&self, sound: &Sound, samples: &[[f32; 2]]) -> Result<f32, eval::Failure> {
         let columns = SOUND_COLUMNS as usize;
         let last = samples.len().div_ceil(columns) as u32;
         let first = last.saturating_sub(MEASURED_ROWS);
-        let double = program.sound(frame, first..last, &self.sound_settings::<f64>())?;
+        let settings = self.sound_settings::<f64>();
+        let double = sound.program.sound(&sound.frame, first..last, &settings)?;
         let single = &samples[first as usize * columns..];
         let pairs = single.as_flattened().iter().zip(double.as_flattened());
         let differences = pairs.map(|(single, double)| (single - double).abs());
