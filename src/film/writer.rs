@@ -71,22 +71,39 @@ impl FilmWriter {
     /// # Errors
     /// Those of [`check`], and if the frames cannot be written.
     pub fn open(path: &Path, settings: FilmSettings, fingerprint: &str) -> Result<Self, FilmError> {
+        Self::open_in(None, path, settings, fingerprint)
+    }
+
+    /// Starts a film as [`Self::open`] does, as one of the files of a folder, in which no link is followed.
+    ///
+    /// # Errors
+    /// As for [`Self::open`], and if a folder between `folder` and the film is a link.
+    pub fn open_inside(
+        folder: &Path,
+        path: &Path,
+        settings: FilmSettings,
+        fingerprint: &str,
+    ) -> Result<Self, FilmError> {
+        Self::open_in(Some(folder), path, settings, fingerprint)
+    }
+
+    fn open_in(
+        folder: Option<&Path>,
+        path: &Path,
+        settings: FilmSettings,
+        fingerprint: &str,
+    ) -> Result<Self, FilmError> {
         check(&settings)?;
         let mut name = path.as_os_str().to_owned();
         name.push(".frames");
+        let paths = (folder, Path::new(&name));
+        let store = FrameStore::open(paths, settings.size, settings.keeps_alpha, fingerprint)?;
         Ok(Self {
             path: path.to_owned(),
-            folder: None,
-            store: FrameStore::open(Path::new(&name), settings.size, settings.keeps_alpha, fingerprint)?,
+            folder: folder.map(Path::to_owned),
             settings,
+            store,
         })
-    }
-
-    /// Writes the film as one of the files of a folder, in which no link is followed.
-    #[must_use]
-    pub fn inside(mut self, folder: &Path) -> Self {
-        self.folder = Some(folder.to_owned());
-        self
     }
 
     /// The number of frames that exist: the next one to add has this number.

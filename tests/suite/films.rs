@@ -1,4 +1,4 @@
-//! Films of `run` and `render`: GIF and APNG, which are decoded here, and MP4, WebM and Y4M, which ffmpeg
+//! Films of `run` and `render`: GIF and APNG, which are decoded here, and MP4, `WebM` and Y4M, which ffmpeg
 //! decodes.
 
 use std::fs;
@@ -551,4 +551,20 @@ fn ffmpeg_states_why_it_fails_and_the_frames_are_kept() {
     settings.sound = None;
     let film = FilmWriter::open(&path, settings, "a").unwrap();
     assert_eq!(film.existing(), 10);
+}
+
+/// A folder of films is an output folder like any other: no link in it leads out.
+#[cfg(unix)]
+#[test]
+fn a_film_follows_no_link_out_of_its_folder() {
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime); }";
+    let folder = folder(&[("in/a/s.glsl", text), ("in/b/s.glsl", text), ("away/keep", "")]);
+    let folder = folder.path();
+    fs::create_dir(folder.join("out")).unwrap();
+    std::os::unix::fs::symlink("../away", folder.join("out/a")).unwrap();
+    let run = run(folder, "run in -o out --to gif --duration 0.1 --size 4x4");
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("is a symbolic link"), "{}", run.stderr);
+    assert_eq!(fs::read_dir(folder.join("away")).unwrap().count(), 1);
+    assert!(folder.join("out/b/s.gif").is_file(), "{}", run.stderr);
 }
