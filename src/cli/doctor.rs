@@ -48,7 +48,7 @@ struct Report {
     error: Option<String>,
     /// For each manifest, whether its driver starts alone; empty if all start together.
     tests: Vec<DriverTest>,
-    /// The version of ffmpeg, which writes MP4 and WebM; null if it is not installed.
+    /// The version of ffmpeg, which writes MP4 and `WebM`; null if it is not installed.
     ffmpeg: Option<String>,
 }
 

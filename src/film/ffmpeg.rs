@@ -1,6 +1,7 @@
 //! MP4 and `WebM` by the ffmpeg that is installed, which reads `Y'CbCr` from a pipe. It is a program of its
 //! own, so that neither its licence nor its faults are those of this one.
 
+use std::ffi::OsString;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -88,8 +89,7 @@ impl FfmpegEncoder {
         let mut command = Command::new(PROGRAM);
         command
             .args(arguments(settings))
-            // A name that begins with `-`, or looks like a protocol, is that of a file.
-            .arg(format!("file:{}", path.to_string_lossy()))
+            .arg(file(path))
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped());
@@ -167,8 +167,15 @@ pub(crate) fn coded_size(settings: &FilmSettings) -> [u32; 2] {
     }
 }
 
+/// The argument for a file, also one whose name begins with `-` or looks like a protocol.
+fn file(path: &Path) -> OsString {
+    let mut argument = OsString::from("file:");
+    argument.push(path);
+    argument
+}
+
 /// The arguments before the name of the file.
-fn arguments(settings: &FilmSettings) -> Vec<String> {
+fn arguments(settings: &FilmSettings) -> Vec<OsString> {
     let pixels = if settings.keeps_alpha {
         "yuva420p"
     } else {
@@ -180,16 +187,15 @@ fn arguments(settings: &FilmSettings) -> Vec<String> {
     let [width, height] = coded_size(settings);
     let rate = settings.rate;
     let mut arguments = Vec::new();
-    let mut add = |text: &str| arguments.extend(text.split_whitespace().map(str::to_owned));
+    let mut add = |text: &str| arguments.extend(text.split_whitespace().map(OsString::from));
     add(&format!(
         "-nostdin -hide_banner -loglevel error -y -f rawvideo -pix_fmt {pixels} -video_size {width}x{height} \
          -framerate {rate} {colors} -i pipe:0"
     ));
     if let Some(sound) = &settings.sound {
-        // A name may have spaces.
-        arguments.extend(["-i".to_owned(), format!("file:{}", sound.to_string_lossy())]);
+        arguments.extend(["-i".into(), file(sound)]);
     }
-    let mut add = |text: &str| arguments.extend(text.split_whitespace().map(str::to_owned));
+    let mut add = |text: &str| arguments.extend(text.split_whitespace().map(OsString::from));
     add(&format!(
         "-pix_fmt {pixels} {colors} -c:v {}",
         encoder(settings.format)

@@ -5,7 +5,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::path_name;
-use toyproof_image::input;
+use toyproof_image::{input, output};
 
 use crate::FilmError;
 use crate::frame::DisplayFrame;
@@ -28,34 +28,29 @@ pub(crate) struct FrameStore {
 
 impl FrameStore {
     /// Opens the frames that an earlier run left, if it has the same fingerprint, or makes an empty store. A
-    /// frame that was not written completely is dropped.
+    /// frame that was not written completely is dropped. In a folder, if one is given, no link is followed.
     pub(crate) fn open(
-        path: &Path,
+        (folder, path): (Option<&Path>, &Path),
         size: [u32; 2],
         keeps_alpha: bool,
         fingerprint: &str,
     ) -> Result<Self, FilmError> {
-        let unwritable = |error: io::Error| unwritable(path, &error);
         let head = format!("{FORMAT} {fingerprint} {size:?} {keeps_alpha}\n");
-        let existing = input::open(path).map(|file| (has_head(&file, &head), file));
-        let is_continued = match existing {
-            Ok((is_own, _)) => is_own,
+        let is_continued = match input::open(path) {
+            Ok(file) => has_head(&file, &head),
             Err(error) if error.kind() == io::ErrorKind::NotFound => false,
-            Err(error) => return Err(unwritable(error)),
+            Err(error) => return Err(unwritable(path, &error)),
         };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(unwritable)?;
-        }
-        let mut options = OpenOptions::new();
-        options
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(!is_continued);
-        let mut file = options.open(path).map_err(unwritable)?;
         if !is_continued {
-            file.write_all(head.as_bytes()).map_err(unwritable)?;
+            let written = match folder {
+                Some(folder) => output::write_inside(folder, path, head.as_bytes()),
+                None => output::write(path, head.as_bytes()),
+            };
+            written.map_err(FilmError::Unwritable)?;
         }
+        let unwritable = |error: io::Error| unwritable(path, &error);
+        let file = OpenOptions::new().read(true).write(true).open(path);
+        let file = file.map_err(unwritable)?;
         let mut store = Self {
             path: path.to_owned(),
             file,
@@ -207,7 +202,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for (keeps_alpha, alpha) in [(false, 255), (true, 100)] {
             let path = folder.path().join(format!("{keeps_alpha}"));
-            let mut store = FrameStore::open(&path, [3, 2], keeps_alpha, "a").unwrap();
+            let mut store = FrameStore::open((None, &path), [3, 2], keeps_alpha, "a").unwrap();
             for level in [1, 2] {
                 store.push(&frame(level, alpha)).unwrap();
             }
@@ -222,7 +217,7 @@ mod tests {
     fn a_store_goes_on_after_its_last_complete_frame() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/x.frames");
-        let open = |fingerprint: &str| FrameStore::open(&path, [3, 2], false, fingerprint).unwrap();
+        let open = |fingerprint: &str| FrameStore::open((None, &path), [3, 2], false, fingerprint).unwrap();
         let mut store = open("a");
         for level in [1, 2] {
             store.push(&frame(level, 255)).unwrap();
@@ -243,7 +238,7 @@ mod tests {
         assert_eq!((store.len(), store.read(1).unwrap()), (2, frame(9, 255)));
         drop(store);
         assert_eq!(open("b").len(), 0, "another film");
-        let smaller = FrameStore::open(&path, [2, 2], false, "b").unwrap();
+        let smaller = FrameStore::open((None, &path), [2, 2], false, "b").unwrap();
         assert_eq!(smaller.len(), 0, "another size");
         smaller.remove();
         assert!(!path.exists());
@@ -253,7 +248,7 @@ mod tests {
     fn damage_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.frames");
-        let mut store = FrameStore::open(&path, [3, 2], false, "a").unwrap();
+        let mut store = FrameStore::open((None, &path), [3, 2], false, "a").unwrap();
         store.push(&frame(1, 255)).unwrap();
         let (start, length) = store.frames[0];
         store.file.seek(SeekFrom::Start(start)).unwrap();

@@ -71,22 +71,39 @@ impl FilmWriter {
     /// # Errors
     /// Those of [`check`], and if the frames cannot be written.
     pub fn open(path: &Path, settings: FilmSettings, fingerprint: &str) -> Result<Self, FilmError> {
+        Self::open_in(None, path, settings, fingerprint)
+    }
+
+    /// Starts a film as [`Self::open`] does, as one of the files of a folder, in which no link is followed.
+    ///
+    /// # Errors
+    /// As for [`Self::open`], and if a folder between `folder` and the film is a link.
+    pub fn open_inside(
+        folder: &Path,
+        path: &Path,
+        settings: FilmSettings,
+        fingerprint: &str,
+    ) -> Result<Self, FilmError> {
+        Self::open_in(Some(folder), path, settings, fingerprint)
+    }
+
+    fn open_in(
+        folder: Option<&Path>,
+        path: &Path,
+        settings: FilmSettings,
+        fingerprint: &str,
+    ) -> Result<Self, FilmError> {
         check(&settings)?;
         let mut name = path.as_os_str().to_owned();
         name.push(".frames");
+        let paths = (folder, Path::new(&name));
+        let store = FrameStore::open(paths, settings.size, settings.keeps_alpha, fingerprint)?;
         Ok(Self {
             path: path.to_owned(),
-            folder: None,
-            store: FrameStore::open(Path::new(&name), settings.size, settings.keeps_alpha, fingerprint)?,
+            folder: folder.map(Path::to_owned),
             settings,
+            store,
         })
-    }
-
-    /// Writes the film as one of the files of a folder, in which no link is followed.
-    #[must_use]
-    pub fn inside(mut self, folder: &Path) -> Self {
-        self.folder = Some(folder.to_owned());
-        self
     }
 
     /// The number of frames that exist: the next one to add has this number.
@@ -133,6 +150,7 @@ impl FilmWriter {
         self.settings.frames.saturating_mul(self.settings.repetitions())
     }
 
+    /// Encodes the film into a file, which takes the place of that at the film's path.
     fn encode(&mut self, file: &Path, progress: &mut dyn FnMut(u32) -> bool) -> Result<Film, FilmError> {
         let mut encoder = self.encoder(file)?;
         let mut meter = SeamMeter::default();
@@ -145,10 +163,10 @@ impl FilmWriter {
             if step < frames {
                 meter.add(&frame);
             }
-            encoder.add(&frame, file)?;
+            encoder.add(&frame, &self.path)?;
         }
-        let shown = encoder.finish(file)?.unwrap_or(self.steps());
-        let found = std::fs::metadata(file).map_err(|error| unwritable(file, &error))?;
+        let shown = encoder.finish(&self.path)?.unwrap_or(self.steps());
+        let found = std::fs::metadata(file).map_err(|error| unwritable(&self.path, &error))?;
         Ok(Film {
             bytes: found.len(),
             size: ffmpeg::coded_size(&self.settings),
@@ -162,7 +180,8 @@ impl FilmWriter {
         if let Format::Mp4 | Format::Webm = settings.format {
             return Ok(Encoder::Ffmpeg(FfmpegEncoder::new(file, settings)?));
         }
-        let unwritable = |error: io::Error| unwritable(file, &error);
+        let path = &self.path;
+        let unwritable = |error: io::Error| unwritable(path, &error);
         let opened = OpenOptions::new().write(true).open(file).map_err(unwritable)?;
         let out = BufWriter::new(opened);
         let encoder = match settings.format {
@@ -192,25 +211,26 @@ enum Encoder<W: Write> {
 }
 
 impl<W: Write> Encoder<W> {
-    fn add(&mut self, frame: &DisplayFrame, file: &Path) -> Result<(), FilmError> {
+    /// Adds a frame of the film at a path, which errors name.
+    fn add(&mut self, frame: &DisplayFrame, path: &Path) -> Result<(), FilmError> {
         let added = match self {
             Self::Gif(encoder) => encoder.add(frame),
             Self::Apng(encoder) => encoder.add(frame),
             Self::Raw(encoder) => encoder.add(frame),
             Self::Ffmpeg(encoder) => return encoder.add(frame),
         };
-        added.map_err(|error| unwritable(file, &error))
+        added.map_err(|error| unwritable(path, &error))
     }
 
     /// Ends the film; returns the number of shown frames, if that is not the number of added ones.
-    fn finish(self, file: &Path) -> Result<Option<u32>, FilmError> {
+    fn finish(self, path: &Path) -> Result<Option<u32>, FilmError> {
         let finished = match self {
             Self::Gif(encoder) => encoder.finish().map(Some),
             Self::Apng(encoder) => encoder.finish().map(|()| None),
             Self::Raw(encoder) => encoder.finish().map(|()| None),
             Self::Ffmpeg(encoder) => return encoder.finish().map(|()| None),
         };
-        finished.map_err(|error| unwritable(file, &error))
+        finished.map_err(|error| unwritable(path, &error))
     }
 }
 

@@ -1,11 +1,12 @@
-//! Films of `run` and `render`: GIF and APNG, which are decoded here, and MP4, WebM and Y4M, which ffmpeg
+//! Films of `run` and `render`: GIF and APNG, which are decoded here, and MP4, `WebM` and Y4M, which ffmpeg
 //! decodes.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use toyproof::image;
+use toyproof::film::{Film, FilmError, FilmSettings, FilmWriter, Format, FrameRate, Plays};
+use toyproof::image::{self, Image};
 
 use crate::program::{Run, toyproof};
 use crate::requirements::{require_ffmpeg, skip};
@@ -461,4 +462,109 @@ fn an_image_in_bands_is_the_same_and_may_be_wider_than_drivers_render() {
         assert_eq!(run.code, 2, "{arguments}: {}", run.stderr);
         assert!(run.stderr.contains(reason), "{arguments}: {}", run.stderr);
     }
+}
+
+/// Ten gray frames, in a second.
+fn gray_film(format: Format) -> FilmSettings {
+    FilmSettings::new(format, [16, 8], FrameRate::nearest(10.0), 10)
+}
+
+fn write_gray(path: &Path, settings: &FilmSettings) -> Result<Film, FilmError> {
+    let mut film = FilmWriter::open(path, settings.clone(), "a")?;
+    for number in film.existing()..settings.frames {
+        let level = number as f32 / 10.0;
+        film.add(&Image::new(16, 8, vec![[level, level, level, 1.0]; 128]))?;
+    }
+    film.finish(&mut |_| true)
+}
+
+/// A WAV file of silence: 16 bits, mono, 8 kHz.
+fn silence(seconds: u32) -> Vec<u8> {
+    let bytes = 16_000 * seconds;
+    let mut wav = Vec::new();
+    wav.extend(b"RIFF");
+    wav.extend((36 + bytes).to_le_bytes());
+    wav.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0");
+    wav.extend(8_000_u32.to_le_bytes());
+    wav.extend(16_000_u32.to_le_bytes());
+    wav.extend(b"\x02\0\x10\0data");
+    wav.extend(bytes.to_le_bytes());
+    wav.resize(wav.len() + bytes as usize, 0);
+    wav
+}
+
+#[test]
+fn sound_is_cut_at_the_end_of_the_film() {
+    if !require_ffmpeg() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let sound = folder.path().join("a sound.wav");
+    std::fs::write(&sound, silence(5)).unwrap();
+    for (format, codec) in [(Format::Mp4, "aac"), (Format::Webm, "opus")] {
+        let path = folder.path().join("a_film");
+        let mut settings = gray_film(format);
+        settings.sound = Some(sound.clone());
+        write_gray(&path, &settings).unwrap();
+        let found = probe(folder.path(), "a_film");
+        assert!(found.contains(&format!("codec_name={codec}\n")), "{found}");
+        let duration = found.lines().find_map(|line| line.strip_prefix("duration="));
+        let duration: f64 = duration.unwrap().parse().unwrap();
+        // A block of AAC or Opus is at most 1024 samples at 8 kHz, or 60 ms.
+        assert!((1.0..1.0 + 0.129).contains(&duration), "{format}: {duration}");
+    }
+}
+
+#[test]
+fn a_film_without_a_count_has_its_frames_several_times() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mp4");
+    if !require_ffmpeg() {
+        return;
+    }
+    let mut settings = gray_film(Format::Mp4);
+    settings.plays = Plays::Count(3);
+    let film = write_gray(&path, &settings).unwrap();
+    assert_eq!(film.shown, 30);
+    assert!(probe(folder.path(), "a.mp4").contains("nb_read_frames=30\n"));
+}
+
+#[test]
+fn ffmpeg_states_why_it_fails_and_the_frames_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mp4");
+    if !require_ffmpeg() {
+        return;
+    }
+    let mut settings = gray_film(Format::Mp4);
+    settings.sound = Some(folder.path().join("none.wav"));
+    let error = write_gray(&path, &settings).unwrap_err();
+    assert!(
+        matches!(&error, FilmError::Ffmpeg(message) if message.contains("none.wav")),
+        "{error}"
+    );
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    assert_eq!(left, ["a.mp4.frames"]);
+    settings.sound = None;
+    let film = FilmWriter::open(&path, settings, "a").unwrap();
+    assert_eq!(film.existing(), 10);
+}
+
+/// A folder of films is an output folder like any other: no link in it leads out.
+#[cfg(unix)]
+#[test]
+fn a_film_follows_no_link_out_of_its_folder() {
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime); }";
+    let folder = folder(&[("in/a/s.glsl", text), ("in/b/s.glsl", text), ("away/keep", "")]);
+    let folder = folder.path();
+    fs::create_dir(folder.join("out")).unwrap();
+    std::os::unix::fs::symlink("../away", folder.join("out/a")).unwrap();
+    let run = run(folder, "run in -o out --to gif --duration 0.1 --size 4x4");
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("is a symbolic link"), "{}", run.stderr);
+    assert_eq!(fs::read_dir(folder.join("away")).unwrap().count(), 1);
+    assert!(folder.join("out/b/s.gif").is_file(), "{}", run.stderr);
 }

@@ -16,7 +16,7 @@ const MAX_DURATION: f64 = 24.0 * 60.0 * 60.0;
 
 /// Frames over time.
 #[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Frames")]
+#[command(next_help_heading = "Films and sequences")]
 pub(in crate::cli) struct SequenceArgs {
     /// Render a film of this length, in seconds
     ///

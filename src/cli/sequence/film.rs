@@ -40,10 +40,12 @@ impl FilmFile {
         terminal: &Terminal,
     ) -> Result<Self, CliError> {
         let fingerprint = format!("{fingerprint} {}", frames.first());
-        let mut writer = FilmWriter::open(path, settings.clone(), &fingerprint).map_err(film_error)?;
-        if path != output && path.starts_with(output) {
-            writer = writer.inside(output);
-        }
+        let writer = if path != output && path.starts_with(output) {
+            FilmWriter::open_inside(output, path, settings.clone(), &fingerprint)
+        } else {
+            FilmWriter::open(path, settings.clone(), &fingerprint)
+        };
+        let writer = writer.map_err(film_error)?;
         report_existing(u64::from(writer.existing()), frames, terminal);
         Ok(Self {
             frames,
