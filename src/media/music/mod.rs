@@ -5,6 +5,7 @@ mod analyser;
 mod decode;
 mod fft;
 mod silence;
+mod vorbis;
 
 use std::collections::VecDeque;
 use std::path::Path;
