@@ -32,7 +32,7 @@
 //! | `eval` | evaluating shaders on the CPU |
 //! | `tracer` | scenes and the reference tracer |
 //! | `translate` | translation by naga to SPIR-V, WGSL, MSL, HLSL and GLSL |
-//! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision) |
+//! | `verify` | the three checks and the verdict (without `gpu`: algorithm and precision); metrics of images |
 //! | `explain` | the mistake that explains a wrong image, and its repair |
 //! | `gpu` | rendering on a Vulkan driver, in a worker process |
 //! | `convert` | conversions, and their proofs |
@@ -95,6 +95,8 @@ pub use toyproof_lint as lint;
 pub use toyproof_math as math;
 #[cfg(feature = "media")]
 pub use toyproof_media as media;
+#[cfg(feature = "verify")]
+pub use toyproof_metrics as metrics;
 #[cfg(feature = "eval")]
 pub use toyproof_player as player;
 #[cfg(feature = "project")]

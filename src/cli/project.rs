@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Files, all_of, path_name};
+use toyproof_glsl::{Dialect, Filter};
+use toyproof_image::Texture;
 use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
 use toyproof_project::{CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_verify::Failure;
@@ -29,6 +31,32 @@ pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rende
 pub(super) fn rendering(project: &CompiledProject, kind: PassKind) -> Result<Rendering, Failure> {
     let rendering = project.rendering(kind);
     rendering.map_err(|error| Failure::Unrendered(error.to_string()))
+}
+
+/// Binds the textures that the user names to the channels of the image, instead of what the project reads there.
+pub(super) fn bind_channels(
+    project: &CompiledProject,
+    rendering: &mut Rendering,
+    channels: &[Option<Texture>; 4],
+) {
+    for (channel, texture) in channels.iter().enumerate() {
+        if let Some(texture) = texture {
+            let has_mipmaps = project.image().sampling[channel].filter == Filter::Mipmap;
+            let texture = texture.clone();
+            let medium = rendering.media.len();
+            // The passes of ISF have the same inputs.
+            if project.image().dialect == Dialect::Isf {
+                rendering.graph.bind_to_all(channel, medium);
+            } else {
+                rendering.graph.bind_to_image(channel, medium);
+            }
+            rendering.media.push(if has_mipmaps {
+                texture.with_mipmaps()
+            } else {
+                texture
+            });
+        }
+    }
 }
 
 /// The files of the media that an input with these texts reads from its folder, if it is a project.

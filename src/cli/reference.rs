@@ -41,17 +41,14 @@ pub(super) struct ReferenceArgs {
     tolerance: Option<f64>,
 }
 
-fn parse_tolerance(text: &str) -> Result<f64, String> {
+/// Parses a tolerance in 8-bit levels.
+pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
     parse_number(
         text,
         0.0..=255.0,
         "a number of 8-bit levels from 0 to 255, such as 0.5",
     )
 }
-
-/// The default tolerance of images of 8 bits: one level, since a color between two levels may be rounded to
-/// either.
-const EIGHT_BIT_TOLERANCE: f64 = 1.0 / 255.0;
 
 impl ReferenceArgs {
     /// The reference of an assignment.
@@ -124,7 +121,7 @@ impl GivenReference {
         };
         let (content, bytes) = read(path, language, timeout)?;
         let default = match content {
-            Content::Image(_, Quantization::EightBit) => EIGHT_BIT_TOLERANCE,
+            Content::Image(_, Quantization::EightBit) => Quantization::EIGHT_BIT_TOLERANCE,
             Content::Image(_, Quantization::Float) | Content::Shader(..) => DEFAULT_TOLERANCE,
         };
         let tolerance = args.tolerance().unwrap_or(default);
@@ -324,7 +321,7 @@ pub(super) fn ill_conditioned(name: &str, [width, height]: [u32; 2], conditionin
 fn read(path: &Path, language: &LanguageArgs, timeout: Duration) -> Result<(Content, Vec<u8>), CliError> {
     let name = path_name(path);
     let extension = path.extension().and_then(OsStr::to_str).map(str::to_lowercase);
-    let quantization = match extension.as_deref() {
+    match extension.as_deref() {
         _ if files::is_folder_of_shaders(path) => {
             return Err(CliError::new(format_args!(
                 "{name} is a folder; `--reference` takes a single shader or an image"
@@ -334,16 +331,14 @@ fn read(path: &Path, language: &LanguageArgs, timeout: Duration) -> Result<(Cont
             let error = CliError::new(format_args!("{name} is a scene"));
             return Err(error.with_help("name it with --scene instead of --reference"));
         }
-        Some("png") => Some(Quantization::EightBit),
-        Some("exr") => Some(Quantization::Float),
         Some("jpg" | "jpeg" | "gif" | "bmp" | "webp" | "tga" | "tif" | "tiff" | "hdr") => {
             return Err(CliError::new(format_args!(
                 "{name}: images are read from .png and .exr files only"
             )));
         }
-        _ => None,
-    };
-    if let Some(quantization) = quantization {
+        _ => {}
+    }
+    if let Some(quantization) = Quantization::of_file(path) {
         let image = image::read(path)?;
         let bytes = input::read(path).map_err(|error| format!("{name}: {error}"))?;
         return Ok((Content::Image(image, quantization), bytes));

@@ -8,13 +8,13 @@ use std::time::Instant;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
-use toyproof_image::{Frame, Image};
+use toyproof_image::{ExrAttributes, Frame, Image, encode_exr};
 use toyproof_project::files;
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
-use toyproof_tracer::{Backend, Tracer};
-use toyproof_verify::Expected;
+use toyproof_tracer::{Backend, Layers, Tracer};
+use toyproof_verify::{Expected, Quantization};
 
-use super::inputs::check_output;
+use super::inputs::{check_output, shell_word};
 use super::reference::ill_conditioned;
 use super::run::{Precision, default_output, encode};
 use super::scenes::{parse_scene, read_scene};
@@ -54,6 +54,13 @@ pub(super) struct Args {
     /// The error is estimated for every tile of 16x16 pixels. This needs a stochastic sampler.
     #[arg(long, value_name = "ERROR", value_parser = parse_max_error, conflicts_with = "samples", allow_negative_numbers = true)]
     max_error: Option<f64>,
+    /// Add depth, normals, albedo, object numbers and the variance of the samples to an EXR, as channels of
+    /// their own
+    ///
+    /// The channels are Z, Normal.X to Normal.Z, Albedo.R to Albedo.B, id, and variance.R to variance.B if
+    /// there are several samples. Readers of colors ignore them.
+    #[arg(long, conflicts_with = "max_error")]
+    layers: bool,
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = inputs::parse_size)]
     size: Option<[u32; 2]>,
@@ -114,6 +121,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         .output
         .clone()
         .unwrap_or_else(|| default_output(&args.scene, &args.sequence));
+    if args.layers && Quantization::of_file(&output) != Some(Quantization::Float) {
+        let error = CliError::new("only an EXR file has layers");
+        return Err(error.with_help(format_args!(
+            "write one with -o {}",
+            shell_word(&path_name(&output.with_extension("exr")))
+        )));
+    }
     let mut previous = PreviousTracers::default();
     let Some(sequence) = open_sequence(&scene, args, &output, terminal)? else {
         let frame_time = FrameTime {
@@ -128,10 +142,15 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
             frame: number,
             time: args.time + f64::from(number) / args.sequence.fps,
         };
-        let image = render_frame(&scene, frame_time, &mut previous, (args, true), terminal);
         match destination {
-            Destination::File(path) => terminal.write(path, &encode(&image, path, false)?)?,
-            Destination::Film(film) => film.add(&image)?,
+            Destination::File(path) => {
+                let of_args = (args, true);
+                let bytes = frame_file(&scene, frame_time, &mut previous, of_args, path, terminal)?;
+                terminal.write(path, &bytes)?;
+            }
+            Destination::Film(film) => {
+                film.add(&render_frame(&scene, frame_time, &mut previous, (args, true), terminal))?;
+            }
         }
         Ok(FrameEnd::Written)
     })?;
@@ -147,7 +166,7 @@ fn open_sequence<'t>(
 ) -> Result<Option<Sequence<'t>>, CliError> {
     // Identifies the rendering: frames of a different scene or with other settings are ignored.
     let mut hasher = DefaultHasher::new();
-    let settings = (&args.precision, args.max_error, args.time, args.sequence.fps);
+    let settings = (&args.precision, args.max_error, args.layers, args.time, args.sequence.fps);
     format!("{scene:?} {settings:?}").hash(&mut hasher);
     let fingerprint = format!("{:016x}", hasher.finish());
     let sequence = &args.sequence;
@@ -192,6 +211,72 @@ fn render_frame(
     }
 }
 
+/// Traces the scene at a frame time, and encodes the file of its image.
+fn frame_file(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &mut PreviousTracers,
+    (args, is_in_sequence): (&Args, bool),
+    path: &Path,
+    terminal: &Terminal,
+) -> Result<Vec<u8>, CliError> {
+    let of_args = (args, is_in_sequence);
+    if !args.layers {
+        let image = render_frame(scene, frame_time, previous, of_args, terminal);
+        return Ok(encode(&image, path, false)?);
+    }
+    let layers = match args.precision {
+        Precision::F32 => traced_layers(scene, frame_time, &mut previous.single, is_in_sequence, terminal),
+        Precision::F64 => traced_layers(scene, frame_time, &mut previous.double, is_in_sequence, terminal),
+    };
+    let words = std::env::args_os().skip(1);
+    let words: Vec<String> = words.map(|word| shell_word(&word.to_string_lossy())).collect();
+    let attributes = ExrAttributes {
+        software: format!("toyproof {}", env!("CARGO_PKG_VERSION")),
+        scene: path_name(&args.scene),
+        command: format!("toyproof {}", words.join(" ")),
+        comments: Layers::DESCRIPTION.to_owned(),
+    };
+    Ok(encode_exr(&layers.color, layers.channels(), &attributes, path)?)
+}
+
+/// Traces the layers of the scene at a frame time.
+fn traced_layers<T: Backend>(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &mut Option<Tracer<T>>,
+    is_in_sequence: bool,
+    terminal: &Terminal,
+) -> Layers {
+    let tracer = moved_tracer(scene, frame_time, previous);
+    let bar = rows_bar(scene, is_in_sequence, terminal);
+    let layers = tracer.render_layers(|| bar.inc(1));
+    bar.finish_and_clear();
+    layers
+}
+
+/// The tracer of a frame, made from that of the previous one, if there is any.
+fn moved_tracer<'a, T: Backend>(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &'a mut Option<Tracer<T>>,
+) -> &'a Tracer<T> {
+    let tracer = match previous.take() {
+        Some(previous) => previous.moved(scene, frame_time),
+        None => Tracer::at(scene, frame_time),
+    };
+    previous.insert(tracer)
+}
+
+/// The progress bar over the rows of an image; a sequence has its own.
+fn rows_bar(scene: &Scene, is_in_sequence: bool, terminal: &Terminal) -> ProgressBar {
+    if is_in_sequence {
+        ProgressBar::hidden()
+    } else {
+        terminal.bar(u64::from(scene.film.size[1]), "rows")
+    }
+}
+
 /// Traces the scene at a frame time, and writes and confirms the image.
 fn render_image(
     scene: &Scene,
@@ -201,10 +286,9 @@ fn render_image(
     terminal: &Terminal,
 ) -> Result<(), CliError> {
     let start = Instant::now();
-    let rendered = render_frame(scene, frame_time, previous, (args, false), terminal);
-    let bytes = encode(&rendered, path, false)?;
+    let bytes = frame_file(scene, frame_time, previous, (args, false), path, terminal)?;
     terminal.write(path, &bytes)?;
-    let [width, height] = rendered.size();
+    let [width, height] = scene.film.size;
     let samples = match args.max_error {
         Some(error) => format!("error below {error}"),
         None => format!(
@@ -256,18 +340,8 @@ fn trace<T: Backend>(
     (args, is_in_sequence): (&Args, bool),
     terminal: &Terminal,
 ) -> Image {
-    let tracer = match previous.take() {
-        Some(previous) => previous.moved(scene, frame_time),
-        None => Tracer::at(scene, frame_time),
-    };
-    let tracer = &*previous.insert(tracer);
-    let rows = u64::from(scene.film.size[1]);
-    let bar = if is_in_sequence {
-        // The sequence has its own progress bar.
-        ProgressBar::hidden()
-    } else {
-        terminal.bar(rows, "rows")
-    };
+    let tracer = moved_tracer(scene, frame_time, previous);
+    let bar = rows_bar(scene, is_in_sequence, terminal);
     let Some(max_error) = args.max_error else {
         let start = Instant::now();
         let rendered = tracer.render(|| bar.inc(1));

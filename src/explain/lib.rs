@@ -38,6 +38,7 @@
 
 pub mod departure;
 mod engine;
+pub mod equality;
 pub mod known;
 pub mod project;
 pub mod repair;

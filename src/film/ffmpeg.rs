@@ -1,4 +1,4 @@
-//! MP4 and `WebM` by the ffmpeg that is installed, which reads Y'CbCr from a pipe. It is a program of its
+//! MP4 and `WebM` by the ffmpeg that is installed, which reads `Y'CbCr` from a pipe. It is a program of its
 //! own, so that neither its licence nor its faults are those of this one.
 
 use std::io::{self, Read, Write};
@@ -68,8 +68,8 @@ fn is_older(version: &str) -> bool {
 /// A film that ffmpeg writes.
 pub(crate) struct FfmpegEncoder {
     process: Child,
-    /// Reads what ffmpeg reports, so that it never waits for a reader.
-    messages: JoinHandle<String>,
+    /// Reads what ffmpeg reports, so that it never waits for a reader; absent once it has been read.
+    messages: Option<JoinHandle<String>>,
     size: [u32; 2],
     keeps_alpha: bool,
 }
@@ -106,7 +106,7 @@ impl FfmpegEncoder {
         });
         Ok(Self {
             process,
-            messages,
+            messages: Some(messages),
             size: coded_size(settings),
             keeps_alpha: settings.keeps_alpha,
         })
@@ -136,8 +136,8 @@ impl FfmpegEncoder {
     fn end_message(&mut self) -> String {
         drop(self.process.stdin.take());
         let _ = self.process.wait();
-        let messages = std::mem::replace(&mut self.messages, std::thread::spawn(String::new));
-        let text = messages.join().unwrap_or_default();
+        let text = self.messages.take().and_then(|messages| messages.join().ok());
+        let text = text.unwrap_or_default();
         let line = text.lines().map(str::trim).find(|line| !line.is_empty());
         line.unwrap_or("it ended without a message").to_owned()
     }
@@ -171,41 +171,46 @@ fn arguments(settings: &FilmSettings) -> Vec<String> {
                   -chroma_sample_location left";
     let [width, height] = coded_size(settings);
     let rate = settings.rate;
-    let mut text = format!(
+    let mut arguments = Vec::new();
+    let mut add = |text: &str| arguments.extend(text.split_whitespace().map(str::to_owned));
+    add(&format!(
         "-nostdin -hide_banner -loglevel error -y -f rawvideo -pix_fmt {pixels} -video_size {width}x{height} \
          -framerate {rate} {colors} -i pipe:0"
-    );
-    let mut arguments: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
-    text.clear();
+    ));
     if let Some(sound) = &settings.sound {
-        let sound = format!("file:{}", sound.to_string_lossy());
-        arguments.extend(["-i".to_owned(), sound]);
-        text += "-map 0:v -map 1:a ";
+        // A name may have spaces.
+        arguments.extend(["-i".to_owned(), format!("file:{}", sound.to_string_lossy())]);
     }
-    text += &format!("-pix_fmt {pixels} {colors} -c:v {} ", encoder(settings.format));
-    // Qualities at which the course's films differ little from their frames.
-    text += match settings.format {
-        Format::Webm => "-crf 24 -b:v 0 -deadline good -cpu-used 3 -row-mt 1 -tile-columns 2 ",
-        _ => "-crf 18 -preset medium -movflags +faststart ",
-    };
+    let mut add = |text: &str| arguments.extend(text.split_whitespace().map(str::to_owned));
+    add(&format!(
+        "-pix_fmt {pixels} {colors} -c:v {}",
+        encoder(settings.format)
+    ));
+    // Qualities at which the course's films differ from their frames by little more than 4:2:0 chroma does.
+    add(match settings.format {
+        Format::Webm => "-crf 24 -b:v 0 -deadline good -cpu-used 3 -row-mt 1 -tile-columns 2",
+        _ => "-crf 18 -preset medium -movflags +faststart",
+    });
     if settings.keeps_alpha {
         // VP9 codes alpha as a second stream, in which alternative references are not supported.
-        text += "-auto-alt-ref 0 -metadata:s:v:0 alpha_mode=1 ";
+        add("-auto-alt-ref 0 -metadata:s:v:0 alpha_mode=1");
     }
     if settings.sound.is_some() {
-        text += match settings.format {
-            Format::Webm => "-c:a libopus -b:a 160k ",
-            _ => "-c:a aac -b:a 192k ",
-        };
-        // Shorter sounds end before the film.
         let frames = settings.frames.saturating_mul(settings.repetitions());
-        text += &format!("-t {} ", rate.seconds(frames));
+        let codec = match settings.format {
+            Format::Webm => "libopus -b:a 160k",
+            _ => "aac -b:a 192k",
+        };
+        // The sound is cut at the end of the film; a shorter one ends before.
+        add(&format!(
+            "-map 0:v -map 1:a -c:a {codec} -t {}",
+            rate.seconds(frames)
+        ));
     }
-    text += match settings.format {
+    add(match settings.format {
         Format::Webm => "-f webm",
         _ => "-f mp4",
-    };
-    arguments.extend(text.split_whitespace().map(str::to_owned));
+    });
     arguments
 }
 

@@ -173,8 +173,11 @@ mod tests {
     use super::*;
     use crate::settings::{Format, FrameRate};
 
-    /// Frames as a viewer shows them, each with its delay, and the number of repetitions.
-    fn decode(bytes: &[u8]) -> (Vec<(Vec<[u8; 3]>, u16)>, gif::Repeat) {
+    /// A frame as a viewer shows it, and its delay.
+    type Shown = (Vec<[u8; 3]>, u16);
+
+    /// The frames, and the number of repetitions.
+    fn decode(bytes: &[u8]) -> (Vec<Shown>, Repeat) {
         let mut options = gif::DecodeOptions::new();
         options.set_color_output(gif::ColorOutput::RGBA);
         let mut decoder = options.read_info(bytes).unwrap();
@@ -206,7 +209,9 @@ mod tests {
         );
         settings.plays = plays;
         let mut colors = Histogram::new();
-        frames.iter().for_each(|frame| colors.add(frame));
+        for frame in frames {
+            colors.add(frame);
+        }
         let mut bytes = Vec::new();
         let mut film = GifEncoder::new(&mut bytes, &settings, &colors).unwrap();
         for frame in frames {

@@ -1,6 +1,6 @@
 //! Films of rendered frames. Finished frames are kept without loss beside the film until it is complete, so
 //! that an interrupted rendering goes on; GIF, APNG, Y4M and raw frames are built in, and an installed ffmpeg
-//! writes MP4 and WebM.
+//! writes MP4 and `WebM`.
 //!
 //! ```
 //! use toyproof_film::{FilmSettings, FilmWriter, Format, FrameRate};
@@ -25,7 +25,7 @@
 //! - `store`: the file of finished frames.
 //! - `frame`: a frame as displayed; `seam`: whether the end of a film leads into its start.
 //! - `gif`: the encoder, with `palette` (the colors of a film) and `dither` (the mixing of them).
-//! - `apng`, `raw` (Y4M and RGBA) and `ffmpeg` (MP4 and WebM): the other encoders; `yuv`: color conversion.
+//! - `apng`, `raw` (Y4M and RGBA) and `ffmpeg` (MP4 and `WebM`): the other encoders; `yuv`: color conversion.
 
 mod apng;
 mod dither;
@@ -38,6 +38,8 @@ mod raw;
 mod seam;
 mod settings;
 mod store;
+#[cfg(test)]
+mod tests;
 mod writer;
 mod yuv;
 

@@ -37,6 +37,15 @@ impl Cell {
         }
     }
 
+    /// The colors of several cells.
+    fn total(cells: &[Self]) -> Self {
+        let mut total = Self::default();
+        for cell in cells {
+            total.add(cell);
+        }
+        total
+    }
+
     fn mean(&self) -> [f64; 3] {
         self.sum.map(|sum| sum / self.count)
     }
@@ -109,8 +118,7 @@ struct Range {
 impl Range {
     /// Finds the best division: between two cells in the order of a component.
     fn new(mut cells: Vec<Cell>) -> Self {
-        let mut whole = Cell::default();
-        cells.iter().for_each(|cell| whole.add(cell));
+        let whole = Cell::total(&cells);
         let (mut axis, mut at, mut gain) = (0, 0, 0.0);
         for tried in 0..3 {
             sort(&mut cells, tried);
@@ -153,12 +161,10 @@ fn divided(cells: Vec<Cell>) -> Vec<[f64; 3]> {
         ranges.push(Range::new(range.cells));
         ranges.push(Range::new(right));
     }
-    let mean = |range: &Range| {
-        let mut whole = Cell::default();
-        range.cells.iter().for_each(|cell| whole.add(cell));
-        whole.mean()
-    };
-    ranges.iter().map(mean).collect()
+    ranges
+        .iter()
+        .map(|range| Cell::total(&range.cells).mean())
+        .collect()
 }
 
 /// The means of the cells that are nearest to each color.
@@ -205,7 +211,7 @@ mod tests {
 
     #[test]
     fn few_colors_are_kept_exactly() {
-        let pixels: Vec<_> = (0..255).map(|at| [at, 255 - at, at ^ 91, 255]).collect();
+        let pixels: Vec<_> = (0..255).map(|at| [at, 255 - at, at ^ 0x5b, 255]).collect();
         let colors: BTreeSet<_> = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
         assert_eq!(palette(pixels), colors.into_iter().collect::<Vec<_>>());
         assert_eq!(palette(Vec::new()), [[0; 3]]);

@@ -14,7 +14,7 @@ pub enum Format {
     Mp4,
     /// VP9 and Opus in `WebM`, by ffmpeg.
     Webm,
-    /// `YUV4MPEG2`: uncompressed Y'CbCr 4:2:0, which encoders read from a pipe.
+    /// `YUV4MPEG2`: uncompressed `Y'CbCr` 4:2:0, which encoders read from a pipe.
     Y4m,
     /// Uncompressed RGBA without a header.
     Rgba,

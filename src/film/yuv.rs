@@ -1,4 +1,4 @@
-//! Y'CbCr of BT.709 in limited range, with 4:2:0 chroma as H.264, VP9 and Y4M have it.
+//! `Y'CbCr` of BT.709 in limited range, with 4:2:0 chroma as H.264, VP9 and Y4M have it.
 
 use crate::frame::DisplayFrame;
 

@@ -21,11 +21,13 @@
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
 //! - `moving`: textures that change from frame to frame.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
-//! - `file`: image files, the only place that flips rows and quantizes.
+//! - `file`: image files, the only place that quantizes; `exr_channels`: EXR with channels beside the colors. Only
+//!   these flip rows.
 //! - `output`: atomic writing of files.
 //! - [`input`]: the only place that opens files of others: regular files only.
 
 pub mod cube;
+mod exr_channels;
 mod file;
 mod frame;
 mod frame_inputs;
@@ -39,6 +41,7 @@ mod rgb8;
 mod script;
 mod texture;
 
+pub use exr_channels::{ChannelValues, ExrAttributes, ExrChannel, encode_exr};
 pub use file::{
     ImageError, check_extension, decoder_limits, encode, encode_shown, encode_transparent, from_decoded,
     open_image, read, read_shown, stream_png, write_png,
@@ -128,6 +131,21 @@ impl Image {
         }
         whole.height = height;
         whole
+    }
+
+    /// The part of the image with this lower left corner, in pixels; `None` if it is empty or not within the
+    /// image.
+    #[must_use]
+    pub fn part(&self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> Option<Self> {
+        let is_inside = |from: u32, length: u32, whole: u32| {
+            length > 0 && from.checked_add(length).is_some_and(|end| end <= whole)
+        };
+        if !is_inside(x, width, self.width) || !is_inside(y, height, self.height) {
+            return None;
+        }
+        let rows = self.rows().skip(y as usize).take(height as usize);
+        let rows = rows.flat_map(|row| &row[x as usize..(x + width) as usize]);
+        Some(Self::new(width, height, rows.copied().collect()))
     }
 
     /// The image flipped vertically.
@@ -228,6 +246,24 @@ mod tests {
             let component = at as f32 / (1 << 16) as f32;
             let rounded = (component * 255.0).round_ties_even();
             assert_eq!(f32::from(quantize(component)), rounded, "{component}");
+        }
+    }
+
+    #[test]
+    fn a_part_begins_at_its_lower_left_corner() {
+        let pixels = (0..12).map(|at| [at as f32, 0.0, 0.0, 1.0]).collect();
+        let image = Image::new(4, 3, pixels);
+        let part = image.part([1, 1], [3, 2]).unwrap();
+        let reds: Vec<f32> = part.pixels().iter().map(|pixel| pixel[0]).collect();
+        assert_eq!(part.size(), [3, 2]);
+        assert_eq!(reds, [5.0, 6.0, 7.0, 9.0, 10.0, 11.0]);
+        for (corner, size) in [
+            ([2, 0], [3, 1]),
+            ([0, 3], [1, 1]),
+            ([0, 0], [0, 1]),
+            ([u32::MAX, 0], [2, 1]),
+        ] {
+            assert_eq!(image.part(corner, size), None, "{corner:?} {size:?}");
         }
     }
 

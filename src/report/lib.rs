@@ -14,6 +14,7 @@
 
 mod assigned;
 mod class;
+mod comparison;
 mod csv;
 mod decision;
 mod departure;
@@ -39,6 +40,10 @@ mod unused;
 
 pub use assigned::{FeatureRecord, FunctionRecord, RulesRecord, Violation};
 pub use class::ClassTable;
+pub use comparison::{
+    COMPARISON_SCHEMA, ComparedImages, ComparedShaders, ComparisonReport, FirstDifferenceRecord, ImageStatus,
+    ShaderPlace,
+};
 pub use csv::csv;
 pub use decision::{Decision, DecisionRecord};
 pub use departure::{Departure, MissingValue, UnknownValue};

@@ -77,6 +77,16 @@ impl<T: Real> AnyWorld<T> {
         either!(self, world => world.radiance(ray, first, stream, policy))
     }
 
+    /// See [`World::surfaces`].
+    pub(super) fn surfaces(&self) -> usize {
+        either!(self, world => world.surfaces())
+    }
+
+    /// See [`World::surface_point`].
+    pub(super) fn surface_point(&self, ray: &Ray<T>, first: FirstHit<T>) -> [T::Vec3; 2] {
+        either!(self, world => world.surface_point(ray, first))
+    }
+
     /// See [`World::acne_dimensions`].
     pub(super) fn acne_dimensions(&self) -> [u32; 2] {
         either!(self, world => world.acne_dimensions())

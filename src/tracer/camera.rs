@@ -119,6 +119,11 @@ impl<T: Real> Camera<T> {
         }
     }
 
+    /// Returns how far a point of a ray is from the eye along the viewing direction.
+    pub(super) fn depth(&self, ray: &Ray<T>, t: T) -> T {
+        (ray.origin + ray.direction * t - self.eye).dot(self.forward)
+    }
+
     /// Creates a packet of such rays.
     pub(super) fn packet(&self, [x, y]: &[[T; PACKET_RAYS]; 2], level: Level) -> Packet<T> {
         match self.projection {

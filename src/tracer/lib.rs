@@ -24,6 +24,7 @@
 //! - `camera`, `film`, `sampler`, `transfer`: camera rays, samples, and the color of a pixel.
 //! - `shape`, `spheres`, `ray`: intersections; `material`, `pattern`, `light`, `glass`: shading.
 //! - `real`: the number types; `lanes`: vectors of numbers in the best available instruction set.
+//! - `layers`: depth, normals and the like, for compositors and denoisers.
 //! - `tile`: renders tiles, whose camera rays are traced in packets.
 //! - `world`: follows the samples of a packet from the first hit to the film, each in a lane of its own:
 //!   `points` (what the lanes hit), `queries`, and the integrators `whitted` and `path`.
@@ -48,6 +49,7 @@ mod color_range;
 mod film;
 mod glass;
 mod lanes;
+mod layers;
 mod light;
 mod material;
 mod pattern;
@@ -70,6 +72,7 @@ mod world;
 pub use self::adaptive::SamplingCost;
 pub use self::color_range::{ColorRange, EpsilonSet};
 pub use self::film::RESAMPLED_ROWS;
+pub use self::layers::{BACKGROUND_DEPTH, Layers};
 pub use self::ray_epsilon::{Acne, LightPolicy, RayEpsilon, RayEpsilons};
 pub use self::real::{Real, Vector};
 pub use self::render::Backend;

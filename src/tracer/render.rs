@@ -8,6 +8,7 @@ use toyproof_scene::{FrameTime, Scene};
 
 use crate::adaptive::{ADAPTIVE_TILE_SIDE, AdaptiveTile, SamplingCost};
 use crate::lanes::Level;
+use crate::layers::PixelLayers;
 use crate::real::Real;
 use crate::spheres::Spheres;
 use crate::tile::TILE_SIDE;
@@ -33,6 +34,10 @@ pub trait Backend: Real {
     #[doc(hidden)]
     fn pixel(tracer: &Tracer<Self>, pixel: [u32; 2]) -> [Self; 3];
 
+    /// Renders a pixel with its layers.
+    #[doc(hidden)]
+    fn layers(tracer: &Tracer<Self>, pixel: [u32; 2]) -> PixelLayers;
+
     /// Renders a tile with enough samples.
     #[doc(hidden)]
     fn adaptive_tile(tracer: &Tracer<Self>, corner: [u32; 2], max_error: f64) -> AdaptiveTile;
@@ -56,6 +61,10 @@ macro_rules! backends {
 
             fn pixel(tracer: &Tracer<Self>, pixel: [u32; 2]) -> [Self; 3] {
                 tracer.pixel_color(pixel)
+            }
+
+            fn layers(tracer: &Tracer<Self>, pixel: [u32; 2]) -> PixelLayers {
+                tracer.pixel_layers(pixel)
             }
 
             fn adaptive_tile(tracer: &Tracer<Self>, corner: [u32; 2], max_error: f64) -> AdaptiveTile {

@@ -60,7 +60,7 @@ impl<T: Real> Tracer<T> {
         pixel: [u32; 2],
         count: u32,
         set: u32,
-        radiance: impl Fn(Sample) -> T::Vec3,
+        mut radiance: impl FnMut(Sample) -> T::Vec3,
     ) -> T::Vec3 {
         let mut sum = T::Vec3::ZERO;
         for index in 0..count {

@@ -101,7 +101,7 @@ use toyproof_eval_native::Program;
 
 pub use self::bounds::EVALUATOR_TIME_FACTOR;
 pub use self::case::{Case, FromStart};
-pub use self::compare::{CheckResult, Share};
+pub use self::compare::{CheckResult, Quantization, Share};
 pub use self::decide::{Means, Reason, Ruling, Verdict, decide};
 pub use self::difference::{Difference, UnknownDifference};
 pub use self::driver::{Driver, GpuRun, is_replaceable};
@@ -110,8 +110,8 @@ pub use self::evidence::{
     CheckEvidence, Checks, Evidence, MeanComparison, OtherRandomNumbers, SelfIntersection,
 };
 pub use self::expected::{
-    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MarchDependence, NumberType, Quantization,
-    ReferenceBand, ReferenceFindings, ReferenceKind, SceneReference, ShaderReference,
+    Conditioning, DEFAULT_TOLERANCE, Expected, ImageReference, MarchDependence, NumberType, ReferenceBand,
+    ReferenceFindings, ReferenceKind, SceneReference, ShaderReference,
 };
 pub use self::failure::Failure;
 pub use self::limits::{MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, is_different};

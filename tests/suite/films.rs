@@ -10,11 +10,12 @@ use toyproof::image;
 use crate::program::{Run, toyproof};
 use crate::requirements::{require_ffmpeg, skip};
 
-/// The eight 100 % color bars, each an eighth of the width, with a gray bar that moves up in the lower half.
+/// The eight 100 % color bars, each an eighth of the width, with a gray bar that moves up in the lower half,
+/// in each frame by more than a pixel in the tests.
 const BARS: &str = "void mainImage(out vec4 c, in vec2 p) {
     int bar = 7 - int(8.0 * p.x / iResolution.x);
     c = vec4(bvec3(bar & 2, bar & 4, bar & 1), 1.0);
-    float at = mod(iTime, 1.0) * 0.5 * iResolution.y;
+    float at = fract(2.0 * iTime) * 0.5 * iResolution.y;
     if (p.y > at && p.y < at + 4.0 && p.y < 0.5 * iResolution.y) c.rgb = vec3(0.5);
 }";
 /// Each frame adds 1/8 to the buffer.
@@ -282,7 +283,7 @@ fn what_a_format_lacks_is_reported() {
     refused("-o a.png --loop 2", "--loop is for films", "--duration");
     let run = render_film(
         folder.path(),
-        "run bars.glsl -o a.gif --duration 1 --fps 60 --size 8x8",
+        "run bars.glsl -o a.gif --duration 1 --fps 60 --size 64x64",
     );
     assert!(run.stderr.contains("shows 40 of the frames"), "{}", run.stderr);
 }

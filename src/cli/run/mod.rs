@@ -697,7 +697,7 @@ pub(in crate::cli) fn evaluation_error(failure: &eval::Failure, shader: &Shader)
 }
 
 /// Why the evaluator failed, and in which pass of a project.
-fn pass_error(failure: &eval::Failure, pass: Option<Target>, shader: &Shader) -> CliError {
+pub(in crate::cli) fn pass_error(failure: &eval::Failure, pass: Option<Target>, shader: &Shader) -> CliError {
     let tab = pass.map_or_else(String::new, |pass| format!("{pass}: "));
     if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
         let mut diagnostic = glsl::overdue(*overdue);

@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name};
 use toyproof_eval::{self as eval, Number, PassFailure, Settings, Supersampling};
 use toyproof_eval_native::Program;
-use toyproof_glsl::{self as glsl, Dialect, Filter};
+use toyproof_glsl as glsl;
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Source, State, Target};
@@ -20,7 +20,7 @@ use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader
 use super::state::{self, Owner};
 use super::{Precision, RenderedImage, Runner, draw_error, is_too_large, pass_error, shader_error};
 use crate::cli::inputs::short_device;
-use crate::cli::project::pass_shader;
+use crate::cli::project::{bind_channels, pass_shader};
 use crate::cli::sequence::{FrameEnd, Output, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{CliError, Exit, Terminal};
@@ -450,24 +450,7 @@ impl Runner<'_> {
         let mut rendering =
             rendering.map_err(|error| refusal(shader, error, "`toyproof check` compiles all its tabs"))?;
         report_missing(&rendering, &self.frame.channels, &shader.name, self.terminal);
-        for (channel, texture) in self.frame.channels.iter().enumerate() {
-            if let Some(texture) = texture {
-                let has_mipmaps = passes.image().sampling[channel].filter == Filter::Mipmap;
-                let texture = texture.clone();
-                let medium = rendering.media.len();
-                // The passes of ISF have the same inputs.
-                if passes.image().dialect == Dialect::Isf {
-                    rendering.graph.bind_to_all(channel, medium);
-                } else {
-                    rendering.graph.bind_to_image(channel, medium);
-                }
-                rendering.media.push(if has_mipmaps {
-                    texture.with_mipmaps()
-                } else {
-                    texture
-                });
-            }
-        }
+        bind_channels(passes, &mut rendering, &self.frame.channels);
         Ok(rendering)
     }
 

@@ -195,7 +195,7 @@ fn check_image_extension(path: &Path) -> Result<(), CliError> {
 }
 
 /// Parses a number of frames in a second.
-fn parse_rate(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn parse_rate(text: &str) -> Result<f64, String> {
     parse_number(text, 0.001..=1e6, "a number from 0.001 to 1000000")
 }
 

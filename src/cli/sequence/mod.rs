@@ -12,10 +12,11 @@ mod files;
 mod film;
 mod stream;
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub(super) use args::{Output, SequenceArgs};
+pub(super) use args::{Output, SequenceArgs, parse_rate};
 pub(super) use files::NumberedFiles;
 pub(super) use film::FilmFile;
 use indicatif::ProgressBar;
@@ -33,7 +34,7 @@ pub(super) struct Frames {
 }
 
 /// Parses A..B.
-fn parse_frames(text: &str) -> Result<Frames, String> {
+pub(super) fn parse_frames(text: &str) -> Result<Frames, String> {
     let expected = "expected A..B, the first and the last frame, with 0 ≤ A ≤ B";
     let (first, last) = text.split_once("..").ok_or(expected)?;
     match (first.parse(), last.parse()) {
@@ -45,6 +46,10 @@ fn parse_frames(text: &str) -> Result<Frames, String> {
 impl Frames {
     pub(super) fn first(self) -> i32 {
         self.first
+    }
+
+    pub(super) fn numbers(self) -> RangeInclusive<i32> {
+        self.first..=self.last
     }
 
     pub(super) fn count(self) -> u64 {

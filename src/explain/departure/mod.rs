@@ -7,18 +7,20 @@
 //! in right pixels, too, are a matter of style, and count less.
 
 mod flow;
+mod matching;
 mod picture;
 
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
 
 use toyproof_diagnostic::Span;
-use toyproof_eval::{ExecutionTrace, PixelDebugger, Settings, TraceEvent, TraceValue};
+use toyproof_eval::{ExecutionTrace, Number, PixelDebugger, Settings, TraceEvent, TraceValue};
 use toyproof_eval_native::Program;
 use toyproof_image::Frame;
 use toyproof_verify::{CheckResult, Expected};
 
 use self::flow::{Execution, Flow};
+use self::matching::{Matching, has};
 pub use self::picture::ValueImages;
 use self::picture::Values;
 
@@ -28,10 +30,6 @@ const MAX_WRONG: usize = 8;
 /// The largest number of right pixels that are traced.
 const MAX_RIGHT: usize = 8;
 
-/// The bits of a float that are compared: the relative difference of equal values is below 2⁻¹⁸, far above
-/// the rounding of double precision, and far below a visible difference.
-const IGNORED_BITS: u32 = 52 - 18;
-
 /// The number of events after which no more pixels are traced: about 200 MB.
 const MAX_EVENTS: usize = 1 << 20;
 
@@ -40,9 +38,6 @@ const COMMON: usize = 3;
 
 /// The largest number of values through which unknown ones are searched for.
 const MAX_COMMON: usize = 5000;
-
-/// Floats below this are zeros, such as those that cancellation leaves.
-const ZERO: f64 = 1e-9;
 
 /// Where a shader departs from its reference.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,7 +103,14 @@ pub(crate) fn find(
         check.sample_agreeing(frame.size, MAX_RIGHT),
     ];
     let reference = (reference, reference_frame);
-    find_in((program, frame), reference, pixels, with_images, deadline)
+    find_in::<f64>(
+        (program, frame),
+        reference,
+        pixels,
+        Matching::Rounded,
+        with_images,
+        deadline,
+    )
 }
 
 /// Finds the departure of a shader from a reference shader in one pixel with a wrong color; both have their
@@ -120,18 +122,33 @@ pub fn in_pixel(
     pixel: [u32; 2],
     deadline: Instant,
 ) -> Option<Departure> {
-    find_in(shader, reference, [vec![pixel], Vec::new()], false, deadline)
+    let pixels = [vec![pixel], Vec::new()];
+    find_in::<f64>(shader, reference, pixels, Matching::Rounded, false, deadline)
+}
+
+/// Finds the departure of a shader from another one in a pixel whose bits differ in float32; both have their
+/// frames. Values are known if the other shader has them to the bit.
+#[must_use]
+pub fn in_bits(
+    shader: (&Program, &Frame),
+    other: (&Program, &Frame),
+    pixel: [u32; 2],
+    deadline: Instant,
+) -> Option<Departure> {
+    let pixels = [vec![pixel], Vec::new()];
+    find_in::<f32>(shader, other, pixels, Matching::Exact, false, deadline)
 }
 
 /// Finds the departure in some wrong and some right pixels.
-fn find_in(
+fn find_in<N: Number>(
     (program, frame): (&Program, &Frame),
     (reference, reference_frame): (&Program, &Frame),
     [wrong, right]: [Vec<[u32; 2]>; 2],
+    matching: Matching,
     with_images: bool,
     deadline: Instant,
 ) -> Option<Departure> {
-    let settings = || Settings::<f64> {
+    let settings = || Settings::<N> {
         deadline: Some(deadline),
         ..Settings::default()
     };
@@ -159,8 +176,12 @@ fn find_in(
     });
     let own_flow = Flow::new(program.checked(), own.schema(), own_traces);
     let other_flow = Flow::new(reference.checked(), other.schema(), other_traces);
-    let own_side = Side::new(&own_flow, [&wrong, &right], |pixel| [&pixel.own, &pixel.other]);
-    let other_side = Side::new(&other_flow, [&wrong, &right], |pixel| [&pixel.other, &pixel.own]);
+    let own_side = Side::new(&own_flow, matching, [&wrong, &right], |pixel| {
+        [&pixel.own, &pixel.other]
+    });
+    let other_side = Side::new(&other_flow, matching, [&wrong, &right], |pixel| {
+        [&pixel.other, &pixel.own]
+    });
     let (own_leaves, other_leaves) = (own_side.leaves(), other_side.leaves());
     let unknown = own_side.most_suspicious(&own_leaves, &other_leaves);
     let unknown = unknown.map(|leaf| UnknownValue {
@@ -173,7 +194,7 @@ fn find_in(
     let missing = missing.map(|leaf| {
         let user = own_side
             .execution(leaf.pixel)
-            .user(&other_side.known_inputs(leaf));
+            .user(&other_side.known_inputs(leaf), matching);
         let user = user.map(|position| own_side.span(Event { position, ..leaf }));
         MissingValue {
             user,
@@ -207,7 +228,7 @@ struct Pixel {
 }
 
 impl Pixel {
-    fn new(at: [u32; 2], own: &PixelDebugger<f64>, other: &PixelDebugger<f64>) -> Option<Self> {
+    fn new<N: Number>(at: [u32; 2], own: &PixelDebugger<N>, other: &PixelDebugger<N>) -> Option<Self> {
         let (own, other) = (own.trace(at, None).ok()?, other.trace(at, None).ok()?);
         (!own.is_cut && !other.is_cut).then_some(Self { at, own, other })
     }
@@ -238,8 +259,11 @@ struct Leaf {
 
 impl Leaf {
     /// The share of the inputs that two departures have in common (Jaccard's index).
-    fn similarity(&self, other: &Self) -> f64 {
-        let is_common = |&&bucket: &&u64| near(bucket).iter().any(|near| other.inputs.contains(near));
+    fn similarity(&self, other: &Self, matching: Matching) -> f64 {
+        let is_common = |&&bucket: &&u64| {
+            let near = matching.near(bucket);
+            near.iter().any(|near| other.inputs.contains(near))
+        };
         let common = self.inputs.iter().filter(is_common).count();
         let all = self.inputs.len() + other.inputs.len() - common;
         common as f64 / all.max(1) as f64
@@ -260,6 +284,7 @@ enum Familiarity {
 
 /// One of the shaders, in comparison with the other.
 struct Side<'p> {
+    matching: Matching,
     wrong: Vec<(Execution<'p>, HashSet<u64>)>,
     right: Vec<(Execution<'p>, HashSet<u64>)>,
     /// The values that one of the shaders has in several pixels.
@@ -270,6 +295,7 @@ impl<'p> Side<'p> {
     /// `sides` returns the trace of this shader and that of the other.
     fn new(
         flow: &'p Flow<'p>,
+        matching: Matching,
         [wrong, right]: [&'p [Pixel]; 2],
         sides: impl Fn(&'p Pixel) -> [&'p ExecutionTrace; 2],
     ) -> Self {
@@ -277,7 +303,8 @@ impl<'p> Side<'p> {
         let mut side = |pixel| {
             let [own, other] = sides(pixel);
             let buckets = |trace: &ExecutionTrace| -> HashSet<u64> {
-                trace.events.iter().flat_map(numbers).map(bucket).collect()
+                let numbers = trace.events.iter().flat_map(numbers);
+                numbers.map(|value| matching.bucket(value)).collect()
             };
             let known = buckets(other);
             for &bucket in known.union(&buckets(own)) {
@@ -289,6 +316,7 @@ impl<'p> Side<'p> {
         let right = right.iter().map(&mut side).collect();
         let common = counts.into_iter().filter(|&(_, count)| count >= COMMON);
         Self {
+            matching,
             wrong,
             right,
             common: common.map(|(bucket, _)| bucket).collect(),
@@ -313,7 +341,7 @@ impl<'p> Side<'p> {
 
     fn familiarity(&self, event: &TraceEvent, known: &HashSet<u64>) -> Familiarity {
         let numbers = numbers(event);
-        let is_in = |all: &HashSet<u64>| numbers.iter().all(|&value| has(all, value));
+        let is_in = |all: &HashSet<u64>| numbers.iter().all(|&value| has(all, value, self.matching));
         if is_in(&self.common) {
             Familiarity::Common
         } else if is_in(known) {
@@ -333,7 +361,10 @@ impl<'p> Side<'p> {
                 let inputs = self.known_inputs(at).concat();
                 Leaf {
                     at,
-                    inputs: inputs.into_iter().map(bucket).collect(),
+                    inputs: inputs
+                        .into_iter()
+                        .map(|value| self.matching.bucket(value))
+                        .collect(),
                 }
             };
             positions.map(leaf).collect()
@@ -363,7 +394,7 @@ impl<'p> Side<'p> {
                         first,
                     });
                     count.wrong += 1;
-                    let matches = others.iter().map(|other| leaf.similarity(other));
+                    let matches = others.iter().map(|other| leaf.similarity(other, self.matching));
                     count.matches += matches.fold(0.0, f64::max);
                 }
             }
@@ -456,12 +487,13 @@ impl<'p> Side<'p> {
 
 impl Execution<'_> {
     /// The first position whose inputs have most of these values; `None` if none has any.
-    fn user(&self, values: &[Vec<f64>]) -> Option<usize> {
+    fn user(&self, values: &[Vec<f64>], matching: Matching) -> Option<usize> {
         let has_all = |event: &TraceEvent, wanted: &[f64]| {
-            let own: Vec<u64> = numbers(event).into_iter().map(bucket).collect();
-            wanted
-                .iter()
-                .all(|&value| near(bucket(value)).iter().any(|near| own.contains(near)))
+            let own: HashSet<u64> = numbers(event)
+                .into_iter()
+                .map(|value| matching.bucket(value))
+                .collect();
+            wanted.iter().all(|&value| has(&own, value, matching))
         };
         // Whether each event has each value.
         let has: Vec<Vec<bool>> = values
@@ -482,22 +514,8 @@ impl Execution<'_> {
     }
 }
 
-fn has(all: &HashSet<u64>, value: f64) -> bool {
-    near(bucket(value)).iter().any(|near| all.contains(near))
-}
-
-/// The buckets in which a value may be that differs by rounding.
-fn near(bucket: u64) -> [u64; 3] {
-    [bucket.wrapping_sub(1), bucket, bucket + 1]
-}
-
-fn bucket(value: f64) -> u64 {
-    let value = if value.abs() < ZERO { 0.0 } else { value };
-    (value.to_bits() + (1 << (IGNORED_BITS - 1))) >> IGNORED_BITS
-}
-
 /// The floats of a value.
-fn numbers(event: &TraceEvent) -> Vec<f64> {
+pub(crate) fn numbers(event: &TraceEvent) -> Vec<f64> {
     let floats = event.values.iter().filter_map(|value| match value {
         TraceValue::Float(value) => Some(*value),
         TraceValue::Word(_) => None,
@@ -614,6 +632,39 @@ mod tests {
         };
         let (shader, reference) = (with("d * 2.0"), with("d"));
         assert_eq!(departure(&shader, &reference)[0], Some("d * 2.0"));
+    }
+
+    /// The texts of the first value of each shader that the other does not have to the bit, in one pixel.
+    fn departure_in_bits<'t>(shader: &'t str, other: &'t str) -> [Option<&'t str>; 2] {
+        let programs = [shader, other].map(|text| Program::new(&checked(text)).unwrap());
+        let frame = Frame {
+            size: [32, 18],
+            ..Frame::default()
+        };
+        let deadline = Instant::now() + Duration::from_secs(60);
+        let [own, reference] = programs.each_ref().map(|program| (program, &frame));
+        let Some(found) = in_bits(own, reference, [17, 5], deadline) else {
+            return [None, None];
+        };
+        let text = |text: &'t str, span: Span| &text[span.start as usize..span.end as usize];
+        [
+            found.unknown.map(|unknown| text(shader, unknown.span)),
+            found.missing.map(|missing| text(other, missing.span)),
+        ]
+    }
+
+    /// In double precision, the values count as equal.
+    #[test]
+    fn a_difference_of_the_last_bits_is_found_in_float32() {
+        let other = REFERENCE.replace("0.5 + 0.5", "(0.5 + 1e-7) + 0.5");
+        let [unknown, missing] = departure_in_bits(&other, REFERENCE);
+        assert_eq!(unknown, Some("(0.5 + 1e-7) + 0.5 * sin(7.0 * p.x)"));
+        assert_eq!(missing, Some("0.5 + 0.5 * sin(7.0 * p.x)"));
+        let renamed = REFERENCE
+            .replace("color", "x")
+            .replace("uv", "q")
+            .replace("0.5 *", ".5*");
+        assert_eq!(departure_in_bits(&renamed, REFERENCE), [None, None]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod path;
 mod points;
 mod queries;
+mod surface_point;
 pub(super) mod trace;
 mod whitted;
 
@@ -127,6 +128,11 @@ impl<T: Real, P: Primitive<T>> World<T, P> {
         let [lights, own_surface] = self.has_lights_and_surfaces();
         let emitters = paths && self.has_emitters();
         [lights || emitters, own_surface || emitters, emitters]
+    }
+
+    /// Returns the number of surfaces.
+    pub(super) fn surfaces(&self) -> usize {
+        self.shapes.len()
     }
 
     /// Returns whether any surface is emissive.

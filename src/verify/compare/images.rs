@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use toyproof_image::{Image, quantize};
 
-use crate::compare::{DiffLevel, TOLERANCE};
+use crate::compare::{Agreement, DiffLevel, Quantization};
 
 /// The difference of two images. Colors are compared clamped to [0, 1]; NaN equals NaN, and differs from
 /// everything else by 1.
@@ -11,8 +11,7 @@ use crate::compare::{DiffLevel, TOLERANCE};
 pub struct Comparison {
     /// Pixels in the image.
     pub pixels: u64,
-    /// Pixels in which some component differs by more than [`TOLERANCE`], or by more than one level in a
-    /// comparison in 8 bits.
+    /// Pixels whose colors do not agree.
     pub differing: u64,
     /// Pixels that differ when both are rounded to 8 bits.
     pub differing_8bit: u64,
@@ -117,29 +116,24 @@ impl Comparison {
     }
 }
 
-/// Compares `actual` with `reference`; also returns the difference level of each pixel.
+/// Compares `actual` with `reference`, both of floats; also returns the difference level of each pixel.
 ///
 /// # Panics
 /// If the sizes differ.
 #[must_use]
 pub fn compare(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>) {
-    compare_by(reference, actual, |pixel| pixel.difference() > TOLERANCE)
+    compare_within(reference, actual, &Agreement::of_images([Quantization::Float; 2]))
 }
 
-/// Like [`compare`] if one of the images has only 8 bits: pixels differ if they do by more than one level,
-/// which is rounding.
+/// Like [`compare`], where `agreement` decides which pixels differ.
 ///
 /// # Panics
 /// If the sizes differ.
 #[must_use]
-pub fn compare_in_8_bits(reference: &Image, actual: &Image) -> (Comparison, Vec<DiffLevel>) {
-    compare_by(reference, actual, |pixel| pixel.levels() > 1)
-}
-
-fn compare_by(
+pub fn compare_within(
     reference: &Image,
     actual: &Image,
-    differs: impl Fn(&Pixel) -> bool,
+    agreement: &Agreement,
 ) -> (Comparison, Vec<DiffLevel>) {
     assert_eq!(reference.size(), actual.size());
     let pixels = reference.pixels().len();
@@ -161,7 +155,7 @@ fn compare_by(
         sum += pixel.components().sum::<f64>();
         comparison.differing_8bit += u64::from(levels > 0);
         comparison.max_8bit = comparison.max_8bit.max(levels);
-        if differs(&pixel) {
+        if !agreement.holds(&pixel) {
             comparison.differing += 1;
             comparison.first.get_or_insert(pixel);
             if difference > comparison.max_abs {

@@ -6,13 +6,16 @@
 //! | [`precision`] | the shader in f64 | the GPU in f32 | float32 is not enough here |
 //! | [`toolchain`] | the shader in f32 on the CPU | the GPU in f32 | naga, toyproof or the driver broke it |
 
+mod agreement;
 mod algorithm;
 mod check;
 mod images;
 mod legend;
+mod pair;
 mod region;
 mod result;
 
+pub use agreement::{Agreement, Quantization};
 pub use algorithm::{
     Band, EpsilonColors, EpsilonSearch, PERTURBATIONS, Reference, Undefined, accept_epsilons, algorithm,
 };
@@ -20,8 +23,9 @@ pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, Share, TOLERANCE, diff_levels, precision, toolchain,
 };
-pub use images::{Comparison, Pixel, compare, compare_in_8_bits};
+pub use images::{Comparison, Pixel, compare, compare_within};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
+pub use pair::{Criteria, MaxDiffering, PairDifference, PairError, Rectangle, compare_pair};
 pub use region::{Region, Regions};
 pub use result::CheckResult;
 pub(crate) use result::spread;

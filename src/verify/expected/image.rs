@@ -6,15 +6,7 @@ use std::sync::Arc;
 use toyproof_image::Image;
 
 use super::bands::ReferenceBand;
-
-/// How the colors of an image were rounded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantization {
-    /// To 8 bits, as in a PNG file.
-    EightBit,
-    /// To floats of 16 or 32 bits, as in an EXR file.
-    Float,
-}
+use crate::compare::{Agreement, Quantization};
 
 /// An image that shaders are compared with.
 #[derive(Debug)]
@@ -24,20 +16,17 @@ pub struct ImageReference {
 }
 
 impl ImageReference {
-    /// Half of an 8-bit level: what rounding to 8 bits changes.
-    const HALF_LEVEL: f64 = 0.5 / 255.0;
-
     /// Creates the reference. Colors agree if no component differs by more than `tolerance`, in [0, 1],
     /// besides the rounding of the image.
     #[must_use]
     pub fn new(image: Image, quantization: Quantization, tolerance: f64) -> Self {
-        let lost = match quantization {
-            Quantization::EightBit => Self::HALF_LEVEL,
-            Quantization::Float => 0.0,
+        let agreement = Agreement {
+            tolerance,
+            quantization: [quantization, Quantization::Float],
         };
         Self {
             image,
-            tolerance: tolerance + lost,
+            tolerance: agreement.limit(),
         }
     }
 

@@ -26,7 +26,7 @@ pub use self::accepted::MarchDependence;
 use self::accepted::point;
 pub use self::bands::ReferenceBand;
 pub use self::conditioning::Conditioning;
-pub use self::image::{ImageReference, Quantization};
+pub use self::image::ImageReference;
 pub use self::number_type::NumberType;
 pub use self::scene::SceneReference;
 pub use self::shader::{DEFAULT_TOLERANCE, ReferenceFindings, ShaderReference};

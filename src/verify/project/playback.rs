@@ -119,7 +119,8 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
     #[must_use]
     pub fn bound(&self, pass: usize, frame: &Frame) -> Frame {
         let channels = self.player.inputs(pass);
-        self.player.renderer().bound(frame, channels)
+        let target = self.player.graph().passes()[pass].target;
+        self.player.renderer().bound(&target.frame(frame), channels)
     }
 
     /// The state after a frame.

@@ -1,0 +1,187 @@
+//! `toyproof compare` of two shaders or projects.
+
+use std::ops::{ControlFlow, RangeInclusive};
+use std::path::Path;
+
+use toyproof_diagnostic::Deadline;
+use toyproof_explain::equality::{Pair, PairFailure};
+use toyproof_glsl::{Checked, Filter};
+use toyproof_image::{self as image, Frame, MovingTextures, Texture};
+use toyproof_player::{BUFFERS, Clock, Graph, Pass, Source, Target};
+use toyproof_project::{CompiledProject, PassKind, Rendering};
+use toyproof_report::{ComparedImages, ComparedShaders, ComparisonReport, FirstDifferenceRecord};
+use toyproof_verify::Quantization;
+use toyproof_verify::compare::{Criteria, compare_pair};
+use toyproof_verify::project::bind::{default_frame, has_history};
+use toyproof_verify::project::playback::PassShader;
+
+use super::Args;
+use crate::cli::project::{bind_channels, pass_shader, rendering};
+use crate::cli::run::pass_error;
+use crate::cli::shader::{Shader, find_one};
+use crate::cli::{CliError, Exit, Terminal};
+
+/// Compares two shaders to the bit, or their images by criteria, if any are given.
+pub(super) fn compare(
+    args: &Args,
+    criteria: &Criteria,
+    terminal: &Terminal,
+) -> Result<ComparisonReport, CliError> {
+    let by_images = *criteria != Criteria::default();
+    if args.diff.is_some() && !by_images {
+        let error = CliError::new("shaders that are compared to the bit have no image of differences");
+        return Err(error.with_help("compare their images with --tolerance, --max-differing or --metric"));
+    }
+    let shaders = [load(args, &args.a, terminal)?, load(args, &args.b, terminal)?];
+    let inputs = args.frame.inputs();
+    let frame = inputs.load()?;
+    let passes = [
+        Passes::new(&shaders[0], &frame)?,
+        Passes::new(&shaders[1], &frame)?,
+    ];
+    let passes = passes.each_ref().map(Passes::shader);
+    let frames = frames(args, &passes);
+    let clock = Clock {
+        rate: args.fps,
+        start: args
+            .frame
+            .start(args.frames.map_or(*frames.start(), |_| 0), args.fps),
+        inputs: frame,
+    };
+    let failed = |failure: PairFailure| {
+        let shader = &shaders[failure.shader];
+        let pass = shader.project().map(|_| failure.target);
+        pass_error(&failure.failure, pass, shader).with_exit(Exit::Error)
+    };
+    let pair = Pair::new(passes.each_ref(), args.timeout).map_err(failed)?;
+    let count = u64::from(frames.end().abs_diff(*frames.start())) + 1;
+    let bar = terminal.bar(count, "frames");
+    let first = *frames.start();
+    let step = |number: i32| bar.set_position((number - first).max(0) as u64);
+    if by_images {
+        let mut compared = Vec::new();
+        let mut failure = None;
+        let mut difference_image = None;
+        let played = pair.images(&clock, frames, step, |number, images| {
+            match compare_pair(images, [Quantization::Float; 2], criteria) {
+                Ok(difference) => {
+                    if !difference.agrees && difference_image.is_none() {
+                        difference_image = Some(difference.image());
+                    }
+                    compared.push(ComparedImages::new(&difference, criteria).in_frame(number));
+                    ControlFlow::Continue(())
+                }
+                Err(error) => {
+                    failure = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        });
+        bar.finish_and_clear();
+        played.map_err(failed)?;
+        if let Some(error) = failure {
+            return Err(error.into());
+        }
+        if let (Some(path), Some(difference)) = (&args.diff, difference_image) {
+            terminal.write(path, &image::encode_shown(&difference, path)?)?;
+        }
+        return Ok(ComparisonReport::of_images(args.names(), criteria, compared));
+    }
+    let found = pair.first_difference(&clock, frames.clone(), step);
+    bar.finish_and_clear();
+    let found = found.map_err(failed)?;
+    let texts = [&shaders[0].files, &shaders[1].files];
+    let names = |targets: Vec<Target>| targets.iter().map(ToString::to_string).collect();
+    let compared = ComparedShaders {
+        frames: [*frames.start(), *frames.end()],
+        size: clock.inputs.size,
+        passes: names(pair.common_passes()),
+        only_in_a: names(pair.other_passes(0)),
+        only_in_b: names(pair.other_passes(1)),
+        first: found.map(|found| FirstDifferenceRecord::new(&found, texts)),
+    };
+    Ok(ComparisonReport::of_shaders(args.names(), compared))
+}
+
+/// Reads a shader that compiles; its warnings are not the subject.
+fn load(args: &Args, path: &Path, terminal: &Terminal) -> Result<Shader, CliError> {
+    let input = find_one(path, "compare", terminal)?;
+    let shader = Shader::load(&input, &args.language, Deadline::after(args.timeout));
+    match shader.require_image() {
+        Ok(_) => Ok(shader),
+        // A shader that does not compile is not one that differs.
+        Err(error) => Err(error.with_exit(Exit::Error)),
+    }
+}
+
+/// The frames to compare.
+fn frames(args: &Args, passes: &[PassShader; 2]) -> RangeInclusive<i32> {
+    if let Some(frames) = args.frames {
+        return frames.numbers();
+    }
+    let has_history = passes.iter().any(has_history);
+    if has_history && !args.frame.is_moment_given() {
+        return 0..=default_frame(None);
+    }
+    let number = args.frame.number(has_history, args.fps);
+    number..=number
+}
+
+/// The passes of a project or of a single shader, with what they read.
+enum Passes<'a> {
+    Project(&'a CompiledProject, Rendering),
+    Single {
+        checked: &'a Checked,
+        graph: Graph,
+        media: Vec<Texture>,
+    },
+}
+
+impl<'a> Passes<'a> {
+    /// `frame` has the textures that the user binds to the channels of the image.
+    fn new(shader: &'a Shader, frame: &Frame) -> Result<Self, CliError> {
+        if let Some(project) = shader.project() {
+            let failed = |failure| CliError::new(format_args!("{}: {failure}", shader.name));
+            let mut rendering = rendering(project, PassKind::Image).map_err(failed)?;
+            bind_channels(project, &mut rendering, &frame.channels);
+            return Ok(Self::Project(project, rendering));
+        }
+        let checked = shader.require_image()?;
+        let mut media = Vec::new();
+        let inputs = std::array::from_fn(|channel| {
+            let texture = frame.channels[channel].clone()?;
+            let has_mipmaps = checked.sampling[channel].filter == Filter::Mipmap;
+            media.push(if has_mipmaps {
+                texture.with_mipmaps()
+            } else {
+                texture
+            });
+            Some(Source::Medium(media.len() - 1))
+        });
+        let image = Pass {
+            target: Target::Image,
+            inputs,
+        };
+        Ok(Self::Single {
+            checked,
+            graph: Graph::new(vec![image], [false; BUFFERS]),
+            media,
+        })
+    }
+
+    fn shader(&self) -> PassShader<'_> {
+        match self {
+            Self::Project(project, rendering) => pass_shader(project, rendering),
+            Self::Single {
+                checked,
+                graph,
+                media,
+            } => PassShader {
+                checked: vec![checked],
+                graph,
+                media,
+                films: MovingTextures::default(),
+            },
+        }
+    }
+}
