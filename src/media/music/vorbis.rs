@@ -53,9 +53,9 @@ pub(super) fn decode(reader: impl Read + Seek) -> Result<(Vec<f32>, u32), String
     Ok((mixer.samples, identification.audio_sample_rate))
 }
 
-/// Whether no codebook of the setup header is so large that the decoder, which reserves memory before it reads,
-/// ends the program. Each begins with a pattern of 24 bits, at any bit, and its dimensions and entries (Vorbis I
-/// specification, §3.2.1).
+/// Whether no codebook of the setup header is so large that the decoder, which reserves memory before it
+/// reads, ends the program. Each begins with a pattern of 24 bits, at any bit, and its dimensions and entries
+/// (Vorbis I specification, §3.2.1).
 fn are_codebooks_small(setup: &[u8]) -> bool {
     const PATTERN: u64 = 0x56_4342;
     // The first bit of a byte is its lowest.
