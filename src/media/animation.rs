@@ -149,8 +149,8 @@ impl Film {
     }
 }
 
-/// The time of a frame in milliseconds. Browsers show a frame of at most 10 ms, which many old files have, for
-/// 100 ms.
+/// The time of a frame in milliseconds. Browsers show a frame of at most 10 ms, which many old files have,
+/// for 100 ms.
 fn duration(frame: &Frame) -> f64 {
     let (numerator, denominator) = frame.delay().numer_denom_ms();
     let milliseconds = f64::from(numerator) / f64::from(denominator.max(1));
@@ -166,8 +166,8 @@ fn too_long(path: &Path) -> MediaError {
     MediaError::new(path, problem).with_help("make its frames smaller or fewer, or use an image sequence")
 }
 
-/// The files of an image sequence: those of the pattern's folder whose names differ from the pattern's only in
-/// the number, in the order of the numbers. The pattern is one of the files, such as `film/0001.png`.
+/// The files of an image sequence: those of the pattern's folder whose names differ from the pattern's only
+/// in the number, in the order of the numbers. The pattern is one of the files, such as `film/0001.png`.
 ///
 /// # Errors
 /// If the folder cannot be read, or the name has no number.

@@ -28,8 +28,6 @@ mod blue_noise;
 mod cube;
 mod error;
 mod field;
-#[cfg(test)]
-mod figures;
 mod film;
 mod folder;
 mod font;
@@ -47,3 +45,6 @@ pub use self::music::{Music, silent_music};
 pub use self::sound::{SAMPLE_RATE, SOUND_SECONDS, sample_level, wav};
 pub use self::stand_in::{Content, StandIn};
 pub use self::volume::read_volume;
+
+#[cfg(test)]
+mod tests;

@@ -26,8 +26,8 @@ pub struct StandIn {
 pub enum Content {
     /// A two-dimensional texture.
     Texture(fn() -> Image),
-    /// The faces +X −X +Y −Y +Z −Z of a cube map, each as its file shows it: without `vflip`, its first row is
-    /// t = 0, as [`toyproof_image::cube`] has it.
+    /// The faces +X −X +Y −Y +Z −Z of a cube map, each as its file shows it: without `vflip`, its first row
+    /// is t = 0, as [`toyproof_image::cube`] has it.
     Cube(fn() -> [Image; 6]),
     /// The slices of a volume, z = 0 first, each with y = 0 first.
     Volume(fn() -> Vec<Image>),

@@ -61,7 +61,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<Image>, String> {
     }
     if depth != height {
         return Err(format!(
-            "the volume is {height} texels high and {depth} deep, but the site takes the depth from the height"
+            "the volume is {height} texels high and {depth} deep; the site takes the depth from the height"
         ));
     }
     if !(1..=4).contains(&components) {

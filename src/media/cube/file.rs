@@ -74,7 +74,8 @@ fn split(path: &Path, image: &Image) -> Result<[Image; 6], MediaError> {
     });
     let Some(([columns, rows], places)) = found else {
         let problem = format!("an image of {width}×{height} pixels is not a cube map");
-        let help = "a cube map is six square files name.png, name_1.png … name_5.png, a cross of 4×3 or 3×4 faces, or a strip";
+        let help = "a cube map is six square files name.png, name_1.png … name_5.png, a cross of 4×3 or 3×4 \
+            faces, or a strip";
         return Err(MediaError::new(path, problem).with_help(help));
     };
     let side = width / columns;

@@ -22,8 +22,8 @@ use crate::material::{Color, in_levels};
 pub(crate) type Vector = [f32; 3];
 
 /// The direction of a point of a face, `u` to the right and `v` upwards in its file, each from 0 to 1, as
-/// [`toyproof_image::cube::texel_direction`] has it for the centers of texels. The file's first row is t = 0. The
-/// length is between 1 and √3.
+/// [`toyproof_image::cube::texel_direction`] has it for the centers of texels. The file's first row is t = 0.
+/// The length is between 1 and √3.
 fn face_direction(face: usize, u: f32, v: f32) -> Vector {
     let (s, t) = (2.0 * u - 1.0, 1.0 - 2.0 * v);
     match face {

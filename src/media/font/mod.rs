@@ -4,10 +4,11 @@
 //!
 //! - red: coverage of the texel, 0 to 1
 //! - green, blue: the direction of the gradient of the distance, 0.5 + 0.5·g, to the right and downwards
-//! - alpha: the distance to the outline, (127 + 4·d)/255, d in texels, negative inside, up to 1 in empty cells
+//! - alpha: the distance to the outline, (127 + 4·d)/255, d in texels, negative inside; 1 in empty cells
 //!
-//! So `alpha − 127/255`, as shaders write it, is nearly the distance in cells. Rows of codes run downwards; capital letters stand on a line 50
-//! texels below the top of their cell, are 37 texels high, and are centered.
+//! So `alpha − 127/255`, as shaders write it, is nearly the distance in cells. Rows of codes run downwards.
+//! Capital letters stand on a line 50 texels below the top of their cell, are 37 texels high, and are
+//! centered.
 
 mod outline;
 mod symbol;
@@ -24,12 +25,14 @@ const CELL: usize = 64;
 /// The number of cells in a row and in a column.
 const CELLS: usize = 16;
 
-/// `DejaVu` Sans 2.37, under the license beside it; a subset of the characters of the texture without hinting:
-/// `pyftsubset DejaVuSans.ttf --unicodes=… --no-hinting --layout-features='' --drop-tables+=GPOS,GSUB,GDEF,kern,name,post`.
+/// `DejaVu` Sans 2.37, under the license beside it; a subset of the characters of the texture, by:
+/// `pyftsubset DejaVuSans.ttf --unicodes=… --no-hinting --layout-features=''
+/// --drop-tables+=GPOS,GSUB,GDEF,kern,name,post`.
 static DEJAVU: &[u8] = include_bytes!("DejaVuSans-subset.ttf");
 
 /// The characters of the codes 0 to 31. A space stands for a symbol of a player, which `symbol` draws.
-const SYMBOLS: &str = "  \u{25c0}\u{25cf}\u{25a0}\u{25b6}   \u{2669}\u{266a}\u{266b}\u{266c}\u{266d}\u{266e}\u{266f}\
+const SYMBOLS: &str = "  \u{25c0}\u{25cf}\u{25a0}\u{25b6}   \
+    \u{2669}\u{266a}\u{266b}\u{266c}\u{266d}\u{266e}\u{266f}\
     ←↑→↓\u{2194}\u{2195}\u{2196}\u{2197}\u{2198}\u{2199}\u{21ba}\u{21bb}\u{2605}\u{263b}  ";
 
 /// The characters of the codes 128 to 159.
@@ -119,7 +122,8 @@ mod tests {
             let from_center = x as f32 + 0.5 - center;
             let expected = from_center.abs() - ink / 2.0;
             let distance = (255.0 * alpha - 127.0) / 4.0;
-            // Near the ends of the stem, the ends are not nearer in this row; a level is a quarter of a texel.
+            // Near the ends of the stem, the ends are not nearer in this row; a level is a quarter of a
+            // texel.
             assert!(
                 (distance - expected).abs() < 0.3,
                 "{x}: {distance}, not {expected}"

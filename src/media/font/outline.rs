@@ -6,8 +6,8 @@ use ttf_parser::{Face, OutlineBuilder};
 const CAPITAL_HEIGHT: f32 = 37.0;
 /// The line on which letters stand, in texels from the top of the cell.
 const BASELINE: f32 = 50.0;
-/// The factor by which glyphs are narrower than the font's, and the distance by which their outlines are moved
-/// outwards, in texels. With both, letters have the width and the stems of the site's font.
+/// The factor by which glyphs are narrower than the font's, and the distance by which their outlines are
+/// moved outwards, in texels. With both, letters have the width and the stems of the site's font.
 const NARROWER: f32 = 0.80;
 const BOLDER: f32 = 0.55;
 /// The number of segments of a curve.
@@ -32,9 +32,9 @@ impl Outline {
             .extend(polygon.iter().zip(next).map(|(&a, &b)| [a, b]));
     }
 
-    /// For each texel of a square cell, from the top down: the distance of its center to the outline, negative
-    /// inside, and the direction in which it grows fastest. Without segments, the distance is infinite and
-    /// the direction zero.
+    /// For each texel of a square cell, from the top down: the distance of its center to the outline,
+    /// negative inside, and the direction in which it grows fastest. Without segments, the distance is
+    /// infinite and the direction zero.
     pub(super) fn distances(&self, cell: usize) -> Vec<(f32, [f32; 2])> {
         /// The side of the blocks of texels that consider the same segments.
         const BLOCK: usize = 8;
@@ -91,7 +91,8 @@ impl Outline {
             .collect()
     }
 
-    /// Where the outline crosses a row, and how each crossing changes the winding number of points to the left.
+    /// Where the outline crosses a row, and how each crossing changes the winding number of points to its
+    /// left.
     fn windings(&self, y: f32) -> Vec<(f32, i32)> {
         let crossing = |&[[ax, ay], [bx, by]]: &[Point; 2]| {
             let sign = i32::from(by > y) - i32::from(ay > y);

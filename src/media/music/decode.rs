@@ -1,12 +1,12 @@
-//! Samples of sound files: WAV, and Ogg Vorbis.
+//! Samples of sound files.
 
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
 use hound::{SampleFormat, WavReader};
-use lewton::inside_ogg::OggStreamReader;
 use toyproof_image::input;
 
+use super::vorbis;
 use crate::MediaError;
 
 /// The most samples of a channel: 50 minutes at 44,100 samples per second, half a gigabyte.
@@ -27,7 +27,7 @@ pub(super) fn decode(path: &Path) -> Result<(Vec<f32>, u32), MediaError> {
     is_read.map_err(|error| fault(format!("the sound cannot be read: {error}")))?;
     let decoded = match &signature {
         b"RIFF" => wav(BufReader::new(file)),
-        b"OggS" => vorbis(BufReader::new(file)),
+        b"OggS" => vorbis::decode(BufReader::new(file)),
         _ => return Err(fault("the sound is neither WAV nor Ogg Vorbis".to_owned()).with_help(CONVERT)),
     };
     match decoded {
@@ -62,30 +62,18 @@ fn wav(reader: impl Read) -> Result<(Vec<f32>, u32), String> {
     Ok((mixer.samples, spec.sample_rate))
 }
 
-fn vorbis(reader: impl Read + Seek) -> Result<(Vec<f32>, u32), String> {
-    let fault = |error: lewton::VorbisError| format!("the Ogg Vorbis file cannot be read: {error}");
-    let mut reader = OggStreamReader::new(reader).map_err(fault)?;
-    let rate = reader.ident_hdr.audio_sample_rate;
-    let mut mixer = Mixer::new(reader.ident_hdr.audio_channels.into())?;
-    // Samples of 16 bits hide most of the differences between machines, whose sines the decoder uses.
-    while let Some(packet) = reader.read_dec_packet_itl().map_err(fault)? {
-        for sample in packet {
-            mixer.push(f32::from(sample) / 32_768.0)?;
-        }
-    }
-    Ok((mixer.samples, rate))
-}
-
 /// Collects the means of the channels' samples.
-struct Mixer {
+pub(super) struct Mixer {
     channels: usize,
-    samples: Vec<f32>,
+    /// The means.
+    pub(super) samples: Vec<f32>,
     /// The sum of the present sample, and the number of its channels.
     present: (f32, usize),
 }
 
 impl Mixer {
-    fn new(channels: usize) -> Result<Self, String> {
+    /// Mixes this number of channels.
+    pub(super) fn new(channels: usize) -> Result<Self, String> {
         if channels == 0 {
             return Err("the sound has no channels".to_owned());
         }
@@ -97,7 +85,7 @@ impl Mixer {
     }
 
     /// Adds a sample of the next channel.
-    fn push(&mut self, sample: f32) -> Result<(), String> {
+    pub(super) fn push(&mut self, sample: f32) -> Result<(), String> {
         let (sum, count) = (self.present.0 + sample, self.present.1 + 1);
         if count < self.channels {
             self.present = (sum, count);
@@ -144,32 +132,6 @@ mod tests {
         writer.write_sample(1.5_f32).unwrap();
         writer.finalize().unwrap();
         assert_eq!(decode(&path).unwrap(), (vec![1.5], 48_000));
-    }
-
-    /// 0.4 s of 1000 Hz at 8000 samples per second, computed and encoded by:
-    /// `ffmpeg -f lavfi -i "sine=frequency=1000:sample_rate=8000:duration=0.4" -af volume=4 -q:a 0 tone.ogg`
-    #[test]
-    fn a_tone_in_an_ogg_vorbis_file_is_decoded() {
-        let (samples, rate) = vorbis(std::io::Cursor::new(include_bytes!("tone.ogg"))).unwrap();
-        assert_eq!(rate, 8000);
-        assert!(samples.len().abs_diff(3200) < 256, "{}", samples.len());
-        // In the middle, the sound is a sine of the amplitude 1/2 with a period of eight samples.
-        let middle = &samples[1000..2000];
-        let part = |phase: f64| -> f64 {
-            let weighted = middle.iter().enumerate().map(|(n, x)| {
-                let turns = n as f64 / 8.0 + phase;
-                f64::from(*x) * (std::f64::consts::TAU * turns).cos()
-            });
-            weighted.sum::<f64>() * 2.0 / middle.len() as f64
-        };
-        let amplitude = part(0.0).hypot(part(0.25));
-        let mean_square = middle.iter().map(|x| f64::from(x * x)).sum::<f64>() / middle.len() as f64;
-        assert!((amplitude - 0.5).abs() < 0.03, "{amplitude}");
-        // The rest is what the lossy format adds.
-        assert!(
-            (mean_square - amplitude * amplitude / 2.0).abs() < 0.002,
-            "{mean_square}"
-        );
     }
 
     #[test]

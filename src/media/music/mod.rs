@@ -5,6 +5,7 @@ mod analyser;
 mod decode;
 mod fft;
 mod silence;
+mod vorbis;
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -22,8 +23,8 @@ const WIDTH: usize = 512;
 /// How often the site reads the analyser in a second: once a frame.
 const CALLS_PER_SECOND: i64 = 60;
 
-/// The number of calls that a spectrum is the smoothed mean of, two seconds. What an earlier one would add has
-/// the factor 0.8¹²⁰ < 10⁻¹¹, far below the least level, −100 dB.
+/// The number of calls that a spectrum is the smoothed mean of, two seconds. What an earlier one would add
+/// has the factor 0.8¹²⁰ < 10⁻¹¹, far below the least level, −100 dB.
 const CALLS: i64 = 120;
 
 /// A piece of music, which repeats.
