@@ -179,7 +179,7 @@ fn open_sequence<'t>(
         Output::Film(frames, format) => {
             let settings = sequence.film(frames, format, scene.film.size);
             let paths = (output, output);
-            let film = FilmFile::open((sequence, frames), settings, paths, &fingerprint, terminal)?;
+            let film = FilmFile::start((sequence, frames), settings, paths, &fingerprint, terminal)?;
             Sequence::Film(Box::new(film))
         }
         Output::Stream(frames, format) => {

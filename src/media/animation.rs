@@ -9,7 +9,7 @@ use image::{AnimationDecoder, DynamicImage, Frame, ImageDecoder, ImageFormat, Rg
 use toyproof_diagnostic::grouped;
 use toyproof_image::{Image, check_size, decoder_limits, from_decoded, input, open_image, read};
 
-use crate::MediaError;
+use crate::error::MediaError;
 
 /// The most frames of a film, an hour at 30 frames per second.
 const MAX_FRAMES: usize = 108_000;

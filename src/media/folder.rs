@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_image::Image;
 
-use crate::MediaError;
+use crate::error::MediaError;
 
 /// What a medium may be called.
 #[derive(Debug, Clone, Copy)]

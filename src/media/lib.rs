@@ -17,7 +17,8 @@
 //! # Parts
 //!
 //! - `stand_in`: the table of stand-ins.
-//! - `field`: periodic grids of numbers, and noise; `material`: materials made of them.
+//! - `field`: periodic grids of numbers, and noise; `color`: tones and levels; `material`: materials made of
+//!   them.
 //! - `blue_noise`, `font`, `film`: further textures; `cube`: environments and their cube maps, and those from
 //!   files.
 //! - `animation`, `volume`: films and volumes from files; `folder`: a folder of copies of the site's media.
@@ -25,6 +26,7 @@
 
 mod animation;
 mod blue_noise;
+mod color;
 mod cube;
 mod error;
 mod field;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toyproof_image::{Image, MAX_PIXELS, input, pcg};
 
-use crate::MediaError;
+use crate::error::MediaError;
 
 /// The side of the site's volumes, in texels.
 const SIDE: u32 = 32;

@@ -8,10 +8,11 @@ use toyproof_lint::Lints;
 use toyproof_media::MediaFolder;
 
 use crate::check::check_with_includes;
-use crate::files::IncludeFolders;
+use crate::files::{IncludeFolders, project_image};
 use crate::graph::{Rendering, UnsupportedPass};
 use crate::pass::PassKind;
 use crate::project::Project;
+use crate::textures::LoadedMedia;
 
 /// A project whose tabs compile, with what renders its image.
 #[derive(Debug)]
@@ -35,8 +36,9 @@ impl CompiledProject {
         files: &mut Files,
         options: &Options,
     ) -> Result<(Self, Lints), Diagnostics> {
-        let read = project.read_media(folder, media);
-        read.map_err(|errors| Diagnostics::new(errors, files))?;
+        let file = |name: &str| folder.map(|folder| project_image(folder, name)).transpose();
+        let read = LoadedMedia::read(project.inputs(), file, media);
+        project.media = read.map_err(|errors| Diagnostics::new(errors, files))?;
         let passes = check_with_includes(&project, includes, files, options)?;
         let mut lints = Lints::default();
         let mut checked = Vec::with_capacity(passes.passes.len());

@@ -1,10 +1,7 @@
 //! A project in memory.
 
-use std::path::Path;
-
-use toyproof_diagnostic::{Diagnostic, FileId};
+use toyproof_diagnostic::FileId;
 use toyproof_glsl::UniformValue;
-use toyproof_media::MediaFolder;
 
 use crate::format::{Format, Wrapper};
 use crate::node::Node;
@@ -66,21 +63,8 @@ impl Project {
         self.inputs().filter_map(|input| input.source.file())
     }
 
-    /// Reads the files of media that inputs name: in the folder of the project, and copies of the site's media
-    /// in another folder. Others are computed, or black.
-    ///
-    /// # Errors
-    /// Why files cannot be read, each at its input.
-    pub fn read_media(
-        &mut self,
-        folder: Option<&Path>,
-        media: Option<&MediaFolder>,
-    ) -> Result<(), Vec<Diagnostic>> {
-        self.media = LoadedMedia::read(self.inputs(), folder, media)?;
-        Ok(())
-    }
-
-    fn inputs(&self) -> impl Iterator<Item = &Input> {
+    /// The inputs of all passes.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = &Input> {
         self.passes.iter().flat_map(|pass| pass.inputs.iter().flatten())
     }
 

@@ -15,7 +15,6 @@ use toyproof_media::{
 };
 use toyproof_player as player;
 
-use crate::files::project_image;
 use crate::media::{WEBCAM_ID, Medium};
 use crate::pass::{Input, PassKind, Source, SourceType};
 
@@ -34,13 +33,14 @@ pub(crate) enum Loaded {
 pub(crate) struct LoadedMedia(HashMap<String, Loaded>);
 
 impl LoadedMedia {
-    /// Reads the files of the folder of a project, and the copies of the site's media in another folder.
+    /// Reads the files of the project, whose places `file` finds, and the copies of the site's media in
+    /// another folder. Others are computed, or black.
     ///
     /// # Errors
     /// Why files cannot be read, each at the first input that reads it.
     pub(crate) fn read<'a>(
         inputs: impl Iterator<Item = &'a Input>,
-        folder: Option<&Path>,
+        file: impl Fn(&str) -> Result<Option<PathBuf>, String>,
         media: Option<&MediaFolder>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let mut loaded = HashMap::new();
@@ -52,10 +52,9 @@ impl LoadedMedia {
             if loaded.contains_key(&key) {
                 continue;
             }
-            let path = match (input.source.file(), folder) {
-                (Some(file), Some(folder)) => project_image(folder, file).map(Some),
-                (Some(_), None) => Ok(None),
-                (None, _) => Ok(media.and_then(|media| copy(media, &input.source))),
+            let path = match input.source.file() {
+                Some(name) => file(name),
+                None => Ok(media.and_then(|media| copy(media, &input.source))),
             };
             let content = path.and_then(|path| path.map(|path| load(&path, &input.source)).transpose());
             match content {

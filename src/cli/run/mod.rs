@@ -652,7 +652,7 @@ impl<'a> Runner<'a> {
             Output::Film(frames, format) => {
                 let paths = (self.output, path);
                 let settings = settings(frames, format);
-                let film = FilmFile::open((args, frames), settings, paths, fingerprint, self.terminal)?;
+                let film = FilmFile::start((args, frames), settings, paths, fingerprint, self.terminal)?;
                 Sequence::Film(Box::new(film))
             }
             Output::Stream(frames, format) => {

@@ -32,7 +32,7 @@ impl FrameSink for FilmWriter {
 impl FilmFile {
     /// Starts a film, or goes on with an interrupted one with the same fingerprint. `output` is its path, or
     /// the folder that the user named.
-    pub(in crate::cli) fn open(
+    pub(in crate::cli) fn start(
         (args, frames): (&SequenceArgs, Frames),
         settings: FilmSettings,
         (output, path): (&Path, &Path),

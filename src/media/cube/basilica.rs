@@ -2,7 +2,7 @@
 
 use super::{Vector, noise};
 use crate::field::{hash, mix, smoothstep, unit};
-use crate::material::{Color, blend, scaled};
+use crate::color::{Color, blend, scaled};
 
 /// Walls are at x = ±1 and z = ±`LENGTH`.
 const LENGTH: f32 = 3.2;

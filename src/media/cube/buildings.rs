@@ -2,7 +2,7 @@
 
 use super::{Vector, noise};
 use crate::field::{hash, mix, smoothstep, unit};
-use crate::material::{Color, blend, scaled};
+use crate::color::{Color, blend, scaled};
 
 /// A court whose long walls are at x = ±1 and whose short walls are at z = ±`length`, seen from the origin.
 #[derive(Debug, Clone, Copy)]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toyproof_image::{Image, read};
 
-use crate::MediaError;
+use crate::error::MediaError;
 
 /// Reads a cube map: six files as the site names them (`name.png`, `name_1.png` to `name_5.png`: +X −X +Y −Y
 /// +Z −Z), or one file with all faces as a cross or as a strip.

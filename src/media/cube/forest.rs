@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::{Vector, noise};
 use crate::field::{hash, mix, smoothstep, unit};
-use crate::material::{Color, blend, scaled};
+use crate::color::{Color, blend, scaled};
 
 /// Brighter than white.
 const SKY: Color = [4.0, 4.2, 4.4];

@@ -16,7 +16,7 @@ pub(crate) use self::buildings::{GALLERY, LONDON};
 pub use self::file::read_cube;
 pub(crate) use self::forest::forest;
 use crate::field::{mix, unit};
-use crate::material::{Color, in_levels};
+use crate::color::{Color, in_levels};
 
 /// A direction or a position: x to the right, y up, z towards the viewer, right-handed.
 pub(crate) type Vector = [f32; 3];

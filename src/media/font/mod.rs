@@ -18,7 +18,7 @@ use toyproof_image::Image;
 use ttf_parser::Face;
 
 use self::outline::{Outline, glyph};
-use crate::material::in_levels;
+use crate::color::in_levels;
 
 /// The side of a cell in texels.
 const CELL: usize = 64;

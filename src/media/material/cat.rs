@@ -2,7 +2,7 @@
 
 use toyproof_image::Image;
 
-use super::in_levels;
+use crate::color::in_levels;
 
 /// Columns of a frame; shaders select one as `40.0/256.0`.
 const FRAME: i32 = 40;

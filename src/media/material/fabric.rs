@@ -2,7 +2,7 @@
 
 use toyproof_image::{Image, pcg};
 
-use super::{Color, Tone, blend, ramp, scaled, toned};
+use crate::color::{Color, Tone, blend, ramp, scaled, toned};
 use crate::field::{Field, Points, hash, smoothstep, unit};
 
 /// Varnished wood with a horizontal grain and dark pores.

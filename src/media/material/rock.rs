@@ -2,7 +2,7 @@
 
 use toyproof_image::{Image, pcg};
 
-use super::{Color, Tone, blend, ramp, scaled, toned, toned_red};
+use crate::color::{Color, Tone, blend, ramp, scaled, toned, toned_red};
 use crate::field::{Field, Points, hash, smoothstep, unit};
 
 /// A wall of rectangular stones of several sizes with joints between them.

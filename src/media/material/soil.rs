@@ -2,7 +2,7 @@
 
 use toyproof_image::{Image, pcg};
 
-use super::{Tone, blend, ramp, scaled, toned};
+use crate::color::{Tone, blend, ramp, scaled, toned};
 use crate::field::{Field, Points, hash, smoothstep, unit};
 
 /// Pale bark with cracks and pits.

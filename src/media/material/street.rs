@@ -2,7 +2,7 @@
 
 use toyproof_image::Image;
 
-use super::{Tone, toned};
+use crate::color::{Tone, toned};
 use crate::cube::{LONDON, normalized};
 use crate::field::Field;
 

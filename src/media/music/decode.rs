@@ -7,7 +7,7 @@ use hound::{SampleFormat, WavReader};
 use toyproof_image::input;
 
 use super::vorbis;
-use crate::MediaError;
+use crate::error::MediaError;
 
 /// The most samples of a channel: 50 minutes at 44,100 samples per second, half a gigabyte.
 const MAX_SAMPLES: usize = 1 << 27;

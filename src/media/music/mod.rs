@@ -15,7 +15,7 @@ use toyproof_image::Image;
 
 use self::analyser::{Magnitudes, SIZE, SMOOTHING, magnitudes, spectrum_level, wave_level};
 pub use self::silence::silent_music;
-use crate::MediaError;
+use crate::error::MediaError;
 
 /// The width of the texture.
 const WIDTH: usize = 512;

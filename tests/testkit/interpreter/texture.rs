@@ -372,11 +372,12 @@ fn nearest_beyond(face: u32, inside: [u32; 2], outside: [i64; 2], side: u32) -> 
     let distance = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>();
     let own = cube::texel_direction(face, inside, side);
     // A corner has two neighbors: the step across the edge leads towards one of them.
-    let step = [0, 1].map(|axis| outside[axis] - i64::from(inside[axis]));
-    let towards = match step {
-        [x, 0] => cube::texel_direction(face, [if x > 0 { 2 * side } else { 0 }, inside[1]], side),
-        [_, y] => cube::texel_direction(face, [inside[0], if y > 0 { 2 * side } else { 0 }], side),
-    };
+    let step = [0, 1].map(|axis| (outside[axis] - i64::from(inside[axis])) as f64);
+    let [across, up] = [[inside[0] + 1, inside[1]], [inside[0], inside[1] + 1]]
+        .map(|next| cube::texel_direction(face, next, side));
+    let towards = [0, 1, 2].map(|i: usize| {
+        own[i] + 0.1 * (step[0] * (across[i] - own[i]) + step[1] * (up[i] - own[i]))
+    });
     let all = (0..cube::FACES).filter(|other| *other != face);
     let all = all.flat_map(|face| (0..side * side).map(move |at| (face, [at % side, at / side])));
     let measured = all.map(|(face, at)| {
