@@ -87,7 +87,13 @@ pub use toyproof_film as film;
 pub use toyproof_glsl as glsl;
 #[cfg(feature = "gpu")]
 pub use toyproof_gpu as gpu;
-#[cfg(any(feature = "eval", feature = "film", feature = "media", feature = "tracer", feature = "gpu"))]
+#[cfg(any(
+    feature = "eval",
+    feature = "film",
+    feature = "media",
+    feature = "tracer",
+    feature = "gpu"
+))]
 pub use toyproof_image as image;
 #[cfg(feature = "lab")]
 pub use toyproof_lab as lab;

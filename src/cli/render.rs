@@ -149,7 +149,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
                 terminal.write(path, &bytes)?;
             }
             Destination::Film(film) => {
-                film.add(&render_frame(&scene, frame_time, &mut previous, (args, true), terminal))?;
+                film.add(&render_frame(
+                    &scene,
+                    frame_time,
+                    &mut previous,
+                    (args, true),
+                    terminal,
+                ))?;
             }
         }
         Ok(FrameEnd::Written)
@@ -166,7 +172,13 @@ fn open_sequence<'t>(
 ) -> Result<Option<Sequence<'t>>, CliError> {
     // Identifies the rendering: frames of a different scene or with other settings are ignored.
     let mut hasher = DefaultHasher::new();
-    let settings = (&args.precision, args.max_error, args.layers, args.time, args.sequence.fps);
+    let settings = (
+        &args.precision,
+        args.max_error,
+        args.layers,
+        args.time,
+        args.sequence.fps,
+    );
     format!("{scene:?} {settings:?}").hash(&mut hasher);
     let fingerprint = format!("{:016x}", hasher.finish());
     let sequence = &args.sequence;

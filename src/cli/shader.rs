@@ -287,7 +287,8 @@ fn read(
             *has_passes = !project.needed_by_image().is_empty();
             // JSON of the site is a project without a folder, and has its texts in itself.
             let includes = folder.is_some().then_some(includes);
-            let compiled = CompiledProject::compile(project, (folder.as_deref(), media), includes, files, options);
+            let compiled =
+                CompiledProject::compile(project, (folder.as_deref(), media), includes, files, options);
             let (project, of_project) = compiled.map_err(invalid)?;
             *lints = of_project;
             Ok(Content::Project(project))

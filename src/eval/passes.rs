@@ -75,7 +75,9 @@ pub fn bound(frame: &Frame, channels: [Channel<'_, Texture>; 4], media: &[Textur
         _ => None,
     };
     Frame {
-        channel_times: channels.each_ref().map(|channel| moving(channel).map_or(0.0, |(_, time)| *time)),
+        channel_times: channels
+            .each_ref()
+            .map(|channel| moving(channel).map_or(0.0, |(_, time)| *time)),
         channels: channels.map(|channel| match channel {
             Channel::Unbound => None,
             Channel::Texture(texture) => Some(texture.clone()),
@@ -98,7 +100,10 @@ impl<N: Number> Renderer for PassRenderer<'_, N> {
 
     fn zeros(&mut self, storage: Storage, mipmaps: bool) -> Result<Texture, PassFailure> {
         let zeros = |[width, height]: [u32; 2]| {
-            N::texture([width, height], vec![[N::default(); 4]; width as usize * height as usize])
+            N::texture(
+                [width, height],
+                vec![[N::default(); 4]; width as usize * height as usize],
+            )
         };
         let texture = match storage {
             Storage::Image(size) => zeros(size),

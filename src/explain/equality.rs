@@ -176,6 +176,9 @@ impl<'a> Pair<'a> {
     ///
     /// # Errors
     /// If a pass fails.
+    ///
+    /// # Panics
+    /// Never: every shader has an image.
     pub fn images(
         &self,
         clock: &Clock,

@@ -104,7 +104,13 @@ impl PassRenderer {
         let mut made = self.zeros(storage, mipmaps)?;
         let stack = texture.stack();
         self.device.with_error_scopes(|| {
-            write(&self.device.queue, &made.target, 0, extent(stack.size()), stack.pixels());
+            write(
+                &self.device.queue,
+                &made.target,
+                0,
+                extent(stack.size()),
+                stack.pixels(),
+            );
             self.make_mipmaps(&made.target)
         })?;
         if is_cube {
@@ -115,14 +121,14 @@ impl PassRenderer {
 
     /// The view of a channel for a shader that declares this shape, with its resolution.
     fn bound(&self, channel: &Channel<'_, PassTexture>, frame: &Frame, shape: Shape) -> BoundChannel {
-        let of_uploads = |uploads: &Uploads| {
-            Some((uploads.view(&self.device, shape)?, uploads.texture.resolution()))
-        };
+        let of_uploads =
+            |uploads: &Uploads| Some((uploads.view(&self.device, shape)?, uploads.texture.resolution()));
         match channel {
             Channel::Unbound => None,
             Channel::Texture(PassTexture { cube: Some(cube), .. }) => of_uploads(cube),
-            Channel::Texture(PassTexture { target, cube: None }) => (shape == Shape::D2)
-                .then(|| (view(target, shape), [target.width(), target.height(), 1])),
+            Channel::Texture(PassTexture { target, cube: None }) => {
+                (shape == Shape::D2).then(|| (view(target, shape), [target.width(), target.height(), 1]))
+            }
             Channel::Medium(number) => of_uploads(self.media.get(*number)?),
             Channel::Moving(number) => of_uploads(&Uploads::new(frame.moving.get(*number)?.0.clone())),
             Channel::Keyboard => of_uploads(&Uploads::new(frame.keys.texture())),

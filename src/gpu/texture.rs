@@ -81,7 +81,7 @@ fn upload_layers(device: &Device, queue: &Queue, texture: &Texture) -> wgpu::Tex
     let made = make(device, Shape::Layers, size, 1, usage);
     for (level, stack) in (0..).zip(texture.to_single()) {
         let [width, rows] = stack.size();
-        let row = 2 * side - (2 * side >> level) + 2 * level;
+        let row = 2 * side - ((2 * side) >> level) + 2 * level;
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(16 * width),

@@ -91,7 +91,11 @@ pub(crate) fn with_borders<T: Component>(stack: &Image<T>) -> Image<T> {
                     let (face, at) = neighbor(face, at, side);
                     texel(face, at)
                 };
-                let corner = [texel(face, inside), beyond([at[0], inside[1]]), beyond([inside[0], at[1]])];
+                let corner = [
+                    texel(face, inside),
+                    beyond([at[0], inside[1]]),
+                    beyond([inside[0], at[1]]),
+                ];
                 [0, 1, 2, 3].map(|component| T::mean(corner.map(|texel| texel[component])))
             }
             _ => {
@@ -166,7 +170,10 @@ mod tests {
                     let near = bordered.get(inside[0], face * whole + inside[1]);
                     for component in 0..3 {
                         let difference = (texel[component] - near[component]).abs();
-                        assert!(difference < 1.1 * step, "face {face}, {column}, {row}: {difference}");
+                        assert!(
+                            difference < 1.1 * step,
+                            "face {face}, {column}, {row}: {difference}"
+                        );
                     }
                 }
             }

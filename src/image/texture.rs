@@ -103,7 +103,10 @@ impl Texture {
     /// If the image does not consist of such slices.
     pub fn volume<T: Component>(stack: Image<T>, height: u32) -> Self {
         let [width, rows] = stack.size();
-        assert!(rows > 0 && rows.is_multiple_of(height), "the slices have one height");
+        assert!(
+            rows > 0 && rows.is_multiple_of(height),
+            "the slices have one height"
+        );
         Self {
             shape: Shape::Volume,
             resolution: [width, height, rows / height],
@@ -242,7 +245,10 @@ impl Texture {
         let levels = self.to_single();
         match self.shape {
             Shape::Flat | Shape::Volume => levels,
-            Shape::Cube => levels.iter().map(|level| Arc::new(without_borders(level))).collect(),
+            Shape::Cube => levels
+                .iter()
+                .map(|level| Arc::new(without_borders(level)))
+                .collect(),
         }
     }
 
@@ -486,13 +492,18 @@ mod tests {
 
     #[test]
     fn mipmaps_of_volumes_are_means_of_eight() {
-        let pixels = (0..4 * 4 * 4).map(|at| [f64::from(at % 4), f64::from(at / 4 % 4), f64::from(at / 16), 1.0]);
+        let pixels =
+            (0..4 * 4 * 4).map(|at| [f64::from(at % 4), f64::from(at / 4 % 4), f64::from(at / 16), 1.0]);
         let volume = Texture::volume(Image::new(4, 16, pixels.collect()), 4).with_mipmaps();
         assert_eq!((volume.size(), volume.layers(), volume.levels()), ([4, 4], 4, 3));
         let Texels::Double(levels) = volume.texels() else {
             panic!("another precision");
         };
-        assert_eq!(levels[1].get(1, 2), [2.5, 0.5, 2.5, 1.0], "the first row of the second slice");
+        assert_eq!(
+            levels[1].get(1, 2),
+            [2.5, 0.5, 2.5, 1.0],
+            "the first row of the second slice"
+        );
         assert_eq!(levels[2].pixels(), [[1.5, 1.5, 1.5, 1.0]]);
     }
 

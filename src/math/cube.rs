@@ -18,11 +18,7 @@ pub fn cube_place<N: Number>(direction: [N; 3]) -> [N; 3] {
     let [x, y, z] = direction;
     let literal = |value| x.literal(value);
     let face = |component: N, first: f64| {
-        N::select(
-            component.less(literal(0.0)),
-            literal(first + 1.0),
-            literal(first),
-        )
+        N::select(component.less(literal(0.0)), literal(first + 1.0), literal(first))
     };
     let face = by_face(direction, [face(x, 0.0), face(y, 2.0), face(z, 4.0)]);
     let place = |component: N| component / major * literal(0.5) + literal(0.5);
@@ -84,7 +80,12 @@ mod tests {
     #[test]
     fn gradients_are_those_of_the_places() {
         let step = 1e-6;
-        for direction in [[3.0, 1.0, -2.0], [-1.0, 0.5, 0.2], [0.3, -2.0, 1.9], [0.1, 0.2, -1.0]] {
+        for direction in [
+            [3.0, 1.0, -2.0],
+            [-1.0, 0.5, 0.2],
+            [0.3, -2.0, 1.9],
+            [0.1, 0.2, -1.0],
+        ] {
             for axis in 0..3 {
                 let mut derivative = [0.0; 3];
                 derivative[axis] = 1.0;

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 use toyproof_image::Image;
 use toyproof_math::native;
 
-use crate::field::{Field, hash, smoothstep, unit};
 use crate::color::{Color, blend, in_levels, scaled};
+use crate::field::{Field, hash, smoothstep, unit};
 
 /// Where a image is computed: positions from −1 to 1 upwards, wider than that to the right.
 type Position = [f32; 2];

@@ -65,7 +65,10 @@ mod tests {
         let samples = [[1, -2], [i16::MAX, i16::MIN]];
         let bytes = wav(&samples).unwrap();
         let mut reader = hound::WavReader::new(&bytes[..]).unwrap();
-        assert_eq!((reader.spec().channels, reader.spec().sample_rate), (2, SAMPLE_RATE));
+        assert_eq!(
+            (reader.spec().channels, reader.spec().sample_rate),
+            (2, SAMPLE_RATE)
+        );
         let read: Vec<i16> = reader.samples().map(Result::unwrap).collect();
         assert_eq!(read, samples.as_flattened());
     }

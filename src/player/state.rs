@@ -25,7 +25,11 @@ impl State {
         let mut buffers = self.buffers.iter().enumerate();
         let has_buffers = buffers.all(|(number, textures)| match textures {
             Some(textures) => {
-                let size = if number == CUBE_A { [CUBE_SIDE; 2] } else { self.size };
+                let size = if number == CUBE_A {
+                    [CUBE_SIDE; 2]
+                } else {
+                    self.size
+                };
                 graph.uses(number) && textures.iter().all(|texture| texture.is_whole(size))
             }
             None => !graph.uses(number),

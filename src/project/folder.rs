@@ -570,7 +570,9 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
         };
         let span = node.span;
         // An image of the folder may be a face of a cube map.
-        let given = members.iter().position(|member| matches!(member.key.as_str(), "type" | "ctype"));
+        let given = members
+            .iter()
+            .position(|member| matches!(member.key.as_str(), "type" | "ctype"));
         if name.id.is_empty()
             && let Some(given) = given
             && let Some(kind) = known_type(&members[given].node)
@@ -578,7 +580,10 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
             name.source_type = kind;
             members.remove(given);
         }
-        let at = members.iter().position(|member| member.key == "source").unwrap_or(at);
+        let at = members
+            .iter()
+            .position(|member| member.key == "source")
+            .unwrap_or(at);
         source_type = Some(name.source_type);
         let named = format.members(&name).into_iter().map(|mut member| {
             member.node.span = span;
@@ -595,7 +600,9 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
 fn known_type(node: &Node) -> Option<SourceType> {
     let name = node.as_str()?;
     let mut known = SourceType::NAMES.iter();
-    known.find(|(known, _)| *known == name).map(|(_, source_type)| *source_type)
+    known
+        .find(|(known, _)| *known == name)
+        .map(|(_, source_type)| *source_type)
 }
 
 /// Adds the keys of a sampler that are missing, with the values of a new input on the site.

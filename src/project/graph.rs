@@ -91,7 +91,9 @@ impl Project {
         let inputs = [0, 1, 2, 3].map(|channel| {
             let input = pass.inputs[channel].as_ref()?;
             let is_bound = input.source.pass().is_none() && input.source.source_type() != SourceType::Cubemap;
-            is_bound.then(|| textures.source(input, (pass.kind, channel))).flatten()
+            is_bound
+                .then(|| textures.source(input, (pass.kind, channel)))
+                .flatten()
         });
         let pass = player::Pass {
             target: Target::Image,

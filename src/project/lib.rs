@@ -59,11 +59,11 @@ pub use self::compiled::CompiledProject;
 pub use self::declared::{Declared, with_declarations};
 pub use self::folder::PROJECT_FILE;
 pub use self::graph::{Rendering, UnsupportedPass};
-pub use self::textures::MissingMedium;
 pub use self::media::Medium;
 pub use self::pass::{Buffer, Input, MAX_TAB_BYTES, Pass, PassKind, Sampler, Source, SourceType, Tab};
 pub use self::project::Project;
 pub use self::script::parse_script;
+pub use self::textures::MissingMedium;
 
 #[cfg(test)]
 mod tests;

@@ -238,7 +238,9 @@ impl Source {
     #[must_use]
     pub fn file(&self) -> Option<&str> {
         match self {
-            Self::Medium { id, path, .. } if id.is_empty() && file_type(path).is_some() && is_inside(path) => {
+            Self::Medium { id, path, .. }
+                if id.is_empty() && file_type(path).is_some() && is_inside(path) =>
+            {
                 Some(path)
             }
             _ => None,

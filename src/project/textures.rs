@@ -15,7 +15,7 @@ use toyproof_media::{
 };
 use toyproof_player as player;
 
-use crate::media::{WEBCAM_ID, Medium};
+use crate::media::{Medium, WEBCAM_ID};
 use crate::pass::{Input, PassKind, Source, SourceType};
 
 /// The content of a file.
@@ -71,7 +71,11 @@ impl LoadedMedia {
                 }
             }
         }
-        if errors.is_empty() { Ok(Self(loaded)) } else { Err(errors) }
+        if errors.is_empty() {
+            Ok(Self(loaded))
+        } else {
+            Err(errors)
+        }
     }
 }
 
@@ -96,7 +100,10 @@ fn copy(media: &MediaFolder, source: &Source) -> Option<PathBuf> {
         Source::Medium { id, path, .. } => MediumNames {
             id,
             name: known.map_or("", |medium| medium.name),
-            file: known.map_or_else(|| path.rsplit('/').next().unwrap_or_default(), |medium| medium.file),
+            file: known.map_or_else(
+                || path.rsplit('/').next().unwrap_or_default(),
+                |medium| medium.file,
+            ),
         },
         _ => return None,
     };
@@ -308,7 +315,11 @@ fn flat(image: Image, is_flipped: bool) -> Texture {
 /// The cube map of six upright images: the first row of each is that of t = 0, unless it is flipped; +Y and
 /// −Y then change places.
 fn cube(faces: &[Image; 6], is_flipped: bool) -> Texture {
-    let order = if is_flipped { [0, 1, 3, 2, 4, 5] } else { [0, 1, 2, 3, 4, 5] };
+    let order = if is_flipped {
+        [0, 1, 3, 2, 4, 5]
+    } else {
+        [0, 1, 2, 3, 4, 5]
+    };
     let rows = order.into_iter().flat_map(|face: usize| {
         let image = faces[face].clone();
         let image = if is_flipped { image } else { image.upside_down() };
@@ -326,7 +337,11 @@ fn volume(slices: &[Image]) -> Texture {
 }
 
 fn with_mipmaps(texture: Texture, has_mipmaps: bool) -> Texture {
-    if has_mipmaps { texture.with_mipmaps() } else { texture }
+    if has_mipmaps {
+        texture.with_mipmaps()
+    } else {
+        texture
+    }
 }
 
 /// A film as a texture.

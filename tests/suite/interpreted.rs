@@ -131,7 +131,13 @@ fn lookups_of_cube_maps_and_volumes_are_interpreted_to_the_bit() {
             let options = Options {
                 stage: Stage::Buffer,
                 sampling: [Sampling { filter, wrap }; 4],
-                channels: [SamplerShape::Cube, SamplerShape::D3, SamplerShape::Cube, SamplerShape::D3].map(Some),
+                channels: [
+                    SamplerShape::Cube,
+                    SamplerShape::D3,
+                    SamplerShape::Cube,
+                    SamplerShape::D3,
+                ]
+                .map(Some),
                 ..Options::default()
             };
             let mipmaps = i32::from(filter == Filter::Mipmap);

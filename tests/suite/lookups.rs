@@ -79,11 +79,16 @@ fn every_lookup_has_the_same_bits_on_the_cpu() {
                 }}",
                 i32::from(filter == Filter::Mipmap)
             );
-            let textures = [0, 1, 2, 3].map(|channel| {
-                (channel == 0).then(|| texture(size[0], size[1], filter == Filter::Mipmap))
-            });
+            let textures = [0, 1, 2, 3]
+                .map(|channel| (channel == 0).then(|| texture(size[0], size[1], filter == Filter::Mipmap)));
             let name = format!("{filter:?} {wrap:?} {size:?}");
-            wrong.extend(differing(&mut worker, (&name, &text), &LOOKUPS, &options, textures));
+            wrong.extend(differing(
+                &mut worker,
+                (&name, &text),
+                &LOOKUPS,
+                &options,
+                textures,
+            ));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -136,7 +141,11 @@ fn every_lookup_of_cube_maps_and_volumes_has_the_same_bits_on_the_cpu() {
                 (SamplerShape::D3, random_volume(size), &LOOKUPS_OF_VOLUMES),
             ] {
                 let is_mipmap = filter == Filter::Mipmap;
-                let texture = if is_mipmap { texture.with_mipmaps() } else { texture };
+                let texture = if is_mipmap {
+                    texture.with_mipmaps()
+                } else {
+                    texture
+                };
                 let options = glsl::Options {
                     stage: Stage::Buffer,
                     sampling: [Sampling { filter, wrap }; 4],
@@ -157,7 +166,13 @@ fn every_lookup_of_cube_maps_and_volumes_has_the_same_bits_on_the_cpu() {
                 );
                 let name = format!("{filter:?} {wrap:?} {shape:?} {:?}", texture.size());
                 let textures = [Some(texture), None, None, None];
-                wrong.extend(differing(&mut worker, (&name, &text), lookups, &options, textures));
+                wrong.extend(differing(
+                    &mut worker,
+                    (&name, &text),
+                    lookups,
+                    &options,
+                    textures,
+                ));
             }
         }
     }
@@ -170,7 +185,7 @@ fn differing(
     (name, text): (&str, &str),
     lookups: &[&str],
     options: &glsl::Options,
-    channels: [Option<Texture>; 4],
+    channels: &[Option<Texture>; 4],
 ) -> Vec<String> {
     let mut files = Files::default();
     let file = files.add(File::new("lookups", text));
@@ -187,7 +202,9 @@ fn differing(
         let own = program.render::<f32>(&frame, &Settings::default()).unwrap();
         assert_eq!(own.framebuffer.undefined(), 0, "{lookup}: {:?}", own.observations);
         let drawn = worker.draw(lower_strict(&checked), frame, FloatMode::Strict);
-        let drawn = drawn.unwrap_or_else(|failure| panic!("{name} {lookup}: {failure}")).image();
+        let drawn = drawn
+            .unwrap_or_else(|failure| panic!("{name} {lookup}: {failure}"))
+            .image();
         let own = own.framebuffer.image();
         let bits = |image: &Image| -> Vec<_> {
             let components = image.pixels().iter().flatten();

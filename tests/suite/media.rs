@@ -70,7 +70,11 @@ fn a_project_reads_the_media_of_its_folder() {
     }";
     fs::write(project.join("image.glsl"), code).unwrap();
     let run = run(folder, &["p", "-o", "p.exr", "--size", "6x2", "--device", "cpu"]);
-    assert!(!run.stderr.contains("replaced") && !run.stderr.contains("black"), "{}", run.stderr);
+    assert!(
+        !run.stderr.contains("replaced") && !run.stderr.contains("black"),
+        "{}",
+        run.stderr
+    );
     let rendered = image::read(&folder.join("p.exr")).unwrap();
     let level = |value: f32| (value * 255.0).round() as i32;
     for y in 0..2 {
@@ -80,7 +84,10 @@ fn a_project_reads_the_media_of_its_folder() {
             assert_eq!(level(r - 1.0), flat as i32);
             // The resolution of a cube map is 0, that of this volume 2 deep.
             assert_eq!(level(g), 40 * x as i32, "face {x}");
-            assert_eq!(level(b - 2.0), 10 * (1 + x % 2 + 2 * (y % 2) + 4 * (y % 2)) as i32);
+            assert_eq!(
+                level(b - 2.0),
+                10 * (1 + x % 2 + 2 * (y % 2) + 4 * (y % 2)) as i32
+            );
         }
     }
 }
@@ -92,11 +99,18 @@ fn media_that_are_sampled_and_replaced_are_named() {
     let code = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy)
         + texture(iChannel1, vec3(p - 8.0, 3.0)); }";
     // London, Uffizi Gallery, and Lichen, which the image does not read.
-    let inputs = [("texture", "4dfGRn"), ("cubemap", "XsfGzn"), ("texture", "4sfGRn")];
+    let inputs = [
+        ("texture", "4dfGRn"),
+        ("cubemap", "XsfGzn"),
+        ("texture", "4sfGRn"),
+    ];
     fs::write(folder.join("a.json"), json(&inputs, code)).unwrap();
     let small = ["a.json", "-o", "a.png", "--size", "16x9", "--device", "cpu"];
     let said = run(folder, &small).stderr;
-    for named in ["“London” of ShaderToy is replaced", "“Uffizi Gallery” of ShaderToy is replaced"] {
+    for named in [
+        "“London” of ShaderToy is replaced",
+        "“Uffizi Gallery” of ShaderToy is replaced",
+    ] {
         assert!(said.contains(named), "{said}");
     }
     assert!(!said.contains("Lichen") && !said.contains("black"), "{said}");
@@ -123,13 +137,23 @@ fn a_sound_is_written_as_the_site_computes_it() {
     let folder = folder.path();
     let project = folder.join("p");
     fs::create_dir(&project).unwrap();
-    fs::write(project.join("image.glsl"), "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }").unwrap();
+    fs::write(
+        project.join("image.glsl"),
+        "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }",
+    )
+    .unwrap();
     let missing = toyproof(folder, &["run", "p", "-o", "a.wav"]);
     assert_eq!(missing.code, 2);
     assert!(missing.stderr.contains("there is no Sound"), "{}", missing.stderr);
     for (name, code) in [
-        ("new", "vec2 mainSound(int samp, float time) { return vec2(float(samp % 100) / 100.0, time * 44100.0 / 300000.0); }"),
-        ("old", "vec2 mainSound(float time) { return vec2(fract(time * 441.0), time * 0.147); }"),
+        (
+            "new",
+            "vec2 mainSound(int samp, float time) { return vec2(float(samp % 100) / 100.0, time * 44100.0 / 300000.0); }",
+        ),
+        (
+            "old",
+            "vec2 mainSound(float time) { return vec2(fract(time * 441.0), time * 0.147); }",
+        ),
     ] {
         fs::write(project.join("sound.glsl"), code).unwrap();
         let file = format!("{name}.wav");
@@ -146,7 +170,10 @@ fn a_sound_is_written_as_the_site_computes_it() {
                 // The older form computes its phase from a float32 of seconds.
                 let tolerance = if name == "old" && channel == 0 { 2e-2 } else { 1e-4 };
                 let difference = (sample - expected).abs();
-                assert!(difference.min(1.0 - difference) < tolerance, "{name} {at}: {sample}, {expected}");
+                assert!(
+                    difference.min(1.0 - difference) < tolerance,
+                    "{name} {at}: {sample}, {expected}"
+                );
             }
         }
     }
@@ -154,7 +181,10 @@ fn a_sound_is_written_as_the_site_computes_it() {
     let text = "vec2 mainSound(int samp, float time) { return vec2(sin(6.2831 * 4000.0 * time)); }";
     fs::write(project.join("sound.glsl"), text).unwrap();
     let warned = run(folder, &["p", "-o", "late.wav", "--duration", "60"]).stderr;
-    assert!(warned.contains("differs from double precision") && warned.contains("`samp`"), "{warned}");
+    assert!(
+        warned.contains("differs from double precision") && warned.contains("`samp`"),
+        "{warned}"
+    );
     let scene = toyproof(folder, &["render", "02-sphere", "-o", "a.wav"]);
     assert!(scene.stderr.contains("a scene has no sound"), "{}", scene.stderr);
 }

@@ -644,7 +644,9 @@ impl<'a> Runner<'a> {
             Output::Image => return Ok(None),
             Output::Sound(_) => {
                 let error = CliError::new("only projects have a sound");
-                return Err(error.with_help("its tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`"));
+                return Err(
+                    error.with_help("its tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`")
+                );
             }
             Output::Files(frames) => {
                 Sequence::Files(NumberedFiles::resume(frames, path, fingerprint, self.terminal))

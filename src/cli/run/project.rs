@@ -28,7 +28,9 @@ use crate::cli::{CliError, Exit, Terminal};
 /// Parses the name of a pass whose texture can be shown: `image`, `buffer-a` to `buffer-d`, or `cube-a`.
 pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     let shown = Tab::ALL.into_iter().filter_map(|tab| match tab {
-        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_) | PassKind::CubeA)) => Some((tab.name(), kind)),
+        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_) | PassKind::CubeA)) => {
+            Some((tab.name(), kind))
+        }
         _ => None,
     });
     let shown: Vec<_> = shown.collect();
@@ -41,7 +43,12 @@ pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
 
 /// Reports the media of the site that are not available. `bound` are the channels of the image that the user
 /// gives a texture.
-pub(super) fn report_missing(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
+pub(super) fn report_missing(
+    rendering: &Rendering,
+    bound: &[Option<Texture>; 4],
+    name: &str,
+    terminal: &Terminal,
+) {
     let is_bound = |&(pass, channel): &(PassKind, usize)| pass == PassKind::Image && bound[channel].is_some();
     let missing = rendering.missing.iter();
     for missing in missing.filter(|missing| !missing.readers.iter().all(is_bound)) {
@@ -271,7 +278,12 @@ impl Runner<'_> {
         }
         if output == Output::Image
             && self.args.state.is_none()
-            && let Some(frame) = bound(&rendering, &self.clock_of(&rendering, self.frame.frame).frame(self.frame.frame))
+            && let Some(frame) = bound(
+                &rendering,
+                &self
+                    .clock_of(&rendering, self.frame.frame)
+                    .frame(self.frame.frame),
+            )
         {
             return self.one_image(shader, &frame, path).map(|()| Exit::Success);
         }

@@ -56,7 +56,9 @@ impl Runner<'_> {
     ) -> Result<(), CliError> {
         let Some(sound) = self.prepared_sound(shader, passes)? else {
             let error = CliError::new(format_args!("{}: there is no {}", shader.name, PassKind::Sound));
-            return Err(error.with_help("the tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`"));
+            return Err(
+                error.with_help("the tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`")
+            );
         };
         let start = Instant::now();
         let samples = self.all_samples(&sound, seconds.unwrap_or(SOUND_SECONDS), shader)?;
@@ -72,7 +74,9 @@ impl Runner<'_> {
         );
         self.terminal.confirm(path, &facts);
         if self.args.precision == Precision::F32 {
-            let error = self.precision(&sound, &samples).map_err(|failure| failed(&failure, shader))?;
+            let error = self
+                .precision(&sound, &samples)
+                .map_err(|failure| failed(&failure, shader))?;
             self.report_precision(error, count, shader);
         }
         Ok(())
@@ -93,12 +97,17 @@ impl Runner<'_> {
         let samples = self.all_samples(&sound, from + seconds, shader)?;
         let first = (from * f64::from(SAMPLE_RATE)) as usize;
         let bytes = file(&samples[first.min(samples.len() - 1)..])?;
-        let temporary = tempfile::Builder::new().prefix("toyproof-").suffix(".wav").tempfile();
+        let temporary = tempfile::Builder::new()
+            .prefix("toyproof-")
+            .suffix(".wav")
+            .tempfile();
         let temporary = temporary.and_then(|mut temporary| {
             temporary.write_all(&bytes)?;
             Ok(temporary)
         });
-        temporary.map(Some).map_err(|error| CliError::new(format_args!("a temporary file: {error}")))
+        temporary
+            .map(Some)
+            .map_err(|error| CliError::new(format_args!("a temporary file: {error}")))
     }
 
     /// Compiles the sound of a project, if it has one.
@@ -121,21 +130,25 @@ impl Runner<'_> {
     fn all_samples(&self, sound: &Sound, seconds: f64, shader: &Shader) -> Result<Vec<[f32; 2]>, CliError> {
         let count = (seconds * f64::from(SAMPLE_RATE)).round().max(1.0) as usize;
         let samples = match self.args.precision {
-            Precision::F32 => self.samples::<f32>(sound, count),
-            Precision::F64 => self.samples::<f64>(sound, count),
+            Precision::F32 => self.sound_samples::<f32>(sound, count),
+            Precision::F64 => self.sound_samples::<f64>(sound, count),
         };
         samples.map_err(|failure| failed(&failure, shader))
     }
 
     /// The samples, block by block.
-    fn samples<N: Number>(&self, sound: &Sound, count: usize) -> Result<Vec<[f32; 2]>, eval::Failure> {
+    fn sound_samples<N: Number>(&self, sound: &Sound, count: usize) -> Result<Vec<[f32; 2]>, eval::Failure> {
         let rows = count.div_ceil(SOUND_COLUMNS as usize) as u32;
         let bar = self.terminal.bar(u64::from(rows), "rows of samples");
         let mut samples = Vec::with_capacity(count);
         for first in (0..rows).step_by(BLOCK_ROWS as usize) {
             let block = first..(first + BLOCK_ROWS).min(rows);
             bar.inc(block.len() as u64);
-            samples.extend(sound.program.sound(&sound.frame, block, &self.sound_settings::<N>())?);
+            samples.extend(
+                sound
+                    .program
+                    .sound(&sound.frame, block, &self.sound_settings::<N>())?,
+            );
         }
         bar.finish_and_clear();
         samples.truncate(count);
@@ -160,7 +173,9 @@ impl Runner<'_> {
         let single = &samples[first as usize * columns..];
         let pairs = single.as_flattened().iter().zip(double.as_flattened());
         let differences = pairs.map(|(single, double)| (single - double).abs());
-        Ok(differences.filter(|difference| difference.is_finite()).fold(0.0, f32::max))
+        Ok(differences
+            .filter(|difference| difference.is_finite())
+            .fold(0.0, f32::max))
     }
 
     fn report_precision(&self, error: f32, count: usize, shader: &Shader) {
@@ -177,7 +192,7 @@ impl Runner<'_> {
         self.terminal.warn(&message);
         // Neighboring floats differ by this at the end.
         let step = f64::from(end.next_up() - end);
-        self.terminal.help(&format!(
+        self.terminal.help(format_args!(
             "`time` has steps of {:.2} samples there: compute phases from `samp`, which is exact, or \
              reduce `time` by `fract` before it is multiplied",
             step * f64::from(SAMPLE_RATE)

@@ -110,7 +110,9 @@ impl SequenceArgs {
     /// What is written to an output.
     pub(in crate::cli) fn output(&self, path: &Path) -> Result<Output, CliError> {
         let is_standard = path == Path::new("-");
-        let is_sound = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("wav"));
+        let is_sound = path
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("wav"));
         if is_sound && self.to.is_none() {
             if self.frames.is_some() || self.plays.is_some() {
                 let error = CliError::new("a sound has no frames, and is not repeated");

@@ -378,10 +378,7 @@ impl<'a> Solver<'a> {
             .map(|def| {
                 matches!(
                     def,
-                    ValueDef::Float(_)
-                        | ValueDef::Word(_)
-                        | ValueDef::Input(..)
-                        | ValueDef::Extent { .. }
+                    ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::Extent { .. }
                 )
             })
             .collect();

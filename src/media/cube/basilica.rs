@@ -1,8 +1,8 @@
 //! A basilica: a hall of warm stone with a vault, a dome and bright windows.
 
 use super::{Vector, noise};
-use crate::field::{hash, mix, smoothstep, unit};
 use crate::color::{Color, blend, scaled};
+use crate::field::{hash, mix, smoothstep, unit};
 
 /// Walls are at x = ±1 and z = ±`LENGTH`.
 const LENGTH: f32 = 3.2;

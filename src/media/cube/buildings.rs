@@ -1,8 +1,8 @@
 //! A court between houses under a bright sky: the gallery, and with other colors a street of London.
 
 use super::{Vector, noise};
-use crate::field::{hash, mix, smoothstep, unit};
 use crate::color::{Color, blend, scaled};
+use crate::field::{hash, mix, smoothstep, unit};
 
 /// A court whose long walls are at x = ±1 and whose short walls are at z = ±`length`, seen from the origin.
 #[derive(Debug, Clone, Copy)]

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use super::{Vector, noise};
-use crate::field::{hash, mix, smoothstep, unit};
 use crate::color::{Color, blend, scaled};
+use crate::field::{hash, mix, smoothstep, unit};
 
 /// Brighter than white.
 const SKY: Color = [4.0, 4.2, 4.4];

@@ -15,8 +15,8 @@ pub(crate) use self::basilica::basilica;
 pub(crate) use self::buildings::{GALLERY, LONDON};
 pub use self::file::read_cube;
 pub(crate) use self::forest::forest;
-use crate::field::{mix, unit};
 use crate::color::{Color, in_levels};
+use crate::field::{mix, unit};
 
 /// A direction or a position: x to the right, y up, z towards the viewer, right-handed.
 pub(crate) type Vector = [f32; 3];

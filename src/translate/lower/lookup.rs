@@ -5,11 +5,11 @@
 //! evaluator (`toyproof_eval`) computes the same steps as the text that is generated here
 //! ([`super::lookup_text`]). A cube map is then an array of six images.
 
+use toyproof_glsl::Filter;
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Place, Sampler, SamplerShape,
     Scalar, Statement, StatementKind, Type, Value, VariableId, VariableKind,
 };
-use toyproof_glsl::Filter;
 
 use crate::lower::context::LoweringContext;
 use crate::lower::generated::{Expansion, Level};
@@ -124,7 +124,9 @@ impl Lookup {
         } else {
             no_offset(cx, axes, at)
         };
-        if self.shape == SamplerShape::Cube && self.level != Level::Size && !has_level_of_detail(cx, self.channel, self.level)
+        if self.shape == SamplerShape::Cube
+            && self.level != Level::Size
+            && !has_level_of_detail(cx, self.channel, self.level)
         {
             arguments[0] = cube_place(cx, arguments[0], at);
         }

@@ -119,7 +119,11 @@ impl Texture {
             Wrap::Repeat => ("(toyproof_p - floor(toyproof_p))", "-1.0", "0.0"),
             Wrap::Clamp => ("toyproof_p", "-16.0", "16.0"),
         };
-        let half = if is_nearest { String::new() } else { format!(" - vec{axes}(0.5)") };
+        let half = if is_nearest {
+            String::new()
+        } else {
+            format!(" - vec{axes}(0.5)")
+        };
         let _ = write!(
             text,
             "ivec{axes} toyproof_size{n} = {size};
@@ -129,7 +133,11 @@ impl Texture {
     vec{axes} toyproof_floor{n} = floor(toyproof_at{n});
     ivec{axes} toyproof_i{n} = ivec{axes}(toyproof_floor{n}) + {OFFSET};
     ivec{axes} toyproof_low{n} = {low};\n    ",
-            size = if level == "0" { self.size() } else { self.size_of_level(level) },
+            size = if level == "0" {
+                self.size()
+            } else {
+                self.size_of_level(level)
+            },
             low = self.wrapped(sampling, n, &format!("toyproof_i{n}")),
         );
         if self.shape == SamplerShape::Cube {
@@ -140,10 +148,14 @@ impl Texture {
             );
         }
         let texel = |corner: usize| {
-            let places = ["x", "y", "z"].into_iter().take(axes).enumerate().map(|(at, axis)| {
-                let side = if corner >> at & 1 == 0 { "low" } else { "high" };
-                format!("toyproof_{side}{n}.{axis}")
-            });
+            let places = ["x", "y", "z"]
+                .into_iter()
+                .take(axes)
+                .enumerate()
+                .map(|(at, axis)| {
+                    let side = if corner >> at & 1 == 0 { "low" } else { "high" };
+                    format!("toyproof_{side}{n}.{axis}")
+                });
             let place = places.collect::<Vec<_>>().join(", ");
             let texture = self.name();
             match self.shape {
@@ -170,7 +182,10 @@ impl Texture {
         for (axis, letter) in ["x", "y", "z"].into_iter().take(axes).enumerate() {
             for corner in (0..corners).step_by(2 << axis) {
                 let [a, b] = [corner, corner + (1 << axis)].map(|at| format!("toyproof_texel{n}{at}"));
-                let _ = write!(text, "{a} = {a} + ({b} - {a}) * toyproof_weight{n}.{letter};\n    ");
+                let _ = write!(
+                    text,
+                    "{a} = {a} + ({b} - {a}) * toyproof_weight{n}.{letter};\n    "
+                );
             }
         }
         let _ = write!(text, "vec4 toyproof_color{n} = toyproof_texel{n}0;\n    ");
@@ -185,7 +200,9 @@ impl Texture {
             }
             (SamplerShape::Cube, _) => format!("min({place}, toyproof_size{n})"),
             (_, Wrap::Repeat) => {
-                format!("ivec{axes}(uvec{axes}({place} + 32 * toyproof_size{n}) % uvec{axes}(toyproof_size{n}))")
+                format!(
+                    "ivec{axes}(uvec{axes}({place} + 32 * toyproof_size{n}) % uvec{axes}(toyproof_size{n}))"
+                )
             }
             (_, Wrap::Clamp) => {
                 format!("min(max({place}, ivec{axes}(0)), toyproof_size{n} - ivec{axes}(1))")

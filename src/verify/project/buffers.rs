@@ -136,10 +136,12 @@ impl<'a> BufferLints<'a> {
             };
             // The mouse, the keyboard and other media may give a value in other frames.
             let is_driven = checked.reads(Input::Mouse)
-                || pass
-                    .inputs
-                    .iter()
-                    .any(|input| matches!(input, Some(Source::Medium(_) | Source::Moving(_) | Source::Keyboard)));
+                || pass.inputs.iter().any(|input| {
+                    matches!(
+                        input,
+                        Some(Source::Medium(_) | Source::Moving(_) | Source::Keyboard)
+                    )
+                });
             if !self.buffers[number].are_zero || is_driven {
                 return None;
             }

@@ -82,7 +82,10 @@ impl<N: Real> Run<'_, N> {
         }
         let coordinates = &values[0];
         let count = if shape == SamplerShape::D2 { 2 } else { 3 };
-        let mut at: Vec<N> = coordinates[..count].iter().map(|component| component.real()).collect();
+        let mut at: Vec<N> = coordinates[..count]
+            .iter()
+            .map(|component| component.real())
+            .collect();
         if is_projected(function) {
             let divisor = coordinates[coordinates.len() - 1].real();
             at = at.into_iter().map(|x| x / divisor).collect();
@@ -259,11 +262,13 @@ impl<N: Real> Run<'_, N> {
             B::TextureLod | B::TextureLodOffset | B::TextureProjLod | B::TextureProjLodOffset => {
                 return Ok(values[1][0].real());
             }
-            B::TextureGrad | B::TextureGradOffset | B::TextureProjGrad | B::TextureProjGradOffset => {
-                [1, 2].map(|argument: usize| -> Vec<N> {
-                    values[argument].iter().map(|component| component.real()).collect()
-                })
-            }
+            B::TextureGrad | B::TextureGradOffset | B::TextureProjGrad | B::TextureProjGradOffset => [1, 2]
+                .map(|argument: usize| -> Vec<N> {
+                    values[argument]
+                        .iter()
+                        .map(|component| component.real())
+                        .collect()
+                }),
             _ => {
                 let [mut along_x, mut along_y] = [at, at].map(<[N]>::to_vec);
                 for axis in 0..at.len() {
@@ -281,7 +286,11 @@ impl<N: Real> Run<'_, N> {
                 _ => along,
             };
             let sides = sides.iter().map(|side| N::from_f64((*side).into()));
-            along.into_iter().zip(sides).map(|(along, side)| along * side).collect()
+            along
+                .into_iter()
+                .zip(sides)
+                .map(|(along, side)| along * side)
+                .collect()
         });
         let square = longer_square(&along_x, &along_y);
         let level = square.transcendental(Transcendental::Log2) * N::from_f64(0.5);
@@ -344,10 +353,19 @@ impl<N: Real> Run<'_, N> {
         };
         let axes: Vec<_> = (0..sides.len()).map(axis).collect();
         let texel = |corner: usize| {
-            let places = axes.iter().enumerate().map(|(at, (places, _))| places[corner >> at & 1]);
+            let places = axes
+                .iter()
+                .enumerate()
+                .map(|(at, (places, _))| places[corner >> at & 1]);
             let places: Vec<_> = places.collect();
             if is_cube {
-                self.cube_texel(lookup.channel, lookup.face, [places[0], places[1]], sides[0], level)
+                self.cube_texel(
+                    lookup.channel,
+                    lookup.face,
+                    [places[0], places[1]],
+                    sides[0],
+                    level,
+                )
             } else {
                 let places: Vec<_> = places.iter().map(|place| *place as u32).collect();
                 self.texel((lookup.channel, lookup.shape, 0), &places, level)
@@ -375,9 +393,8 @@ fn nearest_beyond(face: u32, inside: [u32; 2], outside: [i64; 2], side: u32) -> 
     let step = [0, 1].map(|axis| (outside[axis] - i64::from(inside[axis])) as f64);
     let [across, up] = [[inside[0] + 1, inside[1]], [inside[0], inside[1] + 1]]
         .map(|next| cube::texel_direction(face, next, side));
-    let towards = [0, 1, 2].map(|i: usize| {
-        own[i] + 0.1 * (step[0] * (across[i] - own[i]) + step[1] * (up[i] - own[i]))
-    });
+    let towards = [0, 1, 2]
+        .map(|i: usize| own[i] + 0.1 * (step[0] * (across[i] - own[i]) + step[1] * (up[i] - own[i])));
     let all = (0..cube::FACES).filter(|other| *other != face);
     let all = all.flat_map(|face| (0..side * side).map(move |at| (face, [at % side, at / side])));
     let measured = all.map(|(face, at)| {
@@ -386,7 +403,11 @@ fn nearest_beyond(face: u32, inside: [u32; 2], outside: [i64; 2], side: u32) -> 
     });
     let nearest = measured.min_by(|(a, _), (b, _)| {
         let is_nearer = a.0 - b.0;
-        if is_nearer.abs() > 1e-9 { a.0.total_cmp(&b.0) } else { a.1.total_cmp(&b.1) }
+        if is_nearer.abs() > 1e-9 {
+            a.0.total_cmp(&b.0)
+        } else {
+            a.1.total_cmp(&b.1)
+        }
     });
     nearest.expect("there are five other faces").1
 }

@@ -84,13 +84,20 @@ impl Builder<'_> {
         // The corners in the order of their numbers, whose bits choose the next texel along an axis.
         let corners = (0..1_usize << axes.len()).map(|corner| {
             let places = axes.iter().enumerate();
-            let places = places.map(|(at, axis)| if corner >> at & 1 == 0 { axis.first } else { axis.next });
+            let places = places.map(|(at, axis)| {
+                if corner >> at & 1 == 0 {
+                    axis.first
+                } else {
+                    axis.next
+                }
+            });
             texel(&places.collect::<Vec<_>>())
         });
         let mut corners: Vec<[Value; 4]> = corners.collect();
         for axis in &axes {
             let pairs = corners.chunks_exact(2);
-            let mixed = pairs.map(|pair| [0, 1, 2, 3].map(|i| self.mixed(pair[0][i], pair[1][i], axis.weight)));
+            let mixed =
+                pairs.map(|pair| [0, 1, 2, 3].map(|i| self.mixed(pair[0][i], pair[1][i], axis.weight)));
             corners = mixed.collect();
         }
         corners[0]

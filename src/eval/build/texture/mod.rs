@@ -152,7 +152,9 @@ impl Builder<'_> {
     fn offset(&self, function: BuiltIn, arguments: &[ExprId]) -> [i32; 3] {
         let mut offset = [0; 3];
         if let Some(position) = offset_position(function)
-            && let Some(value) = arguments.get(position).and_then(|&offset| self.tree.value(offset))
+            && let Some(value) = arguments
+                .get(position)
+                .and_then(|&offset| self.tree.value(offset))
         {
             for (axis, scalar) in offset.iter_mut().zip(value.components()) {
                 if let Constant::Int(texels) = scalar {
@@ -165,7 +167,9 @@ impl Builder<'_> {
 
     /// The sides of the texture of a channel in texels, as words; an unbound channel has one texel.
     fn sides(&self, channel: Channel) -> Vec<Value> {
-        (0..channel.sides()).map(|axis| self.extent(channel, axis)).collect()
+        (0..channel.sides())
+            .map(|axis| self.extent(channel, axis))
+            .collect()
     }
 
     fn extent(&self, channel: Channel, axis: u8) -> Value {
