@@ -87,7 +87,7 @@ fn every_lookup_has_the_same_bits_on_the_cpu() {
                 (&name, &text),
                 &LOOKUPS,
                 &options,
-                textures,
+                &textures,
             ));
         }
     }
@@ -171,7 +171,7 @@ fn every_lookup_of_cube_maps_and_volumes_has_the_same_bits_on_the_cpu() {
                     (&name, &text),
                     lookups,
                     &options,
-                    textures,
+                    &textures,
                 ));
             }
         }
