@@ -17,8 +17,6 @@ pub enum Noise {
     GraySmall,
     /// 8×8 pixels of one component: the thresholds of ordered dithering (Bayer, 1973).
     Bayer,
-    /// 1024×1024 pixels of independent components. The spectrum is white here, not blue.
-    Blue,
 }
 
 /// The number of pixels by which a component of [`Noise::RgbaMedium`] is moved to the right and downwards.
@@ -31,7 +29,6 @@ impl Noise {
             Self::RgbaMedium | Self::GrayMedium => 256,
             Self::RgbaSmall | Self::GraySmall => 64,
             Self::Bayer => 8,
-            Self::Blue => 1024,
         };
         // Each texture has different numbers.
         let seed = (self as u32) << 24;
@@ -47,7 +44,7 @@ impl Noise {
                     value(from_x, from_y, 2),
                 ]
             }
-            Self::RgbaSmall | Self::Blue => [0, 1, 2, 3].map(|component| value(x, y, component)),
+            Self::RgbaSmall => [0, 1, 2, 3].map(|component| value(x, y, component)),
             Self::GrayMedium | Self::GraySmall => [value(x, y, 0), 0, 0, u8::MAX],
             Self::Bayer => [4 * bayer_rank(x, side - 1 - y) as u8, 0, 0, u8::MAX],
         };
@@ -72,13 +69,12 @@ fn bayer_rank(x: u32, y: u32) -> u32 {
 mod tests {
     use super::*;
 
-    const ALL: [Noise; 6] = [
+    const ALL: [Noise; 5] = [
         Noise::RgbaMedium,
         Noise::RgbaSmall,
         Noise::GrayMedium,
         Noise::GraySmall,
         Noise::Bayer,
-        Noise::Blue,
     ];
 
     /// The correlation of two components, each of one image.
@@ -97,7 +93,7 @@ mod tests {
 
     #[test]
     fn components_are_uniform_and_independent() {
-        for noise in [Noise::RgbaMedium, Noise::RgbaSmall, Noise::Blue] {
+        for noise in [Noise::RgbaMedium, Noise::RgbaSmall] {
             let image = noise.image();
             let count = image.pixels().len() as f32;
             for i in 0..4 {
@@ -160,7 +156,7 @@ mod tests {
     fn sizes_are_those_of_the_site() {
         assert_eq!(
             ALL.map(|noise| noise.image().size()[0]),
-            [256, 64, 256, 64, 8, 1024]
+            [256, 64, 256, 64, 8]
         );
     }
 }

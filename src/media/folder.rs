@@ -57,21 +57,6 @@ impl MediaFolder {
             .or_else(|| has(&|stem| !stem.is_empty() && stem == names.id));
         found.map(PathBuf::as_path)
     }
-
-    /// The files that are not any of these media's, such as misspelled ones; faces of cube maps after the
-    /// first count as those of the first.
-    pub fn unused<'a>(&'a self, media: &'a [MediumNames<'a>]) -> impl Iterator<Item = &'a Path> {
-        let used: Vec<_> = media.iter().filter_map(|&names| self.find(names)).collect();
-        let is_face = move |file: &Path| {
-            let Some((first, number)) = stem(file).rsplit_once('_') else {
-                return false;
-            };
-            matches!(number, "1" | "2" | "3" | "4" | "5") && used.iter().any(|path| stem(path) == first)
-        };
-        let used: Vec<_> = media.iter().filter_map(|&names| self.find(names)).collect();
-        let files = self.files.iter().map(PathBuf::as_path);
-        files.filter(move |file| !used.contains(file) && !is_face(file))
-    }
 }
 
 /// The file name without its extension.
@@ -171,22 +156,6 @@ mod tests {
         };
         let (_folder, media) = folder(&["---.png", "x.png"]);
         assert_eq!(found(&media, nameless), None);
-    }
-
-    #[test]
-    fn files_that_are_no_medium_are_listed() {
-        let names = [
-            "St Peters Basilica.jpg",
-            "St Peters Basilica_1.jpg",
-            "St Peters Basilica_5.jpg",
-            "rok tiles.png",
-            "a_1.png",
-        ];
-        let (_folder, media) = folder(&names);
-        let known = [ROCK, BASILICA];
-        let unused: Vec<_> = media.unused(&known).map(stem).collect();
-        assert_eq!(unused, ["a_1", "rok tiles"]);
-        assert!(MediaFolder::open(Path::new("/nonexistent")).is_err());
     }
 
     #[test]
