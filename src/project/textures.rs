@@ -1,17 +1,17 @@
 //! The textures of a project's inputs: from files of the project or of a folder of media, or computed in
 //! place of the site's.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use toyproof_diagnostic::{Code, Diagnostic, Span};
 use toyproof_glsl::Filter;
 use toyproof_image::{self as image, Frame, Image, Moving, Texture};
 use toyproof_media::{
-    Content, Film, MediaFolder, MediumNames, Music, StandIn, read_cube, read_volume, silent_music,
-    with_components,
+    Content, Film, MediaError, MediaFolder, MediumNames, Music, StandIn, read_cube, read_volume,
+    sequence_files, silent_music, with_components,
 };
 use toyproof_player as player;
 
@@ -115,7 +115,7 @@ fn load(path: &Path, source: &Source) -> Result<Loaded, String> {
         SourceType::Cubemap => Loaded::Cube(Box::new(read_cube(path).map_err(|error| error.to_string())?)),
         SourceType::Volume => Loaded::Volume(read_volume(path).map_err(|error| error.to_string())?),
         SourceType::Video | SourceType::Webcam => {
-            Loaded::Film(Arc::new(Film::open(path).map_err(|error| error.to_string())?))
+            Loaded::Film(Arc::new(film(path).map_err(|error| error.to_string())?))
         }
         SourceType::Music | SourceType::MusicStream | SourceType::Mic => {
             Loaded::Music(Arc::new(Music::open(path).map_err(|error| error.to_string())?))
@@ -128,6 +128,17 @@ fn load(path: &Path, source: &Source) -> Result<Loaded, String> {
             })
         }
     })
+}
+
+/// The frames in a second of numbered images.
+const SEQUENCE_RATE: f64 = 30.0;
+
+/// A film in a file, or in numbered images, of which the file is one.
+fn film(path: &Path) -> Result<Film, MediaError> {
+    match sequence_files(path) {
+        Ok(files) if files.len() > 1 => Film::sequence(files, SEQUENCE_RATE),
+        _ => Film::open(path),
+    }
 }
 
 /// An input whose medium of the site is not available, with the passes that would read it.
@@ -240,7 +251,7 @@ impl<'a> Textures<'a> {
         };
         let place = match found {
             Found::Still(texture) => {
-                self.media.push(with_mipmaps(texture, key.has_mipmaps));
+                self.media.push(texture);
                 player::Source::Medium(self.media.len() - 1)
             }
             Found::Moving(moving) => {
@@ -275,7 +286,7 @@ fn description(source: &Source, stand_in: Option<&'static StandIn>) -> Option<&'
 }
 
 fn of_file(content: &Loaded, key: &TextureKey) -> Found {
-    Found::Still(match content {
+    let texture = match content {
         Loaded::Picture(picture) => flat(picture.clone(), key.is_flipped),
         Loaded::Cube(faces) => cube(faces, key.is_flipped),
         Loaded::Volume(slices) => volume(slices),
@@ -287,7 +298,28 @@ fn of_file(content: &Loaded, key: &TextureKey) -> Found {
                 has_mipmaps: key.has_mipmaps,
             }));
         }
-    })
+    };
+    Found::Still(with_mipmaps(texture, key.has_mipmaps))
+}
+
+/// The textures of stand-ins that were computed last: shaders of a folder often read the same ones.
+static RECENT: Mutex<VecDeque<(&'static str, [bool; 2], Texture)>> = Mutex::new(VecDeque::new());
+
+/// The most textures that are kept. One takes up to 22 MB.
+const MAX_RECENT: usize = 8;
+
+/// The texture of a stand-in, with its mipmaps if it shall have any, which `compute` makes.
+fn recent(id: &'static str, key: &TextureKey, compute: &dyn Fn() -> Texture) -> Texture {
+    let form = [key.is_flipped, key.has_mipmaps];
+    let lock = || RECENT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((.., texture)) = lock().iter().find(|(known, of, _)| *known == id && *of == form) {
+        return texture.clone();
+    }
+    let texture = with_mipmaps(compute(), key.has_mipmaps);
+    let mut recent = lock();
+    recent.truncate(MAX_RECENT - 1);
+    recent.push_front((id, form, texture.clone()));
+    texture
 }
 
 /// What takes the place of a medium; `None` if nothing does.
@@ -295,10 +327,12 @@ fn computed(source: &Source, stand_in: Option<&'static StandIn>, key: &TextureKe
     if let SourceType::Music | SourceType::MusicStream | SourceType::Mic = source.source_type() {
         return Some(Found::Moving(Arc::new(MutedSound)));
     }
-    Some(match stand_in?.content {
-        Content::Texture(compute) => Found::Still(flat(compute(), key.is_flipped)),
-        Content::Cube(compute) => Found::Still(cube(&compute(), key.is_flipped)),
-        Content::Volume(compute) => Found::Still(volume(&compute())),
+    let StandIn { id, content, .. } = stand_in?;
+    let still = |make: &dyn Fn() -> Texture| Found::Still(recent(id, key, make));
+    Some(match *content {
+        Content::Texture(compute) => still(&|| flat(compute(), key.is_flipped)),
+        Content::Cube(compute) => still(&|| cube(&compute(), key.is_flipped)),
+        Content::Volume(compute) => still(&|| volume(&compute())),
         Content::Film(compute) => Found::Moving(Arc::new(MovingFilm {
             film: FilmSource::Computed(compute),
             is_flipped: key.is_flipped,
