@@ -21,6 +21,7 @@ packages_for() {
         driver="mesa-vulkan-drivers vulkan-loader"
         glslang=glslang
         script=util-linux-script
+        ffmpeg=ffmpeg-free
     elif has pacman; then
         manager="pacman -S --needed --noconfirm"
         build="make gcc"
@@ -131,6 +132,7 @@ install_programs() {
     has glslangValidator || missing="$missing ${glslang:-glslang}"
     has spirv-val || missing="$missing spirv-tools"
     has povray || missing="$missing povray"
+    has ffmpeg || missing="$missing ${ffmpeg:-ffmpeg}"
     has script || missing="$missing ${script:-util-linux}"
     [ -z "$missing" ] || install "what tests use" "${missing# }"
 }

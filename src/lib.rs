@@ -39,6 +39,7 @@
 //! | `stress` | numerical stability of ray–surface intersection, and tests of an author's own function |
 //! | `lab` | measurements of accuracy against time, and charts |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
+//! | `film` | films of frames: GIF, APNG, and MP4 and `WebM` by an installed ffmpeg |
 //! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, autograders; with `classroom`, assignments |
 //! | `cli` | the command line |
 //!
@@ -81,15 +82,25 @@ pub use toyproof_convert as convert;
 pub use toyproof_diagnostic as diagnostic;
 #[cfg(feature = "explain")]
 pub use toyproof_explain as explain;
+#[cfg(feature = "film")]
+pub use toyproof_film as film;
 pub use toyproof_glsl as glsl;
 #[cfg(feature = "gpu")]
 pub use toyproof_gpu as gpu;
-#[cfg(any(feature = "eval", feature = "tracer", feature = "gpu"))]
+#[cfg(any(
+    feature = "eval",
+    feature = "film",
+    feature = "media",
+    feature = "tracer",
+    feature = "gpu"
+))]
 pub use toyproof_image as image;
 #[cfg(feature = "lab")]
 pub use toyproof_lab as lab;
 pub use toyproof_lint as lint;
 pub use toyproof_math as math;
+#[cfg(feature = "media")]
+pub use toyproof_media as media;
 #[cfg(feature = "verify")]
 pub use toyproof_metrics as metrics;
 #[cfg(feature = "eval")]

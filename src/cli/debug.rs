@@ -20,7 +20,7 @@ use toyproof_verify::{self as verify, debug};
 
 use super::check::{Scenes, assignment_beside, read_assignment};
 use super::inputs::{Format, FrameArgs, LanguageArgs, parse_time_limit, resized};
-use super::project::{pass_shader, rendering, target};
+use super::project::{pass_shader, rendering};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::run::{evaluation_error, parse_pass};
 use super::shader::{Shader, find_one};
@@ -134,7 +134,7 @@ fn print_pass(
     let spinner = terminal.spinner(&shader.name);
     let trail = rendering(passes, kind).and_then(|rendering| {
         let shader = pass_shader(passes, &rendering);
-        follow_back(&shader, target(kind), args.pixel, &frame, args.timeout)
+        follow_back(&shader, kind.target(), args.pixel, &frame, args.timeout)
     });
     spinner.finish_and_clear();
     let trail = trail.map_err(|failure| match failure {

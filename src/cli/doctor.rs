@@ -48,6 +48,8 @@ struct Report {
     error: Option<String>,
     /// For each manifest, whether its driver starts alone; empty if all start together.
     tests: Vec<DriverTest>,
+    /// The version of ffmpeg, which writes MP4 and `WebM`; null if it is not installed.
+    ffmpeg: Option<String>,
 }
 
 /// A driver that starts.
@@ -102,6 +104,7 @@ fn examine(device: &DeviceSelector) -> Result<Report, String> {
         drivers: Vec::new(),
         error: None,
         tests: Vec::new(),
+        ffmpeg: toyproof_film::ffmpeg_version(),
     };
     let adapter = match device {
         DeviceSelector::Gpu(adapter) => adapter,
@@ -236,6 +239,10 @@ impl Report {
             terminal.result(
                 "  VK_DRIVER_FILES or VK_ICD_FILENAMES is set: only the drivers named there are loaded",
             );
+        }
+        match &self.ffmpeg {
+            Some(version) => terminal.result(&format!("\nffmpeg, which writes MP4 and WebM: {version}")),
+            None => terminal.result("\nffmpeg, which writes MP4 and WebM: not installed"),
         }
         if !self.tests.is_empty() {
             terminal.result("\nEach driver alone:");

@@ -12,7 +12,8 @@ use toyproof_diagnostic::{Code, Deadline, Files, Severity, human, one_of, path_n
 use toyproof_glsl::{self as glsl, Dialect, UniformValue};
 use toyproof_gpu::{self as gpu, AdapterSelector, Worker};
 use toyproof_image::output::Originals;
-use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_size};
+use toyproof_image::{Channel, FrameInputs, IDLE_MOUSE, Script, check_banded_size, check_size};
+use toyproof_media::MediaFolder;
 use toyproof_project as project;
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
@@ -167,6 +168,12 @@ pub(super) fn resized(frames: &[FrameInputs], size: Option<[u32; 2]>) -> Vec<Fra
     resized
 }
 
+/// Lists a folder of media.
+fn parse_media(path: &str) -> Result<Arc<MediaFolder>, String> {
+    let opened = MediaFolder::open(Path::new(path)).map(Arc::new);
+    opened.map_err(|error| error.to_string())
+}
+
 /// Reads a script of the mouse and the keyboard.
 fn parse_script(path: &str) -> Result<Arc<Script>, String> {
     let text = files::read_named(Path::new(path)).map_err(|error| error.to_string())?;
@@ -233,6 +240,11 @@ pub(super) struct LanguageArgs {
     /// A folder in which `#include "file"` is searched, after that of the shader
     #[arg(long, value_name = "DIR", hide_short_help = true)]
     include_dir: Vec<PathBuf>,
+    /// A folder of copies of ShaderToy's media, which projects then read instead of computed ones
+    ///
+    /// A file has the name of a medium (`rock-tiles.jpg`), or the name that it has on the site.
+    #[arg(long, value_name = "DIR", value_parser = parse_media, hide_short_help = true)]
+    media: Option<Arc<MediaFolder>>,
     /// Treat warnings as errors: `warnings` for all, or a code such as W0005
     ///
     /// A comment `// toyproof: allow(W0005)` in the shader takes precedence.
@@ -388,6 +400,11 @@ impl LanguageArgs {
         flags.chain(folders).collect()
     }
 
+    /// The user's copies of the site's media.
+    pub(super) fn media(&self) -> Option<&MediaFolder> {
+        self.media.as_deref()
+    }
+
     /// The folders in which included files are searched.
     pub(super) fn include_folders(&self) -> &[PathBuf] {
         &self.include_dir
@@ -447,6 +464,11 @@ impl DriverArgs {
     /// Returns whether the evaluator may replace a missing driver.
     pub(super) fn may_fall_back(&self) -> bool {
         self.device == DeviceSelector::Gpu(AdapterSelector::Auto)
+    }
+
+    /// Returns whether the evaluator may render, although there is a driver.
+    pub(super) fn may_be_evaluated(&self) -> bool {
+        self.device == DeviceSelector::Cpu || self.may_fall_back()
     }
 
     /// Returns whether the evaluator renders the same bits as the driver that would be selected, on the same
@@ -532,6 +554,17 @@ pub(super) fn parse_seconds<T: FromStr + Into<f64> + Copy>(text: &str) -> Result
 }
 
 pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let [width, height] = parse_sides(text)?;
+    check_size(width, height).map_err(|error| error.to_string())
+}
+
+/// Parses the size of an image that may be rendered in bands.
+pub(super) fn parse_banded_size(text: &str) -> Result<[u32; 2], String> {
+    let [width, height] = parse_sides(text)?;
+    check_banded_size(width, height).map_err(|error| error.to_string())
+}
+
+fn parse_sides(text: &str) -> Result<[u64; 2], String> {
     let (width, height) = text
         .split_once(['x', 'X', '×'])
         .ok_or("expected WIDTHxHEIGHT, such as 640x360")?;
@@ -539,7 +572,7 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
         side.parse::<u64>()
             .map_err(|_| format!("`{side}` is not a number of pixels"))
     };
-    check_size(side(width)?, side(height)?).map_err(|error| error.to_string())
+    Ok([side(width)?, side(height)?])
 }
 
 pub(super) fn parse_device(text: &str) -> Result<DeviceSelector, String> {

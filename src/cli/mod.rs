@@ -135,7 +135,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     if arguments.get(1).is_some_and(|argument| argument == WORKER) {
         return serve_worker();
     }
-    let command = help::with_groups(Cli::command()).color(requested_color(&arguments));
+    let command = help::with_groups(command()).color(requested_color(&arguments));
     let parsed = command
         .clone()
         .try_get_matches_from(&arguments)
@@ -153,6 +153,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
             }
         }
     }
+}
+
+/// The commands. Only `run` renders images that are larger than memory.
+fn command() -> clap::Command {
+    Cli::command().mut_subcommand("run", |run| {
+        run.mut_arg("size", |size| size.value_parser(inputs::parse_banded_size))
+    })
 }
 
 /// The value of `--color`, if it is valid, for the messages on arguments that cannot be parsed.

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use toyproof_diagnostic::{Files, all_of, path_name};
 use toyproof_glsl::{Dialect, Filter};
 use toyproof_image::Texture;
-use toyproof_player::Target;
 use toyproof_project::files::{self, Input, ProjectTexts, ReadError, Texts};
 use toyproof_project::{CompiledProject, PROJECT_FILE, PassKind, Project, Rendering, Tab};
 use toyproof_verify::Failure;
@@ -21,6 +20,7 @@ pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rende
         checked: project.checked_of(rendering).collect(),
         graph: &rendering.graph,
         media: &rendering.media,
+        films: rendering.films.clone(),
     }
 }
 
@@ -59,15 +59,7 @@ pub(super) fn bind_channels(
     }
 }
 
-/// What the pass of a kind renders, if it is rendered.
-pub(super) fn target(kind: PassKind) -> Target {
-    match kind {
-        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
-        _ => Target::Image,
-    }
-}
-
-/// The files of the images that an input with these texts reads from its folder, if it is a project.
+/// The files of the media that an input with these texts reads from its folder, if it is a project.
 pub(super) fn image_files(input: &Input, texts: Texts) -> Vec<PathBuf> {
     let (Texts::Project(texts @ ProjectTexts::Folder { .. }), Some(folder)) = (texts, input.path()) else {
         return Vec::new();
@@ -75,7 +67,7 @@ pub(super) fn image_files(input: &Input, texts: Texts) -> Vec<PathBuf> {
     let Ok(project) = texts.parse(&mut Files::default()) else {
         return Vec::new();
     };
-    let names = project.image_inputs().map(|(_, name)| name);
+    let names = project.media_files();
     names
         .filter_map(|name| files::project_image(folder, name).ok())
         .collect()

@@ -1,5 +1,6 @@
 //! `toyproof render` and `toyproof export`: a scene as an image, and as a shader.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -7,7 +8,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, magnitude, path_name, plural};
-use toyproof_image::{ExrAttributes, FRAME_RATE, Frame, Image, encode_exr};
+use toyproof_image::{ExrAttributes, Frame, Image, encode_exr};
 use toyproof_project::files;
 use toyproof_scene::{self as scene, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{Backend, Layers, Tracer};
@@ -15,9 +16,11 @@ use toyproof_verify::{Expected, Quantization};
 
 use super::inputs::{check_output, shell_word};
 use super::reference::ill_conditioned;
-use super::run::{Precision, check_image_extension, default_image, encode};
+use super::run::{Precision, default_output, encode};
 use super::scenes::{parse_scene, read_scene};
-use super::sequence::{self, FrameEnd, Frames, Sequence};
+use super::sequence::{
+    Destination, FilmFile, FrameEnd, FrameStream, NumberedFiles, Output, Sequence, SequenceArgs,
+};
 use super::terminal::file_size;
 use super::{CliError, Exit, Terminal, inputs, project};
 
@@ -28,13 +31,14 @@ Examples:
   toyproof render 12-whitted -o whitted.png
   toyproof render scene.toml -o scene.exr --size 1920x1080 --samples 64
   toyproof render 09-soft-shadows --sampler sobol --max-error 0.002
+  toyproof render 11-animation -o orrery.mp4 --duration 8
   toyproof render 11-animation -o frames/orrery.png --frames 0..479")]
 pub(super) struct Args {
     /// The scene: a file, or a name listed by `toyproof scenes`
     scene: PathBuf,
-    /// The image: .png (8 bits), .exr (floats), or - for PNG on standard output [default: SCENE.png in the
-    /// current folder]
-    #[arg(short, long, value_name = "IMAGE")]
+    /// The image: .png (8 bits), .exr (floats), or - for PNG on standard output; or a film: .gif, .apng,
+    /// .mp4, .webm, .y4m [default: SCENE.png in the current folder]
+    #[arg(short, long, value_name = "IMAGE|FILM")]
     output: Option<PathBuf>,
     /// The number type of the tracer
     #[arg(long, value_enum, default_value_t = Precision::F64, hide_possible_values = true, value_name = "f32|f64")]
@@ -60,17 +64,14 @@ pub(super) struct Args {
     /// Width and height in pixels [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = inputs::parse_size)]
     size: Option<[u32; 2]>,
-    /// The time of animated scenes, in seconds
+    /// The time of animated scenes, in seconds; of several frames, that of frame 0
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = inputs::parse_seconds::<f64>, allow_negative_numbers = true)]
     time: f64,
     /// The frame number of animated scenes
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(i32).range(0..), allow_negative_numbers = true)]
     frame: i32,
-    /// Render frames A to B, at 60 frames per second, into numbered files
-    ///
-    /// The number is inserted before the extension. The same command resumes an interrupted sequence.
-    #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with_all = ["frame", "time"])]
-    frames: Option<Frames>,
+    #[command(flatten)]
+    sequence: SequenceArgs,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -116,8 +117,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         return Err(error.with_help("choose --sampler independent, stratified or sobol"));
     }
     terminal.detail(&format!("the scene requires {requirements}"));
-    let output = args.output.clone().unwrap_or_else(|| default_image(&args.scene));
-    check_image_extension(&output)?;
+    let output = args
+        .output
+        .clone()
+        .unwrap_or_else(|| default_output(&args.scene, &args.sequence));
     if args.layers && Quantization::of_file(&output) != Some(Quantization::Float) {
         let error = CliError::new("only an EXR file has layers");
         return Err(error.with_help(format_args!(
@@ -126,37 +129,76 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         )));
     }
     let mut previous = PreviousTracers::default();
-    match args.frames {
-        None => {
-            let frame_time = FrameTime {
-                frame: args.frame,
-                time: args.time,
-            };
-            render_frame(&scene, frame_time, &mut previous, (args, &output), terminal)?;
+    let Some(sequence) = open_sequence(&scene, args, &output, terminal)? else {
+        let frame_time = FrameTime {
+            frame: args.frame,
+            time: args.time,
+        };
+        render_image(&scene, frame_time, &mut previous, (args, &output), terminal)?;
+        return Ok(Exit::Success);
+    };
+    sequence.render(terminal, |number, destination, _| {
+        let frame_time = FrameTime {
+            frame: number,
+            time: args.time + f64::from(number) / args.sequence.fps,
+        };
+        match destination {
+            Destination::File(path) => {
+                let of_args = (args, true);
+                let bytes = frame_file(&scene, frame_time, &mut previous, of_args, path, terminal)?;
+                terminal.write(path, &bytes)?;
+            }
+            Destination::Film(film) => {
+                film.add(&render_frame(
+                    &scene,
+                    frame_time,
+                    &mut previous,
+                    (args, true),
+                    terminal,
+                ))?;
+            }
         }
-        Some(_) if output == Path::new("-") => {
-            let error = CliError::new("standard output takes a single image");
-            return Err(error.with_help("name a file with -o"));
-        }
-        Some(frames) => {
-            // Identifies the rendering: a record of a different scene or settings is ignored.
-            let fingerprint = format!(
-                "{scene:?} {:?} {:?} {}",
-                args.precision, args.max_error, args.layers
-            );
-            let sequence = Sequence::resume(frames, &output, &fingerprint, terminal);
-            sequence.render(terminal, |one, _| {
-                let frame_time = FrameTime {
-                    frame: one.frame,
-                    time: f64::from(one.frame) / f64::from(FRAME_RATE),
-                };
-                let frame = (args, &*one.path);
-                render_frame(&scene, frame_time, &mut previous, frame, terminal)?;
-                Ok(FrameEnd::Written)
-            })?;
-        }
-    }
+        Ok(FrameEnd::Written)
+    })?;
     Ok(Exit::Success)
+}
+
+/// Starts the sequence of frames, if there are several, or goes on with an interrupted one.
+fn open_sequence<'t>(
+    scene: &Scene,
+    args: &Args,
+    output: &Path,
+    terminal: &'t Terminal,
+) -> Result<Option<Sequence<'t>>, CliError> {
+    // Identifies the rendering: frames of a different scene or with other settings are ignored.
+    let mut hasher = DefaultHasher::new();
+    let settings = (
+        &args.precision,
+        args.max_error,
+        args.layers,
+        args.time,
+        args.sequence.fps,
+    );
+    format!("{scene:?} {settings:?}").hash(&mut hasher);
+    let fingerprint = format!("{:016x}", hasher.finish());
+    let sequence = &args.sequence;
+    Ok(Some(match sequence.output(output)? {
+        Output::Image => return Ok(None),
+        Output::Sound(_) => return Err(CliError::new("a scene has no sound")),
+        Output::Files(frames) => {
+            Sequence::Files(NumberedFiles::resume(frames, output, &fingerprint, terminal))
+        }
+        Output::Film(frames, format) => {
+            let settings = sequence.film(frames, format, scene.film.size);
+            let paths = (output, output);
+            let film = FilmFile::start((sequence, frames), settings, paths, &fingerprint, terminal)?;
+            Sequence::Film(Box::new(film))
+        }
+        Output::Stream(frames, format) => {
+            let settings = sequence.film(frames, format, scene.film.size);
+            Sequence::Stream(FrameStream::new(frames, settings, terminal)?)
+        }
+    }))
 }
 
 /// The tracer of the previous frame, in the requested number type.
@@ -166,59 +208,39 @@ struct PreviousTracers {
     double: Option<Tracer<f64>>,
 }
 
-/// Traces the scene at a frame time and writes the image.
+/// Traces the scene at a frame time.
 fn render_frame(
     scene: &Scene,
     frame_time: FrameTime,
     previous: &mut PreviousTracers,
-    (args, path): (&Args, &Path),
+    (args, is_in_sequence): (&Args, bool),
     terminal: &Terminal,
-) -> Result<(), CliError> {
-    let start = Instant::now();
-    let bytes = match args.precision {
-        Precision::F32 => traced_file(scene, frame_time, &mut previous.single, (args, path), terminal)?,
-        Precision::F64 => traced_file(scene, frame_time, &mut previous.double, (args, path), terminal)?,
-    };
-    terminal.write(path, &bytes)?;
-    // The frames of a sequence are confirmed together.
-    if args.frames.is_none() {
-        let [width, height] = scene.film.size;
-        let samples = match args.max_error {
-            Some(error) => format!("error below {error}"),
-            None => format!(
-                "{} {} per pixel",
-                grouped(u64::from(scene.film.samples)),
-                plural(u64::from(scene.film.samples), "sample", "samples")
-            ),
-        };
-        let facts = format!(
-            "{width}×{height}, {samples}, {}, {}, {:.1} s",
-            args.precision.name(),
-            file_size(bytes.len()),
-            start.elapsed().as_secs_f64()
-        );
-        terminal.confirm(path, &facts);
-        warn_if_ill_conditioned(scene, frame_time, args, terminal);
+) -> Image {
+    let of_args = (args, is_in_sequence);
+    match args.precision {
+        Precision::F32 => trace(scene, frame_time, &mut previous.single, of_args, terminal),
+        Precision::F64 => trace(scene, frame_time, &mut previous.double, of_args, terminal),
     }
-    Ok(())
 }
 
-/// Traces the scene, and encodes the file of its image.
-fn traced_file<T: Backend>(
+/// Traces the scene at a frame time, and encodes the file of its image.
+fn frame_file(
     scene: &Scene,
     frame_time: FrameTime,
-    previous: &mut Option<Tracer<T>>,
-    (args, path): (&Args, &Path),
+    previous: &mut PreviousTracers,
+    (args, is_in_sequence): (&Args, bool),
+    path: &Path,
     terminal: &Terminal,
 ) -> Result<Vec<u8>, CliError> {
+    let of_args = (args, is_in_sequence);
     if !args.layers {
-        let image = trace(scene, frame_time, previous, args, terminal);
-        return Ok(encode(&image, path)?);
+        let image = render_frame(scene, frame_time, previous, of_args, terminal);
+        return Ok(encode(&image, path, false)?);
     }
-    let tracer = moved_tracer(scene, frame_time, previous);
-    let bar = rows_bar(scene, args, terminal);
-    let layers = tracer.render_layers(|| bar.inc(1));
-    bar.finish_and_clear();
+    let layers = match args.precision {
+        Precision::F32 => traced_layers(scene, frame_time, &mut previous.single, is_in_sequence, terminal),
+        Precision::F64 => traced_layers(scene, frame_time, &mut previous.double, is_in_sequence, terminal),
+    };
     let words = std::env::args_os().skip(1);
     let words: Vec<String> = words.map(|word| shell_word(&word.to_string_lossy())).collect();
     let attributes = ExrAttributes {
@@ -228,6 +250,21 @@ fn traced_file<T: Backend>(
         comments: Layers::DESCRIPTION.to_owned(),
     };
     Ok(encode_exr(&layers.color, layers.channels(), &attributes, path)?)
+}
+
+/// Traces the layers of the scene at a frame time.
+fn traced_layers<T: Backend>(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &mut Option<Tracer<T>>,
+    is_in_sequence: bool,
+    terminal: &Terminal,
+) -> Layers {
+    let tracer = moved_tracer(scene, frame_time, previous);
+    let bar = rows_bar(scene, is_in_sequence, terminal);
+    let layers = tracer.render_layers(|| bar.inc(1));
+    bar.finish_and_clear();
+    layers
 }
 
 /// The tracer of a frame, made from that of the previous one, if there is any.
@@ -243,12 +280,44 @@ fn moved_tracer<'a, T: Backend>(
     previous.insert(tracer)
 }
 
-/// The progress bar over the rows of an image; that of a sequence is over its frames.
-fn rows_bar(scene: &Scene, args: &Args, terminal: &Terminal) -> ProgressBar {
-    match args.frames {
-        None => terminal.bar(u64::from(scene.film.size[1]), "rows"),
-        Some(_) => ProgressBar::hidden(),
+/// The progress bar over the rows of an image; a sequence has its own.
+fn rows_bar(scene: &Scene, is_in_sequence: bool, terminal: &Terminal) -> ProgressBar {
+    if is_in_sequence {
+        ProgressBar::hidden()
+    } else {
+        terminal.bar(u64::from(scene.film.size[1]), "rows")
     }
+}
+
+/// Traces the scene at a frame time, and writes and confirms the image.
+fn render_image(
+    scene: &Scene,
+    frame_time: FrameTime,
+    previous: &mut PreviousTracers,
+    (args, path): (&Args, &Path),
+    terminal: &Terminal,
+) -> Result<(), CliError> {
+    let start = Instant::now();
+    let bytes = frame_file(scene, frame_time, previous, (args, false), path, terminal)?;
+    terminal.write(path, &bytes)?;
+    let [width, height] = scene.film.size;
+    let samples = match args.max_error {
+        Some(error) => format!("error below {error}"),
+        None => format!(
+            "{} {} per pixel",
+            grouped(u64::from(scene.film.samples)),
+            plural(u64::from(scene.film.samples), "sample", "samples")
+        ),
+    };
+    let facts = format!(
+        "{width}×{height}, {samples}, {}, {}, {:.1} s",
+        args.precision.name(),
+        file_size(bytes.len()),
+        start.elapsed().as_secs_f64()
+    );
+    terminal.confirm(path, &facts);
+    warn_if_ill_conditioned(scene, frame_time, args, terminal);
+    Ok(())
 }
 
 /// Warns of pixels whose color rounding decides.
@@ -280,11 +349,11 @@ fn trace<T: Backend>(
     scene: &Scene,
     frame_time: FrameTime,
     previous: &mut Option<Tracer<T>>,
-    args: &Args,
+    (args, is_in_sequence): (&Args, bool),
     terminal: &Terminal,
 ) -> Image {
     let tracer = moved_tracer(scene, frame_time, previous);
-    let bar = rows_bar(scene, args, terminal);
+    let bar = rows_bar(scene, is_in_sequence, terminal);
     let Some(max_error) = args.max_error else {
         let start = Instant::now();
         let rendered = tracer.render(|| bar.inc(1));

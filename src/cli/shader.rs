@@ -8,8 +8,9 @@ use toyproof_diagnostic::{
     Code, Deadline, Diagnostic, Diagnostics, FileId, Files, Severity, grouped, nearest, path_name, plural,
 };
 use toyproof_glsl::tree::VariableKind;
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::{self as glsl, Checked, Stage};
 use toyproof_lint::{Lints, lint};
+use toyproof_media::MediaFolder;
 use toyproof_project::files::{self, IncludeFolders, Input, ReadError, Search, Texts, content_diagnostic};
 use toyproof_project::{CompiledProject, Declared, with_declarations};
 
@@ -136,7 +137,7 @@ impl Shader {
                 let includes = IncludeFolders::of(found, language.include_folders());
                 let content = read(
                     found,
-                    &includes,
+                    (&includes, language.media()),
                     &mut files,
                     &mut lints,
                     &mut has_passes,
@@ -205,6 +206,16 @@ impl Shader {
         })
     }
 
+    /// Makes the image keep the alpha that it writes, as a buffer does; on the site it is 1.
+    pub(super) fn keep_alpha(&mut self) {
+        let image = match &mut self.content {
+            Ok(Content::Shader(checked)) => checked,
+            Ok(Content::Project(project)) => project.image_mut(),
+            Err(_) => return,
+        };
+        image.stage = Stage::Buffer;
+    }
+
     /// The tree of an image that reads no other passes, which a command needs.
     pub(super) fn require_single_pass(&self) -> Result<&Checked, CliError> {
         let checked = self.require_image()?;
@@ -241,7 +252,7 @@ pub(super) fn denied(warnings: &mut Vec<Diagnostic>, denied: &[Deny]) -> Vec<Dia
 
 fn read(
     found: &Input,
-    includes: &IncludeFolders,
+    (includes, media): (&IncludeFolders, Option<&MediaFolder>),
     files: &mut Files,
     lints: &mut Lints,
     has_passes: &mut bool,
@@ -257,7 +268,7 @@ fn read(
                 Declared::Shader(file) => file,
                 Declared::Project(project) => {
                     *has_passes = !project.needed_by_image().is_empty();
-                    let compiled = CompiledProject::compile(*project, None, None, files, &options);
+                    let compiled = CompiledProject::compile(*project, (None, media), None, files, &options);
                     let (project, of_project) =
                         compiled.map_err(|errors| Unusable::Invalid(errors.into()))?;
                     *lints = of_project;
@@ -276,7 +287,8 @@ fn read(
             *has_passes = !project.needed_by_image().is_empty();
             // JSON of the site is a project without a folder, and has its texts in itself.
             let includes = folder.is_some().then_some(includes);
-            let compiled = CompiledProject::compile(project, folder.as_deref(), includes, files, options);
+            let compiled =
+                CompiledProject::compile(project, (folder.as_deref(), media), includes, files, options);
             let (project, of_project) = compiled.map_err(invalid)?;
             *lints = of_project;
             Ok(Content::Project(project))

@@ -168,10 +168,11 @@ impl<'a> HostGraph<'a> {
         for (at, pass) in passes.iter_mut().enumerate() {
             for (channel, source) in pass.inputs.iter_mut().enumerate() {
                 if let Some(input) = played.input(at, channel)
-                    && !matches!(input.source, Source::Buffer(_))
-                    && checked[at].channels[channel] == SamplerShape::D2
+                    && input.source.pass().is_none()
                 {
-                    *source = Some(player::Source::Medium(played.medium(input, *source)));
+                    // Hosts filter cube maps and volumes, which are black in proofs.
+                    let is_flat = checked[at].channels[channel] == SamplerShape::D2;
+                    *source = is_flat.then(|| player::Source::Medium(played.medium(input, *source)));
                 }
             }
         }

@@ -11,8 +11,8 @@ use toyproof_eval_native::Program;
 use toyproof_glsl::Sampling;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{PassCode, ShaderArtifact, Worker};
-use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture};
-use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Target};
+use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture, cube};
+use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Storage, Target};
 use toyproof_translate::FloatMode;
 use toyproof_verify::evaluator::{Evaluation, Evaluator};
 use toyproof_verify::project::playback::{DevicePlayback, channel_sampling};
@@ -161,7 +161,7 @@ impl PlayedFrame {
             Target::Buffer(number) => self.state.buffers[number].as_ref().map(|[last, _]| last),
         };
         let texture = texture.expect("the state has every texture of the graph");
-        texture.to_single().swap_remove(0)
+        texture.stack()
     }
 }
 
@@ -283,8 +283,11 @@ impl Renderer for Observer<'_> {
     type Texture = Texture;
     type Error = Failure;
 
-    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Texture, Failure> {
-        let zeros = zeros(size);
+    fn zeros(&mut self, storage: Storage, mipmaps: bool) -> Result<Texture, Failure> {
+        let zeros = match storage {
+            Storage::Image(size) => zeros(size),
+            Storage::Cube(side) => zeros([side, side * cube::FACES]).into_cube(),
+        };
         Ok(if mipmaps { zeros.with_mipmaps() } else { zeros })
     }
 
@@ -314,7 +317,7 @@ impl Renderer for Observer<'_> {
             .map(|&observed| (pass, observed))
             .chain(self.observations.undefined_by);
         self.observations.undefined_by = most.max_by_key(|(_, observed)| observed.pixels);
-        let texture = Texture::from(Image::clone(&self.rendered[pass]));
+        let texture = Texture::from(Image::clone(&self.rendered[pass])).shaped_as(&over);
         Ok(if over.levels() > 1 {
             texture.with_mipmaps()
         } else {
@@ -324,6 +327,6 @@ impl Renderer for Observer<'_> {
 
     /// Starts again: the frames of another size are another run.
     fn resized(&mut self, texture: Texture, size: [u32; 2]) -> Result<Texture, Failure> {
-        self.zeros(size, texture.levels() > 1)
+        self.zeros(Storage::Image(size), texture.levels() > 1)
     }
 }

@@ -73,6 +73,9 @@ pub enum ProjectError {
     /// A pass is needed that cannot be rendered.
     #[error("the project {0}")]
     NotRendered(#[from] UnsupportedPass),
+    /// A pass renders a cube map.
+    #[error("the project reads Cube A, which is not converted yet")]
+    CubeA,
     /// The script's package does not have something that the passes need.
     #[error("{0}")]
     Script(String),
@@ -109,6 +112,10 @@ impl Converter {
         }
         let ProjectSource { project, files, .. } = source;
         let rendering = project.rendering(PassKind::Image)?;
+        let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
+        if rendering.passes.iter().any(is_cube) {
+            return Err(ProjectError::CubeA);
+        }
         let checked: Vec<_> = project.checked_of(&rendering).collect();
         let host_graph = HostGraph::new(&project.project, &rendering, &checked);
         let extension = self.extension();

@@ -56,6 +56,7 @@ pub(crate) fn compile(
             linear,
             locations,
             shared,
+            shapes: checked.channels,
             sites,
             schema,
         })

@@ -84,6 +84,8 @@ mod parametric;
 mod passes;
 mod program;
 mod render;
+mod sound;
+mod supersample;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -102,6 +104,8 @@ pub use parametric::{ParametricProgram, Point, PointEvaluator};
 pub use passes::{PassFailure, PassRenderer, bound};
 pub use program::Program;
 pub use render::{Rendered, RenderedF32};
+pub use sound::SOUND_COLUMNS;
+pub use supersample::Supersampling;
 pub use trace::PixelDebugger;
 
 /// What a compiler to machine code is given, and implements.

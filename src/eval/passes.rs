@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use thiserror::Error;
-use toyproof_image::{Frame, Texture};
-use toyproof_player::{Channel, Renderer};
+use toyproof_image::{Frame, Texture, cube};
+use toyproof_player::{Channel, Renderer, Storage};
 
 use crate::exec::evaluate::Number;
 use crate::exec::limits::Failure;
@@ -53,10 +53,11 @@ impl<'a, N: Number> PassRenderer<'a, N> {
     /// A texture of a state, in the precision of the number type.
     #[must_use]
     pub fn load(texture: &Texture, mipmaps: bool) -> Texture {
-        let [width, height] = texture.size();
-        let texel = |x, y| [0, 1, 2, 3].map(|component| texel::<N>(texture, 0, [x, y], component));
+        let [width, height] = texture.stack_size();
+        let texel = |x, y| [0, 1, 2, 3].map(|component| texel::<N>(texture, [x, y], component));
         let texels = (0..height).flat_map(|y| (0..width).map(move |x| texel(x, y)));
-        with_mipmaps(N::texture(texture.size(), texels.collect()), mipmaps)
+        let stack = N::texture([width, height], texels.collect());
+        with_mipmaps(stack.shaped_as(texture), mipmaps)
     }
 
     /// A frame with these channels.
@@ -69,11 +70,19 @@ impl<'a, N: Number> PassRenderer<'a, N> {
 /// A frame with these channels, some of which read `media`.
 #[must_use]
 pub fn bound(frame: &Frame, channels: [Channel<'_, Texture>; 4], media: &[Texture]) -> Frame {
+    let moving = |channel: &Channel<'_, Texture>| match channel {
+        Channel::Moving(number) => frame.moving.get(*number),
+        _ => None,
+    };
     Frame {
+        channel_times: channels
+            .each_ref()
+            .map(|channel| moving(channel).map_or(0.0, |(_, time)| *time)),
         channels: channels.map(|channel| match channel {
             Channel::Unbound => None,
             Channel::Texture(texture) => Some(texture.clone()),
             Channel::Medium(number) => media.get(number).cloned(),
+            Channel::Moving(number) => frame.moving.get(number).map(|(texture, _)| texture.clone()),
             Channel::Keyboard => Some(frame.keys.texture()),
         }),
         ..frame.clone()
@@ -89,12 +98,20 @@ impl<N: Number> Renderer for PassRenderer<'_, N> {
     type Texture = Texture;
     type Error = PassFailure;
 
-    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Texture, PassFailure> {
-        let count = size[0] as usize * size[1] as usize;
-        Ok(with_mipmaps(
-            N::texture(size, vec![[N::default(); 4]; count]),
-            mipmaps,
-        ))
+    fn zeros(&mut self, storage: Storage, mipmaps: bool) -> Result<Texture, PassFailure> {
+        let zeros = |[width, height]: [u32; 2]| {
+            N::texture(
+                [width, height],
+                vec![[N::default(); 4]; width as usize * height as usize],
+            )
+        };
+        let texture = match storage {
+            Storage::Image(size) => zeros(size),
+            Storage::Cube(side) => zeros([side, side * cube::FACES])
+                .into_cube()
+                .with_resolution([side, side, 1]),
+        };
+        Ok(with_mipmaps(texture, mipmaps))
     }
 
     fn draw(

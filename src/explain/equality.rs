@@ -7,7 +7,7 @@
 //! use toyproof_diagnostic::{File, Files};
 //! use toyproof_explain::equality::Pair;
 //! use toyproof_image::Frame;
-//! use toyproof_player::{Graph, Pass, Target};
+//! use toyproof_player::{BUFFERS, Graph, Pass, Target};
 //! use toyproof_verify::project::bind::clock;
 //! use toyproof_verify::project::playback::PassShader;
 //!
@@ -20,8 +20,13 @@
 //! };
 //! let (a, b) = (checked("a.glsl", "vec4(p.x / 8.0)")?, checked("b.glsl", "vec4(p.x * .125)")?);
 //! let image = Pass { target: Target::Image, inputs: [None; 4] };
-//! let graph = Graph::new(vec![image], [false; 4]);
-//! let [a, b] = [&a, &b].map(|checked| PassShader { checked: vec![checked], graph: &graph, media: &[] });
+//! let graph = Graph::new(vec![image], [false; BUFFERS]);
+//! let [a, b] = [&a, &b].map(|checked| PassShader {
+//!     checked: vec![checked],
+//!     graph: &graph,
+//!     media: &[],
+//!     films: Default::default(),
+//! });
 //! let pair = Pair::new([&a, &b], Duration::from_secs(60))?;
 //! let clock = clock(&Frame { size: [8, 8], ..Frame::default() });
 //! assert!(pair.first_difference(&clock, 0..=3, |_| {})?.is_none());
@@ -171,6 +176,9 @@ impl<'a> Pair<'a> {
     ///
     /// # Errors
     /// If a pass fails.
+    ///
+    /// # Panics
+    /// Never: every shader has an image.
     pub fn images(
         &self,
         clock: &Clock,
@@ -179,14 +187,11 @@ impl<'a> Pair<'a> {
         mut compare: impl FnMut(i32, [&Image; 2]) -> ControlFlow<()>,
     ) -> Result<(), PairFailure> {
         self.play(clock, frames, step, |inputs, playbacks| {
-            let [Some(a), Some(b)] = playbacks
-                .each_ref()
-                .map(|playback| playback.texture(Target::Image))
-            else {
-                return ControlFlow::Break(());
-            };
-            let [a, b] = [a, b].map(|texture: &Texture| texture.to_single().swap_remove(0));
-            compare(inputs.frame, [&*a, &*b])
+            let images = playbacks.each_ref().map(|playback| {
+                let texture = playback.texture(Target::Image);
+                texture.expect("the image is rendered").stack()
+            });
+            compare(inputs.frame, images.each_ref().map(|image| &**image))
         })
     }
 
@@ -208,7 +213,7 @@ impl<'a> Pair<'a> {
             step(number);
             let inputs = clock.frame(number);
             for (shader, playback) in playbacks.iter_mut().enumerate() {
-                let rendered = playback.render(&inputs);
+                let rendered = playback.render(&self.shaders[shader].with_films(&inputs));
                 rendered.map_err(|PassFailure { pass, failure }| PairFailure {
                     shader,
                     target: self.shaders[shader].graph.passes()[pass].target,
@@ -232,7 +237,7 @@ impl<'a> Pair<'a> {
         let [Some(a), Some(b)] = playbacks.each_ref().map(|playback| playback.texture(target)) else {
             return None;
         };
-        let [a, b] = [a, b].map(|texture: &Texture| texture.to_single().swap_remove(0));
+        let [a, b] = [a, b].map(|texture: &Texture| texture.stack());
         let pairs = a.pixels().iter().zip(b.pixels());
         let is_alike = |a: f32, b: f32| a == b || a.is_nan() && b.is_nan();
         let differs =
@@ -266,7 +271,7 @@ impl<'a> Pair<'a> {
             let pass = self.targets(shader).iter().position(|&other| other == target)?;
             Some((
                 &self.programs[shader][pass],
-                playbacks[shader].bound(pass, inputs),
+                playbacks[shader].bound(pass, &self.shaders[shader].with_films(inputs)),
             ))
         });
         let [Some((first, first_frame)), Some((second, second_frame))] = &bound else {

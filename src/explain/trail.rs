@@ -74,7 +74,7 @@ fn trace_back(frames: &Frames, target: Target, pixel: [u32; 2]) -> Result<Trail,
         let played = &rendered[index];
         let [single, double] = played.textures[pass]
             .each_ref()
-            .map(|texture| texel(texture, pixel));
+            .map(|texture| texture.texel(pixel));
         hops.push(Hop {
             target: passes[pass].target,
             frame: played.number,
@@ -287,20 +287,12 @@ fn patched(single: &Texture, double: &Texture, from: [u32; 2], size: [u32; 2]) -
     let is_inside =
         |x, y| (from[0]..from[0] + size[0]).contains(&x) && (from[1]..from[1] + size[1]).contains(&y);
     let texels = (0..height)
-        .flat_map(|y| (0..width).map(move |x| texel(if is_inside(x, y) { double } else { single }, [x, y])));
+        .flat_map(|y| (0..width).map(move |x| if is_inside(x, y) { double } else { single }.texel([x, y])));
     let patched = Texture::from(Image::new(width, height, texels.collect()));
     if single.levels() > 1 {
         patched.with_mipmaps()
     } else {
         patched
-    }
-}
-
-/// A texel in f64.
-fn texel(texture: &Texture, [x, y]: [u32; 2]) -> [f64; 4] {
-    match texture {
-        Texture::Single(levels) => levels[0].get(x, y).map(f64::from),
-        Texture::Double(levels) => levels[0].get(x, y),
     }
 }
 

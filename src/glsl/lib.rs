@@ -206,6 +206,15 @@ impl Checked {
         self.calls(tree::BuiltIn::is_derivative)
     }
 
+    /// Whether an expression names a channel.
+    pub fn names_channel(&self, channel: usize) -> bool {
+        let is_channel = |variable: tree::VariableId| {
+            self.tree[variable].kind == tree::VariableKind::Channel(channel as u8)
+        };
+        let mut exprs = self.tree.exprs.iter();
+        exprs.any(|(_, expr)| matches!(expr.kind, tree::ExprKind::Variable(variable) if is_channel(variable)))
+    }
+
     /// Whether the shader reads an input.
     pub fn reads(&self, input: tree::Input) -> bool {
         let is_input =

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use thiserror::Error;
 use toyproof_glsl::{Filter, Sampling, Wrap};
-use toyproof_image::{Frame, Image, Input, InputType};
+use toyproof_image::{Frame, Image, Input, InputType, Shape};
 
 /// Why a browser rendered nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -177,9 +177,12 @@ fn frame_json(frame: &Frame) -> Value {
         let pixels = BASE64_STANDARD.encode(bytemuck::cast_slice::<_, u8>(image.pixels()));
         json!({"width": width, "height": height, "pixels": pixels})
     };
+    // The page binds images; cube maps and volumes are black.
     let channels = frame.channels.iter().map(|texture| match texture {
-        Some(texture) => texture.to_single().iter().map(|image| level(image)).collect(),
-        None => vec![level(&Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]))],
+        Some(texture) if texture.shape() == Shape::Flat => {
+            texture.to_single().iter().map(|image| level(image)).collect()
+        }
+        _ => vec![level(&Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]))],
     });
     json!({
         "width": frame.size[0],

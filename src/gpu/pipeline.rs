@@ -11,7 +11,7 @@ use wgpu::{
 };
 
 use super::quirks::TWO_VARIANTS;
-use super::texture::{FORMAT, black, dimension, upload};
+use super::texture::{FORMAT, black, dimension, upload, view};
 
 /// Vertex shader with three vertices that cover the target, and three more outside of it: drawing those
 /// compiles the pipeline without covering a pixel.
@@ -120,13 +120,12 @@ impl Layout {
 
     /// Creates the views of a frame's channels.
     pub(super) fn views(&self, device: &Device, queue: &wgpu::Queue, frame: &Frame) -> [TextureView; 4] {
-        std::array::from_fn(
-            |channel| match (&frame.channels[channel], self.channels[channel]) {
-                (Some(texture), Shape::D2) => upload(device, queue, texture).create_view(&Default::default()),
-                // Volumes and cubes cannot be bound yet: they are black.
-                (_, shape) => black(device, queue, shape),
-            },
-        )
+        std::array::from_fn(|channel| {
+            let shape = self.channels[channel];
+            let texture = frame.channels[channel].as_ref();
+            let uploaded = texture.and_then(|texture| upload(device, queue, texture, shape));
+            uploaded.map_or_else(|| black(device, queue, shape), |texture| view(&texture, shape))
+        })
     }
 
     /// Creates the view of a channel that reads nothing.
@@ -134,9 +133,9 @@ impl Layout {
         black(device, queue, self.channels[channel])
     }
 
-    /// Whether a channel is declared with two dimensions.
-    pub(super) fn is_flat(&self, channel: usize) -> bool {
-        self.channels[channel] == Shape::D2
+    /// The shape that a channel is declared with.
+    pub(super) fn shape(&self, channel: usize) -> Shape {
+        self.channels[channel]
     }
 
     /// Creates the bind group of a frame: its uniform block and the views of its channels.

@@ -4,15 +4,15 @@ use std::sync::OnceLock;
 
 use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::{self as glsl, Stage};
-use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{Channel, ChannelSampling, Player, Readback, Renderer};
-use toyproof_translate::naga_ir::ValidModule;
+use toyproof_image::{self as image, Frame, Image, Texture, cube};
+use toyproof_player::{Channel, ChannelSampling, Player, Readback, Renderer, Storage};
+use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered, lower_strict};
 use wgpu::{TextureUsages, TextureView, TextureViewDescriptor};
 
 use super::device::Device;
 use super::draw::{CompiledPipeline, Program, encode};
-use super::texture::{extent, flat, upload, write};
+use super::texture::{extent, flat, upload, view, write};
 use super::{Failure, refused};
 
 /// Renders passes on a device.
@@ -22,10 +22,46 @@ pub(super) struct PassRenderer {
     passes: Vec<CompiledPipeline>,
     /// The samplers of each pass.
     sampling: Vec<[ChannelSampling; 4]>,
-    media: Vec<wgpu::Texture>,
+    /// The textures that do not change.
+    media: Vec<Uploads>,
     /// Renders a mipmap from the next larger one; compiled if a buffer has mipmaps.
     halving: OnceLock<CompiledPipeline>,
 }
+
+/// A texture that passes render and read.
+#[derive(Debug)]
+pub(super) struct PassTexture {
+    /// What a pass renders: an image with its mipmaps, or the stacked faces of a cube map.
+    target: wgpu::Texture,
+    /// The cube map, which is made anew when its faces are rendered.
+    cube: Option<Uploads>,
+}
+
+/// A texture of the processor, and its copies on the device for the shapes that shaders declare.
+#[derive(Debug)]
+struct Uploads {
+    texture: Texture,
+    copies: [OnceLock<Option<wgpu::Texture>>; 4],
+}
+
+impl Uploads {
+    fn new(texture: Texture) -> Self {
+        Self {
+            texture,
+            copies: Default::default(),
+        }
+    }
+
+    /// The view for a shader that declares this shape; `None` if the texture has another one.
+    fn view(&self, device: &Device, shape: Shape) -> Option<TextureView> {
+        let copy = &self.copies[shape as usize];
+        let copy = copy.get_or_init(|| upload(&device.gpu, &device.queue, &self.texture, shape));
+        Some(view(copy.as_ref()?, shape))
+    }
+}
+
+/// What a channel of a pass reads: a view, and its `iChannelResolution`.
+type BoundChannel = Option<(TextureView, [u32; 3])>;
 
 impl PassRenderer {
     /// Compiles the passes and uploads the textures that do not change.
@@ -38,10 +74,7 @@ impl PassRenderer {
         let passes = programs.iter().map(|program| device.compile(program)).collect();
         match passes {
             Ok(passes) => Ok(Self {
-                media: media
-                    .iter()
-                    .map(|texture| upload(&device.gpu, &device.queue, texture))
-                    .collect(),
+                media: media.iter().cloned().map(Uploads::new).collect(),
                 passes,
                 sampling,
                 halving: OnceLock::new(),
@@ -61,15 +94,45 @@ impl PassRenderer {
     }
 
     /// Uploads a texture of a saved state, and computes its mipmaps if it shall have any.
-    pub(super) fn load(&mut self, texture: &Texture, mipmaps: bool) -> Result<wgpu::Texture, Failure> {
-        let made = self.zeros(texture.size(), mipmaps)?;
+    pub(super) fn load(&mut self, texture: &Texture, mipmaps: bool) -> Result<PassTexture, Failure> {
+        let is_cube = texture.shape() == image::Shape::Cube;
+        let storage = if is_cube {
+            Storage::Cube(texture.size()[0])
+        } else {
+            Storage::Image(texture.size())
+        };
+        let mut made = self.zeros(storage, mipmaps)?;
+        let stack = texture.stack();
         self.device.with_error_scopes(|| {
-            if let Some(image) = texture.to_single().first() {
-                write(&self.device.queue, &made, 0, extent(image.size()), image.pixels());
-            }
-            self.make_mipmaps(&made)
+            write(
+                &self.device.queue,
+                &made.target,
+                0,
+                extent(stack.size()),
+                stack.pixels(),
+            );
+            self.make_mipmaps(&made.target)
         })?;
+        if is_cube {
+            made.cube = Some(Uploads::new(with_mipmaps(texture.clone(), mipmaps)));
+        }
         Ok(made)
+    }
+
+    /// The view of a channel for a shader that declares this shape, with its resolution.
+    fn bound(&self, channel: &Channel<'_, PassTexture>, frame: &Frame, shape: Shape) -> BoundChannel {
+        let of_uploads =
+            |uploads: &Uploads| Some((uploads.view(&self.device, shape)?, uploads.texture.resolution()));
+        match channel {
+            Channel::Unbound => None,
+            Channel::Texture(PassTexture { cube: Some(cube), .. }) => of_uploads(cube),
+            Channel::Texture(PassTexture { target, cube: None }) => {
+                (shape == Shape::D2).then(|| (view(target, shape), [target.width(), target.height(), 1]))
+            }
+            Channel::Medium(number) => of_uploads(self.media.get(*number)?),
+            Channel::Moving(number) => of_uploads(&Uploads::new(frame.moving.get(*number)?.0.clone())),
+            Channel::Keyboard => of_uploads(&Uploads::new(frame.keys.texture())),
+        }
     }
 
     /// Renders over a view of one level, whose pixels are kept where nothing is written.
@@ -77,26 +140,22 @@ impl PassRenderer {
         &self,
         compiled: &CompiledPipeline,
         frame: &Frame,
-        channels: [Option<(TextureView, [u32; 2])>; 4],
+        channels: [BoundChannel; 4],
         sampling: [ChannelSampling; 4],
         target: &TextureView,
     ) -> Result<(), Failure> {
         let Device { gpu, queue, .. } = &self.device;
-        let sizes = channels
+        let resolutions = channels
             .each_ref()
-            .map(|channel| channel.as_ref().map(|(_, size)| *size));
+            .map(|channel| channel.as_ref().map_or([0; 3], |(_, resolution)| *resolution));
         let mut channels = channels.into_iter();
         let views = std::array::from_fn(|channel| {
-            // A view of two dimensions fits no other declaration.
-            let view = channels
-                .next()
-                .flatten()
-                .filter(|_| compiled.layout.is_flat(channel));
+            let view = channels.next().flatten();
             view.map_or_else(|| compiled.layout.unbound(gpu, queue, channel), |(view, _)| view)
         });
         let bindings = compiled
             .layout
-            .bind(gpu, queue, &frame.block_with(sizes), &views, sampling);
+            .bind(gpu, queue, &frame.block_with(resolutions), &views, sampling);
         let mut commands = gpu.create_command_encoder(&Default::default());
         let load = wgpu::LoadOp::Load;
         encode(&mut commands, target, load, &compiled.pipeline, &bindings, 0..3);
@@ -120,12 +179,12 @@ impl PassRenderer {
                 let side = |side: u32| (side >> level).max(1);
                 (
                     level_view(texture, level),
-                    [side(texture.width()), side(texture.height())],
+                    [side(texture.width()), side(texture.height()), 1],
                 )
             };
-            let (target, size) = of(level);
+            let (target, [width, height, _]) = of(level);
             let frame = Frame {
-                size,
+                size: [width, height],
                 ..Frame::default()
             };
             let channels = [Some(of(level - 1)), None, None, None];
@@ -186,54 +245,80 @@ fn levels(size: [u32; 2]) -> u32 {
     size[0].max(size[1]).ilog2() + 1
 }
 
+/// The texture with mipmaps, if it shall have any.
+fn with_mipmaps(texture: Texture, mipmaps: bool) -> Texture {
+    if mipmaps { texture.with_mipmaps() } else { texture }
+}
+
 impl Renderer for PassRenderer {
-    type Texture = wgpu::Texture;
+    type Texture = PassTexture;
     type Error = Failure;
 
-    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<wgpu::Texture, Failure> {
+    fn zeros(&mut self, storage: Storage, mipmaps: bool) -> Result<PassTexture, Failure> {
         let usage = TextureUsages::RENDER_ATTACHMENT
             | TextureUsages::TEXTURE_BINDING
             | TextureUsages::COPY_SRC
             | TextureUsages::COPY_DST;
-        let levels = if mipmaps { levels(size) } else { 1 };
-        self.device
-            .with_error_scopes(|| Ok(flat(&self.device.gpu, size, levels, usage)))
+        let (size, levels, cube) = match storage {
+            Storage::Image(size) if mipmaps => (size, levels(size), None),
+            Storage::Image(size) => (size, 1, None),
+            Storage::Cube(side) => {
+                let size = [side, side * cube::FACES];
+                let zeros = Image::new(size[0], size[1], vec![[0.0_f32; 4]; (size[0] * size[1]) as usize]);
+                let cube = Texture::cube(&zeros).with_resolution([side, side, 1]);
+                (size, 1, Some(Uploads::new(with_mipmaps(cube, mipmaps))))
+            }
+        };
+        let target = self
+            .device
+            .with_error_scopes(|| Ok(flat(&self.device.gpu, size, levels, usage)))?;
+        Ok(PassTexture { target, cube })
     }
 
     fn draw(
         &mut self,
         pass: usize,
-        over: wgpu::Texture,
+        mut over: PassTexture,
         frame: &Frame,
-        channels: [Channel<'_, wgpu::Texture>; 4],
-    ) -> Result<wgpu::Texture, Failure> {
+        channels: [Channel<'_, PassTexture>; 4],
+    ) -> Result<PassTexture, Failure> {
         self.device.with_error_scopes(|| {
-            let channels = channels.map(|channel| {
-                let texture = match channel {
-                    Channel::Unbound => return None,
-                    Channel::Texture(texture) => texture.clone(),
-                    Channel::Medium(number) => self.media.get(number)?.clone(),
-                    Channel::Keyboard => upload(&self.device.gpu, &self.device.queue, &frame.keys.texture()),
-                };
-                let size = [texture.width(), texture.height()];
-                Some((texture.create_view(&Default::default()), size))
-            });
             let (compiled, sampling) = (&self.passes[pass], self.sampling[pass]);
-            self.submit(compiled, frame, channels, sampling, &level_view(&over, 0))?;
-            self.make_mipmaps(&over)
+            let times = channels.each_ref().map(|channel| match channel {
+                Channel::Moving(number) => frame.moving.get(*number).map_or(0.0, |(_, time)| *time),
+                _ => 0.0,
+            });
+            let frame = &Frame {
+                channel_times: times,
+                ..frame.clone()
+            };
+            let channels = std::array::from_fn(|channel| {
+                self.bound(&channels[channel], frame, compiled.layout.shape(channel))
+            });
+            self.submit(compiled, frame, channels, sampling, &level_view(&over.target, 0))?;
+            self.make_mipmaps(&over.target)
         })?;
+        if let Some(cube) = &mut over.cube {
+            // The faces get their borders and mipmaps on the processor.
+            let faces = self.device.read_texture(&over.target)?;
+            let [width, height, _] = cube.texture.resolution();
+            let texture = Texture::cube(&faces).with_resolution([width, height, 1]);
+            *cube = Uploads::new(with_mipmaps(texture, cube.texture.levels() > 1));
+        }
         Ok(over)
     }
 
-    fn resized(&mut self, texture: wgpu::Texture, size: [u32; 2]) -> Result<wgpu::Texture, Failure> {
-        let made = self.zeros(size, texture.mip_level_count() > 1)?;
+    fn resized(&mut self, texture: PassTexture, size: [u32; 2]) -> Result<PassTexture, Failure> {
+        let PassTexture { target: old, .. } = texture;
+        let made = self.zeros(Storage::Image(size), old.mip_level_count() > 1)?;
         self.device.with_error_scopes(|| {
-            let common = [size[0].min(texture.width()), size[1].min(texture.height())];
+            let common = [size[0].min(old.width()), size[1].min(old.height())];
             let mut commands = self.device.gpu.create_command_encoder(&Default::default());
-            commands.copy_texture_to_texture(texture.as_image_copy(), made.as_image_copy(), extent(common));
+            let new = made.target.as_image_copy();
+            commands.copy_texture_to_texture(old.as_image_copy(), new, extent(common));
             self.device.queue.submit([commands.finish()]);
             self.device.wait()?;
-            self.make_mipmaps(&made)
+            self.make_mipmaps(&made.target)
         })?;
         Ok(made)
     }
@@ -249,5 +334,5 @@ pub(super) fn read(player: &DevicePlayer, what: Readback) -> Result<Image, Failu
         Readback::Other(buffer) => player.buffer(buffer).map(|[_, other]| other),
     };
     let texture = texture.ok_or_else(|| Failure::Device("there is no such texture".to_owned()))?;
-    player.renderer().device.read_texture(texture)
+    player.renderer().device.read_texture(&texture.target)
 }

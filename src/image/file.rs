@@ -1,10 +1,14 @@
-//! PNG (8 bits) and EXR (32-bit floats) files.
+//! Image files: PNG (8 bits) and EXR (32-bit floats) are written; JPEG, GIF and Radiance HDR are read, too.
 
 use std::borrow::Cow;
+use std::fs::File;
 use std::io::{self, BufReader, Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use image::{DynamicImage, ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits, Rgba32FImage};
+use image::{
+    DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader, Limits,
+    Rgba32FImage,
+};
 use thiserror::Error;
 
 use super::{Image, MAX_SIDE, Rgb8Image, check_size, input, quantize};
@@ -65,6 +69,23 @@ pub fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
     }
 }
 
+/// Encodes an image as [`encode`] does, and keeps alpha in PNG. Colors are not multiplied by it.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_transparent(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
+    match Format::from_path(path)? {
+        Format::Png => {
+            let rows = image.rows().rev();
+            let rows = rows.map(|row| row.iter().map(|pixel| pixel.map(quantize)).collect());
+            in_memory(path, |bytes| {
+                png(image.size(), rows.map(Cow::<[_]>::Owned), bytes)
+            })
+        }
+        Format::Exr => encode(image, path),
+    }
+}
+
 /// Encodes an image of 8 bits as [`encode`] does.
 ///
 /// # Errors
@@ -84,6 +105,40 @@ pub fn write_png(image_rgb8: &Rgb8Image, out: &mut dyn Write) -> io::Result<()> 
     png(image_rgb8.size(), image_rgb8.rows().rev().map(Cow::Borrowed), out)
 }
 
+/// Writes a PNG of which only a band of rows is in memory at a time. The bands come from the top down; they
+/// have the width of the image, and together its height.
+///
+/// # Errors
+/// Those of `out` and of the bands.
+pub fn stream_png<E: From<io::Error>>(
+    [width, height]: [u32; 2],
+    keeps_alpha: bool,
+    bands: impl IntoIterator<Item = Result<Image, E>>,
+    out: &mut dyn Write,
+) -> Result<(), E> {
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(if keeps_alpha {
+        png::ColorType::Rgba
+    } else {
+        png::ColorType::Rgb
+    });
+    encoder.set_compression(png::Compression::Fast);
+    let mut encoder = encoder.write_header().map_err(io::Error::from)?;
+    let mut rows = encoder.stream_writer().map_err(io::Error::from)?;
+    for band in bands {
+        let band = band?;
+        for row in band.rows().rev() {
+            let values = row.iter().flat_map(|pixel| {
+                let components = if keeps_alpha { 4 } else { 3 };
+                pixel.map(quantize).into_iter().take(components)
+            });
+            rows.write_all(&values.collect::<Vec<u8>>())?;
+        }
+    }
+    rows.finish().map_err(io::Error::from)?;
+    Ok(())
+}
+
 enum Format {
     Png,
     Exr,
@@ -100,16 +155,16 @@ impl Format {
     }
 }
 
-/// Writes a PNG from rows in top-down order. The fast compression makes noise a third larger, so that an
-/// image which it does not make smaller is stored as it is.
-fn png<'a>(
+/// Writes a PNG of red, green and blue, and perhaps alpha, from rows in top-down order. The fast compression
+/// makes noise a third larger, so that an image which it does not make smaller is stored as it is.
+fn png<'a, const N: usize>(
     size: [u32; 2],
-    rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>> + Clone,
+    rows: impl Iterator<Item = Cow<'a, [[u8; N]]>> + Clone,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut compressed = LimitedBuffer {
         bytes: Vec::new(),
-        limit: stored_size(size),
+        limit: stored_size(size, N),
         is_exceeded: false,
     };
     let written = png_with(png::Compression::Fast, size, rows.clone(), &mut compressed);
@@ -122,21 +177,25 @@ fn png<'a>(
 }
 
 /// The size of the PNG of an image that is stored in one chunk, in bytes.
-fn stored_size([width, height]: [u32; 2]) -> usize {
+fn stored_size([width, height]: [u32; 2], components: usize) -> usize {
     /// The signature, the chunks of the size and of the end, and the framing of the pixels.
     const AROUND: usize = 68;
     // Each row begins with the number of its filter.
-    AROUND + (3 * width as usize + 1) * height as usize
+    AROUND + (components * width as usize + 1) * height as usize
 }
 
-fn png_with<'a>(
+fn png_with<'a, const N: usize>(
     compression: png::Compression,
     [width, height]: [u32; 2],
-    rows: impl Iterator<Item = Cow<'a, [[u8; 3]]>>,
+    rows: impl Iterator<Item = Cow<'a, [[u8; N]]>>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut encoder = png::Encoder::new(out, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if N == 4 {
+        png::ColorType::Rgba
+    } else {
+        png::ColorType::Rgb
+    });
     encoder.set_depth(png::BitDepth::Eight);
     // Filters are those of the compression: adaptive ones, or none.
     encoder.set_compression(compression);
@@ -185,26 +244,27 @@ fn in_memory(
     }
 }
 
-/// Reads a PNG or an EXR; 8- and 16-bit values become `value / max`, without any transfer function.
+/// Reads an image file, of a film its first frame; 8- and 16-bit values become `value / max`, without any
+/// transfer function. A photograph is turned upright if it says how it was taken.
 ///
 /// # Errors
 /// [`ImageError::Unreadable`], also for images over the size limit.
 pub fn read(path: &Path) -> Result<Image, ImageError> {
-    let decoded = decode(path)?;
-    let [width, height] = [decoded.width(), decoded.height()];
+    Ok(from_decoded(decode(path)?))
+}
+
+/// An image from a decoder's, whose rows run downwards.
+pub fn from_decoded(decoded: DynamicImage) -> Image {
     let rgba: Rgba32FImage = match decoded {
         DynamicImage::ImageRgba32F(floats) => floats,
         other => other.into_rgba32f(),
     };
-    let pixels = rgba
-        .rows()
-        .rev()
-        .flat_map(|row| row.map(|pixel| pixel.0))
-        .collect();
-    Ok(Image::new(width, height, pixels))
+    let rows = rgba.rows().rev();
+    let pixels = rows.flat_map(|row| row.map(|pixel| pixel.0)).collect();
+    Image::new(rgba.width(), rgba.height(), pixels)
 }
 
-/// Reads a PNG or an EXR as 8-bit RGB.
+/// Reads an image file as 8-bit RGB.
 ///
 /// # Errors
 /// As [`read`].
@@ -227,7 +287,42 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
         path: path.to_owned(),
         error,
     };
-    let mut reader = input::open(path)
+    let mut reader = open_image(path)?;
+    reader.limits(decoder_limits());
+    let mut decoder = reader
+        .into_decoder()
+        .map_err(|error| unreadable(error.to_string()))?;
+    // Before any memory is taken for the pixels.
+    let (width, height) = decoder.dimensions();
+    check_size(width.into(), height.into()).map_err(|error| unreadable(error.to_string()))?;
+    let orientation = decoder.orientation();
+    let decoded = orientation.and_then(|orientation| {
+        let mut decoded = DynamicImage::from_decoder(decoder)?;
+        decoded.apply_orientation(orientation);
+        Ok(decoded)
+    });
+    decoded.map_err(|error| unreadable(error.to_string()))
+}
+
+/// The limits of decoders: [`MAX_SIDE`], and one gigabyte.
+pub fn decoder_limits() -> Limits {
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE);
+    limits.max_image_height = Some(MAX_SIDE);
+    limits.max_alloc = Some(1 << 30);
+    limits
+}
+
+/// Opens an image file of a format that is read.
+///
+/// # Errors
+/// [`ImageError::Unreadable`], also for the palettes that no decoder accepts.
+pub fn open_image(path: &Path) -> Result<ImageReader<BufReader<File>>, ImageError> {
+    let unreadable = |error: String| ImageError::Unreadable {
+        path: path.to_owned(),
+        error,
+    };
+    let reader = input::open(path)
         .and_then(|file| ImageReader::new(BufReader::new(file)).with_guessed_format())
         .map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => unreadable("no such file".to_owned()),
@@ -235,18 +330,13 @@ fn decode(path: &Path) -> Result<DynamicImage, ImageError> {
         })?;
     match reader.format() {
         Some(ImageFormat::Png) => check_palette(path).map_err(unreadable)?,
-        Some(ImageFormat::OpenExr) => {}
-        _ => return Err(unreadable("only PNG and EXR are supported".to_owned())),
+        Some(ImageFormat::Gif | ImageFormat::Hdr | ImageFormat::Jpeg | ImageFormat::OpenExr) => {}
+        _ => {
+            let supported = "only PNG, JPEG, EXR, Radiance HDR and GIF are supported";
+            return Err(unreadable(supported.to_owned()));
+        }
     }
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(1 << 30);
-    reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| unreadable(error.to_string()))?;
-    check_size(decoded.width().into(), decoded.height().into())
-        .map_err(|error| unreadable(error.to_string()))?;
-    Ok(decoded)
+    Ok(reader)
 }
 
 /// Rejects palettes of PNGs on which the decoder panics (png 0.18.1).
@@ -298,6 +388,41 @@ mod tests {
     }
 
     #[test]
+    fn bands_make_the_same_image() {
+        let pixel = |at: u32| [at as f32 / 35.0, 0.5, 1.0, at as f32 / 70.0];
+        let image = Image::new(7, 5, (0..35).map(pixel).collect());
+        let band = |rows: std::ops::Range<u32>| {
+            let pixels = (rows.start * 7..rows.end * 7).map(pixel).collect();
+            Ok::<_, io::Error>(Image::new(7, rows.len() as u32, pixels))
+        };
+        for keeps_alpha in [false, true] {
+            let mut streamed = Vec::new();
+            let bands = [3..5, 0..3].map(band);
+            stream_png([7, 5], keeps_alpha, bands, &mut streamed).unwrap();
+            let path = Path::new("a.png");
+            let whole = if keeps_alpha {
+                encode_transparent(&image, path)
+            } else {
+                encode(&image, path)
+            };
+            let decode = |bytes: &[u8]| image::load_from_memory(bytes).unwrap();
+            assert_eq!(decode(&streamed), decode(&whole.unwrap()));
+        }
+    }
+
+    #[test]
+    fn alpha_is_kept_where_it_is_wanted() {
+        let pixels = vec![[1.0, 0.0, 0.2, 0.5], [0.0, 0.0, 0.0, 0.0]];
+        let image = Image::new(2, 1, pixels);
+        let read = |bytes: Vec<u8>| image::load_from_memory(&bytes).unwrap();
+        let path = Path::new("a.png");
+        let kept = read(encode_transparent(&image, path).unwrap()).into_rgba8();
+        assert_eq!(kept.get_pixel(0, 0).0, [255, 0, 51, 128]);
+        assert_eq!(kept.get_pixel(1, 0).0, [0; 4]);
+        assert!(!read(encode(&image, path).unwrap()).color().has_alpha());
+    }
+
+    #[test]
     fn no_png_is_larger_than_its_pixels() {
         let noise = |at: u32| {
             let hash = (at + 1).wrapping_mul(2_654_435_761);
@@ -311,7 +436,7 @@ mod tests {
             let bytes = encode_shown(&image, Path::new("a.png")).unwrap();
             // The framing of the parts of a stored image takes less than a hundredth of it, and 22 bytes at
             // the end.
-            let most = stored_size(image.size()) * 101 / 100 + 22;
+            let most = stored_size(image.size(), 3) * 101 / 100 + 22;
             assert!(bytes.len() <= most, "{size}: {} above {most}", bytes.len());
             let read = image::load_from_memory(&bytes).unwrap().into_rgb8();
             let rows = image.rows().rev().flatten().copied();
@@ -330,6 +455,30 @@ mod tests {
         let path = folder.path().join("a.png");
         std::fs::write(&path, "not an image").unwrap();
         assert!(read(&path).unwrap_err().to_string().contains("as an image"));
+    }
+
+    #[test]
+    fn photographs_radiance_pictures_and_the_first_frame_of_a_film_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let gray = image::RgbImage::from_fn(16, 8, |x, y| {
+            image::Rgb([if y < 4 { 51 } else { 204 }, 102, (x / 8 * 255) as u8])
+        });
+        for (name, tolerance) in [("a.jpg", 40), ("a.gif", 4), ("a.png", 0)] {
+            let path = folder.path().join(name);
+            gray.save(&path).unwrap();
+            let read = read_shown(&path).unwrap();
+            assert_eq!(read.size(), [16, 8]);
+            // The corners, far from edges, which JPEG blurs: the lower left and the upper right.
+            for ((x, y), expected) in [((1, 1), [204, 102, 0]), ((14, 6), [51, 102, 255])] {
+                let found = read.rows().nth(y).unwrap()[x];
+                let difference = (0..3).map(|i| found[i].abs_diff(expected[i])).max();
+                assert!(difference <= Some(tolerance), "{name}: {found:?}");
+            }
+        }
+        let path = folder.path().join("a.hdr");
+        let bright = image::Rgb32FImage::from_pixel(9, 3, image::Rgb([8.0, 0.5, 0.25]));
+        bright.save(&path).unwrap();
+        assert_eq!(super::read(&path).unwrap().get(8, 2), [8.0, 0.5, 0.25, 1.0]);
     }
 
     #[test]

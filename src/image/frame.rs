@@ -6,13 +6,15 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::inputs::VECTOR_BYTES;
-use crate::{BLOCK_BYTES, Input, Keys, Script, Texture};
+use crate::{BLOCK_BYTES, Input, Keys, MovingTextures, Script, Texture};
 
 /// All inputs of a shader for the frame that it renders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
-    /// `iResolution.xy`, in pixels.
+    /// The size of the rendered image, and `iResolution.xy` unless that is given, in pixels.
     pub size: [u32; 2],
+    /// `iResolution.xy` if it is not the size of the image: that of one of the stacked faces of a cube map.
+    pub resolution: Option<[u32; 2]>,
     /// `iTime`, in seconds.
     pub time: f32,
     /// `iTimeDelta`: the time since the previous frame, in seconds.
@@ -30,8 +32,15 @@ pub struct Frame {
     /// The user's actions over the frames of a run, which determine the mouse and the keyboard of this frame.
     #[serde(skip)]
     pub script: Option<Arc<Script>>,
+    /// The textures of all frames that change, which determine those of this frame.
+    #[serde(skip)]
+    pub films: MovingTextures,
+    /// The textures of this frame that change, with their `iChannelTime` in seconds.
+    pub moving: Vec<(Texture, f32)>,
     /// The textures of `iChannel0` to `iChannel3`; an unbound channel is black and its resolution 0.
     pub channels: [Option<Texture>; 4],
+    /// `iChannelTime`, in seconds.
+    pub channel_times: [f32; 4],
 }
 
 impl Default for Frame {
@@ -39,6 +48,7 @@ impl Default for Frame {
     fn default() -> Self {
         Self {
             size: [640, 360],
+            resolution: None,
             time: 0.0,
             time_delta: 1.0 / FRAME_RATE,
             frame_rate: FRAME_RATE,
@@ -47,7 +57,10 @@ impl Default for Frame {
             date: [0.0; 4],
             keys: Keys::default(),
             script: None,
+            films: MovingTextures::default(),
+            moving: Vec::new(),
             channels: [const { None }; 4],
+            channel_times: [0.0; 4],
         }
     }
 }
@@ -68,11 +81,12 @@ pub const FRAME_RATE: f32 = 60.0;
 pub const SAMPLE_RATE: f32 = 44_100.0;
 
 impl Frame {
-    /// The frame with another number and time, with the mouse and the keyboard that it has by the script.
+    /// The frame with another number and time, with the mouse and the keyboard that it has by the script, and
+    /// the textures that change.
     #[must_use]
     pub fn at(&self, number: i32, time: f32) -> Self {
         let scripted = self.script.as_ref();
-        Self {
+        let frame = Self {
             frame: number,
             time,
             mouse: scripted
@@ -80,6 +94,12 @@ impl Frame {
                 .unwrap_or(self.mouse),
             keys: scripted.map_or(self.keys, |script| script.keys(number)),
             ..self.clone()
+        };
+        let films = self.films.0.iter();
+        let moving = films.map(|film| (film.texture(&frame), film.position(&frame)));
+        Self {
+            moving: moving.collect(),
+            ..frame
         }
     }
 
@@ -99,36 +119,39 @@ impl Frame {
 
     /// One component of an input as a float, in the order of its elements; 0 for `iFrame`, an integer.
     pub fn component(&self, input: Input, at: usize) -> f32 {
-        self.component_with(&self.channel_sizes(), input, at)
+        self.component_with(&self.channel_resolutions(), input, at)
     }
 
-    fn component_with(&self, channels: &[Option<[u32; 2]>; 4], input: Input, at: usize) -> f32 {
-        let resolution = |[width, height]: [u32; 2], axis: usize| [width as f32, height as f32, 1.0][axis];
+    fn component_with(&self, channels: &[[u32; 3]; 4], input: Input, at: usize) -> f32 {
         match input {
-            Input::Resolution => resolution(self.size, at),
+            Input::Resolution => {
+                let [width, height] = self.resolution.unwrap_or(self.size);
+                [width as f32, height as f32, 1.0][at]
+            }
             Input::Time => self.time,
             Input::TimeDelta => self.time_delta,
             Input::FrameRate => self.frame_rate,
-            Input::ChannelResolution => channels[at / 3].map_or(0.0, |size| resolution(size, at % 3)),
+            Input::ChannelResolution => channels[at / 3][at % 3] as f32,
             Input::Mouse => self.mouse[at],
             Input::Date => self.date[at],
             Input::SampleRate => SAMPLE_RATE,
-            Input::Frame | Input::ChannelTime => 0.0,
+            Input::ChannelTime => self.channel_times[at],
+            Input::Frame => 0.0,
         }
     }
 
-    fn channel_sizes(&self) -> [Option<[u32; 2]>; 4] {
+    fn channel_resolutions(&self) -> [[u32; 3]; 4] {
         let channels = self.channels.each_ref();
-        channels.map(|channel| channel.as_ref().map(Texture::size))
+        channels.map(|channel| channel.as_ref().map_or([0; 3], Texture::resolution))
     }
 
     /// The bytes of the uniform block, in the layout of [`Input::offset`].
     pub fn block(&self) -> [u8; BLOCK_BYTES] {
-        self.block_with(self.channel_sizes())
+        self.block_with(self.channel_resolutions())
     }
 
-    /// The uniform block with channels of these sizes instead of the frame's own.
-    pub fn block_with(&self, channels: [Option<[u32; 2]>; 4]) -> [u8; BLOCK_BYTES] {
+    /// The uniform block with this `iChannelResolution` instead of the frame's own.
+    pub fn block_with(&self, channels: [[u32; 3]; 4]) -> [u8; BLOCK_BYTES] {
         let mut bytes = [0; BLOCK_BYTES];
         for input in Input::ALL {
             let components = input.ty().components();

@@ -15,15 +15,18 @@
 //! # Parts
 //!
 //! - `rgb8`: images as displayed, in 8 bits.
-//! - `texture`: textures with mipmaps; `noise`: substitutes for ShaderToy's noise textures.
+//! - `texture`: images, [cube maps](cube) and volumes with mipmaps; `noise`: substitutes for ShaderToy's
+//!   noise textures.
 //! - `frame`: ShaderToy's inputs of one frame and their uniform block.
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
+//! - `moving`: textures that change from frame to frame.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
-//! - `file`: PNG and EXR, the only place that quantizes; `exr_channels`: EXR with channels beside the colors. Only
+//! - `file`: image files, the only place that quantizes; `exr_channels`: EXR with channels beside the colors. Only
 //!   these flip rows.
 //! - `output`: atomic writing of files.
 //! - [`input`]: the only place that opens files of others: regular files only.
 
+pub mod cube;
 mod exr_channels;
 mod file;
 mod frame;
@@ -31,6 +34,7 @@ mod frame_inputs;
 pub mod input;
 mod inputs;
 mod keys;
+mod moving;
 mod noise;
 pub mod output;
 mod rgb8;
@@ -38,16 +42,20 @@ mod script;
 mod texture;
 
 pub use exr_channels::{ChannelValues, ExrAttributes, ExrChannel, encode_exr};
-pub use file::{ImageError, check_extension, encode, encode_shown, read, read_shown, write_png};
+pub use file::{
+    ImageError, check_extension, decoder_limits, encode, encode_shown, encode_transparent, from_decoded,
+    open_image, read, read_shown, stream_png, write_png,
+};
 pub use frame::{FRAME_RATE, Frame, IDLE_MOUSE, SAMPLE_RATE};
 pub use frame_inputs::{Channel, FrameInputs, UniformValue};
 pub use inputs::{BLOCK_BYTES, Input, InputType};
 pub use keys::{KeySet, Keys};
+pub use moving::{Moving, MovingTextures};
 pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;
 pub use script::{InputEvent, Script};
 use serde::{Deserialize, Serialize};
-pub use texture::Texture;
+pub use texture::{Component, Shape, Texels, Texture};
 use thiserror::Error;
 use toyproof_diagnostic::grouped;
 
@@ -56,6 +64,10 @@ pub const MAX_SIDE: u32 = 16_384;
 
 /// Maximum number of pixels of an image: slightly more than one 8K frame (7680×4320).
 pub const MAX_PIXELS: u64 = 1 << 25;
+
+/// Maximum side of an image that is rendered in bands and never in memory as a whole, in pixels. Up to 2²³,
+/// float32 holds the centers of pixels exactly; the limit is that of the memory of a band.
+pub const MAX_BANDED_SIDE: u32 = 1 << 18;
 
 /// An image of linear RGBA floats, bottom row first. Colors are nominally in [0, 1] but are stored unchanged,
 /// including NaN and infinities.
@@ -171,6 +183,9 @@ pub enum SizeError {
         million = MAX_PIXELS / 1_000_000
     )]
     TooLarge(u64, u64),
+    /// More than [`MAX_BANDED_SIDE`].
+    #[error("image size {0}×{1} is too large: the limit is {side} pixels per side", side = grouped(MAX_BANDED_SIDE.into()))]
+    TooLargeInBands(u64, u64),
 }
 
 /// Checks that an image can have this size.
@@ -184,6 +199,26 @@ pub fn check_size(width: u64, height: u64) -> Result<[u32; 2], SizeError> {
     }
     if width > side || height > side || width * height > MAX_PIXELS {
         return Err(SizeError::TooLarge(width, height));
+    }
+    Ok([width as u32, height as u32])
+}
+
+/// Whether an image of this size is rendered in bands, because it is above the limits of [`check_size`].
+pub fn is_banded_size([width, height]: [u32; 2]) -> bool {
+    check_size(width.into(), height.into()).is_err()
+}
+
+/// Checks that an image can have this size if it is rendered in bands.
+///
+/// # Errors
+/// If it has no pixels, or a side of more than [`MAX_BANDED_SIDE`].
+pub fn check_banded_size(width: u64, height: u64) -> Result<[u32; 2], SizeError> {
+    let side = u64::from(MAX_BANDED_SIDE);
+    if width == 0 || height == 0 {
+        return Err(SizeError::Empty(width, height));
+    }
+    if width > side || height > side {
+        return Err(SizeError::TooLargeInBands(width, height));
     }
     Ok([width as u32, height as u32])
 }
@@ -240,5 +275,9 @@ mod tests {
         assert!(refusal(100_000, 100_000).contains("too large"));
         assert!(refusal(u64::MAX, u64::MAX).contains("too large"));
         assert!(refusal(16_384, 16_384).contains("million"));
+        assert_eq!(check_banded_size(100_000, 5), Ok([100_000, 5]));
+        assert!(is_banded_size([100_000, 5]) && !is_banded_size([7680, 4320]));
+        let error = check_banded_size(u64::MAX, 5).unwrap_err().to_string();
+        assert!(error.contains("262,144 pixels per side"), "{error}");
     }
 }

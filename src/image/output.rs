@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
 use toyproof_diagnostic::path_name;
 
 /// Writes a file that the user named: under a temporary name in the same folder, then renames it, so that
@@ -18,8 +19,7 @@ use toyproof_diagnostic::path_name;
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // If the path does not exist or cannot be accessed, the steps below create it or report the error.
     let followed = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let kind = fs::metadata(&followed).map(|found| found.file_type());
-    if kind.is_ok_and(|kind| !kind.is_file() && !kind.is_dir()) {
+    if is_special(&followed) {
         return fs::OpenOptions::new()
             .write(true)
             .open(&followed)
@@ -99,6 +99,17 @@ fn reason(error: &io::Error) -> String {
 
 /// Writes a file at a path atomically, replacing an existing one.
 fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut file = temporary(path)?;
+    let mut buffered = BufWriter::new(&mut file);
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Makes an empty temporary file in the folder of a path, which it can replace. Missing folders are created.
+fn temporary(path: &Path) -> io::Result<NamedTempFile> {
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
@@ -118,13 +129,49 @@ fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
-    let mut buffered = BufWriter::new(&mut file);
-    write(&mut buffered)?;
-    buffered.flush()?;
-    drop(buffered);
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    builder.tempfile_in(folder)
+}
+
+/// Why [`make`] wrote no file.
+#[derive(Debug)]
+pub enum MakeError<E> {
+    /// The file cannot be written: the system's error, prefixed with the path.
+    Output(io::Error),
+    /// The function failed.
+    Content(E),
+}
+
+/// Writes a file as [`write`] does, or as [`write_inside`] does if a folder is given. `make` fills an
+/// existing empty file, or a special one; it may be another program that does so. If it fails, nothing is
+/// replaced.
+///
+/// # Errors
+/// As for the two functions, and those of `make`.
+pub fn make<E>(
+    folder: Option<&Path>,
+    path: &Path,
+    make: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), MakeError<E>> {
+    let failed = |error: io::Error| MakeError::Output(with_path(path, &error));
+    let target = match folder {
+        Some(folder) => {
+            check_no_symlink_between(folder, path).map_err(failed)?;
+            path.to_owned()
+        }
+        None => path.canonicalize().unwrap_or_else(|_| path.to_owned()),
+    };
+    if folder.is_none() && is_special(&target) {
+        return make(&target).map_err(MakeError::Content);
+    }
+    let file = temporary(&target).map_err(failed)?.into_temp_path();
+    make(&file).map_err(MakeError::Content)?;
+    file.persist(&target).map_err(|error| failed(error.error))
+}
+
+/// Whether a path is that of a device or a pipe, which is written to, and not replaced.
+fn is_special(path: &Path) -> bool {
+    let kind = fs::metadata(path).map(|found| found.file_type());
+    kind.is_ok_and(|kind| !kind.is_file() && !kind.is_dir())
 }
 
 /// Files that must not be overwritten, identified by their canonical paths.
@@ -173,6 +220,30 @@ mod tests {
         assert!(error.to_string().ends_with("a.txt: no"), "{error}");
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_made_file_appears_when_it_is_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new/a.txt");
+        for inside in [None, Some(folder.path())] {
+            let made = make(inside, &path, |file| {
+                fs::write(file, b"one")?;
+                assert!(!path.exists());
+                io::Result::Ok(())
+            });
+            assert!(made.is_ok());
+            let failed = make(inside, &path, |file| {
+                fs::write(file, b"two")?;
+                Err(io::Error::other("no"))
+            });
+            assert!(matches!(failed, Err(MakeError::Content(_))));
+            assert_eq!(fs::read(&path).unwrap(), b"one");
+            assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+            fs::remove_file(&path).unwrap();
+        }
+        let error = make(None, &folder.path().join("new"), |_| io::Result::Ok(()));
+        assert!(matches!(error, Err(MakeError::Output(_))));
     }
 
     #[cfg(unix)]

@@ -22,6 +22,7 @@
 //!
 //! - `float`: the trait `Number`, the number types, and helpers for bits.
 //! - `algebraic`, `exponential`, `trigonometric`: the functions of GLSL, generic over `Number`.
+//! - `cube`: the faces of cube maps.
 //! - `native`: the functions in f32 as drivers compute them, vectorized.
 //! - `double`: sines, powers and logarithms in f64 for several arguments at once.
 //! - `two_float`: sums of two floats, for intermediate results.
@@ -33,6 +34,7 @@
 )]
 
 mod algebraic;
+mod cube;
 pub mod double;
 mod exponential;
 mod expr_graph;
@@ -45,6 +47,7 @@ pub use self::algebraic::{
     Matrix, clamp, cross, degrees, determinant, distance, dot, faceforward, fract, inverse, inverse_sqrt,
     length, mix, modulo, normalize, outer_product, radians, reflect, refract, sign, smoothstep, step,
 };
+pub use self::cube::{cube_gradient, cube_place};
 pub use self::exponential::{
     acosh, asinh, atanh, cosh, exp, exp2, level_of_detail, log, log2, longer_square, pow, sinh, tanh,
 };

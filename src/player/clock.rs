@@ -18,11 +18,12 @@ impl Clock {
     /// after an hour.
     pub fn frame(&self, number: i32) -> Frame {
         let time = self.start + f64::from(number) / self.rate;
-        Frame {
+        let inputs = Frame {
             time_delta: (1.0 / self.rate) as f32,
             frame_rate: self.rate as f32,
-            ..self.inputs.at(number, time as f32)
-        }
+            ..self.inputs.clone()
+        };
+        inputs.at(number, time as f32)
     }
 }
 

@@ -7,9 +7,11 @@
 //! textures are zero at first and never cleared, so that a discarded pixel of a buffer keeps its value of two
 //! frames ago, and one of the image that of the previous frame.
 //!
+//! Cube A is a buffer that is rendered after the others: the faces of a cube map, stacked in one image.
+//!
 //! ```
 //! use toyproof_image::Frame;
-//! use toyproof_player::{Channel, Graph, Pass, Player, Renderer, Source, Target};
+//! use toyproof_player::{BUFFERS, Channel, Graph, Pass, Player, Renderer, Source, Storage, Target};
 //!
 //! /// Buffers of one number: Buffer A adds 1 to itself, and the image shows it.
 //! struct Counter;
@@ -18,7 +20,7 @@
 //!     type Texture = u32;
 //!     type Error = std::convert::Infallible;
 //!
-//!     fn zeros(&mut self, _: [u32; 2], _: bool) -> Result<u32, Self::Error> {
+//!     fn zeros(&mut self, _: Storage, _: bool) -> Result<u32, Self::Error> {
 //!         Ok(0)
 //!     }
 //!     fn draw(&mut self, pass: usize, _: u32, _: &Frame, channels: [Channel<'_, u32>; 4]) -> Result<u32, Self::Error> {
@@ -32,7 +34,7 @@
 //!
 //! let read_a = [Some(Source::Buffer(0)), None, None, None];
 //! let passes = [Target::Buffer(0), Target::Image].map(|target| Pass { target, inputs: read_a });
-//! let graph = Graph::new(passes.to_vec(), [false; 4]);
+//! let graph = Graph::new(passes.to_vec(), [false; BUFFERS]);
 //! let mut player = Player::new(graph, Counter);
 //! for frame in 0..3 {
 //!     player.render(&Frame { frame, ..Frame::default() }).unwrap();
@@ -52,22 +54,30 @@ mod failure;
 mod play;
 mod state;
 
+use std::borrow::Cow;
 use std::fmt;
 
 pub use clock::Clock;
 pub use driver::{ChannelSampling, DrawOutput, Driver, Readback};
 pub use failure::{DriverFailure, Phase};
-pub use play::{Channel, Player, Renderer};
+pub use play::{Channel, Player, Renderer, Storage};
 use serde::{Deserialize, Serialize};
 pub use state::State;
+use toyproof_image::{Component, Frame, Image, Texture, cube};
 
-/// The number of buffers that a shader can have.
-pub const BUFFERS: usize = 4;
+/// The number of buffers that a shader can have: four images, and Cube A.
+pub const BUFFERS: usize = 5;
+
+/// The number of Cube A among the buffers.
+pub const CUBE_A: usize = 4;
+
+/// The side of the faces of Cube A, in texels.
+pub const CUBE_SIDE: u32 = 1024;
 
 /// The passes of a shader, and what each reads.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Graph {
-    /// Buffers in the order in which they are rendered, and the image last.
+    /// Buffers in the order in which they are rendered, then Cube A, and the image last.
     passes: Vec<Pass>,
     /// Whether mipmaps of each buffer are made.
     mipmaps: [bool; BUFFERS],
@@ -94,8 +104,31 @@ pub enum Target {
 impl fmt::Display for Target {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Buffer(CUBE_A) => f.write_str("Cube A"),
             Self::Buffer(number) => write!(f, "Buffer {}", char::from(b'A' + *number as u8)),
             Self::Image => f.write_str("Image"),
+        }
+    }
+}
+
+impl Target {
+    /// The frame as the pass of this target renders it: Cube A has its own size.
+    pub fn frame(self, frame: &Frame) -> Cow<'_, Frame> {
+        match self {
+            Self::Buffer(CUBE_A) => Cow::Owned(Frame {
+                size: [CUBE_SIDE, CUBE_SIDE * cube::FACES],
+                resolution: Some([CUBE_SIDE; 2]),
+                ..frame.clone()
+            }),
+            Self::Buffer(_) | Self::Image => Cow::Borrowed(frame),
+        }
+    }
+
+    /// The texture that passes read, of what the pass of this target rendered.
+    pub fn texture<T: Component>(self, image: Image<T>) -> Texture {
+        match self {
+            Self::Buffer(CUBE_A) => Texture::cube(&image).with_resolution([CUBE_SIDE, CUBE_SIDE, 1]),
+            Self::Buffer(_) | Self::Image => image.into(),
         }
     }
 }
@@ -107,6 +140,8 @@ pub enum Source {
     Buffer(usize),
     /// The texture with this number among those that do not change.
     Medium(usize),
+    /// The texture with this number among those that change from frame to frame.
+    Moving(usize),
     /// The keyboard.
     Keyboard,
 }
@@ -116,7 +151,7 @@ impl Graph {
     ///
     /// # Panics
     /// If a pass other than the last renders the image, the last does not, or a buffer has a number
-    /// of 4 or more.
+    /// of 5 or more.
     pub fn new(passes: Vec<Pass>, mipmaps: [bool; BUFFERS]) -> Self {
         let image = passes.iter().position(|pass| pass.target == Target::Image);
         assert_eq!(image, passes.len().checked_sub(1), "the image is rendered last");
@@ -129,7 +164,7 @@ impl Graph {
                 .into_iter()
                 .chain(pass.inputs.iter().flatten().filter_map(|input| input.buffer()))
         });
-        assert!(numbers.max() < Some(BUFFERS), "there are four buffers");
+        assert!(numbers.max() < Some(BUFFERS), "there are five buffers");
         Self { passes, mipmaps }
     }
 
@@ -169,7 +204,7 @@ impl Source {
     fn buffer(self) -> Option<usize> {
         match self {
             Self::Buffer(number) => Some(number),
-            Self::Medium(_) | Self::Keyboard => None,
+            Self::Medium(_) | Self::Moving(_) | Self::Keyboard => None,
         }
     }
 }

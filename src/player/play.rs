@@ -2,7 +2,7 @@
 
 use toyproof_image::Frame;
 
-use crate::{BUFFERS, Graph, Source, Target};
+use crate::{BUFFERS, CUBE_A, CUBE_SIDE, Graph, Source, Target};
 
 /// Renders single passes.
 pub trait Renderer {
@@ -15,10 +15,10 @@ pub trait Renderer {
     ///
     /// # Errors
     /// If there is not enough memory.
-    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<Self::Texture, Self::Error>;
+    fn zeros(&mut self, storage: Storage, mipmaps: bool) -> Result<Self::Texture, Self::Error>;
 
     /// Renders the pass with this number over a texture, whose discarded pixels stay as they are. `frame`
-    /// holds the values of all inputs but the channels.
+    /// holds the size of the texture, and the values of all inputs but the channels.
     ///
     /// # Errors
     /// If the pass fails.
@@ -30,11 +30,20 @@ pub trait Renderer {
         channels: [Channel<'_, Self::Texture>; 4],
     ) -> Result<Self::Texture, Self::Error>;
 
-    /// A texture of another size with the same lower left part, and zeros elsewhere.
+    /// An image of another size with the same lower left part, and zeros elsewhere.
     ///
     /// # Errors
     /// If there is not enough memory.
     fn resized(&mut self, texture: Self::Texture, size: [u32; 2]) -> Result<Self::Texture, Self::Error>;
+}
+
+/// What a texture stores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// An image of this size, in pixels.
+    Image([u32; 2]),
+    /// A cube map whose faces have this side, in texels.
+    Cube(u32),
 }
 
 /// The content of a channel of a pass.
@@ -46,6 +55,8 @@ pub enum Channel<'a, T> {
     Texture(&'a T),
     /// The texture with this number among those that do not change.
     Medium(usize),
+    /// The texture with this number among those of the frame that change.
+    Moving(usize),
     /// The keyboard of the frame.
     Keyboard,
 }
@@ -171,14 +182,14 @@ impl<R: Renderer> Player<R> {
             let target = self.graph.passes()[number].target;
             let over = match self.take(target) {
                 Some(texture) => texture,
-                None => self.renderer.zeros(frame.size, false)?,
+                None => self.renderer.zeros(Storage::Image(frame.size), false)?,
             };
             let last = |buffer: usize| {
                 let buffer = self.buffers[buffer].as_ref()?;
                 buffer.textures[buffer.last].as_ref()
             };
             let channels = channels(&self.graph, number, last);
-            let drawn = self.renderer.draw(number, over, frame, channels)?;
+            let drawn = self.renderer.draw(number, over, &target.frame(frame), channels)?;
             match target {
                 Target::Image => self.image = Some(drawn),
                 Target::Buffer(number) => {
@@ -216,9 +227,14 @@ impl<R: Renderer> Player<R> {
             let mut textures = [const { None }; 2];
             for (at, texture) in textures.iter_mut().enumerate() {
                 let old = buffer.as_mut().and_then(|buffer| buffer.textures[at].take());
-                *texture = Some(match old {
-                    Some(old) => self.renderer.resized(old, size)?,
-                    None => self.renderer.zeros(size, self.graph.has_mipmaps(number))?,
+                let storage = match number {
+                    CUBE_A => Storage::Cube(CUBE_SIDE),
+                    _ => Storage::Image(size),
+                };
+                *texture = Some(match (old, storage) {
+                    (Some(old), Storage::Image(size)) => self.renderer.resized(old, size)?,
+                    (Some(old), Storage::Cube(_)) => old,
+                    (None, storage) => self.renderer.zeros(storage, self.graph.has_mipmaps(number))?,
                 });
             }
             // As on the site, the first texture counts as the one that was completed last.
@@ -241,6 +257,7 @@ fn channels<'t, T>(
     graph.passes()[pass].inputs.map(|input| match input {
         None => Channel::Unbound,
         Some(Source::Medium(medium)) => Channel::Medium(medium),
+        Some(Source::Moving(number)) => Channel::Moving(number),
         Some(Source::Keyboard) => Channel::Keyboard,
         Some(Source::Buffer(buffer)) => texture(buffer).map_or(Channel::Unbound, Channel::Texture),
     })

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toyproof_image::Texture;
 
-use crate::{BUFFERS, Graph, Player, Renderer, Target};
+use crate::{BUFFERS, CUBE_A, CUBE_SIDE, Graph, Player, Renderer, Target};
 
 /// The textures between two frames, so that a run can continue later.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,7 +25,12 @@ impl State {
         let mut buffers = self.buffers.iter().enumerate();
         let has_buffers = buffers.all(|(number, textures)| match textures {
             Some(textures) => {
-                graph.uses(number) && textures.iter().all(|texture| texture.is_whole(self.size))
+                let size = if number == CUBE_A {
+                    [CUBE_SIDE; 2]
+                } else {
+                    self.size
+                };
+                graph.uses(number) && textures.iter().all(|texture| texture.is_whole(size))
             }
             None => !graph.uses(number),
         });

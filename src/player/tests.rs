@@ -16,8 +16,12 @@ impl Renderer for Recorder {
     type Texture = String;
     type Error = Infallible;
 
-    fn zeros(&mut self, size: [u32; 2], mipmaps: bool) -> Result<String, Infallible> {
-        Ok(format!("zeros{}{}", size[0], if mipmaps { "m" } else { "" }))
+    fn zeros(&mut self, storage: Storage, mipmaps: bool) -> Result<String, Infallible> {
+        let zeros = match storage {
+            Storage::Image([width, _]) => format!("zeros{width}"),
+            Storage::Cube(side) => format!("cube{side}"),
+        };
+        Ok(zeros + if mipmaps { "m" } else { "" })
     }
 
     fn draw(
@@ -31,6 +35,7 @@ impl Renderer for Recorder {
             Channel::Unbound => None,
             Channel::Texture(name) => Some((*name).clone()),
             Channel::Medium(number) => Some(format!("medium{number}")),
+            Channel::Moving(number) => Some(format!("moving{number}")),
             Channel::Keyboard => Some("keyboard".to_owned()),
         });
         let reads: Vec<_> = reads.collect();
@@ -62,7 +67,7 @@ fn frame(frame: i32, width: u32) -> Frame {
 
 fn play(passes: Vec<Pass>, widths: &[u32]) -> Player<Recorder> {
     let mut player = Player::new(
-        Graph::new(passes, [false, true, false, false]),
+        Graph::new(passes, [false, true, false, false, false]),
         Recorder::default(),
     );
     for (number, &width) in (0..).zip(widths) {
@@ -174,6 +179,6 @@ fn a_restored_state_goes_on_as_before() {
 fn the_image_is_last() {
     let _ = Graph::new(
         vec![pass(Target::Image, &[]), pass(Target::Buffer(0), &[])],
-        [false; 4],
+        [false; BUFFERS],
     );
 }

@@ -76,7 +76,7 @@ pub(crate) fn check_with_includes(
             sampling: project.sampling(pass),
             ..options.clone()
         };
-        let file = joined(project, pass, files);
+        let file = joined(project, pass, None, files);
         let file = match include(files, file, &options) {
             Ok(file) => file,
             Err(errors) => {
@@ -88,6 +88,17 @@ pub(crate) fn check_with_includes(
         match glsl::check(files, file, &options) {
             Ok(checked) => {
                 let lints = lint(files, &checked, &options.deadline.share(LINT_TIME_SHARE));
+                let checked = match added_main(&checked) {
+                    None => checked,
+                    Some(added) => {
+                        let options = Options {
+                            calls_added_main: true,
+                            ..options
+                        };
+                        let file = joined(project, pass, Some(added), files);
+                        include(files, file, &options).and_then(|file| glsl::check(files, file, &options))?
+                    }
+                };
                 passes.push(CheckedPass {
                     kind: pass.kind,
                     checked,
@@ -178,9 +189,33 @@ const ASSERTIONS: &str = include_str!("st_assert.glsl");
 /// The text after such a tab: a failed assertion replaces the color.
 const ASSERTED: &str = include_str!("st_asserted.glsl");
 
-/// Adds the text that is compiled for a pass: Common, a line feed, and the tab.
-fn joined(project: &Project, pass: &Pass, files: &mut Files) -> FileId {
+/// The text after the tab of a cube map. It renders the faces stacked in one image, and rounds to the half
+/// floats of the site's texture.
+const CUBE_MAIN: &str = include_str!("cube_main.glsl");
+
+/// The text after the tab of a sound. Like the site, it computes blocks of 512×512 samples, row by row.
+const SOUND_MAIN: &str = include_str!("sound_main.glsl");
+
+/// The text after a tab whose function has not the form of `mainImage`: it calls that function.
+fn added_main(checked: &Checked) -> Option<String> {
+    match checked.stage {
+        Stage::Cubemap => Some(CUBE_MAIN.to_owned()),
+        Stage::Sound => {
+            // Older shaders omit the sample number.
+            let arguments = match checked.tree[checked.main_image].parameters[..] {
+                [_] => "toyproof_time",
+                _ => "toyproof_sample, toyproof_time",
+            };
+            Some(SOUND_MAIN.replace("TOYPROOF_SOUND", arguments))
+        }
+        Stage::Image | Stage::Buffer | Stage::Common => None,
+    }
+}
+
+/// Adds the text that is compiled for a pass: Common, a line feed, the tab, and perhaps a text after it.
+fn joined(project: &Project, pass: &Pass, added: Option<String>, files: &mut Files) -> FileId {
     let mut parts: Vec<_> = project.common.into_iter().chain([pass.file]).collect();
+    parts.extend(added.map(|text| files.add(File::new("<main>", text))));
     let uses_assertions = |part: &FileId| files.get(*part).text().contains("st_assert");
     if pass.kind == PassKind::Image && parts.iter().any(uses_assertions) {
         parts.insert(0, files.add(File::new("<st_assert>", ASSERTIONS)));

@@ -4,14 +4,15 @@ use std::path::Path;
 
 use toyproof_diagnostic::{Diagnostics, Files};
 use toyproof_glsl::{Checked, Options};
-use toyproof_image as image;
 use toyproof_lint::Lints;
+use toyproof_media::MediaFolder;
 
 use crate::check::check_with_includes;
 use crate::files::{IncludeFolders, project_image};
 use crate::graph::{Rendering, UnsupportedPass};
 use crate::pass::PassKind;
 use crate::project::Project;
+use crate::textures::LoadedMedia;
 
 /// A project whose tabs compile, with what renders its image.
 #[derive(Debug)]
@@ -23,25 +24,21 @@ pub struct CompiledProject {
 }
 
 impl CompiledProject {
-    /// Reads the images in the folder of a project, if it has one, and compiles all its tabs. The lints are
-    /// those of the image, with the warnings about all tabs.
+    /// Reads the media of a project, from its folder if it has one, or from a folder of copies of the site's,
+    /// and compiles all its tabs. The lints are those of the image, with the warnings about all tabs.
     ///
     /// # Errors
-    /// An image or an included file cannot be read, or one of the tabs is invalid.
+    /// A medium or an included file cannot be read, or one of the tabs is invalid.
     pub fn compile(
         mut project: Project,
-        folder: Option<&Path>,
+        (folder, media): (Option<&Path>, Option<&MediaFolder>),
         includes: Option<&IncludeFolders>,
         files: &mut Files,
         options: &Options,
     ) -> Result<(Self, Lints), Diagnostics> {
-        if let Some(folder) = folder {
-            let added = project.add_images(|name| {
-                let path = project_image(folder, name)?;
-                image::read(&path).map_err(|error| error.to_string())
-            });
-            added.map_err(|errors| Diagnostics::new(errors, files))?;
-        }
+        let file = |name: &str| folder.map(|folder| project_image(folder, name)).transpose();
+        let read = LoadedMedia::read(project.inputs(), file, media);
+        project.media = read.map_err(|errors| Diagnostics::new(errors, files))?;
         let passes = check_with_includes(&project, includes, files, options)?;
         let mut lints = Lints::default();
         let mut checked = Vec::with_capacity(passes.passes.len());
@@ -55,12 +52,21 @@ impl CompiledProject {
         Ok((Self { project, checked }, lints))
     }
 
-    /// What renders the image and another pass.
+    /// What renders the image and another pass. Media that are missing are those that the passes name.
     ///
     /// # Errors
     /// If a pass is needed that cannot be rendered.
     pub fn rendering(&self, also: PassKind) -> Result<Rendering, UnsupportedPass> {
-        self.project.rendering(&[also])
+        let mut rendering = self.project.rendering(&[also])?;
+        let samples = |&(kind, channel): &(PassKind, usize)| {
+            let mut passes = self.project.passes.iter().zip(&self.checked);
+            passes.any(|(pass, checked)| pass.kind == kind && checked.names_channel(channel))
+        };
+        for missing in &mut rendering.missing {
+            missing.readers.retain(samples);
+        }
+        rendering.missing.retain(|missing| !missing.readers.is_empty());
+        Ok(rendering)
     }
 
     /// The trees of the passes of a rendering, in its order.
@@ -75,6 +81,16 @@ impl CompiledProject {
     #[must_use]
     pub fn image(&self) -> &Checked {
         let mut passes = self.project.passes.iter().zip(&self.checked);
+        let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
+        image.expect("every project has an image").1
+    }
+
+    /// The tree of the image, to change it.
+    ///
+    /// # Panics
+    /// Never: every project has an image.
+    pub fn image_mut(&mut self) -> &mut Checked {
+        let mut passes = self.project.passes.iter().zip(&mut self.checked);
         let image = passes.find(|(pass, _)| pass.kind == PassKind::Image);
         image.expect("every project has an image").1
     }

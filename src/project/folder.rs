@@ -1,8 +1,6 @@
 //! The folder of a project: a file for each tab, and `project.toml`, which holds the rest of the site's JSON,
 //! key by key in the same order. The source of an input is written by name: `source = "buffer-a"`.
 
-use std::collections::HashMap;
-
 use toml::Spanned;
 use toml::de::{DeInteger, DeTable, DeValue};
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files, Span, nearest, one_of};
@@ -16,6 +14,7 @@ use crate::node::{Member, Node, Value};
 use crate::pass::{Buffer, PassKind, SourceType, Tab};
 use crate::project::{Document, Project};
 use crate::read::{Renderpass, default_sampler, read};
+use crate::textures::LoadedMedia;
 
 /// The name of the file next to the tabs.
 pub const PROJECT_FILE: &str = "project.toml";
@@ -377,7 +376,7 @@ fn from_tree(mut root: Node, tabs: &[(Tab, FileId)], errors: &mut Vec<Diagnostic
         common,
         passes,
         uniforms,
-        images: HashMap::new(),
+        media: LoadedMedia::default(),
         document: Document {
             root,
             format,
@@ -557,11 +556,11 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
             }
             found => found.and_then(Result::ok),
         };
-        let Some(name) = name else {
+        let Some(mut name) = name else {
             let near = nearest(wanted, media::names().map(|name| name.source));
             let help = near.map_or_else(
-                || "expected buffer-a to buffer-d, cube-a, keyboard, webcam, mic, an image of the folder (.png, .exr), or \
-                     the name of a medium of ShaderToy"
+                || "expected buffer-a to buffer-d, cube-a, keyboard, webcam, mic, a file of the folder (an image, .gif, .bin, \
+                     .wav, .ogg), or the name of a medium of ShaderToy"
                         .to_owned(),
                 |near| format!("did you mean `{near}`?"),
             );
@@ -569,8 +568,23 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
             members.clear();
             return;
         };
-        source_type = Some(name.source_type);
         let span = node.span;
+        // An image of the folder may be a face of a cube map.
+        let given = members
+            .iter()
+            .position(|member| matches!(member.key.as_str(), "type" | "ctype"));
+        if name.id.is_empty()
+            && let Some(given) = given
+            && let Some(kind) = known_type(&members[given].node)
+        {
+            name.source_type = kind;
+            members.remove(given);
+        }
+        let at = members
+            .iter()
+            .position(|member| member.key == "source")
+            .unwrap_or(at);
+        source_type = Some(name.source_type);
         let named = format.members(&name).into_iter().map(|mut member| {
             member.node.span = span;
             member
@@ -580,6 +594,15 @@ fn expand_input(input: &mut Node, format: Format, completes: bool, errors: &mut 
     if completes {
         complete_sampler(members, source_type.unwrap_or(SourceType::Texture));
     }
+}
+
+/// The type that a node names.
+fn known_type(node: &Node) -> Option<SourceType> {
+    let name = node.as_str()?;
+    let mut known = SourceType::NAMES.iter();
+    known
+        .find(|(known, _)| *known == name)
+        .map(|(_, source_type)| *source_type)
 }
 
 /// Adds the keys of a sampler that are missing, with the values of a new input on the site.

@@ -31,7 +31,7 @@
 //! - `declared`: what hosts declare outside of the language: headers of ISF, `#iUniform`.
 //! - `check`: compiles every tab with Common in front, and Common alone.
 //! - `lint`: warnings about inputs.
-//! - `graph`: what renders the image.
+//! - `graph`: what renders the image; `textures`: what inputs read, from files or computed.
 //! - `script`: files that describe the mouse and the keyboard over the frames of a run.
 
 pub mod archive;
@@ -50,6 +50,7 @@ mod pass;
 mod project;
 mod read;
 mod script;
+mod textures;
 
 pub use toyproof_glsl::{Filter, Wrap};
 
@@ -57,11 +58,12 @@ pub use self::check::{CheckedPass, CheckedProject, check};
 pub use self::compiled::CompiledProject;
 pub use self::declared::{Declared, with_declarations};
 pub use self::folder::PROJECT_FILE;
-pub use self::graph::{MissingMedium, Rendering, UnsupportedPass};
+pub use self::graph::{Rendering, UnsupportedPass};
 pub use self::media::Medium;
 pub use self::pass::{Buffer, Input, MAX_TAB_BYTES, Pass, PassKind, Sampler, Source, SourceType, Tab};
 pub use self::project::Project;
 pub use self::script::parse_script;
+pub use self::textures::MissingMedium;
 
 #[cfg(test)]
 mod tests;

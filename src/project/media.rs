@@ -135,9 +135,12 @@ const FIXED: [FixedSource; 8] = [
     fixed("buffer-d", SourceType::Buffer, "XdfGR8", "/media/previz/buffer03.png"),
     fixed("cube-a", SourceType::Cubemap, CUBE_A_ID, "/media/a//media/previz/cubemap00.png"),
     fixed("keyboard", SourceType::Keyboard, "4dXGRr", "/presets/tex00.jpg"),
-    fixed("webcam", SourceType::Webcam, "4sf3zn", "/presets/webcam.png"),
+    fixed("webcam", SourceType::Webcam, WEBCAM_ID, "/presets/webcam.png"),
     fixed("mic", SourceType::Mic, "XdXGRr", "/presets/mic.png"),
 ];
+
+/// The id of the webcam.
+pub(crate) const WEBCAM_ID: &str = "4sf3zn";
 
 /// The id of Cube A.
 pub(crate) const CUBE_A_ID: &str = "4dX3Rr";
@@ -169,29 +172,29 @@ pub(crate) fn names() -> impl Iterator<Item = Name> {
 /// # Errors
 /// If the path leads out of the folder.
 pub(crate) fn file_name(source: &str) -> Option<Result<Name, &'static str>> {
-    if !is_image_file(source) {
-        return None;
-    }
+    let source_type = file_type(source)?;
     if !is_inside(source) {
         return Some(Err("this path leads out of the project's folder"));
     }
     Some(Ok(Name {
         source: "",
-        source_type: SourceType::Texture,
+        source_type,
         id: "",
         path: source.to_owned(),
         preview: source.to_owned(),
     }))
 }
 
-/// Whether a path is that of an image in a format that is read.
-fn is_image_file(path: &str) -> bool {
-    let extension = path.rsplit_once('.').map(|(_, extension)| extension);
-    extension.is_some_and(|extension| {
-        ["png", "exr"]
-            .iter()
-            .any(|known| extension.eq_ignore_ascii_case(known))
-    })
+/// The type of a medium in a file of a format that is read, by its extension.
+fn file_type(path: &str) -> Option<SourceType> {
+    let (_, extension) = path.rsplit_once('.')?;
+    match extension.to_ascii_lowercase().as_str() {
+        "png" | "jpg" | "jpeg" | "hdr" | "exr" => Some(SourceType::Texture),
+        "gif" | "apng" => Some(SourceType::Video),
+        "bin" => Some(SourceType::Volume),
+        "wav" | "ogg" => Some(SourceType::Music),
+        _ => None,
+    }
 }
 
 /// Whether a path stays inside the folder that it starts from, on every system.
@@ -231,15 +234,15 @@ impl Source {
         }
     }
 
-    /// The path of the image that is read, if it is a file in the folder of the project.
+    /// The path of the file that is read, if it is one in the folder of the project.
     #[must_use]
     pub fn file(&self) -> Option<&str> {
         match self {
-            Self::Medium {
-                source_type: SourceType::Texture,
-                id,
-                path,
-            } if id.is_empty() && is_image_file(path) && is_inside(path) => Some(path),
+            Self::Medium { id, path, .. }
+                if id.is_empty() && file_type(path).is_some() && is_inside(path) =>
+            {
+                Some(path)
+            }
             _ => None,
         }
     }
@@ -266,7 +269,7 @@ mod tests {
     #[test]
     fn files_stay_inside_of_the_folder() {
         let is_file = |path: &str| file_name(path).map(|name| name.is_ok());
-        for inside in ["p.png", "textures/wood.PNG", "a b.exr", "..p.png"] {
+        for inside in ["p.png", "textures/wood.JPG", "a b.exr", "..p.png", "noise.bin"] {
             assert_eq!(is_file(inside), Some(true), "{inside}");
         }
         for outside in [
@@ -281,7 +284,7 @@ mod tests {
             assert_eq!(is_file(outside), Some(false), "{outside}");
         }
         assert_eq!(
-            [is_file("buffer-a"), is_file("wood.jpg"), is_file("png")],
+            [is_file("buffer-a"), is_file("wood.tiff"), is_file("png")],
             [None; 3]
         );
     }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use toyproof_diagnostic::{FileId, Span};
 use toyproof_glsl::{Filter, Wrap};
+use toyproof_player::{CUBE_A, Target};
 
 /// The maximum size of a tab in bytes. The site's editor takes 65,536 characters.
 pub const MAX_TAB_BYTES: usize = 1 << 20;
@@ -100,6 +101,18 @@ pub struct Sampler {
     pub vflip: bool,
     /// Whether texels are decoded from sRGB. The site ignores it.
     pub srgb: bool,
+}
+
+impl PassKind {
+    /// What the pass renders, if it is rendered to show the image.
+    #[must_use]
+    pub fn target(self) -> Target {
+        match self {
+            Self::Buffer(buffer) => Target::Buffer(buffer as usize),
+            Self::CubeA => Target::Buffer(CUBE_A),
+            Self::Image | Self::Sound => Target::Image,
+        }
+    }
 }
 
 impl Buffer {

@@ -1,14 +1,12 @@
 //! A project in memory.
 
-use std::collections::HashMap;
-
-use toyproof_diagnostic::{Code, Diagnostic, FileId};
+use toyproof_diagnostic::FileId;
 use toyproof_glsl::UniformValue;
-use toyproof_image::Image;
 
 use crate::format::{Format, Wrapper};
 use crate::node::Node;
 use crate::pass::{Input, Pass, PassKind, Tab};
+use crate::textures::LoadedMedia;
 
 /// A project: Common, and passes with their inputs.
 #[derive(Debug, Clone)]
@@ -23,8 +21,8 @@ pub struct Project {
     pub knows_inputs: bool,
     /// The values of uniforms that the passes declare.
     pub uniforms: Vec<UniformValue>,
-    /// The images of the project's folder that were added, by their paths.
-    pub(crate) images: HashMap<String, Image>,
+    /// The files of media that were read.
+    pub(crate) media: LoadedMedia,
     pub(crate) document: Document,
 }
 
@@ -60,42 +58,14 @@ impl Project {
         self.passes.iter().find(|pass| pass.kind == kind)
     }
 
-    /// The inputs that read an image of the project's folder, each with the path of its file.
-    pub fn image_inputs(&self) -> impl Iterator<Item = (&Input, &str)> {
-        let inputs = self.passes.iter().flat_map(|pass| pass.inputs.iter().flatten());
-        inputs.filter_map(|input| Some((input, input.source.file()?)))
+    /// The paths of the files in the project's folder that inputs read.
+    pub fn media_files(&self) -> impl Iterator<Item = &str> {
+        self.inputs().filter_map(|input| input.source.file())
     }
 
-    /// Adds the images of the project's folder, which `read` reads by their paths. The image of an input that
-    /// has none is black.
-    ///
-    /// # Errors
-    /// Why images cannot be read, each at its input.
-    pub fn add_images(
-        &mut self,
-        mut read: impl FnMut(&str) -> Result<Image, String>,
-    ) -> Result<(), Vec<Diagnostic>> {
-        let mut images = HashMap::new();
-        let mut errors = Vec::new();
-        for (input, path) in self.image_inputs() {
-            if images.contains_key(path) {
-                continue;
-            }
-            match read(path) {
-                Ok(image) => {
-                    images.insert(path.to_owned(), image);
-                }
-                Err(reason) => {
-                    let error = Diagnostic::new(Code::ProjectValue, reason);
-                    errors.push(match input.span {
-                        Some(span) => error.at(span),
-                        None => error,
-                    });
-                }
-            }
-        }
-        self.images = images;
-        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    /// The inputs of all passes.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = &Input> {
+        self.passes.iter().flat_map(|pass| pass.inputs.iter().flatten())
     }
 
     /// All tabs with their texts, in the order of the file.

@@ -1,7 +1,5 @@
 //! Reads a project from a tree of values, and reports errors in it.
 
-use std::collections::HashMap;
-
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest, one_of};
 use toyproof_glsl::{Filter, Wrap};
 
@@ -11,6 +9,7 @@ use crate::media::{self, CUBE_A_FILE, CUBE_A_ID};
 use crate::node::{Node, Value};
 use crate::pass::{Buffer, Input, MAX_TAB_BYTES, Pass, PassKind, Sampler, Source, SourceType, Tab};
 use crate::project::{Document, Project};
+use crate::textures::LoadedMedia;
 
 /// The maximum number of errors that are reported for one file: more scroll off the screen.
 const MAX_ERRORS: usize = 20;
@@ -43,7 +42,7 @@ impl Project {
             passes,
             knows_inputs: true,
             uniforms: Vec::new(),
-            images: HashMap::new(),
+            media: LoadedMedia::default(),
             document: Document {
                 root,
                 format,

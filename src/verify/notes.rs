@@ -5,7 +5,7 @@ use toyproof_diagnostic::{Diagnostic, Span, grouped, plural};
 use toyproof_eval::{self as eval, Fault, MESA_CAP, Observations, Observed};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, SamplerShape, VariableKind};
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Shape};
 use toyproof_lint::Lints;
 use toyproof_player::{DriverFailure, Phase};
 
@@ -50,7 +50,10 @@ pub fn unbound(checked: &Checked, lints: &Lints, frame: &Frame) -> Vec<Diagnosti
                     "bind an image with `--channel{channel} FILE`, or noise with `--channel{channel} noise`"
                 )
             }
-            _ => "cube maps, volumes and arrays cannot be bound".to_owned(),
+            SamplerShape::Cube | SamplerShape::D3 => {
+                "cube maps and volumes are bound by the `project.toml` of a project".to_owned()
+            }
+            SamplerShape::D2Array => "arrays of textures cannot be bound".to_owned(),
         };
         let message = format!("`iChannel{channel}` is black: no image is bound to it");
         let diagnostic = Diagnostic::new(Code::UnboundChannel, message);
@@ -73,8 +76,16 @@ pub fn unbound_channels(checked: &Checked, frame: &Frame) -> Vec<(usize, Span)> 
     let first_uses = (0..)
         .zip(first_uses)
         .filter_map(|(channel, span)| Some((channel, span?)));
-    let is_black =
-        |channel: usize| checked.channels[channel] != SamplerShape::D2 || frame.channels[channel].is_none();
+    let is_black = |channel: usize| {
+        let shape = match checked.channels[channel] {
+            SamplerShape::D2 => Shape::Flat,
+            SamplerShape::D3 => Shape::Volume,
+            SamplerShape::Cube => Shape::Cube,
+            SamplerShape::D2Array => return true,
+        };
+        let texture = frame.channels[channel].as_ref();
+        texture.is_none_or(|texture| texture.shape() != shape)
+    };
     first_uses.filter(|&(channel, _)| is_black(channel)).collect()
 }
 

@@ -309,7 +309,7 @@ fn an_output_that_is_not_an_image() {
     expect(
         &toyproof(folder.path(), &["run", "s.glsl", "-o", "s.gif"]),
         2,
-        &["s.gif", ".png", ".exr"],
+        &["GIF is a film", "--duration"],
     );
     expect(
         &toyproof(folder.path(), &["convert", "s.glsl", "-o", "s.txt"]),

@@ -340,7 +340,9 @@ fn sequences_are_numbered_and_resume() {
     let nowhere = toyproof(folder.path(), &["run", "s.glsl", "-o", "-", "--frames", "0..3"]);
     assert_eq!(nowhere.code, 2);
     assert!(
-        nowhere.stderr.contains("standard output takes a single image"),
+        nowhere
+            .stderr
+            .contains("standard output takes a single image, or frames as --to y4m or rgba"),
         "{}",
         nowhere.stderr
     );

@@ -12,7 +12,7 @@ use toyproof::convert::{
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{self, Checked, Filter, Wrap};
 use toyproof::image;
-use toyproof::player::{Graph, Pass, Source as Read, Target};
+use toyproof::player::{BUFFERS, Graph, Pass, Source as Read, Target};
 use toyproof::project::{PassKind, Project, Rendering, check};
 use toyproof::translate::wgsl::{Style, wgsl};
 
@@ -261,7 +261,7 @@ fn faults_in_the_graph_are_found() {
     }
     repeated.difference();
     let mut flat = Converted::new("mipmap-pyramid");
-    flat.graph.graph = Graph::new(flat.graph.graph.passes().to_vec(), [false; 4]);
+    flat.graph.graph = Graph::new(flat.graph.graph.passes().to_vec(), [false; BUFFERS]);
     flat.difference();
     assert_eq!(flat.graph.graph.passes().last().unwrap().target, Target::Image);
 }

@@ -177,6 +177,7 @@ fn warnings_over_frames(files: &mut Files, buffer: FileId, image: FileId) -> Vec
         checked: passes.passes.iter().map(|pass| &pass.checked).collect(),
         graph: &rendering.graph,
         media: &rendering.media,
+        films: rendering.films.clone(),
     };
     let programs = shader.programs(timeout).unwrap();
     let inputs = Frame {

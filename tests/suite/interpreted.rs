@@ -6,12 +6,14 @@
 use std::fs;
 
 use toyproof::diagnostic::{File, Files};
+use toyproof::glsl::tree::SamplerShape;
 use toyproof::glsl::{self, Checked, Filter, Options, Sampling, Stage, Wrap};
-use toyproof::image::{Frame, Image, Texture, pcg};
+use toyproof::image::{Frame, Texture, pcg};
 
 use crate::support::interpreter::{Comparison, POLICIES, Tally};
 use crate::support::judge::programs;
 use crate::support::setting;
+use crate::support::textures::{random_cube, random_image, random_volume};
 use crate::support::wait::HANG_GUARD;
 
 const MAX_STEPS: u64 = 2_000_000;
@@ -97,9 +99,75 @@ const LOOKUPS: &str = "
     c += texture(iChannel0, p / (p.x - 2.5));
 ";
 
+/// Every kind of lookup of cube maps and volumes, in all directions.
+const LOOKUPS_IN_SPACE: &str = "
+    vec3 at = vec3(p.x - 8.7, (p.y - 4.9) * 2.0, 3.0 * sin(p.x * p.y));
+    c = texture(iChannel0, at) + texture(iChannel0, at, 0.75) + texture(iChannel0, at.zxy * 9.0, -1.25);
+    c += textureLod(iChannel0, -at, p.x * 0.2) + textureLod(iChannel0, at.yzx, 2.9 - p.x * 0.2);
+    c += textureGrad(iChannel0, at, at.zxy * 0.1, vec3(0.3, p.y * 0.1, -0.2));
+    c.xy += vec2(textureSize(iChannel0, MIPMAPS * (2 - int(p.x) / 8)));
+    c += texture(iChannel2, at) + textureLod(iChannel3, at, 0.5) + vec4(textureSize(iChannel2, 0), 0.0, 0.0);
+    at = at * 0.11 + 0.2;
+    c -= texture(iChannel1, at) + texture(iChannel1, at, 0.75) + texture(iChannel1, at.zxy * 9.0, -1.25);
+    c -= textureOffset(iChannel1, at, ivec3(-8, 7, 2)) + textureOffset(iChannel1, at, ivec3(3, -1, 5), 1.5);
+    c -= textureLod(iChannel1, at, p.x * 0.2) - textureLodOffset(iChannel1, at, 1.0, ivec3(1, 2, -3));
+    c -= textureGrad(iChannel1, at, vec3(0.3, 0.1, 0.2), vec3(0.0, p.y * 0.1, 0.0));
+    c -= textureGradOffset(iChannel1, at, at * 0.1, vec3(0.0), ivec3(-2, 0, 1));
+    c -= textureProj(iChannel1, vec4(at, 1.3)) + textureProjLod(iChannel1, vec4(at, 0.7), 0.5);
+    c -= texelFetch(iChannel1, ivec3(p, p.y) - 4, int(p.x) / 4 - 1);
+    c -= texelFetchOffset(iChannel1, ivec3(p.yx, p.x) - 4, 1, ivec3(3, -2, 1));
+    c.xyz += vec3(textureSize(iChannel1, MIPMAPS * (2 - int(p.x) / 8))) + iChannelResolution[1];
+";
+
+#[test]
+fn lookups_of_cube_maps_and_volumes_are_interpreted_to_the_bit() {
+    let mut all = Tally::default();
+    for filter in [Filter::Nearest, Filter::Linear, Filter::Mipmap] {
+        for (wrap, side, volume) in [
+            (Wrap::Clamp, 1, [5, 3, 4]),
+            (Wrap::Repeat, 4, [8, 4, 2]),
+            (Wrap::Repeat, 5, [1, 7, 3]),
+        ] {
+            let options = Options {
+                stage: Stage::Buffer,
+                sampling: [Sampling { filter, wrap }; 4],
+                channels: [
+                    SamplerShape::Cube,
+                    SamplerShape::D3,
+                    SamplerShape::Cube,
+                    SamplerShape::D3,
+                ]
+                .map(Some),
+                ..Options::default()
+            };
+            let mipmaps = i32::from(filter == Filter::Mipmap);
+            let text = format!(
+                "#define MIPMAPS {mipmaps}\nvoid mainImage(out vec4 c, in vec2 p) {{ {LOOKUPS_IN_SPACE} }}"
+            );
+            let mut files = Files::default();
+            let file = files.add(File::new("lookups", text));
+            let checked = glsl::check(&files, file, &options).unwrap_or_else(|errors| panic!("{errors}"));
+            let mut frame = Frame {
+                size: [18, 10],
+                ..Frame::default()
+            };
+            let [cube, volume] = [random_cube(side), random_volume(volume)];
+            frame.channels = [Some(cube), Some(volume), None, None];
+            if filter == Filter::Mipmap {
+                frame.channels = frame.channels.map(|texture| texture.map(Texture::with_mipmaps));
+            }
+            // Each derivative runs the quad again.
+            let pixels = [[0, 0], [17, 9], [8, 5], [9, 4], [3, 8], [12, 1]];
+            let tally = compare(&checked, &frame, &pixels);
+            all.add(tally.unwrap_or_else(|error| panic!("{filter:?} {wrap:?} {side}: {error}")));
+        }
+    }
+    eprintln!("lookups: {all}");
+    assert!(all.skipped.is_empty(), "{all}");
+}
+
 #[test]
 fn lookups_and_derivatives_are_interpreted_to_the_bit() {
-    let value = |at: u32| 3.0 * (pcg(at) as f32 / u32::MAX as f32) - 1.0;
     let mut all = Tally::default();
     for filter in [Filter::Nearest, Filter::Linear, Filter::Mipmap] {
         for (wrap, [width, height]) in [
@@ -107,9 +175,7 @@ fn lookups_and_derivatives_are_interpreted_to_the_bit() {
             (Wrap::Repeat, [8, 4]),
             (Wrap::Repeat, [1, 7]),
         ] {
-            let pixels =
-                (0..width * height).map(|at| [0, 1, 2, 3].map(|component| value(4 * at + component)));
-            let mut texture = Texture::from(Image::new(width, height, pixels.collect()));
+            let mut texture = Texture::from(random_image(width, height));
             if filter == Filter::Mipmap {
                 texture = texture.with_mipmaps();
             }

@@ -3,11 +3,14 @@
 
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
+use toyproof::glsl::tree::SamplerShape;
 use toyproof::glsl::{self, Filter, Sampling, Stage, Wrap};
-use toyproof::image::{Frame, Image, Texture, pcg};
+use toyproof::gpu::Worker;
+use toyproof::image::{Frame, Image, Texture};
 use toyproof::translate::{FloatMode, lower_strict};
 
 use crate::requirements::require_worker;
+use crate::support::textures::{random_cube, random_image, random_volume};
 
 /// Every kind of lookup, at coordinates within and beyond the texture.
 const LOOKUPS: [&str; 21] = [
@@ -36,11 +39,9 @@ const LOOKUPS: [&str; 21] = [
     "through(iChannel0, at / (p.y + 0.5))",
 ];
 
-/// A texture of random values between −1 and 2.
+/// A texture of random values.
 fn texture(width: u32, height: u32, mipmaps: bool) -> Texture {
-    let value = |at: u32| 3.0 * (pcg(at) as f32 / u32::MAX as f32) - 1.0;
-    let pixels = (0..width * height).map(|at| [0, 1, 2, 3].map(|component| value(4 * at + component)));
-    let texture = Texture::from(Image::new(width, height, pixels.collect()));
+    let texture = Texture::from(random_image(width, height));
     if mipmaps { texture.with_mipmaps() } else { texture }
 }
 
@@ -78,52 +79,148 @@ fn every_lookup_has_the_same_bits_on_the_cpu() {
                 }}",
                 i32::from(filter == Filter::Mipmap)
             );
-            let mut files = Files::default();
-            let file = files.add(File::new("lookups", text));
-            let checked = glsl::check(&files, file, &options).unwrap();
-            let program = Program::new(&checked).unwrap();
-            for (frame, lookup) in (0..).zip(LOOKUPS) {
-                let frame = Frame {
-                    size: [18, 10],
-                    frame,
-                    channels: [0, 1, 2, 3].map(|channel| {
-                        (channel == 0).then(|| texture(size[0], size[1], filter == Filter::Mipmap))
-                    }),
-                    ..Frame::default()
+            let textures = [0, 1, 2, 3]
+                .map(|channel| (channel == 0).then(|| texture(size[0], size[1], filter == Filter::Mipmap)));
+            let name = format!("{filter:?} {wrap:?} {size:?}");
+            wrong.extend(differing(
+                &mut worker,
+                (&name, &text),
+                &LOOKUPS,
+                &options,
+                &textures,
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Every kind of lookup of a cube map.
+const LOOKUPS_OF_CUBES: [&str; 8] = [
+    "texture(iChannel0, at)",
+    "texture(iChannel0, at, 0.75)",
+    "texture(iChannel0, at.zxy * 9.0, -1.25)",
+    "textureLod(iChannel0, -at, p.x * 0.2)",
+    "textureLod(iChannel0, at.yzx, 2.9 - p.x * 0.2)",
+    "textureGrad(iChannel0, at, at.zxy * 0.1, vec3(0.3, p.y * 0.1, -0.2))",
+    "vec4(textureSize(iChannel0, MIPMAPS * (2 - int(p.x) / 8)), iChannelResolution[0].xy)",
+    "texture(iChannel1, at)",
+];
+
+/// Every kind of lookup of a volume.
+const LOOKUPS_OF_VOLUMES: [&str; 14] = [
+    "texture(iChannel0, at)",
+    "texture(iChannel0, at, 0.75)",
+    "texture(iChannel0, at.zxy * 9.0, -1.25)",
+    "textureOffset(iChannel0, at, ivec3(-8, 7, 2))",
+    "textureOffset(iChannel0, at, ivec3(3, -1, 5), 1.5)",
+    "textureLod(iChannel0, at, p.x * 0.2)",
+    "textureLodOffset(iChannel0, at, 1.0, ivec3(1, 2, -3))",
+    "textureGrad(iChannel0, at, vec3(0.3, 0.1, 0.2), vec3(0.0, p.y * 0.1, 0.0))",
+    "textureProj(iChannel0, vec4(at, 1.3))",
+    "textureProjLod(iChannel0, vec4(at, 0.7), 0.5)",
+    "texelFetch(iChannel0, ivec3(p, p.y) - 4, int(p.x) / 4 - 1)",
+    "texelFetchOffset(iChannel0, ivec3(p.yx, p.x) - 4, 1, ivec3(3, -2, 1)) + texelFetch(iChannel1, ivec3(p, 0), 0)",
+    "vec4(textureSize(iChannel0, MIPMAPS * (2 - int(p.x) / 8)), 1.0)",
+    "vec4(iChannelResolution[0], 0.0) + texture(iChannel1, at)",
+];
+
+#[test]
+fn every_lookup_of_cube_maps_and_volumes_has_the_same_bits_on_the_cpu() {
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
+    let mut wrong = Vec::new();
+    for filter in [Filter::Nearest, Filter::Linear, Filter::Mipmap] {
+        for (wrap, side, size) in [
+            (Wrap::Clamp, 1, [5, 3, 4]),
+            (Wrap::Repeat, 8, [8, 4, 2]),
+            (Wrap::Repeat, 5, [1, 7, 3]),
+        ] {
+            for (shape, texture, lookups) in [
+                (SamplerShape::Cube, random_cube(side), &LOOKUPS_OF_CUBES[..]),
+                (SamplerShape::D3, random_volume(size), &LOOKUPS_OF_VOLUMES),
+            ] {
+                let is_mipmap = filter == Filter::Mipmap;
+                let texture = if is_mipmap {
+                    texture.with_mipmaps()
+                } else {
+                    texture
                 };
-                let own = program.render::<f32>(&frame, &Settings::default()).unwrap();
-                assert_eq!(own.framebuffer.undefined(), 0, "{lookup}: {:?}", own.observations);
-                let drawn = worker
-                    .draw(lower_strict(&checked), frame, FloatMode::Strict)
-                    .unwrap()
-                    .image();
-                let own = own.framebuffer.image();
-                let bits = |image: &Image| -> Vec<_> {
-                    image
-                        .pixels()
-                        .iter()
-                        .flatten()
-                        .map(|component| component.to_bits())
-                        .collect()
+                let options = glsl::Options {
+                    stage: Stage::Buffer,
+                    sampling: [Sampling { filter, wrap }; 4],
+                    channels: [Some(shape); 4],
+                    ..glsl::Options::default()
                 };
-                let differing = bits(&own)
-                    .iter()
-                    .zip(bits(&drawn))
-                    .filter(|(a, b)| **a != *b)
-                    .count();
-                if differing > 0 {
-                    wrong.push(format!(
-                        "{filter:?} {wrap:?} {size:?} {lookup}: {differing} differ"
-                    ));
-                }
-                assert!(
-                    own.pixels().iter().flatten().any(|component| *component != 0.0),
-                    "{lookup} is black"
+                let cases = lookups.iter().enumerate();
+                let cases = cases.map(|(at, lookup)| format!("case {at}: color = {lookup}; break;"));
+                let text = format!(
+                    "#define MIPMAPS {}
+                    void mainImage(out vec4 color, in vec2 p) {{
+                        vec3 at = vec3(p.x - 8.7, (p.y - 4.9) * 2.0, (p.x * p.y - 40.0) * 0.1) * 0.4;
+                        color = vec4(0.0);
+                        switch (iFrame) {{ {} }}
+                    }}",
+                    i32::from(is_mipmap),
+                    cases.collect::<Vec<_>>().join("\n")
                 );
+                let name = format!("{filter:?} {wrap:?} {shape:?} {:?}", texture.size());
+                let textures = [Some(texture), None, None, None];
+                wrong.extend(differing(
+                    &mut worker,
+                    (&name, &text),
+                    lookups,
+                    &options,
+                    &textures,
+                ));
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Renders the frame of each lookup, and names those of which the driver has other bits.
+fn differing(
+    worker: &mut Worker,
+    (name, text): (&str, &str),
+    lookups: &[&str],
+    options: &glsl::Options,
+    channels: &[Option<Texture>; 4],
+) -> Vec<String> {
+    let mut files = Files::default();
+    let file = files.add(File::new("lookups", text));
+    let checked = glsl::check(&files, file, options).unwrap_or_else(|errors| panic!("{errors}"));
+    let program = Program::new(&checked).unwrap();
+    let mut wrong = Vec::new();
+    for (frame, lookup) in (0..).zip(lookups) {
+        let frame = Frame {
+            size: [18, 10],
+            frame,
+            channels: channels.clone(),
+            ..Frame::default()
+        };
+        let own = program.render::<f32>(&frame, &Settings::default()).unwrap();
+        assert_eq!(own.framebuffer.undefined(), 0, "{lookup}: {:?}", own.observations);
+        let drawn = worker.draw(lower_strict(&checked), frame, FloatMode::Strict);
+        let drawn = drawn
+            .unwrap_or_else(|failure| panic!("{name} {lookup}: {failure}"))
+            .image();
+        let own = own.framebuffer.image();
+        let bits = |image: &Image| -> Vec<_> {
+            let components = image.pixels().iter().flatten();
+            components.map(|component| component.to_bits()).collect()
+        };
+        let pairs = bits(&own).into_iter().zip(bits(&drawn));
+        let count = pairs.filter(|(a, b)| a != b).count();
+        if count > 0 {
+            wrong.push(format!("{name} {lookup}: {count} differ"));
+        }
+        assert!(
+            own.pixels().iter().flatten().any(|component| *component != 0.0),
+            "{lookup} is black"
+        );
+    }
+    wrong
 }
 
 #[test]

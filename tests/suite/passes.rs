@@ -12,7 +12,7 @@ use toyproof::eval::{Number, Settings};
 use toyproof::glsl::{self, Checked, Filter, Stage, Wrap};
 use toyproof::gpu::Worker;
 use toyproof::image::{Frame, Texture};
-use toyproof::player::{Clock, Graph, Target};
+use toyproof::player::{BUFFERS, Clock, Graph, Target};
 use toyproof::project::{PassKind, Project, Rendering, Tab, check};
 use toyproof::translate::FloatMode;
 use toyproof::verify::project::playback::{CpuPlayback, DevicePlayback, PassShader};
@@ -105,13 +105,6 @@ fn cases() -> Vec<Case> {
     folders().iter().filter_map(|folder| read(folder).ok()).collect()
 }
 
-fn target(pass: PassKind) -> Target {
-    match pass {
-        PassKind::Buffer(buffer) => Target::Buffer(buffer as usize),
-        _ => Target::Image,
-    }
-}
-
 impl Case {
     /// Renders all that is needed for any answer.
     fn rendering(&self) -> Rendering {
@@ -125,6 +118,7 @@ impl Case {
             checked: rendering.passes.iter().map(|&at| &self.passes[at]).collect(),
             graph: &rendering.graph,
             media: &rendering.media,
+            films: rendering.films.clone(),
         }
     }
 
@@ -146,7 +140,7 @@ impl Case {
     /// The passes that are expected after a frame.
     fn targets(&self, frame: i32) -> Vec<Target> {
         let now = self.expected.iter().filter(|expected| expected.frame == frame);
-        now.map(|expected| target(expected.pass)).collect()
+        now.map(|expected| expected.pass.target()).collect()
     }
 
     /// Renders on the evaluator, and returns what differs from the answers.
@@ -158,7 +152,7 @@ impl Case {
         for frame in 0..=self.last_frame() {
             playback.render(&clock.frame(frame)).unwrap();
             for expected in self.expected.iter().filter(|expected| expected.frame == frame) {
-                match playback.texture(target(expected.pass)) {
+                match playback.texture(expected.pass.target()) {
                     Some(texture) => faults.extend(expected.difference(texture)),
                     None => faults.push(format!("{} is not rendered", expected.pass)),
                 }
@@ -170,10 +164,7 @@ impl Case {
 
 impl Expected {
     fn difference(&self, texture: &Texture) -> Option<String> {
-        let actual = |[x, y]: [u32; 2]| match texture {
-            Texture::Single(levels) => levels[0].get(x, y).map(f64::from),
-            Texture::Double(levels) => levels[0].get(x, y),
-        };
+        let actual = |at: [u32; 2]| texture.texel(at);
         let agrees = |actual: f64, expected: Option<f64>| match expected {
             None => true,
             Some(expected) if expected.is_nan() => actual.is_nan(),
@@ -256,7 +247,7 @@ fn differs(case: &Case, worker: &mut Worker) -> Option<String> {
         let targets = case.targets(frame);
         let images = device.render(&inputs, &targets).unwrap();
         for (target, image) in targets.iter().zip(images) {
-            let own = single.texture(*target).unwrap().to_single().swap_remove(0);
+            let own = single.texture(*target).unwrap().stack();
             let bits = |pixels: &[[f32; 4]]| -> Vec<u32> {
                 // The payload of NaN is open.
                 let components = pixels.iter().flatten();
@@ -358,7 +349,7 @@ const FAULTS: [Fault; 8] = [
         }
     }),
     ("no mipmaps are made", |_, rendering, _| {
-        rendering.graph = Graph::new(rendering.graph.passes().to_vec(), [false; 4]);
+        rendering.graph = Graph::new(rendering.graph.passes().to_vec(), [false; BUFFERS]);
     }),
     ("the alpha of buffers is 1", |case, _, _| {
         case.passes
@@ -374,8 +365,8 @@ const FAULTS: [Fault; 8] = [
 ];
 
 /// Of which buffers mipmaps are made.
-fn mipmaps(rendering: &Rendering) -> [bool; 4] {
-    [0, 1, 2, 3].map(|buffer| rendering.graph.has_mipmaps(buffer))
+fn mipmaps(rendering: &Rendering) -> [bool; BUFFERS] {
+    std::array::from_fn(|buffer| rendering.graph.has_mipmaps(buffer))
 }
 
 #[test]

@@ -345,11 +345,11 @@ fn a_channel_with_an_image_is_not_reported_as_black() {
         assert_eq!(run.code, 0, "{}", run.stderr);
         run.stderr
     };
-    assert!(run(&[]).contains("“London” of ShaderToy is not available"));
+    assert!(run(&[]).contains("“London” of ShaderToy is replaced"));
     let given = run(&["--channel0", "p.png"]);
-    assert!(!given.contains("not available"), "{given}");
+    assert!(!given.contains("replaced"), "{given}");
     let other = run(&["--channel1", "p.png"]);
-    assert!(other.contains("not available"), "{other}");
+    assert!(other.contains("replaced"), "{other}");
 }
 
 #[test]
@@ -520,7 +520,8 @@ fn missing_media_are_named_and_the_verdict_is_not_ok() {
     const CUBE: &str =
         "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(p, 1.0)) + 0.5; }";
     const TEXTURE: &str = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p) + 0.5; }";
-    let toml = "[[pass]]\ntab = \"image\"\ninputs = [{ channel = 0, source = \"London\" }]\n";
+    let toml = "[[pass]]\ntab = \"image\"\n\
+                inputs = [{ channel = 0, type = \"texture\", id = \"none\", filepath = \"/media/a/0.jpg\" }]\n";
     let allowed = format!("// toyproof: allow(W0605)\n{CUBE}");
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -90,6 +90,15 @@ pub(crate) fn require_program(name: &str) -> bool {
     is_installed
 }
 
+/// Returns whether ffmpeg and ffprobe are installed.
+///
+/// # Panics
+/// Like [`require_program`].
+#[track_caller]
+pub(crate) fn require_ffmpeg() -> bool {
+    require_program("ffmpeg") && require_program("ffprobe")
+}
+
 /// The folder that an environment variable names.
 #[track_caller]
 pub(crate) fn require_folder(variable: &str) -> Option<PathBuf> {

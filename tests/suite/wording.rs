@@ -70,13 +70,15 @@ const RETIRED: [(&str, &str); 41] = [
 ];
 
 /// Text that has a retired word for a reason: the end of its path, and a part of the text.
-const ALLOWED: [(&str, &str); 4] = [
+const ALLOWED: [(&str, &str); 5] = [
     // The British forms of keys, which scene files accept, and of students' parameters.
     ("scene/file", "colour"),
     ("scene/file", "centre"),
     ("stress/function/role", "centre"),
     // The name of a medium of ShaderToy.
     ("project/media", "Grey Noise3D"),
+    // The British form in names of files.
+    ("media/folder", "grey"),
 ];
 
 fn patterns() -> RegexSet {

@@ -21,6 +21,7 @@ pub mod interpreter;
 pub mod judge;
 pub mod pages;
 pub mod rewrites;
+pub mod textures;
 pub mod wait;
 
 use std::env;

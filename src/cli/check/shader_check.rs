@@ -10,7 +10,7 @@ use toyproof_explain::{self as explain, Findings, Options};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_image::{FRAME_RATE, Frame};
-use toyproof_project::{CompiledProject, PassKind};
+use toyproof_project::{CompiledProject, MissingMedium, PassKind};
 use toyproof_report::{CheckedFrame, DialectRecord, FrameResult, GrowthRecord, Record};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::project::bind::{BoundFrame, Renderers, bind, default_frame};
@@ -299,6 +299,9 @@ impl<'a> ShaderCheck<'a> {
     /// Binds the inputs of the image of a project in a frame, and reports the findings on its passes in the
     /// frames up to it.
     fn bind(&mut self, passes: &CompiledProject, frame: &mut Frame) -> Result<Option<BoundFrame>, Failure> {
+        let rendering = rendering(passes, PassKind::Image)?;
+        let missing = rendering.missing.iter().map(MissingMedium::diagnostic);
+        self.report(missing.collect(), &self.shader.files);
         let driver = &self.checker.options.driver;
         let renderers = Renderers {
             driver: self.context.worker.as_mut().map(|worker| worker as &mut Driver),
@@ -306,7 +309,6 @@ impl<'a> ShaderCheck<'a> {
             timeout: driver.timeout(),
             pool: self.context.pool.as_ref(),
         };
-        let rendering = rendering(passes, PassKind::Image)?;
         let pass_shader = pass_shader(passes, &rendering);
         let Some(mut bound) = bind(&pass_shader, frame, self.reference.is_some(), renderers)? else {
             return Ok(None);

@@ -44,7 +44,7 @@ pub(super) fn compare(
         let compared = match is_in {
             [true, true] => pair(
                 args,
-                folders.map(|folder| folder.join(&relative)),
+                &folders.map(|folder| folder.join(&relative)),
                 &relative,
                 criteria,
                 terminal,
@@ -61,7 +61,7 @@ pub(super) fn compare(
 /// Compares two images, and writes the image of their differences if there are any.
 fn pair(
     args: &Args,
-    paths: [PathBuf; 2],
+    paths: &[PathBuf; 2],
     relative: &Path,
     criteria: &Criteria,
     terminal: &Terminal,

@@ -18,8 +18,7 @@ use super::inputs::{
     Format, FrameArgs, LanguageArgs, check_output, parse_number, parse_time_limit, shell_word,
 };
 use super::reference::parse_tolerance;
-use super::run::parse_rate;
-use super::sequence::{self, Frames};
+use super::sequence::{self, Frames, parse_rate};
 use super::{CliError, Exit, Terminal};
 
 /// Compare two images, folders of images, or shaders: exit code 0 if they agree, 1 if they differ
@@ -206,22 +205,20 @@ fn exit(report: &ComparisonReport) -> Exit {
 /// The error on a shader and something else.
 fn mixed(shader: &Path, other: &Path, kind: Kind) -> CliError {
     let [name, other] = [shader, other].map(path_name);
-    match kind {
-        Kind::Folder => CliError::new(format_args!(
+    if kind == Kind::Folder {
+        return CliError::new(format_args!(
             "{name} is a shader, and {other} is a folder without a project; only a shader or a project can be compared \
              with it"
-        )),
-        _ => {
-            let error = CliError::new(format_args!(
-                "{name} is a shader; `compare` takes two images, or two shaders"
-            ));
-            error.with_help(format_args!(
-                "to compare a shader with an image: toyproof check {} --reference {}",
-                shell_word(&name),
-                shell_word(&other)
-            ))
-        }
+        ));
     }
+    let error = CliError::new(format_args!(
+        "{name} is a shader; `compare` takes two images, or two shaders"
+    ));
+    error.with_help(format_args!(
+        "to compare a shader with an image: toyproof check {} --reference {}",
+        shell_word(&name),
+        shell_word(&other)
+    ))
 }
 
 /// Parses the largest number of differing pixels, or their share.

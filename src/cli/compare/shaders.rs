@@ -7,8 +7,8 @@ use indicatif::ProgressBar;
 use toyproof_diagnostic::Deadline;
 use toyproof_explain::equality::{Pair, PairFailure};
 use toyproof_glsl::{Checked, Filter};
-use toyproof_image::{self as image, Frame, Texture};
-use toyproof_player::{Clock, Graph, Pass, Source, Target};
+use toyproof_image::{self as image, Frame, MovingTextures, Texture};
+use toyproof_player::{BUFFERS, Clock, Graph, Pass, Source, Target};
 use toyproof_project::{CompiledProject, PassKind, Rendering};
 use toyproof_report::{ComparedImages, ComparedShaders, ComparisonReport, FirstDifferenceRecord};
 use toyproof_verify::Quantization;
@@ -210,7 +210,7 @@ impl<'a> Passes<'a> {
         };
         Ok(Self::Single {
             checked,
-            graph: Graph::new(vec![image], [false; 4]),
+            graph: Graph::new(vec![image], [false; BUFFERS]),
             media,
         })
     }
@@ -226,6 +226,7 @@ impl<'a> Passes<'a> {
                 checked: vec![checked],
                 graph,
                 media,
+                films: MovingTextures::default(),
             },
         }
     }

@@ -1,6 +1,8 @@
 //! `toyproof run`
 
+mod banded;
 mod project;
+mod sound;
 mod state;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -13,11 +15,12 @@ use indicatif::ProgressBar;
 pub(in crate::cli) use project::parse_pass;
 use serde::Serialize;
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, grouped, path_name, plural};
-use toyproof_eval::{self as eval, Number, Settings, UndefinedPolicy};
+use toyproof_eval::{self as eval, Number, Settings, Supersampling, UndefinedPolicy};
 use toyproof_eval_native::Program;
+use toyproof_film::FilmSettings;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
-use toyproof_image::{self as image, Frame, Image, ImageError};
+use toyproof_image::{self as image, Frame, Image, ImageError, check_size};
 use toyproof_player::{Clock, Target};
 use toyproof_project::PassKind;
 use toyproof_project::files;
@@ -26,10 +29,12 @@ use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
 use crate::cli::inputs::{
-    DriverArgs, Format, FrameArgs, LanguageArgs, check_output, parse_number, shell_word, short_device,
+    DriverArgs, Format, FrameArgs, LanguageArgs, check_output, shell_word, short_device,
 };
 use crate::cli::names::{Names, with_suffix};
-use crate::cli::sequence::{self, FrameEnd, Frames, Sequence};
+use crate::cli::sequence::{
+    Destination, FilmFile, FrameEnd, FrameStream, NumberedFiles, Output, Sequence, SequenceArgs,
+};
 use crate::cli::shader::{Shader, find};
 use crate::cli::terminal::file_size;
 use crate::cli::{CliError, Exit, Terminal};
@@ -40,17 +45,20 @@ use crate::cli::{CliError, Exit, Terminal};
 Examples:
   toyproof run mine.glsl -o mine.png --time 1.5
   toyproof run mine.glsl -o mine.exr --precision f64
+  toyproof run mine.glsl -o mine.mp4 --duration 8 --size 1280x720
+  toyproof run mine.glsl -o mine.gif --duration 2 --fps 25 --loop forever
   toyproof run mine.glsl -o frames/mine.png --frames 0..479
   toyproof run shaders -o images")]
 pub(in crate::cli) struct Args {
     /// Shaders: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// The image (.png or .exr), a folder, or - for PNG on standard output [default: NAME.png in the current
-    /// folder]
+    /// The image (.png or .exr), the film (.gif, .apng, .mp4, .webm, .y4m), a folder, or - for PNG on
+    /// standard output [default: NAME.png in the current folder]
     ///
-    /// A name without an extension is that of a folder.
-    #[arg(short, long, value_name = "IMAGE|DIR")]
+    /// A name without an extension is that of a folder. Films need --duration or --frames; ffmpeg writes .mp4
+    /// and .webm.
+    #[arg(short, long, value_name = "IMAGE|FILM|DIR")]
     output: Option<PathBuf>,
     /// The number type of floats; f64 runs on the CPU
     #[arg(long, value_enum, default_value_t = Precision::F32, hide_possible_values = true, value_name = "f32|f64")]
@@ -58,15 +66,22 @@ pub(in crate::cli) struct Args {
     /// The format of the results; `json` needs an output other than standard output
     #[arg(long, value_enum, default_value_t = Format::Human, help_heading = "Output", hide_possible_values = true)]
     format: Format,
-    /// Render frames A to B into numbered files, at the rate of `--fps`
+    /// Samples per pixel, of which the image has the mean
     ///
-    /// The number is inserted before the extension. `--time` is then the time of frame 0. The same command
-    /// resumes an interrupted sequence.
-    #[arg(long, value_name = "A..B", value_parser = sequence::parse_frames, conflicts_with = "frame")]
-    frames: Option<Frames>,
-    /// The frames in a second: they determine the times of frames, `iTimeDelta` and `iFrameRate`
-    #[arg(long, value_name = "N", default_value_t = 60.0, value_parser = parse_rate, hide_short_help = true)]
-    fps: f64,
+    /// Supersampling with a box filter, on the CPU: the positions in a pixel are those of the
+    /// (0, 2)-sequence of Sobol'. Each color is clamped to [0, 1] before the mean, except in .exr. Buffers are
+    /// not supersampled.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096), hide_default_value = true)]
+    samples: u32,
+    /// Render a PNG in bands of rows that are written one after the other
+    ///
+    /// Images above the limits of drivers (16,384 pixels per side, 33 million in total) are rendered so
+    /// anyway. The memory is that of a band. Runs on the CPU.
+    #[arg(long, hide_short_help = true, conflicts_with_all = ["frames", "duration"])]
+    tile: bool,
+    /// Keep the alpha that the shader writes: in .png, .exr, .apng, .webm and rgba; ShaderToy sets it to 1
+    #[arg(long, hide_short_help = true)]
+    transparent: bool,
     /// The pass of a project to show: `image`, or `buffer-a` to `buffer-d` [default: image]
     #[arg(long, value_name = "PASS", value_parser = parse_pass, hide_short_help = true)]
     pass: Option<PassKind>,
@@ -81,6 +96,8 @@ pub(in crate::cli) struct Args {
     /// A later run goes on with the next frame instead of the first.
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     state: Option<PathBuf>,
+    #[command(flatten)]
+    sequence: SequenceArgs,
     #[command(flatten)]
     frame: FrameArgs,
     #[command(flatten)]
@@ -117,7 +134,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
     let several = inputs.len() > 1 || args.shaders.iter().any(|path| files::is_folder_of_shaders(path));
     let output = match (&args.output, &inputs[..]) {
         (Some(output), _) => output.clone(),
-        (None, [Ok(input)]) if !several => default_image(&input.relative),
+        (None, [Ok(input)]) if !several => default_output(&input.relative, &args.sequence),
         (None, _) => PathBuf::from("."),
     };
     let standard = output == Path::new("-");
@@ -127,8 +144,8 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
         let error = CliError::new(format_args!("several images cannot be written to {output}"));
         return Err(error.with_help("name a folder with -o"));
     }
-    if standard && (args.frames.is_some() || args.format == Format::Json) {
-        let error = CliError::new("standard output takes a single image, not a sequence or JSON");
+    if standard && args.format == Format::Json {
+        let error = CliError::new("standard output takes an image or frames, not JSON beside them");
         return Err(error.with_help("name a file with -o"));
     }
     let one = !several && !is_folder;
@@ -137,14 +154,16 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
     let channels = inputs_of_frame.files().collect();
     check_output(&output, &channels)?;
     if one {
-        check_image_extension(&output)?;
+        args.sequence.output(&output)?;
     }
+    let supersampling = supersampling(args, &output)?;
     let mut runner = Runner {
         args,
         terminal,
         output: &output,
-        worker: worker.filter(|_| args.precision == Precision::F32),
+        worker: worker.filter(|_| args.precision == Precision::F32 && args.samples == 1),
         prefers_evaluator: args.driver.is_evaluator_equal(),
+        supersampling,
         frame: &frame,
         images: Vec::new(),
     };
@@ -153,11 +172,17 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
             exit = Exit::Error;
             break;
         }
-        let shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
+        let mut shader = Shader::load(input, &args.language, Deadline::after(args.driver.timeout()));
+        if args.transparent {
+            shader.keep_alpha();
+        }
         runner.report_warnings(&shader);
         let path = match (one, input) {
             (true, _) | (false, Err(_)) => output.clone(),
-            (false, Ok(found)) => with_suffix(&output.join(names.assign(found)), ".png"),
+            (false, Ok(found)) => {
+                let extension = format!(".{}", args.sequence.extension());
+                with_suffix(&output.join(names.assign(found)), &extension)
+            }
         };
         if let Some(passes) = shader.project() {
             let ended = runner.project(&shader, passes, &path);
@@ -167,10 +192,10 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
         if let Ok(checked) = shader.image() {
             terminal.diagnostics(&unbound(checked, &shader.lints, runner.frame), &shader.files);
         }
-        let rendered = match args.frames {
-            None => runner.one_image(&shader, runner.frame, &path),
-            Some(frames) => runner.sequence(&shader, frames, &path),
-        };
+        let rendered = args.sequence.output(&path).and_then(|output| match output {
+            Output::Image => runner.one_image(&shader, runner.frame, &path),
+            output => runner.frames(&shader, output, &path),
+        });
         if let Err(error) = rendered {
             exit = exit.max(terminal.fail(&error));
         }
@@ -183,9 +208,30 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
     Ok(exit)
 }
 
-/// Parses a number of frames in a second.
-pub(in crate::cli) fn parse_rate(text: &str) -> Result<f64, String> {
-    parse_number(text, 0.001..=1e6, "a number from 0.001 to 1000000")
+/// The samples of each pixel, if there are several.
+fn supersampling(args: &Args, output: &Path) -> Result<Option<Supersampling>, CliError> {
+    if args.samples == 1 {
+        return Ok(None);
+    }
+    check_evaluated(args, "--samples")?;
+    if args.pass.is_some_and(|pass| pass != PassKind::Image) {
+        return Err(CliError::new("buffers are not supersampled").with_help("leave out --samples or --pass"));
+    }
+    let is_exr = output
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    Ok(Some(Supersampling::new(args.samples, !is_exr)))
+}
+
+/// Checks that the flags allow the evaluator to render, which something needs.
+fn check_evaluated(args: &Args, what: &str) -> Result<(), CliError> {
+    if args.driver.may_be_evaluated() && args.driver.float() == FloatMode::Strict {
+        return Ok(());
+    }
+    let error = CliError::new(format_args!(
+        "{what} needs the evaluator on the CPU, with strict arithmetic"
+    ));
+    Err(error.with_help("leave out --device and --float: strict images have the same bits on every device"))
 }
 
 /// Returns whether a path names a folder, which may not exist yet.
@@ -194,38 +240,26 @@ fn names_folder(path: &Path) -> bool {
     path.is_dir() || text.ends_with(std::path::is_separator) || path.extension().is_none()
 }
 
-/// The default name of an image, in the current folder.
-pub(in crate::cli) fn default_image(input: &Path) -> PathBuf {
-    Path::new(input.file_name().unwrap_or_default()).with_extension("png")
+/// The default name of an image or a film, in the current folder.
+pub(in crate::cli) fn default_output(input: &Path, sequence: &SequenceArgs) -> PathBuf {
+    Path::new(input.file_name().unwrap_or_default()).with_extension(sequence.extension())
 }
 
-/// Checks that images can be written to a file of this name.
-pub(in crate::cli) fn check_image_extension(path: &Path) -> Result<(), CliError> {
-    if path == Path::new("-") {
-        return Ok(());
-    }
-    image::check_extension(path).map_err(|error| {
-        let error = CliError::new(error);
-        let extension = path.extension();
-        if extension.is_some_and(|extension| ["gif", "mp4", "webm"].iter().any(|video| extension == *video)) {
-            error.with_help("write a sequence with --frames A..B -o NAME.png, and encode it with ffmpeg")
-        } else {
-            error
-        }
-    })
-}
-
-/// Encodes an image for a file, by its extension, or as PNG for standard output.
-pub(in crate::cli) fn encode(image: &Image, path: &Path) -> Result<Vec<u8>, ImageError> {
+/// Encodes an image for a file, by its extension, or as PNG for standard output; in PNG perhaps with alpha.
+pub(in crate::cli) fn encode(image: &Image, path: &Path, keeps_alpha: bool) -> Result<Vec<u8>, ImageError> {
     let format = if path == Path::new("-") {
         Path::new("-.png")
     } else {
         path
     };
-    image::encode(image, format)
+    if keeps_alpha {
+        image::encode_transparent(image, format)
+    } else {
+        image::encode(image, format)
+    }
 }
 
-/// An image that was written, as JSON has it.
+/// An image or a film that was written, as JSON has it.
 #[derive(Debug, Serialize)]
 struct WrittenImage {
     shader: String,
@@ -238,12 +272,22 @@ struct WrittenImage {
     precision: &'static str,
     device: String,
     seconds: f64,
+    /// The number of frames of a film, of which `frame` and `time` are those of the first one that was
+    /// rendered.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frames: Option<u64>,
 }
 
 /// An image, and what rendered it.
 struct RenderedImage {
     image: Image,
     device: String,
+    seconds: f64,
+}
+
+/// What rendered an image, and how long.
+struct RenderedBy<'a> {
+    device: &'a str,
     seconds: f64,
 }
 
@@ -256,6 +300,8 @@ struct Runner<'a> {
     worker: Option<Worker>,
     /// Whether the evaluator renders shaders for which it is not slower than the driver.
     prefers_evaluator: bool,
+    /// The samples of each pixel, if there are several.
+    supersampling: Option<Supersampling>,
     /// The inputs of the frame that the user gives.
     frame: &'a Frame,
     /// The written images.
@@ -295,8 +341,16 @@ impl Runner<'_> {
         }
     }
 
+    /// Whether the image is never in memory as a whole.
+    fn is_banded(&self) -> bool {
+        self.args.tile || image::is_banded_size(self.frame.size)
+    }
+
     /// Renders an image into its file.
     fn one_image(&mut self, shader: &Shader, frame: &Frame, path: &Path) -> Result<(), CliError> {
+        if self.is_banded() {
+            return self.banded_image(shader, frame, path);
+        }
         match self.render(shader, frame, None) {
             Ok(rendered) => self.write_confirmed(&rendered, frame, &shader.name, path),
             Err(ImageFailure::Failed(error)) => Err(error),
@@ -304,32 +358,75 @@ impl Runner<'_> {
         }
     }
 
-    /// Renders the frames of a shader, each into its file; stops at the first failure.
-    fn sequence(&mut self, shader: &Shader, frames: Frames, output: &Path) -> Result<(), CliError> {
+    /// Renders the frames of a shader; stops at the first failure.
+    fn frames(&mut self, shader: &Shader, output: Output, path: &Path) -> Result<(), CliError> {
         let mut hasher = DefaultHasher::new();
         if let Ok(checked) = shader.image() {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
         }
         let fingerprint = self.fingerprint(hasher);
-        let sequence = Sequence::resume(frames, output, &fingerprint, self.terminal);
+        let Some(sequence) = self.open_sequence(output, path, &fingerprint, None)? else {
+            return Ok(());
+        };
         let clock = self.clock(0);
-        sequence.render(self.terminal, |one, interrupted| {
-            let frame = clock.frame(one.frame);
+        let mut film = self.written_film(output, &clock, &shader.name, path);
+        sequence.render(self.terminal, |number, destination, interrupted| {
+            let frame = clock.frame(number);
             match self.render(shader, &frame, Some(interrupted)) {
-                Ok(rendered) => self.write(&rendered, &frame, &shader.name, &one.path)?,
+                Ok(rendered) => self.put(&rendered, &frame, &shader.name, destination, film.as_mut())?,
                 Err(ImageFailure::Failed(error)) => return Err(error),
                 Err(ImageFailure::Interrupted) => return Ok(FrameEnd::Interrupted),
-            };
+            }
             Ok(FrameEnd::Written)
+        })?;
+        self.images.extend(film);
+        Ok(())
+    }
+
+    /// A film that is going to be written, as JSON has it, if the output is one.
+    fn written_film(&self, output: Output, clock: &Clock, shader: &str, path: &Path) -> Option<WrittenImage> {
+        let (Output::Film(frames, _) | Output::Stream(frames, _)) = output else {
+            return None;
+        };
+        let first = clock.frame(frames.first());
+        Some(WrittenImage {
+            shader: shader.to_owned(),
+            output: path_name(path),
+            size: first.size,
+            frame: first.frame,
+            time: first.time,
+            precision: self.args.precision.name(),
+            device: String::new(),
+            seconds: 0.0,
+            frames: Some(frames.count()),
         })
+    }
+
+    /// Takes a rendered frame to where it belongs: its file, or a film.
+    fn put(
+        &mut self,
+        rendered: &RenderedImage,
+        frame: &Frame,
+        shader: &str,
+        destination: Destination,
+        film: Option<&mut WrittenImage>,
+    ) -> Result<(), CliError> {
+        if let Some(film) = film {
+            film.device.clone_from(&rendered.device);
+            film.seconds += rendered.seconds;
+        }
+        match destination {
+            Destination::File(path) => self.write(rendered, frame, shader, path).map(drop),
+            Destination::Film(film) => film.add(&rendered.image),
+        }
     }
 
     /// The inputs of all frames; the one with this number has the time that the user gives.
     fn clock(&self, number: i32) -> Clock {
         Clock {
             inputs: self.frame.clone(),
-            rate: self.args.fps,
-            start: self.args.frame.start(number, self.args.fps),
+            rate: self.args.sequence.fps,
+            start: self.args.frame.start(number, self.args.sequence.fps),
         }
     }
 
@@ -343,12 +440,14 @@ impl Runner<'_> {
         };
         postcard::to_stdvec(&any).unwrap_or_default().hash(&mut hasher);
         format!(
-            "{:?} {:?} {:?} {} {}",
+            "{:?} {:?} {:?} {:?} {} {} {}",
             self.args.precision,
             self.args.driver,
             self.frame.script,
-            self.args.fps,
-            self.args.frame.start(0, self.args.fps)
+            self.supersampling,
+            self.args.transparent,
+            self.args.sequence.fps,
+            self.args.frame.start(0, self.args.sequence.fps)
         )
         .hash(&mut hasher);
         format!("{:016x}", hasher.finish())
@@ -443,9 +542,13 @@ impl Runner<'_> {
         let bands = (0..height).step_by(rows_per_band as usize);
         let bands = bands.map(|first| -> Result<Image, eval::Failure> {
             let rows = first..first.saturating_add(rows_per_band).min(height);
-            let rendered = program.render_rows(frame, rows.clone(), &settings)?;
-            bar.inc(rows.len() as u64);
-            Ok(rendered.image)
+            let count = rows.len() as u64;
+            let image = match &self.supersampling {
+                None => program.render_rows(frame, rows, &settings)?.image,
+                Some(samples) => program.render_supersampled(frame, rows, samples, &settings)?,
+            };
+            bar.inc(count);
+            Ok(image)
         });
         let bands = bands.collect::<Result<Vec<_>, _>>();
         bar.finish_and_clear();
@@ -468,9 +571,18 @@ impl Runner<'_> {
         let [width, height] = rendered.image.size();
         let precision = self.args.precision.name();
         let (device, seconds) = (short_device(&rendered.device), rendered.seconds);
-        let facts = format!("{width}×{height}, {precision} on {device}, {size}, {seconds:.2} s");
+        let samples = self.samples();
+        let facts = format!("{width}×{height}, {samples}{precision} on {device}, {size}, {seconds:.2} s");
         self.terminal.confirm(path, &facts);
         Ok(())
+    }
+
+    /// The number of samples of a pixel, if there are several.
+    fn samples(&self) -> String {
+        match self.args.samples {
+            1 => String::new(),
+            samples => format!("{} samples per pixel, ", grouped(u64::from(samples))),
+        }
     }
 
     /// Writes an image; returns the size of the file in bytes.
@@ -481,19 +593,74 @@ impl Runner<'_> {
         shader: &str,
         path: &Path,
     ) -> Result<usize, CliError> {
-        let bytes = encode(&rendered.image, path)?;
+        let bytes = encode(&rendered.image, path, self.args.transparent)?;
         self.terminal.write_output(self.output, path, &bytes)?;
+        let by = RenderedBy {
+            device: &rendered.device,
+            seconds: rendered.seconds,
+        };
+        self.record(&by, frame, shader, path);
+        Ok(bytes.len())
+    }
+
+    /// Records a written image.
+    fn record(&mut self, by: &RenderedBy<'_>, frame: &Frame, shader: &str, path: &Path) {
         self.images.push(WrittenImage {
             shader: shader.to_owned(),
             output: path_name(path),
-            size: rendered.image.size(),
+            size: frame.size,
             frame: frame.frame,
             time: frame.time,
             precision: self.args.precision.name(),
-            device: rendered.device.clone(),
-            seconds: rendered.seconds,
+            device: by.device.to_owned(),
+            seconds: by.seconds,
+            frames: None,
         });
-        Ok(bytes.len())
+    }
+}
+
+impl<'a> Runner<'a> {
+    /// Starts the sequence of an output, or goes on with an interrupted one with the same fingerprint; `None`
+    /// for a single image. `sound` is the file of a film's sound.
+    fn open_sequence(
+        &self,
+        output: Output,
+        path: &Path,
+        fingerprint: &str,
+        sound: Option<&Path>,
+    ) -> Result<Option<Sequence<'a>>, CliError> {
+        if output != Output::Image {
+            // Frames are in memory as a whole.
+            let [width, height] = self.frame.size.map(u64::from);
+            check_size(width, height).map_err(CliError::new)?;
+        }
+        let args = &self.args.sequence;
+        let settings = |frames, format| FilmSettings {
+            keeps_alpha: self.args.transparent,
+            sound: sound.map(Path::to_owned),
+            ..args.film(frames, format, self.frame.size)
+        };
+        Ok(Some(match output {
+            Output::Image => return Ok(None),
+            Output::Sound(_) => {
+                let error = CliError::new("only projects have a sound");
+                return Err(
+                    error.with_help("its tab `sound.glsl` defines `vec2 mainSound(int samp, float time)`")
+                );
+            }
+            Output::Files(frames) => {
+                Sequence::Files(NumberedFiles::resume(frames, path, fingerprint, self.terminal))
+            }
+            Output::Film(frames, format) => {
+                let paths = (self.output, path);
+                let settings = settings(frames, format);
+                let film = FilmFile::start((args, frames), settings, paths, fingerprint, self.terminal)?;
+                Sequence::Film(Box::new(film))
+            }
+            Output::Stream(frames, format) => {
+                Sequence::Stream(FrameStream::new(frames, settings(frames, format), self.terminal)?)
+            }
+        }))
     }
 }
 

@@ -4,11 +4,11 @@ use std::fmt::Display;
 use std::hash::{DefaultHasher, Hash};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name};
-use toyproof_eval::{self as eval, PassFailure, Settings};
+use toyproof_eval::{self as eval, Number, PassFailure, Settings, Supersampling};
 use toyproof_eval_native::Program;
 use toyproof_glsl as glsl;
 use toyproof_gpu::{Failure, Worker};
@@ -20,15 +20,17 @@ use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader
 use super::state::{self, Owner};
 use super::{Precision, RenderedImage, Runner, draw_error, is_too_large, pass_error, shader_error};
 use crate::cli::inputs::short_device;
-use crate::cli::project::{bind_channels, pass_shader, target};
-use crate::cli::sequence::{FrameEnd, Sequence};
+use crate::cli::project::{bind_channels, pass_shader};
+use crate::cli::sequence::{FrameEnd, Output, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{CliError, Exit, Terminal};
 
-/// Parses the name of a pass whose texture can be shown: `image`, or `buffer-a` to `buffer-d`.
+/// Parses the name of a pass whose texture can be shown: `image`, `buffer-a` to `buffer-d`, or `cube-a`.
 pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     let shown = Tab::ALL.into_iter().filter_map(|tab| match tab {
-        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_))) => Some((tab.name(), kind)),
+        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_) | PassKind::CubeA)) => {
+            Some((tab.name(), kind))
+        }
         _ => None,
     });
     let shown: Vec<_> = shown.collect();
@@ -39,22 +41,22 @@ pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
     })
 }
 
-/// Reports the inputs whose media are replaced or black. `bound` are the channels of the image that the user
+/// Reports the media of the site that are not available. `bound` are the channels of the image that the user
 /// gives a texture.
-fn report_replaced(rendering: &Rendering, bound: &[Option<Texture>; 4], name: &str, terminal: &Terminal) {
+pub(super) fn report_missing(
+    rendering: &Rendering,
+    bound: &[Option<Texture>; 4],
+    name: &str,
+    terminal: &Terminal,
+) {
     let is_bound = |&(pass, channel): &(PassKind, usize)| pass == PassKind::Image && bound[channel].is_some();
-    let replaced = rendering.replaced.iter();
-    for replaced in replaced.filter(|replaced| !replaced.readers.iter().all(is_bound)) {
-        let medium = replaced.source.medium();
-        let source = medium.map_or_else(
-            || format!("a {}", replaced.source.source_type().name()),
-            |medium| format!("“{}”", medium.name),
-        );
-        terminal.warn(if replaced.has_stand_in {
-            format!("{name}: {source} of ShaderToy is replaced by a texture with similar values")
-        } else {
-            format!("{name}: {source} of ShaderToy is not available, so that its channel is black")
-        });
+    let missing = rendering.missing.iter();
+    for missing in missing.filter(|missing| !missing.readers.iter().all(is_bound)) {
+        let message = format!("{name}: {missing}");
+        match missing.stand_in {
+            Some(_) => terminal.note(&message),
+            None => terminal.warn(message),
+        }
     }
 }
 
@@ -101,7 +103,7 @@ impl Playback<'_> {
         wanted: Option<Target>,
     ) -> Result<Option<Image>, FrameFailure> {
         let frame = clock.frame(number);
-        let shown = |texture: Option<&Texture>| Some((*texture?.to_single()[0]).clone());
+        let shown = |texture: Option<&Texture>| Some(Image::clone(&texture?.stack()));
         match self {
             Self::Device(playback) => {
                 let wanted = wanted.as_slice();
@@ -137,9 +139,34 @@ impl Playback<'_> {
     }
 }
 
+/// The samples of the image, which are rendered after the passes of a frame.
+struct ImageSamples<'a> {
+    /// The program of the image.
+    program: &'a Program,
+    supersampling: Supersampling,
+    /// The time limit of a frame.
+    limit: Duration,
+    interrupt: Option<&'a AtomicBool>,
+}
+
+impl ImageSamples<'_> {
+    /// Renders the image of the frame that was rendered last, with the channels that it read.
+    fn render<N: Number>(&self, frame: &Frame) -> Result<Image, eval::Failure> {
+        let settings = Settings::<N> {
+            deadline: Some(Instant::now() + self.limit),
+            interrupt: self.interrupt,
+            ..Settings::plain()
+        };
+        self.program
+            .render_supersampled(frame, frame.rows(), &self.supersampling, &settings)
+    }
+}
+
 /// The frames of a project in progress.
 struct Run<'a> {
     playback: Playback<'a>,
+    /// The samples of the image, if each pixel has several.
+    samples: Option<ImageSamples<'a>>,
     graph: &'a Graph,
     clock: Clock,
     target: Target,
@@ -191,21 +218,41 @@ impl Run<'_> {
             self.next += 1;
             bar.inc(1);
             if wanted.is_some() {
-                return Ok(image);
+                return match &self.samples {
+                    None => Ok(image),
+                    Some(samples) => self.supersampled(samples, number).map(Some),
+                };
             }
         }
+    }
+
+    /// Renders the image of a frame, which was rendered last, with several samples in each pixel.
+    fn supersampled(&self, samples: &ImageSamples<'_>, number: i32) -> Result<Image, FrameFailure> {
+        let frame = self.clock.frame(number);
+        // The image is the last pass.
+        let pass = self.graph.passes().len() - 1;
+        let rendered = match &self.playback {
+            Playback::Single(playback) => samples.render::<f32>(&playback.bound(pass, &frame)),
+            Playback::Double(playback) => samples.render::<f64>(&playback.bound(pass, &frame)),
+            Playback::Device(_) => unreachable!("samples are rendered by the evaluator"),
+        };
+        rendered.map_err(|failure| match failure {
+            eval::Failure::Interrupted => FrameFailure::Interrupted(number),
+            failure => FrameFailure::Evaluator(PassFailure { pass, failure }),
+        })
     }
 }
 
 /// The frame of a project whose image reads no other pass, with the sources of its channels; `None` if there
 /// are other passes.
-fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
+pub(super) fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let [image] = rendering.graph.passes() else {
         return None;
     };
     let channels = image.inputs.map(|input| match input {
         None | Some(Source::Buffer(_)) => Channel::Unbound,
         Some(Source::Medium(number)) => Channel::Medium(number),
+        Some(Source::Moving(number)) => Channel::Moving(number),
         Some(Source::Keyboard) => Channel::Keyboard,
     });
     Some(eval::bound(frame, channels, &rendering.media))
@@ -219,19 +266,57 @@ impl Runner<'_> {
         passes: &CompiledProject,
         path: &Path,
     ) -> Result<Exit, CliError> {
+        let output = self.args.sequence.output(path)?;
+        if let Output::Sound(seconds) = output {
+            return self.sound(shader, passes, seconds, path).map(|()| Exit::Success);
+        }
         let kind = self.args.pass.unwrap_or(PassKind::Image);
         let rendering = self.rendering(shader, passes, kind)?;
-        if self.args.frames.is_none()
+        if self.is_banded() {
+            let is_single = rendering.graph.passes().len() == 1 && self.args.state.is_none();
+            self.check_banded(shader, !is_single, path)?;
+        }
+        if output == Output::Image
             && self.args.state.is_none()
-            && let Some(frame) = bound(&rendering, &self.clock(self.frame.frame).frame(self.frame.frame))
+            && let Some(frame) = bound(
+                &rendering,
+                &self
+                    .clock_of(&rendering, self.frame.frame)
+                    .frame(self.frame.frame),
+            )
         {
             return self.one_image(shader, &frame, path).map(|()| Exit::Success);
         }
         // The worker is used beside this runner, which writes the images.
         let mut worker = self.worker.take();
-        let exit = self.render_passes(&mut worker, shader, passes, (kind, &rendering), path);
+        let exit = self.render_passes(&mut worker, shader, passes, (kind, &rendering), (output, path));
         self.worker = worker;
         exit
+    }
+
+    /// The sound of a film of a project, if it has one and the film can have it.
+    fn film_sound(
+        &self,
+        shader: &Shader,
+        passes: &CompiledProject,
+        output: Output,
+    ) -> Result<Option<tempfile::NamedTempFile>, CliError> {
+        let Output::Film(frames, format) = output else {
+            return Ok(None);
+        };
+        if !format.has_sound() {
+            return Ok(None);
+        }
+        let fps = self.args.sequence.fps;
+        let from = self.args.frame.start(0, fps) + f64::from(frames.first()) / fps;
+        self.sound_of_film(shader, passes, (from, frames.count() as f64 / fps))
+    }
+
+    /// The inputs of all frames of a project; the one with this number has the time that the user gives.
+    pub(super) fn clock_of(&self, rendering: &Rendering, number: i32) -> Clock {
+        let mut clock = self.clock(number);
+        clock.inputs.films = rendering.films.clone();
+        clock
     }
 
     /// Renders the passes over frames.
@@ -241,21 +326,29 @@ impl Runner<'_> {
         shader: &Shader,
         passes: &CompiledProject,
         (kind, rendering): (PassKind, &Rendering),
-        path: &Path,
+        (output, path): (Output, &Path),
     ) -> Result<Exit, CliError> {
         let scheduled = pass_shader(passes, rendering);
-        let sequence = self.args.frames.map(|frames| {
-            let fingerprint = self.fingerprint_of_project(shader, passes);
-            Sequence::resume(frames, path, &fingerprint, self.terminal)
-        });
+        let fingerprint = self.fingerprint_of_project(shader, passes);
+        let sound = self.film_sound(shader, passes, output)?;
+        let sound = sound.as_ref().map(tempfile::NamedTempFile::path);
+        let sequence = self.open_sequence(output, path, &fingerprint, sound)?;
         let has_history = rendering.graph.passes().len() > 1;
-        let first = match (&sequence, self.args.frames) {
+        let first = match (&sequence, self.args.sequence.frames()?) {
             (Some(sequence), Some(frames)) => sequence.first_missing().unwrap_or(frames.first()),
-            _ => self.args.frame.number(has_history, self.args.fps),
+            _ => self.args.frame.number(has_history, self.args.sequence.fps),
         };
-        let clock = self.clock(if sequence.is_some() { 0 } else { first });
+        let clock = self.clock_of(rendering, if sequence.is_some() { 0 } else { first });
         let owner = Owner::new(passes, rendering, &shader.files, &clock);
-        let state = self.state(shader, &scheduled, &owner, first)?;
+        // If all frames exist, they only remain to be encoded.
+        let is_rendered = sequence
+            .as_ref()
+            .is_some_and(|sequence| sequence.first_missing().is_none());
+        let state = if is_rendered {
+            None
+        } else {
+            self.state(shader, &scheduled, &owner, first)?
+        };
         let next = self.next(state.as_ref(), first, has_history);
         self.report_history(shader, next, first);
         // With a state, the frame in progress is finished, so that it can be written.
@@ -271,10 +364,21 @@ impl Runner<'_> {
             has_no_driver,
         } = self.backend(worker, shader, &scheduled, state, has_history)?;
         let programs;
+        let mut samples = None;
         let playback = match renderer {
             Renderer::Device(playback) => Playback::Device(playback),
             Renderer::Evaluator(compiled) => {
                 programs = compiled;
+                let supersampling = self.supersampling.clone();
+                samples = programs
+                    .last()
+                    .zip(supersampling)
+                    .map(|(program, supersampling)| ImageSamples {
+                        program,
+                        supersampling,
+                        limit,
+                        interrupt,
+                    });
                 match self.args.precision {
                     Precision::F32 => {
                         let settings = Settings {
@@ -300,16 +404,17 @@ impl Runner<'_> {
         ));
         let mut run = Run {
             playback,
+            samples,
             graph: &rendering.graph,
             clock,
-            target: target(kind),
+            target: kind.target(),
             next,
             has_history,
             terminal: self.terminal,
         };
         let shown = match sequence {
             None => self.one_frame(&mut run, first, shader, path, &interrupted),
-            Some(sequence) => self.all_frames(&mut run, sequence, shader),
+            Some(sequence) => self.all_frames(&mut run, sequence, (shader, output, path)),
         };
         // The state of the frames before a failed one is saved.
         let exit = shown.map_or_else(|error| self.terminal.fail(&error), |()| Exit::Success);
@@ -376,7 +481,7 @@ impl Runner<'_> {
         let rendering = passes.rendering(kind);
         let mut rendering =
             rendering.map_err(|error| refusal(shader, error, "`toyproof check` compiles all its tabs"))?;
-        report_replaced(&rendering, &self.frame.channels, &shader.name, self.terminal);
+        report_missing(&rendering, &self.frame.channels, &shader.name, self.terminal);
         bind_channels(passes, &mut rendering, &self.frame.channels);
         Ok(rendering)
     }
@@ -472,18 +577,26 @@ impl Runner<'_> {
         self.write_confirmed(&rendered, &run.clock.frame(number), &shader.name, path)
     }
 
-    fn all_frames(&mut self, run: &mut Run<'_>, sequence: Sequence, shader: &Shader) -> Result<(), CliError> {
-        sequence.render(self.terminal, |one, interrupted| {
-            match run.show(one.frame, interrupted) {
+    fn all_frames(
+        &mut self,
+        run: &mut Run<'_>,
+        sequence: Sequence,
+        (shader, output, path): (&Shader, Output, &Path),
+    ) -> Result<(), CliError> {
+        let mut film = self.written_film(output, &run.clock, &shader.name, path);
+        sequence.render(self.terminal, |number, destination, interrupted| {
+            match run.show(number, interrupted) {
                 Ok(rendered) => {
-                    let frame = run.clock.frame(one.frame);
-                    self.write(&rendered, &frame, &shader.name, &one.path)?;
+                    let frame = run.clock.frame(number);
+                    self.put(&rendered, &frame, &shader.name, destination, film.as_mut())?;
                 }
                 Err(FrameFailure::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
-                Err(failure) => return Err(self.frame_error(failure, run.graph, one.frame, shader)),
+                Err(failure) => return Err(self.frame_error(failure, run.graph, number, shader)),
             }
             Ok(FrameEnd::Written)
-        })
+        })?;
+        self.images.extend(film);
+        Ok(())
     }
 
     /// A digest of everything that the frames of a sequence depend on.

@@ -80,7 +80,7 @@ impl Code {
     /// The severity of its diagnostics, unless the user denies the warning.
     pub fn severity(self) -> Severity {
         match self {
-            Self::LintTimeout | Self::SlowCompilation => Severity::Note,
+            Self::LintTimeout | Self::SlowCompilation | Self::StandIn => Severity::Note,
             _ if self.as_str().starts_with('W') => Severity::Warning,
             _ => Severity::Error,
         }

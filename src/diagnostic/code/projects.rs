@@ -7,7 +7,7 @@ macro_rules! projects {
     /// code, to the whole file. Separate several codes with commas. Text after the `)` can give a reason.
     /// Errors cannot be suppressed.
     ///
-    /// Warnings that arise while the shader runs (W0600 to W0612) are suppressed by their line in the same
+    /// Warnings that arise while the shader runs (W0600 to W0613) are suppressed by their line in the same
     /// way; those without a line, such as W0601, by an `allow` anywhere. Whether such an `allow` is needed is
     /// not checked.
     ///

@@ -182,6 +182,7 @@ impl IrWriter {
             ValueDef::Float(_)
                 | ValueDef::Word(_)
                 | ValueDef::Input(..)
+                | ValueDef::Extent { .. }
                 | ValueDef::Parameter(..)
                 | ValueDef::FragCoord(_)
         );

@@ -87,8 +87,8 @@ impl<N: Arithmetic> Framebuffer<N> {
         self.flags.iter().filter(|&&flag| flag & UNDEFINED != 0).count() as u64
     }
 
-    /// Returns a texture in the precision of the number type. Discarded pixels have the texels of `over`,
-    /// which has the same size.
+    /// Returns a texture in the precision of the number type, which has the shape of `over`. Discarded pixels
+    /// keep its texels; its layers are stacked.
     pub(crate) fn texture_over(self, over: &Texture) -> Texture {
         let Self {
             size,
@@ -101,9 +101,9 @@ impl<N: Arithmetic> Framebuffer<N> {
             .filter(|(_, flag)| **flag & DISCARDED != 0);
         for (at, _) in discarded {
             let [x, y] = [at as u32 % size[0], at as u32 / size[0]];
-            pixels[at] = [0, 1, 2, 3].map(|component| texture::texel(over, 0, [x, y], component));
+            pixels[at] = [0, 1, 2, 3].map(|component| texture::texel(over, [x, y], component));
         }
-        N::texture(size, pixels)
+        N::texture(size, pixels).shaped_as(over)
     }
 
     /// Returns the image in f32, as the GPU's render target holds it.

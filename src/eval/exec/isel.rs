@@ -8,6 +8,7 @@ use crate::exec::frame::{float_input, frame_counter};
 use crate::exec::lanes::LANES;
 use crate::exec::number::Arithmetic;
 use crate::exec::ops::{self, Instruction, Level};
+use crate::exec::texture::{extent, fitting};
 use crate::ir::{Kind, NONE, Operation, Predicate, Value, ValueDef};
 use crate::lower::LoweredCode;
 use crate::lower::linearize::Step;
@@ -79,6 +80,7 @@ impl<N: Arithmetic> FrameCode<N> {
         let mut words = vec![0; locations.scalars.words as usize];
         let mut parameters = Vec::new();
         let mut coordinates = [None; 2];
+        let textures = fitting(lowered.shapes, &frame.channels);
         for (at, def) in function.defs.iter().enumerate() {
             let location = locations.value(Value(at as u32));
             match (*def, location) {
@@ -91,6 +93,10 @@ impl<N: Arithmetic> FrameCode<N> {
                 }
                 (ValueDef::Input(input, component), Some(Location::Scalar(to))) => {
                     floats[to as usize] = float_input(frame, input, component);
+                }
+                (ValueDef::Extent { channel, axis }, Some(Location::Scalar(to))) => {
+                    let texture = textures[usize::from(channel)].as_ref();
+                    floats[to as usize] = N::from_f64(extent(texture, axis).into());
                 }
                 (ValueDef::Parameter(kind, number), Some(Location::Row(row))) => {
                     parameters.push((number, kind, row * width as u32));
@@ -407,6 +413,7 @@ impl<N: Arithmetic> Writer<'_, N> {
             ValueDef::Float(_)
             | ValueDef::Word(_)
             | ValueDef::Input(..)
+            | ValueDef::Extent { .. }
             | ValueDef::Parameter(..)
             | ValueDef::FragCoord(_) => {}
         }

@@ -2,9 +2,36 @@
 
 use std::sync::Arc;
 
-use toyproof_image::{Image, Texture};
+use toyproof_glsl::tree::SamplerShape;
+use toyproof_image::{Image, Shape, Texels, Texture, cube};
 
 use crate::exec::number::Arithmetic;
+
+/// The textures of channels that have the shapes which a shader declares; others count as unbound. An unbound
+/// cube map is black.
+pub(crate) fn fitting(shapes: [SamplerShape; 4], channels: &[Option<Texture>; 4]) -> [Option<Texture>; 4] {
+    std::array::from_fn(|channel| {
+        let texture = channels[channel].as_ref();
+        let of_shape = |shape| texture.filter(|texture| texture.shape() == shape).cloned();
+        match shapes[channel] {
+            SamplerShape::D2 => of_shape(Shape::Flat),
+            SamplerShape::D3 => of_shape(Shape::Volume),
+            SamplerShape::Cube => of_shape(Shape::Cube).or_else(|| {
+                let faces = vec![[0.0_f32, 0.0, 0.0, 1.0]; cube::FACES as usize];
+                Some(Texture::cube(&Image::new(1, cube::FACES, faces)))
+            }),
+            SamplerShape::D2Array => None,
+        }
+    })
+}
+
+/// The width, height or depth of a texture in texels; 1 if there is none.
+pub(crate) fn extent(texture: Option<&Texture>, axis: u8) -> u32 {
+    texture.map_or(1, |texture| {
+        let [width, height] = texture.size();
+        [width, height, texture.layers()][usize::from(axis)]
+    })
+}
 
 /// A component of a texel; none beyond the texture, and in levels that do not exist. There it is 0, as in
 /// browsers.
@@ -26,11 +53,12 @@ pub(crate) fn unbound<N: Arithmetic>(at: [u32; 2], level: u32, component: usize)
     N::from_f64(f64::from(u8::from(at == [0, 0] && level == 0 && component == 3)))
 }
 
-/// A component of a texel within the texture.
-pub(crate) fn texel<N: Arithmetic>(texture: &Texture, level: u32, [x, y]: [u32; 2], component: usize) -> N {
-    match texture {
-        Texture::Single(levels) => N::from_f32(levels[level as usize].get(x, y)[component]),
-        Texture::Double(levels) => N::from_f64(levels[level as usize].get(x, y)[component]),
+/// A component of a texel of the first level, in the stack of layers.
+pub(crate) fn texel<N: Arithmetic>(texture: &Texture, at: [u32; 2], component: usize) -> N {
+    let [x, y] = texture.stored(at);
+    match texture.texels() {
+        Texels::Single(levels) => N::from_f32(levels[0].get(x, y)[component]),
+        Texels::Double(levels) => N::from_f64(levels[0].get(x, y)[component]),
     }
 }
 
@@ -44,7 +72,7 @@ mod tests {
     fn texels_beyond_a_texture_are_zero() {
         let image = Image::new(2, 1, vec![[1.0_f32; 4], [2.0; 4]]);
         let texture = Texture::from(image).with_mipmaps();
-        let Texture::Single(levels) = &texture else {
+        let Texels::Single(levels) = texture.texels() else {
             panic!("images hold floats");
         };
         let at = |x: i32, y: i32, level: i32| {

@@ -19,6 +19,7 @@ use crate::exec::ops::{refuel, run};
 use crate::exec::places::Places;
 use crate::exec::recorder::{ExecutionTrace, ForcedPrefix, Recorder};
 use crate::exec::settings::{Engine, Settings};
+use crate::exec::texture::fitting;
 use crate::ir::SiteId;
 use crate::lower::LoweredCode;
 use crate::lower::regalloc::Location;
@@ -36,7 +37,7 @@ const MIN_NATIVE_PIXELS: u64 = 4096;
 pub(crate) struct FrameJob<'a, N: Arithmetic> {
     lowered: &'a LoweredCode,
     code: &'a FrameCode<N>,
-    textures: &'a [Option<Texture>; 4],
+    textures: [Option<Texture>; 4],
     limits: &'a Limits<'a>,
     settings: &'a Settings<'a, N>,
     floats: Vec<N>,
@@ -52,12 +53,13 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
     pub(crate) fn new(
         lowered: &'a LoweredCode,
         code: &'a FrameCode<N>,
-        textures: &'a [Option<Texture>; 4],
+        channels: &[Option<Texture>; 4],
         limits: &'a Limits<'a>,
         settings: &'a Settings<'a, N>,
         size: [u32; 2],
     ) -> Self {
-        let (floats, words) = prologue(code, settings, textures, limits);
+        let textures = fitting(lowered.shapes, channels);
+        let (floats, words) = prologue(code, settings, &textures, limits);
         Self {
             lowered,
             code,
@@ -124,7 +126,7 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
                 [code.float_rows, code.word_rows],
                 (&self.floats, &self.words),
                 self.settings,
-                self.textures,
+                &self.textures,
                 self.limits,
             )
         }

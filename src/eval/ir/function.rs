@@ -52,6 +52,8 @@ pub enum ValueDef {
     Word(u32),
     /// One component of an input of the frame.
     Input(Input, u8),
+    /// The width, height or depth, in texels, of the cube map or volume of a channel; 1 if it is unbound.
+    Extent { channel: u8, axis: u8 },
     /// A parameter, which is given for each point.
     Parameter(Kind, u32),
     /// `gl_FragCoord.x` or `.y`.
@@ -161,9 +163,11 @@ impl Function {
     pub fn kind(&self, value: Value) -> Kind {
         match self.def(value) {
             ValueDef::Word(_) | ValueDef::Input(Input::Frame, _) => Kind::Word,
-            ValueDef::Float(_) | ValueDef::Input(..) | ValueDef::FragCoord(_) | ValueDef::Texel { .. } => {
-                Kind::Float
-            }
+            ValueDef::Float(_)
+            | ValueDef::Input(..)
+            | ValueDef::Extent { .. }
+            | ValueDef::FragCoord(_)
+            | ValueDef::Texel { .. } => Kind::Float,
             ValueDef::Operation(operation, _) => operation.kind(),
             ValueDef::Load(cell) => self.cells[cell.0 as usize],
             ValueDef::Parameter(kind, _) | ValueDef::LoadAt { kind, .. } => kind,
@@ -184,6 +188,7 @@ impl ValueDef {
             Self::Float(_)
             | Self::Word(_)
             | Self::Input(..)
+            | Self::Extent { .. }
             | Self::Parameter(..)
             | Self::FragCoord(_)
             | Self::Load(_) => {}

@@ -189,6 +189,7 @@ impl Linearizer<'_> {
             ValueDef::Float(_)
                 | ValueDef::Word(_)
                 | ValueDef::Input(..)
+                | ValueDef::Extent { .. }
                 | ValueDef::Parameter(..)
                 | ValueDef::FragCoord(_)
         ) {

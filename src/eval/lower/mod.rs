@@ -3,7 +3,7 @@
 pub(crate) mod linearize;
 pub(crate) mod regalloc;
 
-use toyproof_glsl::tree::Place;
+use toyproof_glsl::tree::{Place, SamplerShape};
 
 use self::linearize::LinearCode;
 use self::regalloc::Allocation;
@@ -20,6 +20,8 @@ pub struct LoweredCode {
     pub locations: Allocation,
     /// Whether stores to a cell must preserve the values of inactive pixels.
     pub shared: Vec<bool>,
+    /// The shapes of the channels' textures, as they are declared.
+    pub shapes: [SamplerShape; 4],
     pub(crate) sites: Vec<Site>,
     pub(crate) schema: TraceSchema,
 }

@@ -375,7 +375,12 @@ impl<'a> Solver<'a> {
         *constant = function
             .defs
             .iter()
-            .map(|def| matches!(def, ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..)))
+            .map(|def| {
+                matches!(
+                    def,
+                    ValueDef::Float(_) | ValueDef::Word(_) | ValueDef::Input(..) | ValueDef::Extent { .. }
+                )
+            })
             .collect();
         for &value in &self.map.values {
             if let def @ ValueDef::Operation(..) = function.def(value) {

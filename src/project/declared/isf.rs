@@ -2,7 +2,6 @@
 //! which run the same text. <https://docs.isf.video/ref_json.html>,
 //! <https://docs.isf.video/ref_functions.html>
 
-use std::collections::HashMap;
 use std::fmt::Write;
 
 use toyproof_diagnostic::{Diagnostic, File, FileId, Files, Span};
@@ -14,6 +13,7 @@ use crate::json;
 use crate::node::{Node, Value};
 use crate::pass::{Buffer, Input, Pass, PassKind, Sampler, Source, Tab};
 use crate::project::{Document, Project};
+use crate::textures::LoadedMedia;
 
 /// The inputs that ISF sets, by their names, with their declarations.
 const ISF_INPUTS: [(&str, &str); 7] = [
@@ -187,7 +187,7 @@ pub(super) fn read(
         passes: project_passes,
         knows_inputs: true,
         uniforms: Vec::new(),
-        images: HashMap::new(),
+        media: LoadedMedia::default(),
     })))
 }
 

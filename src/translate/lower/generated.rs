@@ -56,8 +56,12 @@ pub(super) enum Expansion {
     },
     /// The level of the mipmaps for derivatives in texels.
     LevelOfDetail,
-    /// The coordinates that `textureProj` divides by their last component.
-    Projection,
+    /// This number of coordinates, which `textureProj` divides by the last component.
+    Projection(u8),
+    /// The face of a cube map that a direction points to, and the place on it.
+    CubePlace,
+    /// The derivative of that place, from a direction and its derivative.
+    CubeGradient,
 }
 
 /// What determines the level of the mipmaps.

@@ -2,25 +2,25 @@
 //! shaders only.
 //!
 //! Drivers compute the weights of filters with few bits, and the level of mipmaps by their own formulas. The
-//! evaluator (`toyproof_eval`) computes the same steps as the text that is generated here.
+//! evaluator (`toyproof_eval`) computes the same steps as the text that is generated here
+//! ([`super::lookup_text`]). A cube map is then an array of six images.
 
-use std::fmt::Write as _;
-
+use toyproof_glsl::Filter;
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Place, Sampler, Scalar,
-    Statement, StatementKind, Type, Value, VariableId, VariableKind,
+    BinaryOp, BuiltIn, Constructor, Direction, ExprId, ExprKind, FunctionId, Place, Sampler, SamplerShape,
+    Scalar, Statement, StatementKind, Type, Value, VariableId, VariableKind,
 };
-use toyproof_glsl::{Filter, Sampling, Wrap};
 
 use crate::lower::context::LoweringContext;
 use crate::lower::generated::{Expansion, Level};
+use crate::lower::lookup_text::{OFFSET, Texture};
 use crate::lower::polyfill::{self, function};
 
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
+const VEC3: Type = Type::Vector(Scalar::Float, 3);
 const VEC4: Type = Type::Vector(Scalar::Float, 4);
-const IVEC2: Type = Type::Vector(Scalar::Int, 2);
 
-/// Expands the lookups of channels with two dimensions.
+/// Expands the lookups of channels.
 pub(super) fn expand_lookups(cx: &mut LoweringContext) {
     cx.checks_fetches = true;
     cx.each_expression(|cx, id| {
@@ -33,10 +33,17 @@ pub(super) fn expand_lookups(cx: &mut LoweringContext) {
         } else if matches!(function, BuiltIn::TexelFetch | BuiltIn::TexelFetchOffset)
             && is_channel(cx, arguments[0])
         {
-            // Of a volume. A fetch from a sampler parameter is in a function that is no longer called.
+            // Of another type. A fetch from a sampler parameter is in a function that is no longer called.
             cx.checks_fetches = false;
         }
     });
+    for id in cx.tree.variables.ids() {
+        if cx.tree[id].ty == Type::Sampler(Sampler::float(SamplerShape::Cube))
+            && matches!(cx.tree[id].kind, VariableKind::Channel(_))
+        {
+            cx.tree[id].ty = Type::Sampler(Sampler::float(SamplerShape::D2Array));
+        }
+    }
 }
 
 /// Whether a texture is one of the four channels, rather than a parameter.
@@ -49,6 +56,7 @@ fn is_channel(cx: &LoweringContext, texture: ExprId) -> bool {
 struct Lookup {
     /// The variable of the channel.
     texture: VariableId,
+    shape: SamplerShape,
     channel: u8,
     level: Level,
     is_projected: bool,
@@ -85,8 +93,9 @@ impl Lookup {
         };
         let without_bias = if has_offset { 3 } else { 2 };
         let is_biased = level == Implicit && arguments.len() > without_bias;
-        (cx.tree[texture].ty == Type::Sampler(Sampler::D2)).then_some(Self {
+        Some(Self {
             texture,
+            shape: shape(cx, texture)?,
             channel,
             level: if is_biased { Biased } else { level },
             is_projected,
@@ -97,10 +106,12 @@ impl Lookup {
     /// Replaces the lookup `id` by a call with these arguments, without the channel.
     fn expand(&self, cx: &mut LoweringContext, id: ExprId, mut arguments: Vec<ExprId>) {
         let at = cx.tree[id].at;
+        let axes = axes(self.shape);
         if self.is_projected {
             let position = arguments[0];
             let ty = cx.tree[position].ty;
-            let projected = function(cx, Expansion::Projection, vec![ty], VEC2, at);
+            let coordinates = Type::vector(Scalar::Float, axes);
+            let projected = function(cx, Expansion::Projection(axes), vec![ty], coordinates, at);
             arguments[0] = cx.build(at).call(projected, vec![position]);
         }
         // The offset is last; a bias follows it in the author's call.
@@ -111,10 +122,14 @@ impl Lookup {
                 arguments.len() - 1
             })
         } else {
-            let mut build = cx.build(at);
-            let zeros = [0, 0].map(|zero| build.literal(Value::Int(zero)));
-            build.construct(Constructor::Vector, zeros.to_vec(), IVEC2)
+            no_offset(cx, axes, at)
         };
+        if self.shape == SamplerShape::Cube
+            && self.level != Level::Size
+            && !has_level_of_detail(cx, self.channel, self.level)
+        {
+            arguments[0] = cube_place(cx, arguments[0], at);
+        }
         arguments.push(offset);
         let expansion = Expansion::Lookup {
             texture: self.texture,
@@ -125,11 +140,39 @@ impl Lookup {
     }
 }
 
+/// The shape of a texture whose lookups are expanded.
+fn shape(cx: &LoweringContext, texture: VariableId) -> Option<SamplerShape> {
+    let shapes = [SamplerShape::D2, SamplerShape::D3, SamplerShape::Cube];
+    let mut shapes = shapes.into_iter();
+    shapes.find(|shape| cx.tree[texture].ty == Type::Sampler(Sampler::float(*shape)))
+}
+
+/// The number of axes of a texture: the two of the face for a cube map.
+fn axes(shape: SamplerShape) -> u8 {
+    if shape == SamplerShape::D3 { 3 } else { 2 }
+}
+
+/// Whether the level of a lookup is computed from derivatives.
+fn has_level_of_detail(cx: &LoweringContext, channel: u8, level: Level) -> bool {
+    cx.sampling[usize::from(channel)].filter == Filter::Mipmap
+        && matches!(level, Level::Implicit | Level::Biased | Level::Gradient)
+}
+
+/// An offset of zero.
+fn no_offset(cx: &mut LoweringContext, axes: u8, at: Place) -> ExprId {
+    let mut build = cx.build(at);
+    let zeros = (0..axes).map(|_| build.literal(Value::Int(0))).collect();
+    build.construct(Constructor::Vector, zeros, Type::vector(Scalar::Int, axes))
+}
+
+/// The face that a direction points to, and the place on it.
+fn cube_place(cx: &mut LoweringContext, direction: ExprId, at: Place) -> ExprId {
+    let place = function(cx, Expansion::CubePlace, vec![VEC3], VEC3, at);
+    cx.build(at).call(place, vec![direction])
+}
+
 /// The names of the parameters: the coordinates, and up to two arguments for the level.
 const NAMES: [&str; 3] = ["toyproof_p", "toyproof_a", "toyproof_b"];
-
-/// The name of the parameter for the offset.
-const OFFSET: &str = "toyproof_offset";
 
 /// Adds the function for the lookups of a channel with arguments of these types.
 pub(super) fn lookup_function(
@@ -138,186 +181,92 @@ pub(super) fn lookup_function(
     types: &[Type],
     at: Place,
 ) -> FunctionId {
-    let sampling = cx.sampling[usize::from(channel)];
+    let shape = shape(cx, texture).unwrap_or(SamplerShape::D2);
     let names = NAMES.into_iter().take(types.len() - 1).chain([OFFSET]);
     let parameters: Vec<_> = types
         .iter()
         .zip(names)
         .map(|(&ty, name)| (Direction::In, ty, name))
         .collect();
-    let ty = if level == Level::Size { IVEC2 } else { VEC4 };
+    let size = Type::vector(Scalar::Int, axes(shape));
+    let ty = if level == Level::Size { size } else { VEC4 };
     let id = cx.function(format!("toyproof_lookup_{channel}"), &parameters, ty, at);
-    let is_implicit = matches!(level, Level::Implicit | Level::Biased | Level::Gradient);
-    let is_text = sampling.filter != Filter::Mipmap || !is_implicit;
-    if is_text {
-        let text = match level {
-            Level::Fetched => fetch_text(channel),
-            Level::Size => format!("return {};", size_of_level(&self::texture(channel), "toyproof_p")),
-            _ => text(channel, sampling),
-        };
-        cx.helpers.insert(id, text);
-        cx.helper_inputs.insert(id, texture);
+    if has_level_of_detail(cx, channel, level) {
+        let value = at_level_of_detail(cx, (texture, channel, level), shape, id, at);
+        cx.tree[id].body = Some(vec![Statement::new(StatementKind::Return(Some(value)), at)]);
         return id;
     }
-    let given = Expansion::Lookup {
+    let text = Texture { channel, shape };
+    let text = match level {
+        Level::Fetched => text.fetch(),
+        Level::Size => format!("return {};", text.size_of_level(NAMES[0])),
+        _ => text.lookup(cx.sampling[usize::from(channel)]),
+    };
+    cx.helpers.insert(id, text);
+    cx.helper_inputs.insert(id, texture);
+    id
+}
+
+/// The value of a lookup whose level is computed from derivatives, in the function with this id.
+fn at_level_of_detail(
+    cx: &mut LoweringContext,
+    (texture, channel, level): (VariableId, u8, Level),
+    shape: SamplerShape,
+    id: FunctionId,
+    at: Place,
+) -> ExprId {
+    let axes = axes(shape);
+    let [axes_type, size_type] = [Scalar::Float, Scalar::Int].map(|scalar| Type::vector(scalar, axes));
+    let lookup = |level| Expansion::Lookup {
         texture,
         channel,
-        level: Level::Given,
+        level,
     };
-    let lookup = function(cx, given, vec![VEC2, Type::FLOAT, IVEC2], VEC4, at);
-    let level_of_detail = function(cx, Expansion::LevelOfDetail, vec![VEC2, VEC2], Type::FLOAT, at);
+    let is_cube = shape == SamplerShape::Cube;
+    let place_type = if is_cube { VEC3 } else { axes_type };
+    let given = vec![place_type, Type::FLOAT, size_type];
+    let given = function(cx, lookup(Level::Given), given, VEC4, at);
+    let size = function(cx, lookup(Level::Size), vec![Type::INT, size_type], size_type, at);
+    let level_of_detail = vec![axes_type; 2];
+    let level_of_detail = function(cx, Expansion::LevelOfDetail, level_of_detail, Type::FLOAT, at);
+    let gradient = is_cube.then(|| function(cx, Expansion::CubeGradient, vec![VEC3; 2], VEC2, at));
     let parameters = cx.tree[id].parameters.clone();
-    let mut build = cx.build(at);
-    let size = {
-        let texture = build.variable(texture);
-        let zero = build.literal(Value::Int(0));
-        let kind = ExprKind::BuiltIn {
-            function: BuiltIn::TextureSize,
-            arguments: vec![texture, zero],
-        };
-        let size = build.push(kind, IVEC2);
-        build.construct(Constructor::Vector, vec![size], VEC2)
-    };
     let derivatives = [(BuiltIn::DFdx, 1), (BuiltIn::DFdy, 2)].map(|(function, given)| {
-        let derivative = if level == Level::Gradient {
+        let zeros = no_offset(cx, axes, at);
+        let mut build = cx.build(at);
+        let mut derivative = if level == Level::Gradient {
             build.variable(parameters[given])
         } else {
             let arguments = vec![build.variable(parameters[0])];
-            build.push(ExprKind::BuiltIn { function, arguments }, VEC2)
+            let ty = build.tree[parameters[0]].ty;
+            build.push(ExprKind::BuiltIn { function, arguments }, ty)
         };
-        let size = build.copy(size);
-        build.binary(BinaryOp::Multiply, derivative, size, VEC2)
+        if let Some(gradient) = gradient {
+            let direction = build.variable(parameters[0]);
+            derivative = build.call(gradient, vec![direction, derivative]);
+        }
+        let whole = build.literal(Value::Int(0));
+        let size = build.call(size, vec![whole, zeros]);
+        let size = build.construct(Constructor::Vector, vec![size], axes_type);
+        build.binary(BinaryOp::Multiply, derivative, size, axes_type)
     });
+    let mut build = cx.build(at);
     let mut detail = build.call(level_of_detail, derivatives.to_vec());
     if level == Level::Biased {
         let bias = build.variable(parameters[1]);
         detail = build.binary(BinaryOp::Add, detail, bias, Type::FLOAT);
     }
-    let [p, offset] =
+    let [mut place, offset] =
         [parameters[0], parameters[parameters.len() - 1]].map(|parameter| build.variable(parameter));
-    let value = build.call(lookup, vec![p, detail, offset]);
-    cx.tree[id].body = Some(vec![Statement::new(StatementKind::Return(Some(value)), at)]);
-    id
-}
-
-/// The body of a fetch of the texel `toyproof_p` in the level `toyproof_a`. Beyond the texture, browsers
-/// return zeros, and naga the texel at the edge.
-fn fetch_text(channel: u8) -> String {
-    let texture = texture(channel);
-    format!(
-        "ivec2 toyproof_at = toyproof_p + {OFFSET};
-    int toyproof_level = min(max(toyproof_a, 0), textureQueryLevels({texture}) - 1);
-    ivec2 toyproof_size = {size};
-    ivec2 toyproof_near = min(max(toyproof_at, ivec2(0)), toyproof_size - ivec2(1));
-    vec4 toyproof_texel = texelFetch({texture}, toyproof_near, toyproof_level);
-    bool toyproof_is_inside = toyproof_level == toyproof_a
-        && toyproof_near.x == toyproof_at.x && toyproof_near.y == toyproof_at.y;
-    return mix(vec4(0.0), toyproof_texel, bvec4(toyproof_is_inside));",
-        size = size_of_level(&texture, "toyproof_level"),
-    )
-}
-
-/// The size of a level. Mesa's software driver returns that of one level to all pixels that it computes
-/// together.
-fn size_of_level(texture: &str, level: &str) -> String {
-    format!("max(ivec2(uvec2(textureSize({texture}, 0)) >> uvec2(uint({level}) & 31u)), ivec2(1))")
-}
-
-/// The texture of a channel, as naga's GLSL combines it with its sampler.
-fn texture(channel: u8) -> String {
-    format!("sampler2D(iChannel{channel}, iChannel{channel}_sampler)")
-}
-
-/// The body of a lookup at `toyproof_p`. With mipmaps, the level is `toyproof_a`; other arguments are
-/// ignored.
-fn text(channel: u8, sampling: Sampling) -> String {
-    let texture = texture(channel);
-    if sampling.filter != Filter::Mipmap {
-        let mut text = String::new();
-        push_level(&mut text, &texture, sampling, "0", "0");
-        return text + "return toyproof_color0;";
+    if is_cube {
+        place = cube_place(cx, place, at);
     }
-    let mut text = format!(
-        "int toyproof_last = textureQueryLevels({texture}) - 1;
-    float toyproof_lod = min(max(toyproof_a, 0.0), float(toyproof_last));
-    float toyproof_below = floor(toyproof_lod);
-    float toyproof_between = toyproof_lod - toyproof_below;
-    int toyproof_level = int(toyproof_below);\n    "
-    );
-    push_level(&mut text, &texture, sampling, "0", "toyproof_level");
-    text += "if (toyproof_between > 0.0) {\n    ";
-    push_level(
-        &mut text,
-        &texture,
-        sampling,
-        "1",
-        "min(toyproof_level + 1, toyproof_last)",
-    );
-    text += "toyproof_color0 = toyproof_color0 + (toyproof_color1 - toyproof_color0) * toyproof_between;
-    }
-    return toyproof_color0;";
-    text
+    cx.build(at).call(given, vec![place, detail, offset])
 }
 
-/// Writes the lookup of a level as the variable `toyproof_color{n}`.
-fn push_level(text: &mut String, texture: &str, sampling: Sampling, n: &str, level: &str) {
-    // Far coordinates, and NaN, must fit an integer.
-    let (place, least, most) = match sampling.wrap {
-        Wrap::Repeat => ("(toyproof_p - floor(toyproof_p))", "-1.0", "0.0"),
-        Wrap::Clamp => ("toyproof_p", "-16.0", "16.0"),
-    };
-    let wrapped = |place: &str| match sampling.wrap {
-        Wrap::Repeat => format!("ivec2(uvec2({place} + 32 * toyproof_size{n}) % uvec2(toyproof_size{n}))"),
-        Wrap::Clamp => format!("min(max({place}, ivec2(0)), toyproof_size{n} - ivec2(1))"),
-    };
-    let half = if sampling.filter == Filter::Nearest {
-        ""
-    } else {
-        " - vec2(0.5)"
-    };
-    let _ = write!(
-        text,
-        "ivec2 toyproof_size{n} = {size};
-    vec2 toyproof_side{n} = vec2(toyproof_size{n});
-    vec2 toyproof_at{n} = min(max({place} * toyproof_side{n}{half}, vec2({least})), toyproof_side{n} + vec2({most}));
-    vec2 toyproof_floor{n} = floor(toyproof_at{n});
-    ivec2 toyproof_i{n} = ivec2(toyproof_floor{n}) + {OFFSET};
-    ivec2 toyproof_low{n} = {low};\n    ",
-        size = if level == "0" {
-            format!("textureSize({texture}, 0)")
-        } else {
-            size_of_level(texture, level)
-        },
-        low = wrapped(&format!("toyproof_i{n}")),
-    );
-    let fetch = |x: &str, y: &str| {
-        format!("texelFetch({texture}, ivec2(toyproof_{x}{n}.x, toyproof_{y}{n}.y), {level})")
-    };
-    if sampling.filter == Filter::Nearest {
-        let _ = write!(text, "vec4 toyproof_color{n} = {};\n    ", fetch("low", "low"));
-        return;
-    }
-    let _ = write!(
-        text,
-        "ivec2 toyproof_high{n} = {high};
-    vec2 toyproof_weight{n} = toyproof_at{n} - toyproof_floor{n};
-    vec4 toyproof_a{n} = {a};
-    vec4 toyproof_b{n} = {b};
-    vec4 toyproof_c{n} = {c};
-    vec4 toyproof_d{n} = {d};
-    vec4 toyproof_lower{n} = toyproof_a{n} + (toyproof_b{n} - toyproof_a{n}) * toyproof_weight{n}.x;
-    vec4 toyproof_upper{n} = toyproof_c{n} + (toyproof_d{n} - toyproof_c{n}) * toyproof_weight{n}.x;
-    vec4 toyproof_color{n} = toyproof_lower{n} + (toyproof_upper{n} - toyproof_lower{n}) * toyproof_weight{n}.y;\n    ",
-        high = wrapped(&format!("(toyproof_i{n} + ivec2(1))")),
-        a = fetch("low", "low"),
-        b = fetch("high", "low"),
-        c = fetch("low", "high"),
-        d = fetch("high", "high"),
-    );
-}
-
-/// The body of the projection of coordinates of a type.
-pub(super) fn projection(ty: Type, name: &str) -> String {
+/// The body of the projection of coordinates of a type to this number of axes.
+pub(super) fn projection(ty: Type, axes: u8, name: &str) -> String {
     let last = if ty == VEC4 { "w" } else { "z" };
-    format!("return {name}.xy / {name}.{last};")
+    let first = if axes == 3 { "xyz" } else { "xy" };
+    format!("return {name}.{first} / {name}.{last};")
 }

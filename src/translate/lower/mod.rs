@@ -17,6 +17,7 @@ mod folding;
 mod generated;
 mod initializer;
 mod lookup;
+mod lookup_text;
 mod loops;
 mod lvalue;
 mod member;

@@ -156,7 +156,9 @@ fn declare(
         Expansion::UintToFloat => "float",
         Expansion::Lookup { .. } => "lookup",
         Expansion::LevelOfDetail => "level",
-        Expansion::Projection => "projected",
+        Expansion::Projection(_) => "projected",
+        Expansion::CubePlace => "cube_place",
+        Expansion::CubeGradient => "cube_gradient",
     };
     let parameters: Vec<_> = types
         .iter()
@@ -208,9 +210,12 @@ fn is_componentwise(expansion: Expansion, arguments: usize) -> bool {
         Expansion::Function(function) => InexactFunction::from_built_in(function, arguments)
             .is_some_and(|function| function.definition.argument_count().is_some()),
         Expansion::UintToFloat => true,
-        Expansion::Product | Expansion::Lookup { .. } | Expansion::LevelOfDetail | Expansion::Projection => {
-            false
-        }
+        Expansion::Product
+        | Expansion::Lookup { .. }
+        | Expansion::LevelOfDetail
+        | Expansion::Projection(_)
+        | Expansion::CubePlace
+        | Expansion::CubeGradient => false,
     }
 }
 
@@ -239,7 +244,11 @@ fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: T
             let [along_x, along_y] = [0, 1].map(|at| &arguments[at]);
             vec![toyproof_math::level_of_detail(along_x, along_y)]
         }
-        Expansion::Projection => return lookup::projection(types[0], PARAMETER_NAMES[0]),
+        Expansion::Projection(axes) => return lookup::projection(types[0], axes, PARAMETER_NAMES[0]),
+        Expansion::CubePlace => toyproof_math::cube_place(vector(&arguments[0])).to_vec(),
+        Expansion::CubeGradient => {
+            toyproof_math::cube_gradient(vector(&arguments[0]), vector(&arguments[1])).to_vec()
+        }
         // Its text is written with its declaration.
         Expansion::Lookup { .. } => Vec::new(),
         // Both halves are exact, so that only their sum is rounded.
@@ -250,6 +259,11 @@ fn helper_body(cx: &LoweringContext, expansion: Expansion, types: &[Type], ty: T
     };
     let results: Vec<_> = results.into_iter().map(FloatTerm::id).collect();
     function_body(&graph, &results, &names, &cx.tree.type_name(ty))
+}
+
+/// The components of a `vec3`.
+fn vector<'a>(components: &[FloatTerm<'a>]) -> [FloatTerm<'a>; 3] {
+    [components[0], components[1], components[2]]
 }
 
 /// The components of an argument, in column order.

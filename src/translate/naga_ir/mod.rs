@@ -17,6 +17,8 @@ pub enum Shape {
     D3,
     /// A cube map.
     Cube,
+    /// An array of images: in strict shaders, the faces of a cube map.
+    Layers,
 }
 
 /// A module that naga has validated, as all later stages require.
@@ -133,12 +135,13 @@ impl ValidModule {
     pub fn channels(&self) -> [Shape; 4] {
         let mut shapes = [Shape::D2; 4];
         for (_, global) in self.module.global_variables.iter() {
-            if let (naga::TypeInner::Image { dim, .. }, Some(binding)) =
+            if let (naga::TypeInner::Image { dim, arrayed, .. }, Some(binding)) =
                 (&self.module.types[global.ty].inner, global.binding)
                 && let Some(shape) = shapes.get_mut((binding.binding as usize).saturating_sub(1) / 2)
             {
                 *shape = match dim {
                     naga::ImageDimension::Cube => Shape::Cube,
+                    naga::ImageDimension::D2 if *arrayed => Shape::Layers,
                     naga::ImageDimension::D3 => Shape::D3,
                     _ => Shape::D2,
                 };

@@ -74,6 +74,7 @@ pub fn bind(
     renderers: Renderers<'_>,
 ) -> Result<Option<BoundFrame>, Failure> {
     let (timeout, pool) = (renderers.timeout, renderers.pool);
+    *frame = shader.with_films(frame);
     if !has_history(shader) {
         *frame = bound(shader, frame, |_| None);
         return Ok(None);
@@ -150,6 +151,7 @@ pub fn bind(
 pub fn bind_reference(shader: &PassShader, frame: &mut Frame, timeout: Duration) -> Result<(), Failure> {
     let programs = programs(shader, timeout, None)?;
     let mut playback = CpuPlayback::<f64>::new(shader, &programs, None, timeout, Settings::plain());
+    *frame = shader.with_films(frame);
     if has_history(shader) {
         let clock = clock(frame);
         for number in 0..=frame.frame {
@@ -233,6 +235,10 @@ fn bound(shader: &PassShader, frame: &Frame, buffer: impl Fn(usize) -> Option<Te
             (None, None) => None,
             (None, Some(Source::Medium(number))) => shader.media.get(number).cloned(),
             (None, Some(Source::Buffer(number))) => buffer(number),
+            (None, Some(Source::Moving(number))) => frame.moving.get(number).map(|(texture, time)| {
+                bound.channel_times[index] = *time;
+                texture.clone()
+            }),
             (None, Some(Source::Keyboard)) => Some(frame.keys.texture()),
         };
     }
@@ -264,9 +270,9 @@ fn open<'a>(
 
 /// The number of pixels whose bits differ. The sign of a zero and the bits of NaN are open.
 fn differing(evaluated: &Texture, rendered: &Image) -> usize {
-    let evaluated = evaluated.to_single();
+    let evaluated = evaluated.stack();
     let is_open = |a: f32, b: f32| a == b || a.is_nan() && b.is_nan();
     let differs = |(a, b): &(&[f32; 4], &[f32; 4])| !a.iter().zip(*b).all(|(&a, &b)| is_open(a, b));
-    let pairs = evaluated[0].pixels().iter().zip(rendered.pixels());
+    let pairs = evaluated.pixels().iter().zip(rendered.pixels());
     pairs.filter(differs).count()
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use toyproof_diagnostic::{Code, Diagnostic, Span, grouped, plural};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, Input, VariableKind};
-use toyproof_image::{Frame, Texture};
+use toyproof_image::Frame;
 use toyproof_player::{BUFFERS, Source, Target};
 
 use crate::debug::explain;
@@ -59,16 +59,17 @@ impl<'a> BufferLints<'a> {
             let Target::Buffer(number) = rendered.target else {
                 continue;
             };
-            let Some(Texture::Single(levels)) = playback.texture(rendered.target) else {
+            let Some(texture) = playback.texture(rendered.target) else {
                 continue;
             };
-            let texels = levels[0].pixels();
+            let stack = texture.stack();
+            let texels = stack.pixels();
             let buffer = &mut self.buffers[number];
             buffer.are_zero &= texels.iter().all(|texel| *texel == [0.0; 4]);
             let has_nan = |texel: &[f32; 4]| texel.iter().any(|value| value.is_nan());
             buffer.nan = texels.iter().filter(|texel| has_nan(texel)).count() as u64;
             if buffer.nan > 0 && self.first_nan.is_none() {
-                let width = inputs.size[0];
+                let width = stack.size()[0];
                 let first = texels.iter().position(has_nan).unwrap_or_default() as u32;
                 self.first_nan = Some(FirstNan {
                     pass,
@@ -135,10 +136,12 @@ impl<'a> BufferLints<'a> {
             };
             // The mouse, the keyboard and other media may give a value in other frames.
             let is_driven = checked.reads(Input::Mouse)
-                || pass
-                    .inputs
-                    .iter()
-                    .any(|input| matches!(input, Some(Source::Medium(_) | Source::Keyboard)));
+                || pass.inputs.iter().any(|input| {
+                    matches!(
+                        input,
+                        Some(Source::Medium(_) | Source::Moving(_) | Source::Keyboard)
+                    )
+                });
             if !self.buffers[number].are_zero || is_driven {
                 return None;
             }

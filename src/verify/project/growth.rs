@@ -7,7 +7,7 @@
 use toyproof_diagnostic::Code;
 use toyproof_diagnostic::{Diagnostic, grouped, plural};
 use toyproof_eval::{Number, PassFailure, RandomRounding, Seed, Settings};
-use toyproof_image::{Frame, Image, Texture};
+use toyproof_image::{Frame, Texture};
 use toyproof_player::{BUFFERS, Target};
 
 use crate::bounds::explanation_deadline;
@@ -208,7 +208,7 @@ fn image_error<A: Number, B: Number>(
     expected: &CpuPlayback<A>,
     actual: &CpuPlayback<B>,
 ) -> Option<FrameError> {
-    let image = |texture: &Texture| texture.to_single().swap_remove(0);
+    let image = |texture: &Texture| texture.stack();
     let expected = image(expected.texture(Target::Image)?);
     let actual = image(actual.texture(Target::Image)?);
     let statuses = precision(&expected, &actual, &vec![false; expected.pixels().len()]);
@@ -358,13 +358,9 @@ fn distance<A: Number, B: Number>(expected: &CpuPlayback<A>, actual: &CpuPlaybac
 
 /// The texels of the whole image in f64.
 fn texels(texture: &Texture) -> Vec<[f64; 4]> {
-    fn widened<T: Copy + Into<f64>>(level: &Image<T>) -> Vec<[f64; 4]> {
-        level.pixels().iter().map(|texel| texel.map(Into::into)).collect()
-    }
-    match texture {
-        Texture::Single(levels) => widened(&levels[0]),
-        Texture::Double(levels) => widened(&levels[0]),
-    }
+    let [width, height] = texture.stack_size();
+    let rows = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    rows.map(|at| texture.texel(at)).collect()
 }
 
 #[cfg(test)]

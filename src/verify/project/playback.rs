@@ -8,7 +8,7 @@ use toyproof_eval::{Number, PassFailure, PassRenderer, Refusal, Settings, Undefi
 use toyproof_eval_native::Program;
 use toyproof_glsl::tree::{BuiltIn, ExprKind};
 use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
-use toyproof_image::{Frame, Image, Texture};
+use toyproof_image::{Frame, Image, MovingTextures, Texture};
 use toyproof_player::{BUFFERS, ChannelSampling, DriverFailure, Graph, Player, Readback, State, Target};
 use toyproof_translate::FloatMode;
 
@@ -23,9 +23,21 @@ pub struct PassShader<'a> {
     pub graph: &'a Graph,
     /// The textures that do not change.
     pub media: &'a [Texture],
+    /// The textures that change from frame to frame.
+    pub films: MovingTextures,
 }
 
 impl PassShader<'_> {
+    /// The frame with the textures of the shader that change.
+    #[must_use]
+    pub fn with_films(&self, frame: &Frame) -> Frame {
+        let frame = Frame {
+            films: self.films.clone(),
+            ..frame.clone()
+        };
+        frame.at(frame.frame, frame.time)
+    }
+
     /// Whether a pass looks up texels with a filter: in strict arithmetic many operations, which drivers
     /// compile better than the evaluator.
     #[must_use]
@@ -107,13 +119,14 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
     #[must_use]
     pub fn bound(&self, pass: usize, frame: &Frame) -> Frame {
         let channels = self.player.inputs(pass);
-        self.player.renderer().bound(frame, channels)
+        let target = self.player.graph().passes()[pass].target;
+        self.player.renderer().bound(&target.frame(frame), channels)
     }
 
     /// The state after a frame.
     #[must_use]
     pub fn state(&self, frame: i32) -> State {
-        let copy = |texture: &Texture| Ok(texture.cropped(texture.size()));
+        let copy = |texture: &Texture| Ok(texture.clone().without_mipmaps());
         let Ok::<State, std::convert::Infallible>(state) = self.player.state(frame, copy);
         state
     }
@@ -213,16 +226,18 @@ impl<'a> DevicePlayback<'a> {
             .flat_map(|&buffer| [Readback::Last(Target::Buffer(buffer)), Readback::Other(buffer)]);
         let wanted: Vec<_> = buffers.chain([Readback::Last(Target::Image)]).collect();
         let images = self.driver.play(None, &wanted)?;
-        let mut images = images.into_iter().map(Texture::from);
+        let mut images = images.into_iter();
         let mut buffers = [const { None }; BUFFERS];
         for buffer in used {
-            buffers[buffer] = images.next().zip(images.next()).map(<[Texture; 2]>::from);
+            let textures = images.next().zip(images.next());
+            let textures = textures.map(<[Image; 2]>::from);
+            buffers[buffer] = textures.map(|pair| pair.map(|image| Target::Buffer(buffer).texture(image)));
         }
         Ok(State {
             frame: frame.frame,
             size: frame.size,
             buffers,
-            image: images.next(),
+            image: images.next().map(Texture::from),
         })
     }
 }

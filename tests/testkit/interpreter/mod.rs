@@ -219,7 +219,7 @@ impl<N: Real> Run<'_, N> {
     fn input(&self, input: Input, ty: Type) -> Value<N> {
         let frame = self.interpreter.frame;
         let resolution = |channel: usize| match &frame.channels[channel] {
-            Some(texture) => [texture.size()[0] as f32, texture.size()[1] as f32, 1.0],
+            Some(texture) => texture.resolution().map(|side| side as f32),
             None => [0.0; 3],
         };
         let numbers = match input {

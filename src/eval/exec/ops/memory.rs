@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use toyproof_image::Texture;
+use toyproof_image::{Texels, Texture};
 
 use super::{
     Component, Handler, Instruction, Level, One, Operand, Row, Run, Source, for_each_chunk, handler,
@@ -225,11 +225,11 @@ impl<N: Arithmetic> Run<N> for Fetch {
     #[inline(always)]
     fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
         let [channel, component] = [instruction.to / 4 % 4, instruction.to % 4].map(|part| part as usize);
-        match batch.textures[channel].as_ref() {
-            Some(Texture::Single(levels)) => fetch_lanes(batch, instruction, |at, level| {
+        match batch.textures[channel].as_ref().map(Texture::texels) {
+            Some(Texels::Single(levels)) => fetch_lanes(batch, instruction, |at, level| {
                 fetch(levels, at, level, component).map_or(N::default(), N::from_f32)
             }),
-            Some(Texture::Double(levels)) => fetch_lanes(batch, instruction, |at, level| {
+            Some(Texels::Double(levels)) => fetch_lanes(batch, instruction, |at, level| {
                 fetch(levels, at, level, component).map_or(N::default(), N::from_f64)
             }),
             None => fetch_lanes(batch, instruction, |at, level| unbound(at, level, component)),

@@ -245,7 +245,10 @@ impl ValueNumbering<'_> {
             let def = self.templates[at];
             match def {
                 ValueDef::Word(_) | ValueDef::Float(_) => self.replacements[at] = self.constant(def),
-                ValueDef::Input(..) | ValueDef::Parameter(..) | ValueDef::FragCoord(_) => {
+                ValueDef::Input(..)
+                | ValueDef::Extent { .. }
+                | ValueDef::Parameter(..)
+                | ValueDef::FragCoord(_) => {
                     self.replacements[at] = self.push_value(def);
                 }
                 ValueDef::Operation(..)
@@ -319,6 +322,7 @@ impl ValueNumbering<'_> {
             ValueDef::Word(_)
             | ValueDef::Float(_)
             | ValueDef::Input(..)
+            | ValueDef::Extent { .. }
             | ValueDef::Parameter(..)
             | ValueDef::FragCoord(_) => Some(self.replacements[at]),
             ValueDef::Load(cell) => self.cell_values.get(cell),

@@ -1,32 +1,14 @@
-//! Image sequences: the numbers of their frames, their files, and which are still to be rendered.
+//! Numbered images: their names, and which are still to be rendered.
 
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name, plural};
 use toyproof_image::{self as image, input};
 
-use super::{CliError, Terminal};
-
-/// The numbers of the frames of a sequence, both ends included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Frames {
-    first: i32,
-    last: i32,
-}
-
-/// Parses A..B.
-pub(super) fn parse_frames(text: &str) -> Result<Frames, String> {
-    let expected = "expected A..B, the first and the last frame, with 0 ≤ A ≤ B";
-    let (first, last) = text.split_once("..").ok_or(expected)?;
-    match (first.parse(), last.parse()) {
-        (Ok(first), Ok(last)) if 0 <= first && first <= last => Ok(Frames { first, last }),
-        _ => Err(expected.to_owned()),
-    }
-}
+use super::{FrameEnd, Frames, render_each, report_existing};
+use crate::cli::{CliError, Terminal};
 
 /// One frame of a sequence.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,18 +18,6 @@ pub(super) struct SequenceFrame {
 }
 
 impl Frames {
-    pub(super) fn first(self) -> i32 {
-        self.first
-    }
-
-    pub(super) fn numbers(self) -> RangeInclusive<i32> {
-        self.first..=self.last
-    }
-
-    fn count(self) -> u64 {
-        u64::from(self.last.abs_diff(self.first)) + 1
-    }
-
     /// All frames; the path of each is `output` with the frame's number before the extension.
     fn numbered(self, output: &Path) -> impl Iterator<Item = SequenceFrame> {
         let digits = self.last.to_string().len().max(4);
@@ -62,18 +32,9 @@ impl Frames {
     }
 }
 
-/// How the rendering of a frame ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FrameEnd {
-    /// The image is written.
-    Written,
-    /// The user interrupted the rendering.
-    Interrupted,
-}
-
-/// A sequence in progress. A record next to the images holds the next frame until all frames exist.
+/// A sequence of files in progress. A record next to the images holds the next frame until all frames exist.
 #[derive(Debug)]
-pub(super) struct Sequence {
+pub(in crate::cli) struct NumberedFiles {
     record: PathBuf,
     /// Identifies the content and the settings: a record with a different fingerprint is ignored.
     fingerprint: String,
@@ -85,7 +46,7 @@ pub(super) struct Sequence {
     existing: u64,
 }
 
-impl Sequence {
+impl NumberedFiles {
     /// The first frame to render; `None` if the files of all exist.
     pub(super) fn first_missing(&self) -> Option<i32> {
         let mut missing = self.missing();
@@ -98,7 +59,12 @@ impl Sequence {
     }
 
     /// Prepares a sequence, reading the record of an interrupted run.
-    pub(super) fn resume(frames: Frames, output: &Path, fingerprint: &str, terminal: &Terminal) -> Self {
+    pub(in crate::cli) fn resume(
+        frames: Frames,
+        output: &Path,
+        fingerprint: &str,
+        terminal: &Terminal,
+    ) -> Self {
         let record = output.with_extension("sequence");
         let next = input::read(&record)
             .ok()
@@ -115,10 +81,7 @@ impl Sequence {
             .numbered(output)
             .take_while(|one| i64::from(one.frame) < next);
         let existing = made.filter(|one| one.path.is_file()).count() as u64;
-        if existing > 0 {
-            let (existing, count) = (grouped(existing), grouped(frames.count()));
-            terminal.note(&format!("resuming: {existing} of {count} frames exist already"));
-        }
+        report_existing(existing, frames, terminal);
         Self {
             record,
             fingerprint: fingerprint.to_owned(),
@@ -129,21 +92,28 @@ impl Sequence {
         }
     }
 
-    /// Renders the missing frames in order until one fails or the user interrupts. A frame may end early when
-    /// the user interrupts: it is then among those that are missing.
+    /// Renders the missing frames in order until one fails or the user interrupts.
     pub(super) fn render(
         self,
         terminal: &Terminal,
-        frame: impl FnMut(&SequenceFrame, &AtomicBool) -> Result<FrameEnd, CliError>,
+        mut frame: impl FnMut(&SequenceFrame, &AtomicBool) -> Result<FrameEnd, CliError>,
     ) -> Result<(), CliError> {
         let start = Instant::now();
-        let interrupted = terminal.watch_interrupts("the sequence ends with the frame in progress");
-        let bar = terminal.bar(self.frames.count(), "frames");
-        bar.set_position(self.existing);
-        bar.reset_eta();
-        let rendered = self.render_missing(terminal, &bar, &interrupted, frame);
-        bar.finish_and_clear();
-        rendered?;
+        let progress = (self.frames, self.existing);
+        render_each(progress, self.missing(), terminal, |one, interrupted| {
+            let end = frame(one, interrupted)?;
+            if end == FrameEnd::Written {
+                let record = format!("{}\n{}\n", self.fingerprint, i64::from(one.frame) + 1);
+                terminal.write(&self.record, record.as_bytes())?;
+            }
+            Ok(end)
+        })?;
+        self.finish(terminal, start);
+        Ok(())
+    }
+
+    /// Removes the record of a complete sequence, and confirms its files.
+    fn finish(self, terminal: &Terminal, start: Instant) {
         // The sequence is complete, so no record is needed.
         let _ = std::fs::remove_file(&self.record);
         if let Some(stale) = self.stale_frame() {
@@ -167,34 +137,8 @@ impl Sequence {
             );
             terminal.confirm(&first, &facts);
         }
-        Ok(())
     }
 
-    fn render_missing(
-        &self,
-        terminal: &Terminal,
-        bar: &ProgressBar,
-        interrupted: &AtomicBool,
-        mut frame: impl FnMut(&SequenceFrame, &AtomicBool) -> Result<FrameEnd, CliError>,
-    ) -> Result<(), CliError> {
-        for one in self.missing() {
-            if interrupted.load(Ordering::Relaxed) || frame(&one, interrupted)? == FrameEnd::Interrupted {
-                let error = CliError::new(format_args!(
-                    "interrupted after {} of {} frames",
-                    grouped(bar.position()),
-                    grouped(self.frames.count())
-                ));
-                return Err(error.with_help("run the same command again to render the others"));
-            }
-            let record = format!("{}\n{}\n", self.fingerprint, i64::from(one.frame) + 1);
-            terminal.write(&self.record, record.as_bytes())?;
-            bar.inc(1);
-        }
-        Ok(())
-    }
-}
-
-impl Sequence {
     /// Returns the first frame outside of this sequence whose image has another size than its last frame.
     fn stale_frame(&self) -> Option<PathBuf> {
         let size = |path: &Path| image::read(path).ok().map(|image| image.size());
@@ -221,10 +165,13 @@ impl Sequence {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::Ordering;
+
     use super::*;
+    use crate::cli::sequence::parse_frames;
 
     #[test]
-    fn a_range_has_both_ends_and_its_files_sort_by_number() {
+    fn files_sort_by_number() {
         let sequence = parse_frames("8..11").unwrap();
         let names: Vec<_> = sequence
             .numbered(Path::new("a/b.png"))
@@ -234,9 +181,6 @@ mod tests {
             names,
             ["a/b-0008.png", "a/b-0009.png", "a/b-0010.png", "a/b-0011.png"]
         );
-        for wrong in ["", "3", "3..", "..3", "4..3", "-1..3", "1..x", "1..2..3"] {
-            assert!(parse_frames(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]
@@ -249,7 +193,7 @@ mod tests {
             let path = folder.path().join(name);
             std::fs::write(&path, image::encode(&image, &path).unwrap()).unwrap();
         };
-        let sequence = || Sequence::resume(parse_frames("0..1").unwrap(), &output, "a", &terminal);
+        let sequence = || NumberedFiles::resume(parse_frames("0..1").unwrap(), &output, "a", &terminal);
         write("x-0001.png", 2);
         write("x-0002.png", 2);
         write("x-y.png", 3);
@@ -264,7 +208,7 @@ mod tests {
         let output = folder.path().join("x.png");
         let terminal = Terminal::new(true, false);
         // Too many to be collected in memory.
-        let far = Sequence::resume(parse_frames("0..2147483647").unwrap(), &output, "far", &terminal);
+        let far = NumberedFiles::resume(parse_frames("0..2147483647").unwrap(), &output, "far", &terminal);
         let mut first = Vec::new();
         let end = |is_written: bool| {
             if is_written {
@@ -281,7 +225,8 @@ mod tests {
         assert_eq!(first, [0, 1, 2]);
         let render = |fingerprint: &str, most: usize| {
             let mut made = Vec::new();
-            let sequence = Sequence::resume(parse_frames("0..3").unwrap(), &output, fingerprint, &terminal);
+            let sequence =
+                NumberedFiles::resume(parse_frames("0..3").unwrap(), &output, fingerprint, &terminal);
             let whole = sequence.render(&terminal, |one, _| {
                 made.push(one.frame);
                 std::fs::write(&one.path, "").unwrap();
@@ -308,7 +253,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let output = folder.path().join("x.png");
         let terminal = Terminal::new(true, false);
-        let sequence = || Sequence::resume(parse_frames("5..8").unwrap(), &output, "a", &terminal);
+        let sequence = || NumberedFiles::resume(parse_frames("5..8").unwrap(), &output, "a", &terminal);
         assert_eq!(sequence().first_missing(), Some(5));
         let whole = sequence().render(&terminal, |one, interrupted| {
             if one.frame == 7 {
