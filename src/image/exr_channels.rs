@@ -180,7 +180,8 @@ mod tests {
         assert_eq!(own.software_name, Some(text("toyproof")));
         assert_eq!(own.comments, Some(text("two\nlines")));
         let value = |text: &str| AttributeValue::Text(Text::from(text));
+        // The reader gives all custom attributes to the layer.
         assert_eq!(own.other[&text("command")], value("render"));
-        assert_eq!(read.attributes.other[&text("scene")], value("kürbis ??.toml"));
+        assert_eq!(own.other[&text("scene")], value("kürbis ??.toml"));
     }
 }

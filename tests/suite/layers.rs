@@ -70,7 +70,7 @@ fn layers_are_beside_the_colors_which_are_the_same() {
         command.contains("toyproof render 02-sphere -o layers.exr --size 33x17 --layers"),
         "{command}"
     );
-    let scene = format!("{:?}", file.attributes.other[&Text::from("scene")]);
+    let scene = format!("{:?}", own.other[&Text::from("scene")]);
     assert!(scene.contains("02-sphere"), "{scene}");
 }
 

@@ -658,8 +658,8 @@ mod tests {
     fn a_difference_of_the_last_bits_is_found_in_float32() {
         let other = REFERENCE.replace("0.5 + 0.5", "(0.5 + 1e-7) + 0.5");
         let [unknown, missing] = departure_in_bits(&other, REFERENCE);
-        assert_eq!(unknown, Some("(0.5 + 1e-7) + 0.5 * sin(7.0 * p.x)"));
-        assert_eq!(missing, Some("0.5 + 0.5 * sin(7.0 * p.x)"));
+        assert_eq!(unknown, Some("return (0.5 + 1e-7) + 0.5 * sin(7.0 * p.x);"));
+        assert_eq!(missing, Some("return 0.5 + 0.5 * sin(7.0 * p.x);"));
         let renamed = REFERENCE
             .replace("color", "x")
             .replace("uv", "q")
