@@ -24,8 +24,8 @@ impl Quantization {
     pub fn of_file(path: &Path) -> Option<Self> {
         let extension = path.extension().and_then(OsStr::to_str)?;
         match extension.to_ascii_lowercase().as_str() {
-            "png" => Some(Self::EightBit),
-            "exr" => Some(Self::Float),
+            "png" | "jpg" | "jpeg" | "gif" => Some(Self::EightBit),
+            "exr" | "hdr" => Some(Self::Float),
             _ => None,
         }
     }
