@@ -82,7 +82,7 @@ impl Project {
     }
 
     /// The sound, as a graph of one pass, with the textures that it reads; `None` if there is none. The site
-    /// binds neither buffers nor cube maps to it.
+    /// binds only pictures to it.
     #[must_use]
     pub fn sound(&self) -> Option<Rendering> {
         let at = self.passes.iter().position(|pass| pass.kind == PassKind::Sound)?;
@@ -90,7 +90,7 @@ impl Project {
         let mut textures = Textures::new(&self.media);
         let inputs = [0, 1, 2, 3].map(|channel| {
             let input = pass.inputs[channel].as_ref()?;
-            let is_bound = input.source.pass().is_none() && input.source.source_type() != SourceType::Cubemap;
+            let is_bound = input.source.source_type() == SourceType::Texture;
             is_bound
                 .then(|| textures.source(input, (pass.kind, channel)))
                 .flatten()
@@ -110,17 +110,21 @@ impl Project {
 
     /// How the channels of a pass are sampled. On the site, filter and wrap of a buffer belong to its
     /// texture: the filter is that of the highest channel of the pass that reads it, and the wrap that of the
-    /// last input in the file.
+    /// last input in the file. Keyboard and music have one filter and one wrap, whatever their inputs have.
     pub(crate) fn sampling(&self, pass: &Pass) -> [Sampling; 4] {
         pass.inputs.each_ref().map(|input| {
             let Some(input) = input else {
                 return Sampling::default();
             };
             if input.source.pass().is_none() {
-                return Sampling {
-                    filter: input.sampler.filter,
-                    wrap: input.sampler.wrap,
+                let (filter, wrap) = match input.source.source_type() {
+                    SourceType::Keyboard => (Filter::Nearest, Wrap::Clamp),
+                    SourceType::Music | SourceType::MusicStream | SourceType::Mic => {
+                        (Filter::Linear, Wrap::Clamp)
+                    }
+                    _ => (input.sampler.filter, input.sampler.wrap),
                 };
+                return Sampling { filter, wrap };
             }
             let reads = |other: &&Input| other.source == input.source;
             let highest = pass.inputs.iter().flatten().rfind(reads);

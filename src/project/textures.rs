@@ -296,6 +296,7 @@ fn of_file(content: &Loaded, key: &TextureKey) -> Found {
                 film: FilmSource::File(Arc::clone(film)),
                 is_flipped: key.is_flipped,
                 has_mipmaps: key.has_mipmaps,
+                is_camera: key.source == Source::Webcam,
             }));
         }
     };
@@ -337,6 +338,7 @@ fn computed(source: &Source, stand_in: Option<&'static StandIn>, key: &TextureKe
             film: FilmSource::Computed(compute),
             is_flipped: key.is_flipped,
             has_mipmaps: key.has_mipmaps,
+            is_camera: key.source == Source::Webcam,
         })),
     })
 }
@@ -384,6 +386,8 @@ struct MovingFilm {
     film: FilmSource,
     is_flipped: bool,
     has_mipmaps: bool,
+    /// Whether it takes the place of a camera, which has no position on the site.
+    is_camera: bool,
 }
 
 #[derive(Debug)]
@@ -408,6 +412,7 @@ impl Moving for MovingFilm {
 
     fn position(&self, frame: &Frame) -> f32 {
         match &self.film {
+            _ if self.is_camera => 0.0,
             FilmSource::File(film) if film.duration() > 0.0 => {
                 f64::from(frame.time).rem_euclid(film.duration()) as f32
             }

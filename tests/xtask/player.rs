@@ -1,11 +1,15 @@
 //! Plays ShaderToy's projects in Chromium by the rules of the site's own page: the judge of `toyproof run`.
 //!
 //! A folder of results has `frame-0007-image.f32`, `frame-0007-buffer-a.f32` and so on: RGBA as 32-bit
-//! floats, little endian, bottom row first. Its `player.json` has the size, the passes, the frames, the tabs
-//! that do not compile with the messages of the compiler, and `failure`: why frames are missing.
+//! floats, little endian, bottom row first; the six faces of `cube-a` are stacked. `sound.s16` has the samples
+//! of the Sound tab in 16 bits, little endian, left before right. Its `player.json` has the size, the passes,
+//! the frames, the tabs that do not compile with the messages of the compiler, and `failure`: why frames are
+//! missing.
 //!
 //! A list has a line of JSON per project: `{"project": "a.json", "out": "a", "size": [64, 36], "frames": [0,
 //! 7]}`. Only `project` is required. The default of `out` is the name of the file, below `--out`.
+
+mod media;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,6 +23,8 @@ use serde_json::{Value, json};
 use toyproof::diagnostic::path_name;
 use toyproof_testkit::devtools::Page;
 
+use self::media::Media;
+
 /// WebGL 2 on the bundled software driver. The time limit of a project is ours.
 const SWITCHES: [&str; 4] = [
     "--use-gl=angle",
@@ -26,6 +32,9 @@ const SWITCHES: [&str; 4] = [
     "--enable-unsafe-swiftshader",
     "--disable-gpu-watchdog",
 ];
+
+/// The frames in a second, as the page has them.
+const FRAMES_PER_SECOND: f64 = 60.0;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -41,6 +50,12 @@ pub(super) struct Arguments {
     /// The frames to write
     #[arg(long, default_value = "0", value_delimiter = ',')]
     frames: Vec<u64>,
+    /// The passes to write; all by default
+    #[arg(long, value_delimiter = ',')]
+    passes: Vec<String>,
+    /// The blocks of the Sound tab to write, of 512×512 samples
+    #[arg(long, default_value_t = 0)]
+    sound: u64,
     /// The folder of the results
     #[arg(long)]
     out: PathBuf,
@@ -108,10 +123,10 @@ impl Player {
     }
 
     /// Renders a project into its folder, and returns the record of it.
-    fn play(&mut self, job: &Job, timeout: Duration) -> Value {
+    fn play(&mut self, job: &Job, arguments: &Arguments) -> Value {
         let mut record =
             json!({ "project": job.project, "size": job.size, "passes": [], "frames": [], "errors": [] });
-        let project: Value = match read_json(&job.project) {
+        let mut project: Value = match read_json(&job.project) {
             Ok(project) => project,
             Err(failure) => {
                 record["failure"] = failure.into();
@@ -124,7 +139,8 @@ impl Player {
             .take()
             .unwrap_or_else(|| Page::with(&self.chromium, &SWITCHES));
         page.open(&self.file);
-        match render(&mut page, job, &project, timeout, &mut record) {
+        let media = Media::of(&mut project);
+        match render(&mut page, job, arguments, (&project, &media), &mut record) {
             Ok(()) => self.page = Some(page),
             Err(failure) => record["failure"] = failure.into(),
         }
@@ -141,32 +157,59 @@ fn read_json(file: &Path) -> Result<Value, String> {
 fn render(
     page: &mut Page,
     job: &Job,
-    project: &Value,
-    timeout: Duration,
+    arguments: &Arguments,
+    (project, media): (&Value, &Media),
     record: &mut Value,
 ) -> Result<(), String> {
-    let deadline = Instant::now() + timeout;
+    let deadline = Instant::now() + Duration::from_secs_f64(arguments.timeout);
     let mut value = |script: &str| page.try_value(script, deadline.saturating_duration_since(Instant::now()));
-    let loaded = value(&format!("load({project}, {})", json!(job.size)))?;
+    let size = json!(job.size);
+    let loaded = value(&format!(
+        "load({project}, {size}, {})",
+        Value::from(media.stills.clone())
+    ))?;
     record["passes"] = loaded["passes"].clone();
     record["errors"] = loaded["errors"].clone();
     if loaded["errors"] != json!([]) {
         return Ok(());
     }
+    let names = loaded["passes"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str);
+    let is_written =
+        |name: &&str| arguments.passes.is_empty() || arguments.passes.iter().any(|pass| pass == name);
+    let names: Vec<&str> = names.filter(is_written).collect();
     let frames: BTreeSet<u64> = job.frames.iter().copied().collect();
-    for frame in frames {
-        let pixels = value(&format!("render({frame})"))?;
-        for (pass, pixels) in pixels.as_object().expect("it has the passes") {
-            let bytes = BASE64_STANDARD.decode(pixels.as_str().expect("it is text"));
-            let file = job.out.join(format!("frame-{frame:04}-{pass}.f32"));
-            fs::write(file, bytes.expect("it is base64")).expect("the folder is writable");
+    let mut rendered = 0..;
+    for &frame in &frames {
+        let steps = rendered.by_ref().take_while(|&step| step < frame);
+        for step in steps
+            .chain([frame])
+            .filter(|&step| step == frame || media.has_films())
+        {
+            let time = (step as f64 / FRAMES_PER_SECOND) as f32;
+            value(&format!("render({step}, {})", media.films(time)))?;
         }
-        record["frames"]
-            .as_array_mut()
-            .expect("it is an array")
-            .push(json!(frame));
+        for pass in &names {
+            let file = job.out.join(format!("frame-{frame:04}-{pass}.f32"));
+            write(&file, &value(&format!("pixels({pass:?})"))?);
+        }
+        let written = record["frames"].as_array_mut().expect("it is an array");
+        written.push(json!(frame));
+    }
+    if arguments.sound > 0 {
+        let samples = value(&format!("sound({})", arguments.sound))?;
+        write(&job.out.join("sound.s16"), &samples);
     }
     Ok(())
+}
+
+/// Writes the bytes that the page returns.
+fn write(file: &Path, base64: &Value) {
+    let bytes = BASE64_STANDARD.decode(base64.as_str().expect("it is text"));
+    fs::write(file, bytes.expect("it is base64")).expect("the folder is writable");
 }
 
 /// Renders one project or those of a list, and prints a line for each.
@@ -188,7 +231,7 @@ pub(super) fn play(arguments: &Arguments) {
     for job in &jobs {
         fs::create_dir_all(&job.out).expect("the folder is writable");
         let start = Instant::now();
-        let record = player.play(job, Duration::from_secs_f64(arguments.timeout));
+        let record = player.play(job, arguments);
         fs::write(job.out.join("player.json"), format!("{record:#}\n")).expect("the folder is writable");
         println!(
             "{}: {}, {:.1} s",

@@ -1,127 +1,37 @@
-// Renders projects of ShaderToy as the site's own page does, into float targets. `load(project, size)` compiles
-// all tabs, `render(frame)` renders up to that frame and returns the pixels of all passes, bottom row first.
+// Renders projects of ShaderToy as the site's own page does, into float targets. `load(project, size, media)`
+// compiles all tabs, `render(frame, films)` renders up to that frame, `pixels(pass)` returns what a pass has
+// written, and `sound(blocks)` the samples of the Sound tab.
 "use strict";
 
 const FRAMES_PER_SECOND = 60;
 const SAMPLE_RATE = 44100;
+// The Sound tab is rendered in blocks of this size squared.
+const SOUND_SIDE = 512;
 const MAX_PASSES = 8;
 const BUFFER_IDS = ["4dXGR8", "XsXGR8", "4sXGR8", "XdfGR8"];
 // The number of Buffer A in files of the site's API.
 const FIRST_BUFFER_NUMBER = 257;
+const CUBE_A_ID = "4dX3Rr";
+const CUBE_A_FILE = "cubemap00.png";
+const CUBE_SIDE = 1024;
+
+// The corners (0, 0), (1, 0), (1, 1) and (0, 1) of the faces +X -X +Y -Y +Z -Z of Cube A, and the origin.
+const CORNERS = [
+  [[1, 1, 1], [1, 1, -1], [1, -1, -1], [1, -1, 1]],
+  [[-1, 1, -1], [-1, 1, 1], [-1, -1, 1], [-1, -1, -1]],
+  [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]],
+  [[-1, -1, 1], [1, -1, 1], [1, -1, -1], [-1, -1, -1]],
+  [[-1, 1, 1], [1, 1, 1], [1, -1, 1], [-1, -1, 1]],
+  [[1, 1, -1], [-1, 1, -1], [-1, -1, -1], [1, -1, -1]],
+].map((face) => [...face.flat(), 0, 0, 0]);
 
 const gl = document.createElement("canvas").getContext("webgl2", { antialias: false });
 if (!gl?.getExtension("EXT_color_buffer_float") || !gl.getExtension("OES_texture_float_linear")) {
   throw new Error("WebGL 2 with float targets and their linear filter is not available");
 }
 
-// The project: all passes in the order of the file, and the buffers that they name.
-let passes, size, buffers, image, keyboard, nextFrame;
-
-// ---- The text of a tab: what the site writes before it, with as many lines, which `__LINE__` shows.
-
-const VERTICES = `#version 300 es
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
-
-const PRELUDE = `#version 300 es
-#ifdef GL_ES
-precision highp float;
-precision highp int;
-precision mediump sampler3D;
-#endif
-`;
-
-const UNIFORMS = `#define HW_PERFORMANCE 1
-uniform vec3 iResolution;
-uniform float iTime;
-uniform float iChannelTime[4];
-uniform vec4 iMouse;
-uniform vec4 iDate;
-uniform float iSampleRate;
-uniform vec3 iChannelResolution[4];
-uniform int iFrame;
-uniform float iTimeDelta;
-uniform float iFrameRate;
-`;
-
-const IMAGE_MAIN = `void mainImage( out vec4 c, in vec2 f );
-void st_assert( bool cond );
-void st_assert( bool cond, int v );
-
-out vec4 shadertoy_out_color;
-${oneLine(`void st_assert( bool cond, int v ) {
-  if (!cond) {
-    if (v == 0) shadertoy_out_color.x = -1.0;
-    else if (v == 1) shadertoy_out_color.y = -1.0;
-    else if (v == 2) shadertoy_out_color.z = -1.0;
-    else shadertoy_out_color.w = -1.0;
-  }
-}`)}
-void st_assert( bool cond ) { if (!cond) shadertoy_out_color.x = -1.0; }
-${oneLine(`void main() {
-  shadertoy_out_color = vec4(1.0);
-  vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
-  mainImage(color, gl_FragCoord.xy);
-  if (shadertoy_out_color.x < 0.0) color = vec4(1.0, 0.0, 0.0, 1.0);
-  if (shadertoy_out_color.y < 0.0) color = vec4(0.0, 1.0, 0.0, 1.0);
-  if (shadertoy_out_color.z < 0.0) color = vec4(0.0, 0.0, 1.0, 1.0);
-  if (shadertoy_out_color.w < 0.0) color = vec4(1.0, 1.0, 0.0, 1.0);
-  shadertoy_out_color = vec4(color.xyz, 1.0);
-}`)}
-`;
-
-const BUFFER_MAIN = `void mainImage( out vec4 c, in vec2 f );
-
-out vec4 outColor;
-
-void main()
-{ vec4 color = vec4(0.0, 0.0, 0.0, 1.0); mainImage(color, gl_FragCoord.xy); outColor = color; }
-`;
-
-const SOUND_HEADER = `#define HW_PERFORMANCE 1
-uniform float iChannelTime[4];
-uniform float iTimeOffset;
-uniform int iSampleOffset;
-uniform vec4 iDate;
-uniform float iSampleRate;
-uniform vec3 iChannelResolution[4];
-`;
-
-const SOUND_MAIN = `
-vec2 mainSound( in int samp, float time );
-out vec4 outColor; void main() { outColor = mainSound(iSampleOffset, iTimeOffset).xyxy; }
-`;
-
-const COMMON_HEADER = `uniform vec4 iDate;
-uniform float iSampleRate;
-out vec4 outColor;
-void main()
-{ outColor = vec4(0.0); }
-`;
-
-function oneLine(text) {
-  return text.replace(/\n */g, " ");
-}
-
-const samplerType = (channel) => ({ cubemap: "samplerCube", volume: "sampler3D" })[channel?.kind] ?? "sampler2D";
-
-function header({ kind, channels }) {
-  const samplers = channels.map((channel, at) => `uniform ${samplerType(channel)} iChannel${at};\n`);
-  // The Image has another way to read channels.
-  const structs = channels.map((channel, at) => `uniform struct {
-${samplerType(channel)} sampler;
-vec3 size;
-float time;
-int loaded;
-} iCh${at};
-`);
-  switch (kind) {
-    case "image": return UNIFORMS + samplers.join("") + structs.join("") + IMAGE_MAIN;
-    case "buffer": return UNIFORMS + samplers.join("") + BUFFER_MAIN;
-    case "sound": return SOUND_HEADER + samplers.join("") + SOUND_MAIN;
-    case "common": return COMMON_HEADER;
-    default: throw `cannot render a pass of type ${kind}`;
-  }
-}
+// The project: all passes in the order of the file, and the buffers and Cube A if they name them.
+let passes, size, buffers, cubeA, image, keyboard, media, nextFrame;
 
 // ---- The project.
 
@@ -143,11 +53,22 @@ function buffer(index) {
   return buffers[index];
 }
 
+const isCubeA = ({ id, src, filepath }) => id === CUBE_A_ID || (src ?? filepath ?? "").endsWith(CUBE_A_FILE);
+
 function parseInput(input) {
   const kind = input.ctype ?? input.type;
-  const { filter, wrap } = input.sampler ?? {};
-  if (kind !== "buffer") return { kind };
-  const index = bufferIndex(input);
+  const sampler = input.sampler ?? {};
+  if (kind === "buffer") return bufferInput(kind, bufferIndex(input), sampler);
+  if (kind === "keyboard") return { kind };
+  if (MUSIC_KINDS.includes(kind)) return { kind, texture: musicTexture() };
+  if (kind === "cubemap" && isCubeA(input)) {
+    cubeA ??= { targets: [cubeTarget(), cubeTarget()], last: 0 };
+    return { kind, isCubeA: true, filter: sampler.filter };
+  }
+  return media[input.medium] ? mediumInput(kind, input.medium, sampler) : { kind };
+}
+
+function bufferInput(kind, index, { filter, wrap }) {
   // All inputs share the buffer's textures: the last one in the file decides how they wrap.
   for (const { texture } of buffer(index).targets) {
     gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -166,11 +87,16 @@ function parsePass({ type: kind, code, inputs, outputs }) {
     pass.name = `buffer-${"abcd"[pass.output]}`;
     buffer(pass.output);
   }
+  if (kind === "cubemap") {
+    cubeA ??= { targets: [cubeTarget(), cubeTarget()], last: 0 };
+    pass.name = "cube-a";
+  }
   return pass;
 }
 
-const wantsMipmaps = (index) => passes.some(({ channels }) =>
-  channels.some((channel) => channel?.index === index && channel.filter === "mipmap"));
+// Whether some input that this holds for is filtered with mipmaps.
+const wantsMipmaps = (isMeant) => passes.some(({ channels }) =>
+  channels.some((channel) => channel?.filter === "mipmap" && isMeant(channel)));
 
 function compileStage(program, kind, text) {
   const stage = gl.createShader(kind);
@@ -194,9 +120,9 @@ function compile(pass, common) {
 }
 
 // Reads and compiles a project. Returns the names of its passes, and the error of each tab that does not
-// compile: the site starts only if there is none.
-function load(project, newSize) {
-  [size, buffers, nextFrame] = [newSize, [], 0];
+// compile: the site starts only if there is none. `newMedia` has what the names in `medium` of the inputs mean.
+function load(project, newSize, newMedia) {
+  [size, media, buffers, cubeA, nextFrame] = [newSize, newMedia, [], null, 0];
   if (Array.isArray(project)) [project] = project;
   const { ver, renderpass } = project?.Shader ?? project ?? {};
   try {
@@ -215,12 +141,16 @@ function load(project, newSize) {
   for (const { targets } of buffers.filter(Boolean)) {
     for (const target of targets) {
       clear(target, [0, 0, 0, 0]);
-      makeMipmaps(target);
+      makeMipmaps(gl.TEXTURE_2D, target);
     }
+  }
+  for (const target of cubeA?.targets ?? []) {
+    for (const framebuffer of target.framebuffers) clear({ framebuffer }, [0, 0, 0, 0]);
+    makeMipmaps(gl.TEXTURE_CUBE_MAP, target);
   }
   keyboard = idleKeyboard();
   const errors = passes.filter(({ log }) => log).map(({ name, log }) => ({ pass: name, log }));
-  const names = passes.filter(({ kind }) => kind === "buffer" || kind === "image").map(({ name }) => name);
+  const names = passes.filter(({ kind }) => kind !== "common" && kind !== "sound").map(({ name }) => name);
   return { passes: [...new Set(names)], errors };
 }
 
@@ -238,22 +168,39 @@ function floatTarget([width, height]) {
   return { texture, framebuffer };
 }
 
+function cubeTarget() {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_CUBE_MAP, texture);
+  const faces = CORNERS.map((_, face) => gl.TEXTURE_CUBE_MAP_POSITIVE_X + face);
+  for (const face of faces) {
+    gl.texImage2D(face, 0, gl.RGBA16F, CUBE_SIDE, CUBE_SIDE, 0, gl.RGBA, gl.FLOAT, null);
+  }
+  setFilter(gl.TEXTURE_CUBE_MAP, "linear");
+  const framebuffers = faces.map((face) => {
+    const framebuffer = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, face, texture, 0);
+    return framebuffer;
+  });
+  return { texture, framebuffers };
+}
+
 function idleKeyboard() {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, 256, 3, 0, gl.RED, gl.UNSIGNED_BYTE, new Uint8Array(256 * 3));
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-  setFilter("nearest");
+  setFilter(gl.TEXTURE_2D, "nearest");
   return texture;
 }
 
 // Sets the filter of the bound texture.
-function setFilter(word) {
+function setFilter(target, word) {
   const [magnified, minified] =
     { linear: [gl.LINEAR, gl.LINEAR], mipmap: [gl.LINEAR, gl.LINEAR_MIPMAP_LINEAR] }[word] ?? [gl.NEAREST, gl.NEAREST];
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, magnified);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, minified);
+  gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, magnified);
+  gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, minified);
 }
 
 function clear({ framebuffer }, color) {
@@ -262,90 +209,188 @@ function clear({ framebuffer }, color) {
   gl.clear(gl.COLOR_BUFFER_BIT);
 }
 
-function makeMipmaps({ texture }) {
+function makeMipmaps(target, { texture }) {
   gl.activeTexture(gl.TEXTURE0);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.generateMipmap(gl.TEXTURE_2D);
+  gl.bindTexture(target, texture);
+  gl.generateMipmap(target);
 }
 
 // ---- A frame.
 
-// Binds what a pass reads, and returns the resolutions of its channels. What is not there is left unbound:
-// WebGL then reads (0, 0, 0, 1).
-function bindChannels(channels) {
+// What a channel reads, in a pass of this kind: the texture, its target, `iChannelResolution` and, if it plays,
+// its position, in seconds; `null` for nothing.
+function binding(channel, kind, time) {
+  const flat = (texture, resolution, position = 0) => ({ target: gl.TEXTURE_2D, texture, resolution, position });
+  if (kind === "sound" && channel?.kind !== "texture") return null;
+  if (channel?.kind === "buffer") {
+    const { targets, last } = buffers[channel.index];
+    return flat(targets[last].texture, [...size, 1]);
+  }
+  if (channel?.kind === "keyboard") return flat(keyboard, kind === "cubemap" ? [0, 0, 0] : [256, 3, 1]);
+  if (MUSIC_KINDS.includes(channel?.kind)) return flat(channel.texture, [MUSIC_COLUMNS, 2, 1], 10 + time);
+  if (channel?.isCubeA) {
+    const { texture } = cubeA.targets[cubeA.last];
+    return { target: gl.TEXTURE_CUBE_MAP, texture, resolution: [CUBE_SIDE, CUBE_SIDE, 1], position: 0 };
+  }
+  if (!channel?.texture) return null;
+  return { ...channel, position: channel.kind === "video" ? time : 0 };
+}
+
+// Binds what a pass reads, and returns it. What is not there is left unbound: WebGL then reads (0, 0, 0, 1).
+function bindChannels({ kind, channels }, time) {
   return channels.map((channel, at) => {
     gl.activeTexture(gl.TEXTURE0 + at);
-    gl.bindTexture(gl.TEXTURE_2D, null);
-    if (channel?.kind === "keyboard") {
-      gl.bindTexture(gl.TEXTURE_2D, keyboard);
-      return [256, 3, 1];
-    }
-    if (channel?.kind !== "buffer") return [0, 0, 0];
-    const { targets, last } = buffers[channel.index];
-    gl.bindTexture(gl.TEXTURE_2D, targets[last].texture);
+    for (const target of [gl.TEXTURE_2D, gl.TEXTURE_3D, gl.TEXTURE_CUBE_MAP]) gl.bindTexture(target, null);
+    const bound = binding(channel, kind, time);
+    if (!bound) return { resolution: [0, 0, 0], position: 0, loaded: 0 };
+    gl.bindTexture(bound.target, bound.texture);
     // The filter is the texture's: the last channel that reads it decides.
-    setFilter(channel.filter);
-    return [...size, 1];
+    if (channel.kind === "buffer" || channel.isCubeA) setFilter(bound.target, channel.filter);
+    return { ...bound, loaded: 1 };
   });
 }
 
-function setUniforms({ program, channels }, frame, resolutions) {
+function setChannelUniforms(program, bound) {
   const at = (name) => gl.getUniformLocation(program, name);
-  gl.uniform3f(at("iResolution"), ...size, 1);
+  gl.uniform1fv(at("iChannelTime"), bound.map(({ position }) => position));
+  gl.uniform3fv(at("iChannelResolution"), bound.flatMap(({ resolution }) => resolution));
+  gl.uniform4f(at("iDate"), 0, 0, 0, 0);
+  gl.uniform1f(at("iSampleRate"), SAMPLE_RATE);
+  // The samplers of the structs are left at unit 0, as on the site.
+  bound.forEach(({ resolution, position, loaded }, index) => {
+    gl.uniform1i(at(`iChannel${index}`), index);
+    gl.uniform3f(at(`iCh${index}.size`), ...resolution);
+    gl.uniform1f(at(`iCh${index}.time`), position);
+    gl.uniform1i(at(`iCh${index}.loaded`), loaded);
+  });
+}
+
+function setUniforms(program, frame, resolution) {
+  const at = (name) => gl.getUniformLocation(program, name);
+  gl.uniform3f(at("iResolution"), ...resolution, 1);
   gl.uniform1f(at("iTime"), frame / FRAMES_PER_SECOND);
   gl.uniform1f(at("iTimeDelta"), 1 / FRAMES_PER_SECOND);
   gl.uniform1f(at("iFrameRate"), FRAMES_PER_SECOND);
   gl.uniform1i(at("iFrame"), frame);
-  gl.uniform1fv(at("iChannelTime"), [0, 0, 0, 0]);
-  gl.uniform3fv(at("iChannelResolution"), resolutions.flat());
   gl.uniform4f(at("iMouse"), 0, 0, -0, -0);
-  gl.uniform4f(at("iDate"), 0, 0, 0, 0);
-  gl.uniform1f(at("iSampleRate"), SAMPLE_RATE);
-  // The samplers of the structs are left at unit 0, as on the site.
-  channels.forEach((channel, index) => {
-    gl.uniform1i(at(`iChannel${index}`), index);
-    gl.uniform3f(at(`iCh${index}.size`), ...resolutions[index]);
-    gl.uniform1i(at(`iCh${index}.loaded`), resolutions[index][0] > 0 ? 1 : 0);
-  });
+}
+
+// Uses the program of a pass with all that it reads in a frame.
+function prepare(pass, frame, resolution) {
+  const bound = bindChannels(pass, frame / FRAMES_PER_SECOND);
+  gl.useProgram(pass.program);
+  setUniforms(pass.program, frame, resolution);
+  setChannelUniforms(pass.program, bound);
 }
 
 function renderPass(pass, frame) {
-  const resolutions = bindChannels(pass.channels);
-  gl.useProgram(pass.program);
-  setUniforms(pass, frame, resolutions);
+  if (pass.kind === "cubemap") {
+    renderCube(pass, frame);
+    return;
+  }
+  prepare(pass, frame, size);
   const written = buffers[pass.output];
   const target = written ? written.targets[1 - written.last] : image;
-  gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
-  gl.viewport(0, 0, ...size);
-  // Nothing is cleared: discarded pixels keep what the target had.
-  gl.drawArrays(gl.TRIANGLES, 0, 3);
+  draw(target, size);
   if (!written) return;
-  if (wantsMipmaps(pass.output)) makeMipmaps(target);
+  if (wantsMipmaps(({ index }) => index === pass.output)) makeMipmaps(gl.TEXTURE_2D, target);
   written.last = 1 - written.last;
 }
 
-// Renders up to this frame. Returns what each pass has written, as base64 of floats.
-function render(frame) {
+function renderCube(pass, frame) {
+  const target = cubeA.targets[1 - cubeA.last];
+  const side = [CUBE_SIDE, CUBE_SIDE];
+  prepare(pass, frame, side);
+  gl.uniform4f(gl.getUniformLocation(pass.program, "unViewport"), 0, 0, ...side);
+  target.framebuffers.forEach((framebuffer, face) => {
+    gl.uniform3fv(gl.getUniformLocation(pass.program, "unCorners"), CORNERS[face]);
+    draw({ framebuffer }, side);
+  });
+  if (wantsMipmaps((channel) => channel.isCubeA)) makeMipmaps(gl.TEXTURE_CUBE_MAP, target);
+  cubeA.last = 1 - cubeA.last;
+}
+
+// Nothing is cleared: discarded pixels keep what the target had.
+function draw({ framebuffer }, viewport) {
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.viewport(0, 0, ...viewport);
+  gl.drawArrays(gl.TRIANGLES, 0, 3);
+}
+
+// Renders up to this frame. `films` has the layers of each film in it: with films, no frame may be skipped.
+function render(frame, films) {
   for (; nextFrame <= frame; nextFrame++) {
-    for (const kind of ["buffer", "image"]) {
+    move(nextFrame, films);
+    for (const kind of ["buffer", "cubemap", "image"]) {
       for (const pass of passes) if (pass.kind === kind) renderPass(pass, nextFrame);
     }
   }
-  const pixels = {};
-  for (const { kind, name, output } of passes) {
-    if (kind === "image") pixels[name] = readPixels(image);
-    if (kind === "buffer") pixels[name] = readPixels(buffers[output].targets[buffers[output].last]);
-  }
-  const error = gl.getError();
-  if (error !== gl.NO_ERROR) throw new Error(`WebGL error 0x${error.toString(16)} up to frame ${frame}`);
-  return pixels;
+  checkErrors(`up to frame ${frame}`);
 }
 
-function readPixels({ framebuffer }) {
-  const floats = new Float32Array(4 * size[0] * size[1]);
+function checkErrors(when) {
+  const error = gl.getError();
+  if (error !== gl.NO_ERROR) throw new Error(`WebGL error 0x${error.toString(16)} ${when}`);
+}
+
+// ---- Results, in base64.
+
+// What a pass has written: RGBA as floats, bottom row first, the faces of Cube A one above the other.
+function pixels(name) {
+  const { kind, output } = passes.find((pass) => pass.name === name);
+  if (kind === "image") return base64(readPixels(image, size));
+  if (kind === "buffer") return base64(readPixels(buffers[output].targets[buffers[output].last], size));
+  const side = [CUBE_SIDE, CUBE_SIDE];
+  const { framebuffers } = cubeA.targets[cubeA.last];
+  const faces = framebuffers.map((framebuffer) => readPixels({ framebuffer }, side));
+  const stack = new Float32Array(faces.length * faces[0].length);
+  faces.forEach((face, at) => stack.set(face, at * face.length));
+  return base64(stack);
+}
+
+// The samples of the first blocks of the Sound tab: 16 bits of the left, of the right channel, and so on.
+function sound(blocks) {
+  const pass = passes.find(({ kind }) => kind === "sound");
+  const side = [SOUND_SIDE, SOUND_SIDE];
+  const target = byteTarget(side);
+  const bytes = new Uint8Array(4 * SOUND_SIDE * SOUND_SIDE);
+  const samples = new Int16Array(2 * SOUND_SIDE * SOUND_SIDE * blocks);
+  gl.useProgram(pass.program);
+  setChannelUniforms(pass.program, bindChannels(pass, 0));
+  for (let block = 0; block < blocks; block++) {
+    const first = block * SOUND_SIDE * SOUND_SIDE;
+    gl.uniform1f(gl.getUniformLocation(pass.program, "iTimeOffset"), first / SAMPLE_RATE);
+    gl.uniform1i(gl.getUniformLocation(pass.program, "iSampleOffset"), first);
+    draw(target, side);
+    gl.readPixels(0, 0, ...side, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    for (let at = 0; at < bytes.length; at += 2) {
+      // The largest level does not fit into a sample.
+      samples[2 * first + at / 2] = Math.min(bytes[at] + 256 * bytes[at + 1] - 32767, 32767);
+    }
+  }
+  checkErrors("in the sound");
+  return base64(samples);
+}
+
+function byteTarget([width, height]) {
+  const renderbuffer = gl.createRenderbuffer();
+  gl.bindRenderbuffer(gl.RENDERBUFFER, renderbuffer);
+  gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
+  const framebuffer = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-  gl.readPixels(0, 0, ...size, gl.RGBA, gl.FLOAT, floats);
-  const bytes = new Uint8Array(floats.buffer);
+  gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, renderbuffer);
+  return { framebuffer };
+}
+
+function readPixels({ framebuffer }, [width, height]) {
+  const floats = new Float32Array(4 * width * height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, floats);
+  return floats;
+}
+
+function base64({ buffer }) {
+  const bytes = new Uint8Array(buffer);
   let text = "";
   for (let at = 0; at < bytes.length; at += 8192) text += String.fromCharCode(...bytes.subarray(at, at + 8192));
   return btoa(text);
