@@ -75,7 +75,7 @@ const STAND_INS: &[StandIn] = &[
     row("Xsf3Rr", Content::Texture(material::blue_stone), "a computed image of gray stone, not the site's photograph"),
     row("4df3Rr", Content::Texture(material::rose_marble), "a computed image of marble, not the site's photograph"),
     row("Xsf3Rn", Content::Texture(material::running_cat), "another cat, in the same six frames of 40 texels"),
-    row("XdXGzr", Content::Texture(material::blotches), "computed blotches of paint, not the site's photograph"),
+    row("XdXGzr", Content::Texture(material::blotches), "computed blotches of color, not the site's photograph"),
     row("XsXGRn", Content::Texture(material::bark), "a computed image of bark, not the site's photograph"),
     row("XsfGzn", Content::Cube(|| sharp(512, |d| GALLERY.color(d))), "a computed court between houses, not the site's photograph"),
     row("4sfGzn", Content::Cube(|| blurred(64, |d| GALLERY.color(d))), "a computed court between houses, blurred, not the site's photograph"),

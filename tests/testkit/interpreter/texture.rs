@@ -222,7 +222,19 @@ impl<N: Real> Run<'_, N> {
                 let beside = [[at[0], inside[1].into()], [inside[0].into(), at[1]]];
                 let [one, other] = beside.map(|at| self.cube_texel(channel, face, at, side, level));
                 let own = texel((face, inside));
-                [0, 1, 2, 3].map(|i| (own[i] + one[i] + other[i]) / N::from_f64(3.0))
+                let is_single = self.texture_of(channel, SamplerShape::Cube).is_none_or(|texture| {
+                    matches!(texture.texels(), Texels::Single(_))
+                });
+                // A texture in float32 also holds its border in float32.
+                let mean = |sum: [N; 3]| {
+                    if is_single {
+                        let [a, b, c] = sum.map(Real::to_f32);
+                        N::from_f64(((a + b + c) / 3.0).into())
+                    } else {
+                        (sum[0] + sum[1] + sum[2]) / N::from_f64(3.0)
+                    }
+                };
+                [0, 1, 2, 3].map(|i| mean([own[i], one[i], other[i]]))
             }
             _ => texel(nearest_beyond(face, inside, at, side)),
         }

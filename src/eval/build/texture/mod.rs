@@ -106,15 +106,15 @@ impl Builder<'_> {
         let levels = if has_mipmaps { MOST_LEVELS } else { 1 };
         let checked = [level, NONE];
         self.check(Fault::NoLevel, self.at(call), Predicate::AtLeast(levels), checked);
-        let size = (0..channel.sides()).map(|axis| {
-            let mut side = self.extent(channel, axis);
+        let size = [0, 1, 2].map(|axis| {
+            // There is a third side only of a volume.
+            let mut side = self.extent(channel, axis.min(channel.sides() - 1));
             if has_mipmaps {
                 side = self.binary(Operation::ShiftRightUint, side, level);
             }
-            let side = self.binary(Operation::MaxInt, side, self.word(1));
-            self.substitute_undefined(side)
+            self.binary(Operation::MaxInt, side, self.word(1))
         });
-        size.collect()
+        self.substitute_undefined_all(size)[..usize::from(channel.sides())].to_vec()
     }
 
     /// The texel of `texelFetch` or `texelFetchOffset`.
