@@ -154,9 +154,6 @@ mod tests {
 
     #[test]
     fn sizes_are_those_of_the_site() {
-        assert_eq!(
-            ALL.map(|noise| noise.image().size()[0]),
-            [256, 64, 256, 64, 8]
-        );
+        assert_eq!(ALL.map(|noise| noise.image().size()[0]), [256, 64, 256, 64, 8]);
     }
 }

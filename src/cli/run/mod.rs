@@ -192,9 +192,7 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
         if let Ok(checked) = shader.image() {
             terminal.diagnostics(&unbound(checked, &shader.lints, runner.frame), &shader.files);
         }
-        let output = shader
-            .require_image()
-            .and_then(|_| args.sequence.output(&path));
+        let output = shader.require_image().and_then(|_| args.sequence.output(&path));
         let rendered = output.and_then(|output| match output {
             Output::Image => runner.one_image(&shader, runner.frame, &path),
             output => runner.frames(&shader, output, &path),

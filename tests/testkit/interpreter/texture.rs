@@ -222,9 +222,9 @@ impl<N: Real> Run<'_, N> {
                 let beside = [[at[0], inside[1].into()], [inside[0].into(), at[1]]];
                 let [one, other] = beside.map(|at| self.cube_texel(channel, face, at, side, level));
                 let own = texel((face, inside));
-                let is_single = self.texture_of(channel, SamplerShape::Cube).is_none_or(|texture| {
-                    matches!(texture.texels(), Texels::Single(_))
-                });
+                let is_single = self
+                    .texture_of(channel, SamplerShape::Cube)
+                    .is_none_or(|texture| matches!(texture.texels(), Texels::Single(_)));
                 // A texture in float32 also holds its border in float32.
                 let mean = |sum: [N; 3]| {
                     if is_single {

@@ -50,7 +50,9 @@ impl Media {
                 for (key, field) in fields {
                     match field {
                         Value::Array(inputs) if key == "inputs" => {
-                            inputs.iter_mut().for_each(|input| self.name_input(input));
+                            for input in inputs {
+                                self.name_input(input);
+                            }
                         }
                         other => self.name(other),
                     }
@@ -85,9 +87,9 @@ impl Media {
 
     fn still(&mut self, stand_in: &'static StandIn, components: u8) -> Value {
         let (size, layers) = match stand_in.content {
-            Content::Picture(compute) => layers(vec![compute()], rows_from_top),
-            Content::Cube(compute) => layers(compute().to_vec(), rows_from_top),
-            Content::Volume(compute) => layers(compute(), |slice| encoded(slice.pixels())),
+            Content::Texture(compute) => layers(&[compute()], rows_from_top),
+            Content::Cube(compute) => layers(&compute(), rows_from_top),
+            Content::Volume(compute) => layers(&compute(), |slice| encoded(slice.pixels())),
             Content::Film(compute) => {
                 self.films.insert(stand_in.id, compute);
                 (compute(0.0).size(), Vec::new())
@@ -98,7 +100,7 @@ impl Media {
 }
 
 /// The size of images, and the text of each.
-fn layers(images: Vec<Image>, text: impl Fn(&Image) -> String) -> ([u32; 2], Vec<String>) {
+fn layers(images: &[Image], text: impl Fn(&Image) -> String) -> ([u32; 2], Vec<String>) {
     (images[0].size(), images.iter().map(text).collect())
 }
 
