@@ -126,6 +126,7 @@ impl Case {
         Clock {
             inputs: Frame {
                 size: self.expected[0].size,
+                films: self.rendering().films,
                 ..Frame::default()
             },
             rate: 60.0,
