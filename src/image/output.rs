@@ -141,7 +141,7 @@ pub enum MakeError<E> {
     Content(E),
 }
 
-/// Writes a file as [`write`] does, or as [`write_inside`] does if a folder is given. `make` fills an
+/// Writes a file as [`write()`] does, or as [`write_inside`] does if a folder is given. `make` fills an
 /// existing empty file, or a special one; it may be another program that does so. If it fails, nothing is
 /// replaced.
 ///
