@@ -21,8 +21,8 @@
 //! - `frame_inputs`: these inputs as a user describes them, before files are read.
 //! - `moving`: textures that change from frame to frame.
 //! - `keys`, `script`: the keyboard, and the user's actions over the frames of a run.
-//! - `file`: image files, the only place that quantizes; `exr_channels`: EXR with channels beside the colors. Only
-//!   these flip rows.
+//! - `file`: image files, the only place that quantizes; `exr_channels`: EXR with channels beside the colors.
+//!   Only these flip rows.
 //! - `output`: atomic writing of files.
 //! - [`input`]: the only place that opens files of others: regular files only.
 

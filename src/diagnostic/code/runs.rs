@@ -278,11 +278,11 @@ macro_rules! runs {
     /// depends on the precision: bound the number of its iterations.
     OnlySingle "W0612" "A shader that cannot be evaluated in double precision",
 
-    /// A project reads a texture, cube map, volume, film or sound of ShaderToy's site. Their files may not be
-    /// distributed, so that toyproof computes others with the properties that shaders rely on: the same size and
-    /// components, similar colors, and the same on every machine. A photograph is another one of the same kind,
-    /// so that an image in which it is seen is not that of the site. Give your own copies with `--media DIR`, in files that are named like the media:
-    /// `rock-tiles.jpg`.
+    /// A project reads a texture, cube map, volume, film or sound of ShaderToy's site. Their files may not
+    /// be distributed, so that toyproof computes others with the properties that shaders rely on: the same
+    /// size and components, similar colors, and the same on every machine. A photograph is another one of
+    /// the same kind, so that an image in which it is seen is not that of the site. Give your own copies
+    /// with `--media DIR`, in files that are named like the media: `rock-tiles.jpg`.
     StandIn "W0613" "A computed texture in place of one of the site's",
     } };
 }

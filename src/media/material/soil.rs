@@ -1,4 +1,4 @@
-//! Weathered surfaces: bark, rust, metal, blotches of paint, and glittering dust.
+//! Weathered surfaces: bark, rust, metal, blotches of color, and glittering dust.
 
 use toyproof_image::{Image, pcg};
 
@@ -101,7 +101,7 @@ pub(crate) fn rusty_metal() -> Image {
     })
 }
 
-/// Large soft blotches of brown and blue paint that ran down.
+/// Large soft blotches of brown and blue that ran down.
 pub(crate) fn blotches() -> Image {
     const SIDE: usize = 1024;
     let light = Field::fractal(SIDE, [4, 2], 91, 0.6);
