@@ -33,7 +33,8 @@ pub(super) fn rendering(project: &CompiledProject, kind: PassKind) -> Result<Ren
     rendering.map_err(|error| Failure::Unrendered(error.to_string()))
 }
 
-/// Binds the textures that the user names to the channels of the image, instead of what the project reads there.
+/// Binds the textures that the user names to the channels of the image, instead of what the project reads
+/// there.
 pub(super) fn bind_channels(
     project: &CompiledProject,
     rendering: &mut Rendering,

@@ -257,8 +257,8 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// Where a difference in a pixel of a pass arises: the first value that the other shader does not have, or else
-    /// the last assignment.
+    /// Where a difference in a pixel of a pass arises: the first value that the other shader does not have, or
+    /// else the last assignment.
     fn origins(
         &self,
         inputs: &Frame,

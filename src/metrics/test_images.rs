@@ -58,7 +58,8 @@ fn lit(image: &Image) -> Image {
 }
 
 /// The values of `NumPy` (RMSE), of scikit-image 0.26 (PSNR, SSIM) and of flip-evaluator 1.7, in the order of
-/// [`Metric::ALL`], for images of three sizes, some sides of which are smaller than a band of rows or a filter.
+/// [`Metric::ALL`], for images of three sizes, some sides of which are smaller than a band of rows or a
+/// filter.
 const VALUES: [([u32; 2], [f64; 5]); 3] = [
     (
         [48, 40],

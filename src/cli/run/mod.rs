@@ -1,6 +1,7 @@
 //! `toyproof run`
 
 mod banded;
+mod failure;
 mod project;
 mod sound;
 mod state;
@@ -14,20 +15,22 @@ use clap::ValueEnum;
 use indicatif::ProgressBar;
 pub(in crate::cli) use project::parse_pass;
 use serde::Serialize;
-use toyproof_diagnostic::{Code, Deadline, Diagnostic, grouped, path_name, plural};
+use toyproof_diagnostic::{Code, Deadline, grouped, path_name, plural};
 use toyproof_eval::{self as eval, Number, Settings, Supersampling, UndefinedPolicy};
 use toyproof_eval_native::Program;
 use toyproof_film::FilmSettings;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image, ImageError, check_size};
-use toyproof_player::{Clock, Target};
+use toyproof_player::Clock;
 use toyproof_project::PassKind;
 use toyproof_project::files;
 use toyproof_report as report;
 use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
+use self::failure::{ImageFailure, draw_error, image_failure, is_too_large, shader_error};
+pub(in crate::cli) use self::failure::{evaluation_error, pass_error};
 use crate::cli::inputs::{
     DriverArgs, Format, FrameArgs, LanguageArgs, check_output, shell_word, short_device,
 };
@@ -307,19 +310,6 @@ struct Runner<'a> {
     frame: &'a Frame,
     /// The written images.
     images: Vec<WrittenImage>,
-}
-
-/// Why there is no image.
-enum ImageFailure {
-    Failed(CliError),
-    /// The user interrupted the rendering.
-    Interrupted,
-}
-
-impl From<CliError> for ImageFailure {
-    fn from(error: CliError) -> Self {
-        Self::Failed(error)
-    }
 }
 
 impl Runner<'_> {
@@ -665,12 +655,6 @@ impl<'a> Runner<'a> {
     }
 }
 
-/// Whether a shader is too large for the evaluator, so that a driver may be able to render it.
-fn is_too_large(failure: &eval::Failure) -> bool {
-    use eval::Refusal::{NoMemory, TooDeep, TooLong};
-    matches!(failure, eval::Failure::Refused(TooLong | TooDeep | NoMemory))
-}
-
 /// The image that a driver rendered.
 fn draw_result(drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<RenderedImage, CliError> {
     let drawn = drawn.map_err(|failure| draw_error(failure, shader))?;
@@ -683,59 +667,4 @@ fn draw_result(drawn: Result<DrawOutput, Failure>, shader: &Shader) -> Result<Re
         device: drawn.device.clone(),
         image: drawn.image(),
     })
-}
-
-/// Why the driver rendered nothing.
-fn draw_error(failure: Failure, shader: &Shader) -> CliError {
-    match failure {
-        Failure::Invalid(diagnostics) => shader_error(diagnostics, shader),
-        Failure::Refused(diagnostics) => CliError::diagnostics(diagnostics, &shader.files),
-        failure => {
-            let mut error = CliError::new(format_args!("{}: {failure}", shader.name));
-            if failure.is_timeout() {
-                error =
-                    error.with_help("allow more time with --timeout, or render on the CPU with --device cpu");
-            }
-            if failure.is_invalid() || matches!(failure, Failure::Timeout { .. }) {
-                error = error.with_exit(Exit::ShaderFault);
-            }
-            error
-        }
-    }
-}
-
-/// The errors of a shader.
-fn shader_error(diagnostics: Vec<Diagnostic>, shader: &Shader) -> CliError {
-    CliError::diagnostics(diagnostics, &shader.files).with_exit(Exit::ShaderFault)
-}
-
-fn image_failure(failure: &eval::Failure, shader: &Shader) -> ImageFailure {
-    match failure {
-        eval::Failure::Interrupted => ImageFailure::Interrupted,
-        failure => ImageFailure::Failed(evaluation_error(failure, shader)),
-    }
-}
-
-/// Why the evaluator failed.
-pub(in crate::cli) fn evaluation_error(failure: &eval::Failure, shader: &Shader) -> CliError {
-    pass_error(failure, None, shader)
-}
-
-/// Why the evaluator failed, and in which pass of a project.
-pub(in crate::cli) fn pass_error(failure: &eval::Failure, pass: Option<Target>, shader: &Shader) -> CliError {
-    let tab = pass.map_or_else(String::new, |pass| format!("{pass}: "));
-    if let eval::Failure::Refused(eval::Refusal::TooSlow(overdue)) = failure {
-        let mut diagnostic = glsl::overdue(*overdue);
-        diagnostic.message.insert_str(0, &tab);
-        return shader_error(vec![diagnostic], shader);
-    }
-    let position = report::failure_position(failure, &shader.files);
-    let error = CliError::new(format_args!("{}: {tab}{failure}{position}", shader.name));
-    match failure {
-        eval::Failure::Refused(_) => error,
-        eval::Failure::Timeout { .. } | eval::Failure::TimeUp => error
-            .with_help("allow more time with --timeout")
-            .with_exit(Exit::ShaderFault),
-        _ => error.with_exit(Exit::ShaderFault),
-    }
 }
