@@ -15,7 +15,7 @@ use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture, cube};
 use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Storage, Target};
 use toyproof_translate::FloatMode;
 use toyproof_verify::evaluator::{Evaluation, Evaluator};
-use toyproof_verify::project::playback::{DevicePlayback, channel_sampling};
+use toyproof_verify::project::playback::DevicePlayback;
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, within};
 
 use super::passes::{GraphContent, PASS_FRAMES, PASS_SIZES, PassComparison, PassSources};
@@ -218,9 +218,8 @@ fn open<'a>(
     graph: &Graph,
     media: &[Texture],
 ) -> Result<DevicePlayback<'a>, Failure> {
-    let sampling = sampling.map(|channels| channels.map(channel_sampling)).collect();
     let device = worker
-        .open_player(code, sampling, graph.clone(), media.to_vec(), None)
+        .open_player(code, sampling.collect(), graph.clone(), media.to_vec(), None)
         .map_err(Failure::Gpu)?;
     Ok(DevicePlayback::opened(worker, device, graph))
 }

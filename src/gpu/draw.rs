@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use toyproof_image::{Frame, Image};
+use toyproof_image::{Filter, Frame, Image, Sampling, Wrap};
 use toyproof_translate::backend::spirv;
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
@@ -32,10 +32,29 @@ pub(super) struct PreparedFrame {
 pub(super) struct Program {
     words: Vec<u32>,
     channels: [Shape; 4],
+    sampling: [Sampling; 4],
     float: FloatMode,
 }
 
+/// How the textures of converted files are sampled, which do not say it.
+const DEFAULT_SAMPLING: Sampling = Sampling {
+    filter: Filter::Mipmap,
+    wrap: Wrap::Repeat,
+};
+
 impl Program {
+    /// Translates a lowered shader, and returns its module, too.
+    pub(super) fn of(lowered: &Lowered, float: FloatMode) -> Result<(Self, ValidModule), Failure> {
+        let module = ValidModule::parse(lowered).map_err(refused)?;
+        let program = Self::new(&module, float)?.with_sampling(lowered.sampling());
+        Ok((program, module))
+    }
+
+    /// Sets how the textures are sampled.
+    pub(super) fn with_sampling(self, sampling: [Sampling; 4]) -> Self {
+        Self { sampling, ..self }
+    }
+
     /// Emits SPIR-V for a module, decorated for strict arithmetic if `float` is strict.
     pub(super) fn new(module: &ValidModule, float: FloatMode) -> Result<Self, Failure> {
         let words = spirv::words(module).map_err(naga_failed)?;
@@ -50,6 +69,7 @@ impl Program {
                 FloatMode::Fast => words,
             },
             channels,
+            sampling: [DEFAULT_SAMPLING; 4],
             float,
         }
     }
@@ -72,6 +92,8 @@ pub(crate) const CLEAR_COLOR: wgpu::Color = wgpu::Color {
 #[derive(Debug)]
 pub(super) struct CompiledPipeline {
     pub(super) layout: Layout,
+    /// How [`Device::stage`] samples the textures.
+    sampling: [Sampling; 4],
     pub(super) pipeline: RenderPipeline,
 }
 
@@ -87,7 +109,11 @@ impl Device {
         self.with_error_scopes(|| {
             let layout = Layout::new(self, program.channels);
             let pipeline = layout.pipeline(&self.gpu, &self.driver_words(program));
-            Ok(CompiledPipeline { layout, pipeline })
+            Ok(CompiledPipeline {
+                layout,
+                sampling: program.sampling,
+                pipeline,
+            })
         })
     }
 
@@ -123,7 +149,7 @@ impl Device {
                     let views = compiled.layout.views(&self.gpu, &self.queue, frame);
                     compiled
                         .layout
-                        .bind(&self.gpu, &self.queue, &frame.block(), &views, Default::default())
+                        .bind(&self.gpu, &self.queue, &frame.block(), &views, compiled.sampling)
                 },
                 target,
                 readback,
@@ -271,9 +297,9 @@ impl LocalRenderer {
         float: FloatMode,
         selector: &AdapterSelector,
     ) -> Result<Self, Failure> {
-        let module = ValidModule::parse(lowered).map_err(refused)?;
+        let (program, _) = Program::of(lowered, float)?;
         let device = Device::open(selector)?;
-        let prepared = device.prepare(&Program::new(&module, float)?, frame)?;
+        let prepared = device.prepare(&program, frame)?;
         Ok(Self { device, prepared })
     }
 

@@ -59,7 +59,7 @@ pub use sandbox::{SANDBOX_VARIABLE, Sandbox};
 use serde::{Deserialize, Serialize};
 pub use serve::{MAX_MEMORY_BYTES, serve};
 use toyproof_diagnostic::Diagnostics;
-pub use toyproof_player::{ChannelSampling, DrawOutput, DriverFailure as Failure, Phase, Readback};
+pub use toyproof_player::{DrawOutput, DriverFailure as Failure, Phase, Readback};
 use toyproof_translate::TranslateError;
 pub use worker::Worker;
 

@@ -2,8 +2,7 @@
 
 use std::num::NonZeroU64;
 
-use toyproof_image::{BLOCK_BYTES, Frame};
-use toyproof_player::ChannelSampling;
+use toyproof_image::{BLOCK_BYTES, Filter, Frame, Sampling, Wrap};
 use toyproof_translate::naga_ir::Shape;
 use wgpu::{
     BindGroup, BindGroupLayout, BindGroupLayoutEntry, BindingType, Buffer, BufferUsages, Device, Features,
@@ -145,7 +144,7 @@ impl Layout {
         queue: &wgpu::Queue,
         block: &[u8],
         views: &[TextureView; 4],
-        sampling: [ChannelSampling; 4],
+        sampling: [Sampling; 4],
     ) -> BindGroup {
         let block = uniform(device, queue, block);
         let samplers = sampling.map(|sampling| self.sampler(device, sampling));
@@ -169,18 +168,14 @@ impl Layout {
 
 impl Layout {
     /// The sampler of a channel. Without mipmaps, GLSL reads the largest level whatever level is requested.
-    fn sampler(&self, device: &Device, sampling: ChannelSampling) -> Sampler {
-        let ChannelSampling {
-            linear,
-            mipmaps,
-            repeat,
-        } = sampling;
-        let address = if repeat {
-            wgpu::AddressMode::Repeat
-        } else {
-            wgpu::AddressMode::ClampToEdge
+    fn sampler(&self, device: &Device, sampling: Sampling) -> Sampler {
+        let Sampling { filter, wrap } = sampling;
+        let mipmaps = filter == Filter::Mipmap;
+        let address = match wrap {
+            Wrap::Repeat => wgpu::AddressMode::Repeat,
+            Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
         };
-        let filter = if linear && self.filterable {
+        let filter = if filter != Filter::Nearest && self.filterable {
             wgpu::FilterMode::Linear
         } else {
             wgpu::FilterMode::Nearest
@@ -193,6 +188,7 @@ impl Layout {
         device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: address,
             address_mode_v: address,
+            address_mode_w: address,
             mag_filter: filter,
             min_filter: filter,
             mipmap_filter,

@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::{self as glsl, Stage};
-use toyproof_image::{self as image, Frame, Image, Texture, cube};
-use toyproof_player::{Channel, ChannelSampling, Player, Readback, Renderer, Storage};
+use toyproof_image::{self as image, Frame, Image, Sampling, Texture, cube};
+use toyproof_player::{Channel, Player, Readback, Renderer, Storage};
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered, lower_strict};
 use wgpu::{TextureUsages, TextureView, TextureViewDescriptor};
@@ -21,7 +21,7 @@ pub(super) struct PassRenderer {
     device: Device,
     passes: Vec<CompiledPipeline>,
     /// The samplers of each pass.
-    sampling: Vec<[ChannelSampling; 4]>,
+    sampling: Vec<[Sampling; 4]>,
     /// The textures that do not change.
     media: Vec<Uploads>,
     /// Renders a mipmap from the next larger one; compiled if a buffer has mipmaps.
@@ -68,7 +68,7 @@ impl PassRenderer {
     pub(super) fn new(
         device: Device,
         programs: &[Program],
-        sampling: Vec<[ChannelSampling; 4]>,
+        sampling: Vec<[Sampling; 4]>,
         media: &[Texture],
     ) -> Result<Self, (Device, Failure)> {
         let passes = programs.iter().map(|program| device.compile(program)).collect();
@@ -141,7 +141,7 @@ impl PassRenderer {
         compiled: &CompiledPipeline,
         frame: &Frame,
         channels: [BoundChannel; 4],
-        sampling: [ChannelSampling; 4],
+        sampling: [Sampling; 4],
         target: &TextureView,
     ) -> Result<(), Failure> {
         let Device { gpu, queue, .. } = &self.device;
@@ -226,9 +226,8 @@ fn halving_program() -> Result<Program, Failure> {
 
 /// The SPIR-V of all passes.
 pub(super) fn programs(passes: &[(Lowered, FloatMode)]) -> Result<Vec<Program>, Failure> {
-    let program = |(lowered, float): &(Lowered, FloatMode)| {
-        Program::new(&ValidModule::parse(lowered).map_err(refused)?, *float)
-    };
+    let program =
+        |(lowered, float): &(Lowered, FloatMode)| Program::of(lowered, *float).map(|(program, _)| program);
     passes.iter().map(program).collect()
 }
 

@@ -4,8 +4,8 @@ use std::io::{self, Read, Write};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{ChannelSampling, DrawOutput, DriverFailure as Failure, Graph, Phase, Readback, State};
+use toyproof_image::{Frame, Image, Sampling, Texture};
+use toyproof_player::{DrawOutput, DriverFailure as Failure, Graph, Phase, Readback, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::HostedShader;
@@ -77,7 +77,7 @@ pub(super) struct PlayJob {
     /// In the order of the graph.
     pub(super) passes: PassCode,
     /// The samplers of each pass.
-    pub(super) sampling: Vec<[ChannelSampling; 4]>,
+    pub(super) sampling: Vec<[Sampling; 4]>,
     pub(super) graph: Graph,
     /// The textures that do not change.
     pub(super) media: Vec<Texture>,

@@ -159,8 +159,8 @@ impl<W: Write> Server<W> {
         self.phase(Phase::Translating)?;
         let start = Instant::now();
         let (program, loops) = on_translator_thread(move || {
-            let module = ValidModule::parse(&job.lowered).map_err(refused)?;
-            Ok((Program::new(&module, job.float)?, loop_probe::has_loops(&module)))
+            let (program, module) = Program::of(&job.lowered, job.float)?;
+            Ok((program, loop_probe::has_loops(&module)))
         })?;
         let translate = start.elapsed();
         self.open()?;
@@ -261,10 +261,11 @@ impl<W: Write> Server<W> {
 
     fn watch_loops(&mut self, job: DrawJob) -> Result<Output, Failure> {
         self.phase(Phase::WatchingLoops)?;
+        let sampling = job.lowered.sampling();
         let (module, iterations) = on_translator_thread(move || {
             let module = ValidModule::parse(&job.lowered).map_err(refused)?;
             let iterations = probe_program(&module, Probe::Iterations, job.float)?;
-            Ok((module, iterations))
+            Ok((module, iterations.with_sampling(sampling)))
         })?;
         self.open()?;
         let device = self.device()?;
@@ -285,6 +286,7 @@ impl<W: Write> Server<W> {
         }
         let discards = loop_probe::discards(&module);
         let open = on_translator_thread(move || probe_program(&module, Probe::OpenLoops, job.float))?;
+        let open = open.with_sampling(sampling);
         let device = self.device()?;
         let mut loop_truncated = 0;
         device.render(&device.prepare(&open, &job.frame)?, |band| {

@@ -38,6 +38,7 @@ mod moving;
 mod noise;
 pub mod output;
 mod rgb8;
+mod sampling;
 mod script;
 mod texture;
 
@@ -53,6 +54,7 @@ pub use keys::{KeySet, Keys};
 pub use moving::{Moving, MovingTextures};
 pub use noise::{Noise, noise};
 pub use rgb8::Rgb8Image;
+pub use sampling::{Filter, Sampling, Wrap};
 pub use script::{InputEvent, Script};
 use serde::{Deserialize, Serialize};
 pub use texture::{Component, Shape, Texels, Texture};

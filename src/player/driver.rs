@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use toyproof_image::{Frame, Image, Texture};
+use toyproof_image::{Frame, Image, Sampling, Texture};
 
 use crate::{DriverFailure, Graph, State, Target};
 
@@ -44,7 +44,7 @@ pub trait Driver: fmt::Debug + Send {
     fn open_player(
         &mut self,
         passes: Vec<Self::Code>,
-        sampling: Vec<[ChannelSampling; 4]>,
+        sampling: Vec<[Sampling; 4]>,
         graph: Graph,
         media: Vec<Texture>,
         state: Option<State>,
@@ -94,28 +94,6 @@ impl DrawOutput {
     /// If the bands were passed to a callback.
     pub fn image(self) -> Image {
         Image::of_bands(self.bands)
-    }
-}
-
-/// How the sampler of a channel reads its texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ChannelSampling {
-    /// Whether texels are interpolated.
-    pub linear: bool,
-    /// Whether mipmaps are used, and interpolated.
-    pub mipmaps: bool,
-    /// Whether the texture is repeated; otherwise its edge is.
-    pub repeat: bool,
-}
-
-impl Default for ChannelSampling {
-    /// Linear and repeated, with the mipmaps that the texture has.
-    fn default() -> Self {
-        Self {
-            linear: true,
-            mipmaps: true,
-            repeat: true,
-        }
     }
 }
 

@@ -58,7 +58,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 pub use clock::Clock;
-pub use driver::{ChannelSampling, DrawOutput, Driver, Readback};
+pub use driver::{DrawOutput, Driver, Readback};
 pub use failure::{DriverFailure, Phase};
 pub use play::{Channel, Player, Renderer, Storage};
 use serde::{Deserialize, Serialize};

@@ -244,3 +244,51 @@ fn fetches_beyond_a_texture_are_zeros_in_fast_runs() {
     let drawn = worker.draw(FloatMode::Fast.lower(&checked), frame, FloatMode::Fast);
     assert_eq!(own.framebuffer.image(), drawn.unwrap().image());
 }
+
+/// The sampler of the driver filters and wraps along each axis.
+#[test]
+fn the_sampler_of_fast_runs_is_the_one_of_the_channel() {
+    let Some(mut worker) = require_worker() else {
+        return;
+    };
+    let flat = Texture::from(random_image(8, 4));
+    for (shape, texture, at) in [
+        (SamplerShape::D2, flat, "at.xy"),
+        (SamplerShape::Cube, random_cube(8), "at - 0.5"),
+        (SamplerShape::D3, random_volume([8, 4, 2]), "at"),
+    ] {
+        for filter in [Filter::Nearest, Filter::Linear] {
+            for wrap in [Wrap::Clamp, Wrap::Repeat] {
+                let options = glsl::Options {
+                    stage: Stage::Buffer,
+                    sampling: [Sampling { filter, wrap }; 4],
+                    channels: [Some(shape); 4],
+                    ..glsl::Options::default()
+                };
+                let text = format!(
+                    "void mainImage(out vec4 color, in vec2 p) {{
+                        vec3 at = vec3(p, 22.0 - p.x - p.y) * 0.097 - 0.41;
+                        color = textureLod(iChannel0, {at}, 0.0);
+                    }}"
+                );
+                let mut files = Files::default();
+                let file = files.add(File::new("sampler", text));
+                let checked = glsl::check(&files, file, &options).unwrap();
+                let frame = Frame {
+                    size: [18, 10],
+                    channels: [Some(texture.clone()), None, None, None],
+                    ..Frame::default()
+                };
+                let own = Program::new(&checked).unwrap();
+                let own = own.render::<f32>(&frame, &Settings::default()).unwrap();
+                let own = own.framebuffer.image();
+                let drawn = worker.draw(FloatMode::Fast.lower(&checked), frame, FloatMode::Fast);
+                let drawn = drawn.unwrap().image();
+                let pairs = own.pixels().iter().flatten().zip(drawn.pixels().iter().flatten());
+                let largest = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                // Vulkan lets a driver round the weights of the filter to 8 bits.
+                assert!(largest < 0.02, "{shape:?} {filter:?} {wrap:?}: {largest}");
+            }
+        }
+    }
+}

@@ -351,12 +351,14 @@ impl Runner<'_> {
         };
         let next = self.next(state.as_ref(), first, has_history);
         self.report_history(shader, next, first);
-        // With a state, the frame in progress is finished, so that it can be written.
-        let interrupted = self.terminal.watch_interrupts(match self.args.state {
-            Some(_) => "the frame in progress is finished first, and the state written",
-            None => "the run ends with the frame in progress",
-        });
-        let interrupt = self.args.state.is_none().then_some(&*interrupted);
+        // With a state, the frame in progress is finished, so that it can be written. Otherwise an interrupt
+        // ends the program at once, also while a driver compiles.
+        if self.args.state.is_some() {
+            self.terminal
+                .watch_interrupts("the frame in progress is finished first, and the state written");
+        }
+        let interrupted = self.terminal.interrupt_flag();
+        let interrupt = self.args.state.is_none().then_some(interrupted);
         let limit = self.args.driver.explicit_timeout();
         let state = state.as_ref();
         let Backend {
@@ -413,7 +415,7 @@ impl Runner<'_> {
             terminal: self.terminal,
         };
         let shown = match sequence {
-            None => self.one_frame(&mut run, first, shader, path, &interrupted),
+            None => self.one_frame(&mut run, first, shader, path, interrupted),
             Some(sequence) => self.all_frames(&mut run, sequence, (shader, output, path)),
         };
         // The state of the frames before a failed one is saved.

@@ -8,8 +8,8 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use process::{Process, Startup, classify};
-use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{ChannelSampling, DrawOutput, Driver as _, Graph, Readback, State};
+use toyproof_image::{Frame, Image, Sampling, Texture};
+use toyproof_player::{DrawOutput, Driver as _, Graph, Readback, State};
 use toyproof_translate::backend::Target;
 use toyproof_translate::{FloatMode, Lowered};
 
@@ -253,7 +253,7 @@ impl Worker {
     pub fn open_player(
         &mut self,
         passes: PassCode,
-        sampling: Vec<[ChannelSampling; 4]>,
+        sampling: Vec<[Sampling; 4]>,
         graph: Graph,
         media: Vec<Texture>,
         state: Option<State>,
@@ -485,7 +485,7 @@ impl toyproof_player::Driver for Worker {
     fn open_player(
         &mut self,
         passes: Vec<Self::Code>,
-        sampling: Vec<[ChannelSampling; 4]>,
+        sampling: Vec<[Sampling; 4]>,
         graph: Graph,
         media: Vec<Texture>,
         state: Option<State>,

@@ -20,7 +20,7 @@ pub(crate) struct LoweringContext {
     /// The tab that the shader is.
     pub(crate) stage: Stage,
     /// How the textures of the channels are sampled.
-    pub(super) sampling: [Sampling; 4],
+    pub(crate) sampling: [Sampling; 4],
     /// Assignments that run before `mainImage`, in order.
     pub(super) startup: Vec<ExprId>,
     /// The function of the assignments that run before `mainImage`.

@@ -16,10 +16,10 @@ pub(super) use names::Numbering;
 pub(super) use order::{CaseLabels, Order};
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
-use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
     FunctionId, Input, InputType, Place, Sampler, SamplerShape, Type, VariableId, VariableKind,
 };
+use toyproof_glsl::{Sampling, Stage};
 
 use self::names::Names;
 use crate::lower::context::LoweringContext;
@@ -37,6 +37,7 @@ pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered
     printer.epilogue();
     printer.out.refuse(cx.too_deep.clone());
     printer.out.checks_fetches = cx.checks_fetches;
+    printer.out.sampling = cx.sampling;
     Ok(printer.out)
 }
 
@@ -210,6 +211,7 @@ pub struct Lowered {
     /// The reason why no driver may run it.
     too_deep: Option<Diagnostic>,
     checks_fetches: bool,
+    sampling: [Sampling; 4],
 }
 
 impl Lowered {
@@ -241,6 +243,11 @@ impl Lowered {
     /// Whether all fetches of texels check that these are within their textures: such a shader is strict.
     pub(crate) fn checks_fetches(&self) -> bool {
         self.checks_fetches
+    }
+
+    /// How the textures of channels are sampled, where the text leaves it to samplers.
+    pub fn sampling(&self) -> [Sampling; 4] {
+        self.sampling
     }
 
     /// Sets the reason why no driver may run it, if any.

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_eval::{Number, PassFailure, PassRenderer, Refusal, Settings, UndefinedPolicy};
 use toyproof_eval_native::Program;
+use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{BuiltIn, ExprKind};
-use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
 use toyproof_image::{Frame, Image, MovingTextures, Texture};
-use toyproof_player::{BUFFERS, ChannelSampling, DriverFailure, Graph, Player, Readback, State, Target};
+use toyproof_player::{BUFFERS, DriverFailure, Graph, Player, Readback, State, Target};
 use toyproof_translate::FloatMode;
 
 use crate::driver::Driver;
@@ -172,7 +172,7 @@ impl<'a> DevicePlayback<'a> {
         let sampling = shader.checked.iter().map(|checked| checked.sampling);
         let device = driver.open_player(
             code,
-            sampling.map(|channels| channels.map(channel_sampling)).collect(),
+            sampling.collect(),
             shader.graph.clone(),
             shader.media.to_vec(),
             state.cloned(),
@@ -239,15 +239,5 @@ impl<'a> DevicePlayback<'a> {
             buffers,
             image: images.next().map(Texture::from),
         })
-    }
-}
-
-/// How a driver samples a channel.
-#[must_use]
-pub fn channel_sampling(sampling: Sampling) -> ChannelSampling {
-    ChannelSampling {
-        linear: sampling.filter != Filter::Nearest,
-        mipmaps: sampling.filter == Filter::Mipmap,
-        repeat: sampling.wrap == Wrap::Repeat,
     }
 }

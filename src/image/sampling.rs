@@ -1,7 +1,9 @@
 //! How the textures of channels are sampled. `ShaderToy` sets it for each input; the shader cannot see it.
 
+use serde::{Deserialize, Serialize};
+
 /// How a lookup by normalized coordinates reads a texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Sampling {
     /// The filter.
     pub filter: Filter,
@@ -20,7 +22,7 @@ impl Default for Sampling {
 }
 
 /// A texture filter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Filter {
     /// The nearest texel.
     Nearest,
@@ -31,7 +33,7 @@ pub enum Filter {
 }
 
 /// How a texture continues beyond its edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Wrap {
     /// The texels of the edge continue.
     Clamp,
