@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toyproof_glsl::tree::{SamplerShape, StatementKind, walk};
 use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
-use toyproof_image::{BLOCK_BYTES, Texture};
+use toyproof_image::{BLOCK_BYTES, Shape, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 use toyproof_project::{Input, PassKind, Project, Rendering, Source, Tab};
 
 use crate::passes::GraphContent;
+use crate::proof::noise;
 
 /// The name of the file.
 pub const GRAPH_FILE: &str = "graph.json";
@@ -170,9 +171,8 @@ impl<'a> HostGraph<'a> {
                 if let Some(input) = played.input(at, channel)
                     && input.source.pass().is_none()
                 {
-                    // Hosts filter cube maps and volumes, which are black in proofs.
-                    let is_flat = checked[at].channels[channel] == SamplerShape::D2;
-                    *source = is_flat.then(|| player::Source::Medium(played.medium(input, *source)));
+                    let shape = checked[at].channels[channel];
+                    *source = Some(player::Source::Medium(played.medium(input, *source, shape)));
                 }
             }
         }
@@ -187,7 +187,7 @@ impl<'a> HostGraph<'a> {
     }
 
     /// The number of an input's texture, which is that of `source`, if there is one.
-    fn medium(&mut self, input: &Input, source: Option<player::Source>) -> usize {
+    fn medium(&mut self, input: &Input, source: Option<player::Source>, shape: SamplerShape) -> usize {
         let entry = media_entry(input);
         if let Some((_, number)) = self.known.iter().find(|(known, _)| *known == entry) {
             return *number;
@@ -195,10 +195,12 @@ impl<'a> HostGraph<'a> {
         let number = if let Some(player::Source::Medium(number)) = source {
             number
         } else {
-            // Each has a different size and content, so that no two can be confused.
-            let noise = Texture::from(toyproof_image::noise());
-            let side = 255 - (self.media.len() as u32).min(127);
-            let texture = noise.cropped([side, 256]);
+            // Each image has a different size and content, so that no two can be confused.
+            let noise = noise(shape);
+            let texture = match noise.shape() {
+                Shape::Flat => noise.cropped([255 - (self.media.len() as u32).min(127), 256]),
+                Shape::Cube | Shape::Volume => noise,
+            };
             let is_mipmapped = input.sampler.filter == Filter::Mipmap;
             self.media.push(if is_mipmapped {
                 texture.with_mipmaps()

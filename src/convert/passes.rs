@@ -11,7 +11,7 @@ use toyproof_player::{Graph, Target};
 
 use super::original::{Original, PlayedFrame};
 use super::proof::{Rgb8Comparison, Runner};
-use super::prover::{ProofError, Prover, Reader, fully_undefined, unobserved, validate};
+use super::prover::{ProofError, Prover, Reader, fully_undefined, validate};
 use super::{Source, TargetCode};
 
 /// The sizes in which the passes are played, in pixels: the textures of one size are not multiples of the
@@ -139,18 +139,11 @@ impl Prover<'_> {
         written: &[TargetCode],
         graph: &GraphContent,
     ) -> Result<PassesProof, ProofError> {
-        if let Some(unobserved) = passes
-            .sources
-            .iter()
-            .find_map(|source| unobserved(source.checked))
-        {
-            return Err(unobserved);
-        }
         let mut validator = None;
         let mut readings: Vec<(Reader, Vec<ShaderArtifact>)> = Vec::new();
         let mut is_read = true;
         for (source, written) in passes.sources.iter().zip(written) {
-            validator = validate(written)?;
+            validator = validate(written, source.checked.channels)?;
             let mut of_pass = self.readings(source.checked, written)?;
             if let (true, TargetCode::Naga { lowered, .. }) = (of_pass.is_empty(), written) {
                 is_read = false;

@@ -11,7 +11,7 @@ use toyproof_eval_native::Program;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked, Dialect, Stage};
 use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
-use toyproof_image::{self as image, Frame, Image};
+use toyproof_image::{self as image, Frame, Image, Texture, cube};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::roundtrip;
 use toyproof_translate::naga_ir::ValidModule;
@@ -135,13 +135,11 @@ pub const FRAMES: [TestFrame; 3] = [
     },
 ];
 
-/// Returns the frames for a shader, with noise in each of its 2D channels.
+/// Returns the frames for a shader, with noise in each of its channels.
 #[must_use]
 pub fn frames(checked: &Checked) -> Vec<Frame> {
     let channels = if checked.reads_textures() {
-        checked
-            .channels
-            .map(|shape| (shape == SamplerShape::D2).then(|| image::noise().into()))
+        checked.channels.map(|shape| Some(noise(shape)))
     } else {
         [const { None }; 4]
     };
@@ -155,6 +153,17 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
         ..Frame::default()
     };
     FRAMES.map(frame).to_vec()
+}
+
+/// A texture of this shape, in which no two faces or slices are equal. The sides of a volume differ, so that
+/// its axes do.
+pub(crate) fn noise(shape: SamplerShape) -> Texture {
+    let noise = image::noise();
+    match shape {
+        SamplerShape::D2 | SamplerShape::D2Array => noise.into(),
+        SamplerShape::Cube => Texture::cube(&noise.cropped([32, 32 * cube::FACES])),
+        SamplerShape::D3 => Texture::volume(noise.cropped([32, 16 * 8]), 16),
+    }
 }
 
 /// Renders the artifacts of a converted shader in each of the frames, and compares them with the shader: a
@@ -175,7 +184,7 @@ pub fn compare_with_original(
     let singles = || evaluate(checked, frames, timeout, &stop);
     let (rendered, singles) = thread::scope(|scope| {
         let cpu = scope.spawn(|| within(pool, singles));
-        let render = |artifact| runner.render(artifact, frames, timeout, pool);
+        let render = |artifact| runner.render((checked, artifact), frames, timeout, pool);
         let rendered: Result<Vec<_>, _> = artifacts.into_iter().map(render).collect();
         stop.store(rendered.is_err(), Ordering::Relaxed);
         (rendered, join(cpu))
@@ -274,16 +283,19 @@ fn difference(a: f32, b: f32) -> f32 {
 }
 
 impl Runner<'_> {
-    /// Renders the frames; returns the images and the name of the device.
+    /// Renders the frames of a converted shader; returns the images and the name of the device.
     fn render(
         &mut self,
-        artifact: ShaderArtifact,
+        (original, artifact): (&Checked, ShaderArtifact),
         frames: &[Frame],
         timeout: Duration,
         pool: Option<&ThreadPool>,
     ) -> Result<(Vec<Image>, String), ProofError> {
         match self {
-            Self::Driver(worker) => Ok(worker.render(artifact, frames.to_vec()).map_err(Failure::Gpu)?),
+            Self::Driver(worker) => {
+                let rendered = worker.render(artifact, original.sampling, frames.to_vec());
+                Ok(rendered.map_err(Failure::Gpu)?)
+            }
             Self::Evaluator => {
                 let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
                 let module = match artifact {
@@ -297,7 +309,11 @@ impl Runner<'_> {
                 let text = module.and_then(|module| {
                     roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))
                 });
-                let written = read_shadertoy(&text.map_err(Failure::Gpu)?, Stage::Image, timeout)?;
+                let original = glsl::Options {
+                    stage: Stage::Image,
+                    ..original.options()
+                };
+                let written = read_shadertoy(&text.map_err(Failure::Gpu)?, original, timeout)?;
                 let stop = AtomicBool::new(false);
                 let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;
                 let images = singles.into_iter().map(|single| {
@@ -313,10 +329,17 @@ impl Runner<'_> {
     }
 }
 
-/// Reads a converted shader, as `ShaderToy` would run it, with our own front end.
-pub(super) fn read_shadertoy(text: &str, stage: Stage, timeout: Duration) -> Result<Checked, ProofError> {
+/// Reads a converted shader, as `ShaderToy` would run it in the stage and with the textures of the original,
+/// with our own front end.
+pub(super) fn read_shadertoy(
+    text: &str,
+    original: glsl::Options,
+    timeout: Duration,
+) -> Result<Checked, ProofError> {
     let options = glsl::Options {
-        stage,
+        stage: original.stage,
+        channels: original.channels,
+        sampling: original.sampling,
         ..glsl::Options::default()
     };
     read(text, options, timeout)

@@ -154,20 +154,6 @@ pub enum ProofError {
         /// The position: file, line and column.
         at: String,
     },
-    /// A channel is a cube map or a volume, which are black in the compared frames, so that reads of it
-    /// cannot be observed.
-    #[error(
-        "iChannel{channel} is {shape}, which is black in the compared frames, so reads of it cannot be verified"
-    )]
-    Unobserved {
-        /// The number of the channel.
-        channel: usize,
-        /// The kind of texture.
-        shape: &'static str,
-    },
-    /// The browser cannot be given one of the channels.
-    #[error("in Chromium, only shaders whose channels are 2D textures can be tested")]
-    BrowserChannel,
     /// The browser is given shaders of ShaderToy, and the original cannot be written as one.
     #[error("the original shader cannot be rendered with WebGL 2: {0}")]
     BrowserHost(PortError),
@@ -194,9 +180,7 @@ impl ProofError {
     #[must_use]
     pub fn is_of_shader(&self) -> bool {
         match self {
-            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } | Self::Unobserved { .. } => {
-                true
-            }
+            Self::NoDriver(_) | Self::Overdue(_) | Self::FullyUndefined { .. } => true,
             Self::Run(failure) => matches!(
                 failure,
                 Failure::Cpu(_)
@@ -225,14 +209,11 @@ impl Prover<'_> {
     /// # Errors
     /// Returns why it is not proved.
     pub fn prove(&mut self, source: Source, written: &TargetCode) -> Result<ShaderProof, ProofError> {
-        let validator = validate(written)?;
+        let validator = validate(written, source.checked.channels)?;
         let mut readings = self.readings(source.checked, written)?;
         let is_unread = readings.is_empty();
         if let (true, TargetCode::Naga { lowered, .. }) = (is_unread, written) {
             readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
-        }
-        if let Some(unobserved) = unobserved(source.checked) {
-            return Err(unobserved);
         }
         let frames = frames(source.checked);
         let (run, proof) = self.run(source, readings, &frames)?;
@@ -290,7 +271,7 @@ impl Prover<'_> {
             }
             Target::Glsl => {
                 let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
-                let again = read_shadertoy(&text, checked.stage, self.timeout)?;
+                let again = read_shadertoy(&text, checked.options(), self.timeout)?;
                 let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
                 let lowered = lowered.map_err(ProofError::Overdue)?;
                 readings.push((Reader::FrontEnd, ShaderArtifact::Lowered(lowered)));
@@ -347,14 +328,18 @@ fn differing_passes(passes: &[PassComparison]) -> String {
     differing.map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 
-/// Validates a file with an external tool, if one is installed; returns its name and version.
-pub(super) fn validate(written: &TargetCode) -> Result<Option<String>, ToolError> {
+/// Validates a file with an external tool, if one is installed; returns its name and version. `channels` are
+/// the shapes of the textures, which a file for ShaderToy does not declare.
+pub(super) fn validate(
+    written: &TargetCode,
+    channels: [SamplerShape; 4],
+) -> Result<Option<String>, ToolError> {
     match written {
         TargetCode::Wgsl(text, Style::Plain) => tool::validate(Target::Wgsl, text.as_bytes()),
         TargetCode::Naga { target, bytes, .. } => tool::validate(*target, bytes),
         TargetCode::Glsl(text, dialect) => {
             let complete = match dialect {
-                _ if dialect.calls_main_image() => browser::as_shadertoy(text),
+                _ if dialect.calls_main_image() => browser::as_shadertoy(text, channels),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),
@@ -370,19 +355,6 @@ pub(super) fn validate(written: &TargetCode) -> Result<Option<String>, ToolError
         // Only their hosts complete them.
         TargetCode::Wgsl(..) | TargetCode::Lowered(_) => Ok(None),
     }
-}
-
-/// The first channel whose texture is black in the compared frames.
-pub(super) fn unobserved(checked: &Checked) -> Option<ProofError> {
-    let channels = checked.channels.iter().enumerate();
-    channels
-        .filter_map(|(channel, shape)| match shape {
-            SamplerShape::Cube => Some((channel, "a cube map")),
-            SamplerShape::D3 => Some((channel, "a volume texture")),
-            SamplerShape::D2 | SamplerShape::D2Array => None,
-        })
-        .map(|(channel, shape)| ProofError::Unobserved { channel, shape })
-        .next()
 }
 
 /// The reason why no conversion of a shader can be proved, if every pixel depends on undefined behavior.
@@ -406,10 +378,6 @@ pub(super) fn in_browser(
     frames: &[Frame],
     undefined: &[Vec<bool>],
 ) -> Result<Option<(String, Rgb8Comparison)>, ProofError> {
-    let is_flat = |shape: &SamplerShape| *shape == SamplerShape::D2;
-    if source.checked.reads_textures() && !source.checked.channels.iter().all(is_flat) {
-        return Err(ProofError::BrowserChannel);
-    }
     let ported;
     let original = if source.checked.dialect.calls_main_image() {
         source.text()
@@ -420,7 +388,8 @@ pub(super) fn in_browser(
         ported = text.map_err(ProofError::BrowserHost)?;
         &ported
     };
-    let original = browser::as_shadertoy(original);
+    let channels = source.checked.channels;
+    let original = browser::as_shadertoy(original, channels);
     let sampling = source.checked.sampling;
     let render_original = |browser: &mut Chromium| {
         let images = browser.render(Text::Glsl(&original), sampling, frames);
@@ -450,7 +419,8 @@ pub(super) fn in_browser(
         }
         TargetCode::Glsl(text, dialect) if dialect.calls_main_image() => {
             let original = render_original(browser)?;
-            let images = browser.render(Text::Glsl(&browser::as_shadertoy(text)), sampling, frames);
+            let text = browser::as_shadertoy(text, channels);
+            let images = browser.render(Text::Glsl(&text), sampling, frames);
             (original, images.map_err(ProofError::Browser)?)
         }
         TargetCode::Naga { .. } | TargetCode::Lowered(_) | TargetCode::Glsl(..) => return Ok(None),

@@ -7,6 +7,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use std::{fs, thread};
@@ -16,8 +17,9 @@ use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use thiserror::Error;
+use toyproof_glsl::tree::{Sampler, SamplerShape};
 use toyproof_glsl::{Filter, Sampling, Wrap};
-use toyproof_image::{Frame, Image, Input, InputType, Shape};
+use toyproof_image::{Frame, Image, Input, InputType, Shape, Texels, Texture};
 
 /// Why a browser rendered nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -25,6 +27,9 @@ pub enum BrowserFailure {
     /// Chromium rejects the shader with this message.
     #[error("Chromium cannot render the shader: {0}")]
     Refused(String),
+    /// The textures are larger than a message to Chromium may be.
+    #[error("Chromium cannot be given textures of more than {} MB", MAX_CALL_BYTES >> 20)]
+    TooLarge,
     /// Chromium did not respond in time.
     #[error("Chromium did not answer within {:.1} s", .0.as_secs_f64())]
     Timeout(Duration),
@@ -53,6 +58,9 @@ pub struct Chromium {
 /// Time limit for the start of the browser, in addition to that of a shader.
 const START_TIMEOUT: Duration = Duration::from_secs(60);
 
+/// Largest call: Chromium reads no messages above 100 MiB, and ends the connection.
+const MAX_CALL_BYTES: usize = 96 << 20;
+
 /// The page that renders shaders.
 const PAGE_HTML: &str = include_str!("browser.html");
 
@@ -66,23 +74,32 @@ pub fn find() -> Option<PathBuf> {
         .find(|path| path.exists())
 }
 
-/// Wraps a shader in `ShaderToy`'s prologue and epilogue.
-pub fn as_shadertoy(shader: &str) -> String {
+/// Wraps a shader whose channels have these shapes in `ShaderToy`'s prologue and epilogue.
+pub fn as_shadertoy(shader: &str, channels: [SamplerShape; 4]) -> String {
     let inputs = Input::ALL.map(|input| {
         let length = input.length().map(|length| format!("[{length}]"));
         let (ty, name) = (input.ty().name(), input.name());
         format!("uniform {ty} {name}{};\n", length.unwrap_or_default())
     });
     let inputs = inputs.concat();
+    let channels = (0..).zip(channels).map(|(channel, shape)| {
+        let sampler = Sampler::float(shape).name();
+        format!(
+            "uniform {sampler} iChannel{channel};
+uniform struct {{ {sampler} sampler; vec3 size; float time; int loaded; }} iCh{channel};
+"
+        )
+    });
+    let channels = channels.collect::<String>();
     format!(
         "#version 300 es
 #define HW_PERFORMANCE 1
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-{inputs}uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3;
-uniform struct {{ sampler2D sampler; vec3 size; float time; int loaded; }} iCh0, iCh1, iCh2, iCh3;
-out vec4 shadertoy_out_color;
+precision highp sampler3D;
+precision highp samplerCube;
+{inputs}{channels}out vec4 shadertoy_out_color;
 #line 1
 {shader}
 void main() {{
@@ -104,7 +121,8 @@ impl Chromium {
         }
     }
 
-    /// Renders the frames of a shader. Channels are two-dimensional; those without a texture are black.
+    /// Renders the frames of a shader, which have textures of the same shapes. Channels without one are black
+    /// images.
     ///
     /// # Errors
     /// Why there are no images.
@@ -122,13 +140,35 @@ impl Chromium {
             Some(connection) => connection,
             None => BrowserConnection::launch(&self.program, PAGE_HTML, Instant::now() + START_TIMEOUT)?,
         };
-        let frames_json: Vec<Value> = frames.iter().map(frame_json).collect();
+        let black = Texture::from(Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]));
+        // Frames share textures, which are large.
+        let mut textures: Vec<&Texture> = Vec::new();
+        let mut number_of = |texture| {
+            let known = textures.iter().position(|known| share_texels(known, texture));
+            known.unwrap_or_else(|| {
+                textures.push(texture);
+                textures.len() - 1
+            })
+        };
+        let frames_json = frames.iter().map(|frame| {
+            let channels = frame.channels.iter();
+            let channels = channels.map(|texture| number_of(texture.as_ref().unwrap_or(&black)));
+            frame_json(frame, channels.collect())
+        });
+        let frames_json: Vec<Value> = frames_json.collect();
+        let textures: Vec<Value> = textures.into_iter().map(texture_json).collect();
         let sampling = sampling.map(sampling_json);
         let inputs = Input::ALL.map(input_json);
         let job = json!({
-            "language": language, "text": text, "inputs": inputs, "sampling": sampling, "frames": frames_json,
+            "language": language, "text": text, "inputs": inputs, "sampling": sampling, "textures": textures,
+            "frames": frames_json,
         });
-        let answer = connection.call(&format!("toyproof({job})"), self.timeout)?;
+        let call = format!("toyproof({job})");
+        if call.len() > MAX_CALL_BYTES {
+            self.live = Some(connection);
+            return Err(BrowserFailure::TooLarge);
+        }
+        let answer = connection.call(&call, self.timeout)?;
         if let Some(reason) = answer["refused"].as_str() {
             // A browser that lost its context cannot render any more.
             if answer["contextLost"] == false {
@@ -171,25 +211,43 @@ fn sampling_json(Sampling { filter, wrap }: Sampling) -> Value {
     json!({"filter": filter, "repeats": wrap == Wrap::Repeat})
 }
 
-fn frame_json(frame: &Frame) -> Value {
-    let level = |image: &Image| {
-        let [width, height] = image.size();
-        let pixels = BASE64_STANDARD.encode(bytemuck::cast_slice::<_, u8>(image.pixels()));
-        json!({"width": width, "height": height, "pixels": pixels})
-    };
-    // The page binds images; cube maps and volumes are black.
-    let channels = frame.channels.iter().map(|texture| match texture {
-        Some(texture) if texture.shape() == Shape::Flat => {
-            texture.to_single().iter().map(|image| level(image)).collect()
-        }
-        _ => vec![level(&Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]))],
-    });
+/// A frame with the numbers of its channels' textures.
+fn frame_json(frame: &Frame, channels: Vec<usize>) -> Value {
     json!({
         "width": frame.size[0],
         "height": frame.size[1],
         "block": BASE64_STANDARD.encode(frame.block()),
-        "channels": channels.collect::<Vec<_>>(),
+        "channels": channels,
     })
+}
+
+/// Whether two textures are copies that share their texels.
+fn share_texels(a: &Texture, b: &Texture) -> bool {
+    match (a.texels(), b.texels()) {
+        (Texels::Single(a), Texels::Single(b)) => Arc::ptr_eq(&a[0], &b[0]) && a.len() == b.len(),
+        (Texels::Double(a), Texels::Double(b)) => Arc::ptr_eq(&a[0], &b[0]) && a.len() == b.len(),
+        _ => false,
+    }
+}
+
+/// The levels of a texture, each with its stacked layers.
+fn texture_json(texture: &Texture) -> Value {
+    let shape = match texture.shape() {
+        Shape::Flat => "flat",
+        Shape::Cube => "cube",
+        Shape::Volume => "volume",
+    };
+    let stacks = texture.stacks();
+    let levels = (0..).zip(&stacks).map(|(level, stack)| {
+        let [width, rows] = stack.size();
+        let layers = match texture.shape() {
+            Shape::Volume => (texture.layers() >> level).max(1),
+            Shape::Flat | Shape::Cube => texture.layers(),
+        };
+        let pixels = BASE64_STANDARD.encode(bytemuck::cast_slice::<_, u8>(stack.pixels()));
+        json!({"width": width, "height": rows / layers, "layers": layers, "pixels": pixels})
+    });
+    json!({"shape": shape, "levels": levels.collect::<Vec<_>>()})
 }
 
 fn decode_image((frame, image_base64): (&Frame, &Value)) -> Option<Image> {
@@ -206,7 +264,7 @@ fn decode_image((frame, image_base64): (&Frame, &Value)) -> Option<Image> {
 #[derive(Debug)]
 struct BrowserConnection {
     child: Child,
-    requests: Option<ChildStdin>,
+    requests: mpsc::Sender<Vec<u8>>,
     messages: Receiver<Value>,
     profile: Option<TempDir>,
     /// Id of the last request.
@@ -273,7 +331,10 @@ impl BrowserConnection {
             .stderr(Stdio::null())
             .spawn()
             .map_err(launch_error)?;
-        let requests = child.stdin.take();
+        let (requests, unsent) = mpsc::channel();
+        if let Some(input) = child.stdin.take() {
+            thread::spawn(move || write_messages(input, &unsent));
+        }
         let (sender, messages) = mpsc::channel();
         if let Some(output) = child.stdout.take() {
             thread::spawn(move || read_messages(output, &sender));
@@ -348,13 +409,10 @@ impl BrowserConnection {
         if let Some(session) = &self.session {
             message["sessionId"] = json!(session);
         }
-        let sent = self.requests.as_mut().map(|requests| {
-            let bytes = [message.to_string().as_bytes(), &[0]].concat();
-            requests.write_all(&bytes).and_then(|()| requests.flush())
-        });
-        if let Some(Err(error)) = sent {
-            return Err(BrowserFailure::Disconnected(error.to_string()));
-        }
+        // If the browser has exited, so has the sender of its messages.
+        let _ = self
+            .requests
+            .send([message.to_string().as_bytes(), &[0]].concat());
         let start = Instant::now();
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -391,6 +449,15 @@ impl Drop for BrowserConnection {
             while fs::remove_dir_all(&path).is_err() && path.exists() && Instant::now() < deadline {
                 thread::sleep(POLL_INTERVAL);
             }
+        }
+    }
+}
+
+/// Writes requests until the browser exits. A browser that reads no more blocks this thread only.
+fn write_messages(mut input: ChildStdin, requests: &Receiver<Vec<u8>>) {
+    for request in requests {
+        if input.write_all(&request).and_then(|()| input.flush()).is_err() {
+            break;
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use toyproof_image::{Filter, Frame, Image, Sampling, Wrap};
+use toyproof_image::{Frame, Image, Sampling};
 use toyproof_translate::backend::spirv;
 use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::{FloatMode, Lowered};
@@ -36,12 +36,6 @@ pub(super) struct Program {
     float: FloatMode,
 }
 
-/// How the textures of converted files are sampled, which do not say it.
-const DEFAULT_SAMPLING: Sampling = Sampling {
-    filter: Filter::Mipmap,
-    wrap: Wrap::Repeat,
-};
-
 impl Program {
     /// Translates a lowered shader, and returns its module, too.
     pub(super) fn of(lowered: &Lowered, float: FloatMode) -> Result<(Self, ValidModule), Failure> {
@@ -69,7 +63,7 @@ impl Program {
                 FloatMode::Fast => words,
             },
             channels,
-            sampling: [DEFAULT_SAMPLING; 4],
+            sampling: [Sampling::default(); 4],
             float,
         }
     }

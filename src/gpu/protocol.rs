@@ -35,7 +35,7 @@ pub(super) enum Job {
     Draw(Box<DrawJob>),
     /// Parse a converted shader again, compile it with driver-dependent operations expanded, and render
     /// frames.
-    RenderArtifact(Box<ShaderArtifact>, Vec<Frame>),
+    RenderArtifact(Box<ShaderArtifact>, [Sampling; 4], Vec<Frame>),
     /// Compile the passes of a shader, whose frames the next jobs render.
     OpenPlayer(Box<PlayJob>),
     /// Go on from a state.

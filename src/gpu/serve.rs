@@ -6,7 +6,7 @@ use std::panic::{self, AssertUnwindSafe};
 use std::thread;
 use std::time::Instant;
 
-use toyproof_image::Frame;
+use toyproof_image::{Frame, Sampling};
 use toyproof_player::{DrawOutput, Player, Readback, State};
 use toyproof_translate::backend::{Target, emit, spirv};
 use toyproof_translate::naga_ir::{Shape, ValidModule};
@@ -115,7 +115,7 @@ impl<W: Write> Server<W> {
             Job::Translate(lowered, target, float) => self.translate(lowered, target, float),
             Job::ReadWgsl(text) => self.read(text),
             Job::Draw(job) => self.draw(*job),
-            Job::RenderArtifact(artifact, frames) => self.render(*artifact, &frames),
+            Job::RenderArtifact(artifact, sampling, frames) => self.render(*artifact, sampling, &frames),
             Job::OpenPlayer(job) => self.open_player(*job),
             Job::RestorePlayer(state) => self.restore_player(&state),
             Job::Play(frame, wanted) => self.play(frame.as_deref(), &wanted),
@@ -196,14 +196,19 @@ impl<W: Write> Server<W> {
         Ok(Output::Completed)
     }
 
-    fn render(&mut self, artifact: ShaderArtifact, frames: &[Frame]) -> Result<Output, Failure> {
+    fn render(
+        &mut self,
+        artifact: ShaderArtifact,
+        sampling: [Sampling; 4],
+        frames: &[Frame],
+    ) -> Result<Output, Failure> {
         self.phase(Phase::Translating)?;
         let upside_down = artifact.is_upside_down();
         let program = on_translator_thread(move || artifact_program(artifact))?;
         self.open()?;
         let mut images = Vec::new();
         self.phase(Phase::Compiling)?;
-        let compiled = self.device()?.compile(&program)?;
+        let compiled = self.device()?.compile(&program.with_sampling(sampling))?;
         for frame in frames {
             self.phase(Phase::Compiling)?;
             let prepared = self.device()?.stage(&compiled, frame)?;

@@ -400,7 +400,7 @@ impl Image<f64> {
 
 impl<T: Copy + Default> Image<T> {
     /// The lower left part, in this size; zeros where this image ends.
-    fn cropped(&self, [width, height]: [u32; 2]) -> Self {
+    pub fn cropped(&self, [width, height]: [u32; 2]) -> Self {
         let [own_width, own_height] = self.size();
         let pixel = |x, y| {
             let is_inside = x < own_width && y < own_height;

@@ -13,6 +13,7 @@ use std::{env, fs};
 
 use serde_json::json;
 use toyproof::diagnostic::{Deadline, File, Files};
+use toyproof::glsl::tree::SamplerShape;
 use toyproof::glsl::{Options, Sampling, check};
 use toyproof::gpu::Worker;
 use toyproof::gpu::browser::{BrowserFailure, Chromium, Text, as_shadertoy};
@@ -67,7 +68,7 @@ fn compare_conversion(browser: &mut Chromium, shader: &str) -> (Outcome, String)
         Ok(text) => text,
         Err(why) => return (Outcome::Unpainted, format!("not converted: {why}")),
     };
-    let original = in_browser(browser, Text::Glsl(&as_shadertoy(shader)));
+    let original = in_browser(browser, Text::Glsl(&as_shadertoy(shader, [SamplerShape::D2; 4])));
     let conversion = in_browser(browser, Text::Wgsl(&text));
     match (original, conversion) {
         (Ok(original), Ok(conversion)) => compare(&conversion, &original),
@@ -138,7 +139,7 @@ fn compare_shader(browser: &mut Chromium, worker: &mut Worker, shader: &str) -> 
         Ok(pixels) => pixels,
         Err(why) => return (Outcome::Unpainted, format!("ours: {why}")),
     };
-    match in_browser(browser, Text::Glsl(&as_shadertoy(shader))) {
+    match in_browser(browser, Text::Glsl(&as_shadertoy(shader, [SamplerShape::D2; 4]))) {
         Ok(theirs) => compare(&ours, &theirs),
         Err(failure) => (Outcome::Unpainted, failure.to_string()),
     }

@@ -161,6 +161,57 @@ fn chromium_renders_converted_passes_like_the_original() {
     }
 }
 
+/// A project whose Buffer A and Image read a cube map and a volume of the site, with all filters.
+const LAYERED: &str = r#"{"ver": "0.1", "info": {"id": "x", "name": "layered"}, "renderpass": [
+    {"name": "Buffer A", "type": "buffer", "outputs": [{"channel": 0, "id": "4dXGR8"}], "inputs": [
+        {"channel": 0, "type": "cubemap", "id": "4sfGzn", "sampler": {"filter": "mipmap", "wrap": "clamp"}},
+        {"channel": 1, "type": "volume", "id": "4sfGRr", "sampler": {"filter": "linear", "wrap": "repeat"}}],
+     "code": "void mainImage(out vec4 c, in vec2 p) { vec2 uv = 2.0 * p / iResolution.xy - 1.0; c = texture(iChannel0, vec3(uv, 0.3)) + texture(iChannel1, vec3(uv, iTime)); }"},
+    {"name": "Image", "type": "image", "outputs": [{"channel": 0, "id": "4dfGRr"}], "inputs": [
+        {"channel": 0, "type": "buffer", "id": "4dXGR8", "sampler": {"filter": "linear", "wrap": "clamp"}},
+        {"channel": 1, "type": "volume", "id": "4sfGRr", "sampler": {"filter": "nearest", "wrap": "clamp"}}],
+     "code": "void mainImage(out vec4 c, in vec2 p) { vec2 uv = 2.0 * p / iResolution.xy - 1.0; c = texture(iChannel0, uv) + textureLod(iChannel1, vec3(uv, 0.2), 0.0); }"}]}"#;
+
+/// One without a buffer, whose channels have textures of the proof's own.
+const SAMPLED: &str = r#"{"ver": "0.1", "info": {"id": "x", "name": "sampled"}, "renderpass": [
+    {"name": "Image", "type": "image", "outputs": [{"channel": 0, "id": "4dfGRr"}], "inputs": [
+        {"channel": 2, "type": "cubemap", "id": "4sfGzn", "sampler": {"filter": "linear", "wrap": "clamp"}},
+        {"channel": 3, "type": "volume", "id": "4sfGRr", "sampler": {"filter": "nearest", "wrap": "clamp"}}],
+     "code": "void mainImage(out vec4 c, in vec2 p) { vec3 d = vec3(2.0 * p / iResolution.xy - 1.0, sin(iTime) + 0.3); c = texture(iChannel2, d) + 0.1 * texture(iChannel3, d.zxy) + texelFetch(iChannel3, ivec3(3, 2, 1), 0); }"}]}"#;
+
+#[test]
+fn cube_maps_and_volumes_are_proved_and_rendered_by_chromium() {
+    if !require_driver() || require_chromium().is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("layered", LAYERED), ("sampled", SAMPLED)] {
+        let file = folder.path().join(name).with_extension("json");
+        fs::write(&file, text).unwrap();
+        let convert = |language: &str, more: &[&str]| {
+            let output = format!("{}/", folder.path().join(name).display());
+            let fixed = [
+                "convert",
+                file.to_str().unwrap(),
+                "-o",
+                &output,
+                "--to",
+                language,
+                "--verify",
+            ];
+            let run = toyproof(root(), &[&fixed[..], more].concat());
+            assert_eq!(run.code, 0, "{name} {language}: {}{}", run.stdout, run.stderr);
+            assert!(run.stdout.contains("pixels equal, bit for bit"), "{}", run.stdout);
+            run.stdout
+        };
+        convert("spv", &[]);
+        for language in ["wgsl", "glsl"] {
+            let said = convert(language, &["--browser"]);
+            assert!(said.contains("displayed pixels differs"), "{said}");
+        }
+    }
+}
+
 #[test]
 #[ignore = "takes minutes: all projects in all languages"]
 fn every_project_is_proved_in_every_language() {

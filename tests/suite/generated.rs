@@ -105,7 +105,7 @@ impl Renderers<'_> {
             let words = glslang::words(program, folder).map_err(wrong("glslang refuses it"))?;
             let artifact = ShaderArtifact::Words(words, [Shape::D2; 4]);
             let theirs = self.again_after_a_crash(|worker| {
-                let (images, _) = worker.render(artifact.clone(), vec![frame()])?;
+                let (images, _) = worker.render(artifact.clone(), Default::default(), vec![frame()])?;
                 Ok(images.into_iter().next().expect("an image for each frame"))
             });
             match theirs {

@@ -73,6 +73,40 @@ fn strict_runs_are_evaluated_where_the_driver_is_software() {
 }
 
 #[test]
+fn f64_is_double_precision_on_any_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // In float32, 1 + 1e-9 is 1.
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4((1.0 + p.x * 1e-9 - 1.0) * 1e8); }";
+    write(folder, &[("s.glsl", text)]);
+    for device in ["auto", "cpu"] {
+        for (precision, expected) in [("f32", [0.0; 3]), ("f64", [0.05, 0.15, 0.25])] {
+            let arguments = [
+                "run",
+                "s.glsl",
+                "-o",
+                "i.exr",
+                "--size",
+                "3x1",
+                "--device",
+                device,
+                "--precision",
+                precision,
+            ];
+            let run = toyproof(folder, &arguments);
+            assert_eq!(run.code, 0, "{}", run.stderr);
+            let image = image::read(&folder.join("i.exr")).unwrap();
+            let red: Vec<f32> = image.pixels().iter().map(|pixel| pixel[0]).collect();
+            let is_close = red
+                .iter()
+                .zip(expected)
+                .all(|(red, expected)| (red - expected).abs() < 1e-6);
+            assert!(is_close, "{device} {precision}: {red:?}");
+        }
+    }
+}
+
+#[test]
 fn an_explicit_time_limit_ends_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let text = "void mainImage(out vec4 c, in vec2 p) {

@@ -44,7 +44,7 @@ impl Job {
         extension: &str,
     ) -> Vec<Self> {
         let is_output = match kind {
-            OutputKind::File => !output.is_dir(),
+            OutputKind::File => !output.is_dir() && !output.as_os_str().as_encoded_bytes().ends_with(b"/"),
             OutputKind::Passes => true,
             OutputKind::Shaders => false,
         };

@@ -454,7 +454,7 @@ impl Runner<'_> {
     ) -> Result<RenderedImage, ImageFailure> {
         let checked = shader.require_image()?;
         if self.prefers_evaluator {
-            match self.evaluate::<f32>(checked, frame, interrupted) {
+            match self.evaluate(checked, frame, interrupted) {
                 Err(failure) if self.worker.is_some() && is_too_large(&failure) => {
                     self.terminal.detail(&format!(
                         "{}: {failure}; the Vulkan driver renders it",
@@ -485,10 +485,7 @@ impl Runner<'_> {
                 result => return Ok(draw_result(result, shader)?),
             }
         }
-        let evaluated = match self.args.precision {
-            Precision::F32 => self.evaluate::<f32>(checked, frame, interrupted),
-            Precision::F64 => self.evaluate::<f64>(checked, frame, interrupted),
-        };
+        let evaluated = self.evaluate(checked, frame, interrupted);
         evaluated.map_err(|failure| image_failure(&failure, shader))
     }
 
@@ -504,7 +501,19 @@ impl Runner<'_> {
         }
     }
 
-    fn evaluate<N: Number>(
+    fn evaluate(
+        &self,
+        checked: &Checked,
+        frame: &Frame,
+        interrupted: Option<&AtomicBool>,
+    ) -> Result<RenderedImage, eval::Failure> {
+        match self.args.precision {
+            Precision::F32 => self.evaluate_in::<f32>(checked, frame, interrupted),
+            Precision::F64 => self.evaluate_in::<f64>(checked, frame, interrupted),
+        }
+    }
+
+    fn evaluate_in<N: Number>(
         &self,
         checked: &Checked,
         frame: &Frame,

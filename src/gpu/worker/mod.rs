@@ -238,9 +238,10 @@ impl Worker {
     pub fn render(
         &mut self,
         artifact: ShaderArtifact,
+        sampling: [Sampling; 4],
         frames: Vec<Frame>,
     ) -> Result<(Vec<Image>, String), Failure> {
-        let job = Job::RenderArtifact(Box::new(artifact), frames);
+        let job = Job::RenderArtifact(Box::new(artifact), sampling, frames);
         result!(self.run(&job), Output::Rendered(images, device) => (images, device))
     }
 
