@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use toyproof_diagnostic::{Diagnostic, File, FileId, Files, Span};
 use toyproof_glsl::{Dialect, Filter, Options, Wrap};
+use toyproof_player::BufferFormat;
 
 use super::declarations::{Declarations, Declared, components, in_front_of, is_name};
 use crate::format::{Format, Wrapper};
@@ -81,7 +82,7 @@ fn passes(root: &Node) -> Result<Vec<IsfPass>, Diagnostic> {
             return Err(node.error("a second pass with the same `TARGET` is not supported"));
         }
         passes.push(IsfPass { target });
-        if passes.iter().filter(|pass| pass.target.is_some()).count() > Buffer::ALL.len() {
+        if passes.iter().filter(|pass| pass.target.is_some()).count() > Buffer::OF_SITE.len() {
             return Err(node.error("more than four passes with a `TARGET` are not supported"));
         }
     }
@@ -159,6 +160,7 @@ pub(super) fn read(
                 .map_or(PassKind::Image, |target| kind(target, &targets)),
             file: text(&declared, index),
             inputs: inputs.clone(),
+            format: BufferFormat::default(),
         });
     }
     // A buffer that is rendered last is shown.
@@ -171,6 +173,7 @@ pub(super) fn read(
             kind: PassKind::Image,
             file: files.add(File::new(format!("<{target}>"), shown)),
             inputs: [buffer_input(target, &targets), None, None, None],
+            format: BufferFormat::default(),
         });
     }
     let tabs = project_passes
@@ -193,14 +196,14 @@ pub(super) fn read(
 
 fn kind(target: &str, targets: &[String]) -> PassKind {
     let number = targets.iter().position(|other| other == target).unwrap_or(0);
-    PassKind::Buffer(Buffer::ALL[number])
+    PassKind::Buffer(Buffer::OF_SITE[number])
 }
 
 /// The input that reads a buffer; `None` for an image.
 fn buffer_input(name: &str, targets: &[String]) -> Option<Input> {
     let number = targets.iter().position(|target| target == name)?;
     Some(Input {
-        source: Source::Buffer(Buffer::ALL[number]),
+        source: Source::Buffer(Buffer::OF_SITE[number]),
         sampler: Sampler {
             filter: Filter::Linear,
             wrap: Wrap::Clamp,
