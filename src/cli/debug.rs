@@ -42,7 +42,7 @@ pub(super) struct Args {
     /// The pixel: x from the left, y from the bottom, starting at 0
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: [u32; 2],
-    /// The pass of a project: `image`, or `buffer-a` to `buffer-d` [default: image]
+    /// The pass of a project: `image`, or `buffer-a`, `buffer-b` and so on [default: image]
     #[arg(long, value_name = "PASS", value_parser = parse_pass, hide_short_help = true)]
     pass: Option<PassKind>,
     #[command(flatten)]
@@ -89,10 +89,13 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         None => args.reference.clone(),
     };
     let given = GivenReference::read(&reference, &language, args.timeout)?;
-    let (frame, scene) = frame_and_scene(args, &inputs, &reference, &input, given.as_ref())?;
+    let (frame, scene) = frame_and_scene(&inputs, &reference, &input, given.as_ref())?;
     let shader = Shader::load(&input, &language, Deadline::after(args.timeout));
     terminal.diagnostics(&shader.lints.warnings, &shader.files);
     let kind = args.pass.unwrap_or(PassKind::Image);
+    if kind == PassKind::Image {
+        check_pixel(args.pixel, kind, frame.size)?;
+    }
     let image = shader.require_image()?;
     if let Some(passes) = shader.project()
         && (shader.has_passes || kind != PassKind::Image)
@@ -131,16 +134,17 @@ fn print_pass(
         let number = default_frame(scene.as_ref());
         frame = frame.at(number, number as f32 / FRAME_RATE);
     }
-    let spinner = terminal.spinner(&shader.name);
-    let trail = rendering(passes, kind).and_then(|rendering| {
-        let shader = pass_shader(passes, &rendering);
-        follow_back(&shader, kind.target(), args.pixel, &frame, args.timeout)
-    });
-    spinner.finish_and_clear();
-    let trail = trail.map_err(|failure| match failure {
+    let failed = |failure| match failure {
         verify::Failure::Cpu(failure) => evaluation_error(&failure, shader),
         other => CliError::new(format_args!("{}: {other}", shader.name)),
-    })?;
+    };
+    let rendering = rendering(passes, kind, frame.size).map_err(failed)?;
+    check_pixel(args.pixel, kind, rendering.graph.size(kind.target(), frame.size))?;
+    let spinner = terminal.spinner(&shader.name);
+    let pass_shader = pass_shader(passes, &rendering);
+    let trail = follow_back(&pass_shader, kind.target(), args.pixel, &frame, args.timeout);
+    spinner.finish_and_clear();
+    let trail = trail.map_err(failed)?;
     let scene = scene.filter(|_| kind == PassKind::Image).map(|mut scene| {
         accumulate(&mut scene, frame.frame);
         scene
@@ -165,7 +169,6 @@ struct Reference {
 /// The frame, in the size that the arguments give, else that of the reference image or of the scene; and the
 /// scene, if there is one.
 fn frame_and_scene(
-    args: &Args,
     inputs: &FrameInputs,
     reference: &ReferenceArgs,
     input: &Result<Input, ReadError>,
@@ -183,15 +186,23 @@ fn frame_and_scene(
     if let (None, Some(scene)) = (inputs.size, &scene) {
         frame.size = scene.film.size;
     }
-    let ([x, y], [width, height]) = (args.pixel, frame.size);
-    if x >= width || y >= height {
-        return Err(CliError::new(format_args!(
-            "pixel ({x}, {y}) is outside the image of {width}x{height} pixels; the last is ({}, {})",
-            width - 1,
-            height - 1
-        )));
-    }
     Ok((frame, scene))
+}
+
+/// Checks that a pixel is inside what a pass renders, of this size in pixels.
+fn check_pixel([x, y]: [u32; 2], kind: PassKind, [width, height]: [u32; 2]) -> Result<(), CliError> {
+    if x < width && y < height {
+        return Ok(());
+    }
+    let image = match kind {
+        PassKind::Image => "the image".to_owned(),
+        buffer => buffer.to_string(),
+    };
+    Err(CliError::new(format_args!(
+        "pixel ({x}, {y}) is outside {image} of {width}x{height} pixels; the last is ({}, {})",
+        width - 1,
+        height - 1
+    )))
 }
 
 /// The color of the scene in a pixel, in double precision.

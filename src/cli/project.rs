@@ -1,5 +1,6 @@
 //! Projects of several tabs: their images, `toyproof import`, and `toyproof export` of a project.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use toyproof_diagnostic::{Files, all_of, path_name};
@@ -24,13 +25,20 @@ pub(super) fn pass_shader<'a>(project: &'a CompiledProject, rendering: &'a Rende
     }
 }
 
-/// What renders the image of a project.
+/// What renders the image and a pass of a project, for images of this size in pixels.
 ///
 /// # Errors
 /// If a pass is needed that cannot be rendered.
-pub(super) fn rendering(project: &CompiledProject, kind: PassKind) -> Result<Rendering, Failure> {
-    let rendering = project.rendering(kind);
-    rendering.map_err(|error| Failure::Unrendered(error.to_string()))
+pub(super) fn rendering(
+    project: &CompiledProject,
+    kind: PassKind,
+    size: [u32; 2],
+) -> Result<Rendering, Failure> {
+    let unrendered = |error: &dyn Display| Failure::Unrendered(error.to_string());
+    let rendering = project.rendering(kind).map_err(|error| unrendered(&error))?;
+    let sizes = rendering.graph.check_sizes(size);
+    sizes.map_err(|error| unrendered(&error))?;
+    Ok(rendering)
 }
 
 /// Binds the textures that the user names to the channels of the image, instead of what the project reads

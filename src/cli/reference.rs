@@ -257,7 +257,7 @@ impl Evaluation<'_> {
         let spinner = terminal.spinner(name);
         let mut frame = frame.clone();
         let bound = shader.project().map_or(Ok(()), |passes| {
-            let rendering = rendering(passes, PassKind::Image)?;
+            let rendering = rendering(passes, PassKind::Image, frame.size)?;
             bind_reference(&pass_shader(passes, &rendering), &mut frame, self.timeout)
         });
         bound.map_err(|failure| {

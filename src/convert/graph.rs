@@ -176,8 +176,7 @@ impl<'a> HostGraph<'a> {
                 }
             }
         }
-        let mipmaps = std::array::from_fn(|buffer| rendering.graph.has_mipmaps(buffer));
-        played.graph = Graph::new(passes, mipmaps);
+        played.graph = Graph::new(passes, rendering.graph.formats().clone());
         played
     }
 
@@ -252,8 +251,8 @@ impl<'a> HostGraph<'a> {
         let sampling = self.checked[pass].sampling[channel];
         let source = match input.source {
             Source::Buffer(buffer) => SourceEntry::Buffer {
-                buffer: target_name(Target::Buffer(buffer as usize)).to_owned(),
-                frame: frame_name(&self.graph.passes()[..pass], Target::Buffer(buffer as usize)),
+                buffer: target_name(Target::Buffer(buffer.number())).to_owned(),
+                frame: frame_name(&self.graph.passes()[..pass], Target::Buffer(buffer.number())),
             },
             _ => media_entry(input),
         };
@@ -308,7 +307,7 @@ impl<'a> HostGraph<'a> {
         }
         let mut passes: Vec<player::Pass> = Vec::new();
         let mut sampling = Vec::new();
-        let mut mipmaps = [false; BUFFERS];
+        let mut formats: [player::BufferFormat; BUFFERS] = Default::default();
         for pass in &file.passes {
             let target = target_named(&pass.target).ok_or("an unknown target")?;
             let mut inputs = [None; 4];
@@ -339,7 +338,7 @@ impl<'a> HostGraph<'a> {
                 };
             }
             if let Target::Buffer(number) = target {
-                mipmaps[number] |= pass.mipmaps;
+                formats[number].mipmaps |= pass.mipmaps;
             }
             passes.push(player::Pass { target, inputs });
             sampling.push(pass_sampling);
@@ -349,7 +348,7 @@ impl<'a> HostGraph<'a> {
             return Err("other passes than the project's".to_owned());
         }
         Ok(GraphContent {
-            graph: Graph::new(passes, mipmaps),
+            graph: Graph::new(passes, formats),
             sampling,
         })
     }
@@ -414,7 +413,7 @@ fn target_named(name: &str) -> Option<Target> {
 fn tab_target(tab: Tab) -> Option<Target> {
     match tab {
         Tab::Pass(PassKind::Image) => Some(Target::Image),
-        Tab::Pass(PassKind::Buffer(buffer)) => Some(Target::Buffer(buffer as usize)),
+        Tab::Pass(PassKind::Buffer(buffer)) => Some(Target::Buffer(buffer.number())),
         Tab::Common | Tab::Pass(PassKind::CubeA | PassKind::Sound) => None,
     }
 }

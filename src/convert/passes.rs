@@ -34,7 +34,7 @@ pub struct PassSources<'a> {
 }
 
 /// The contents of a written graph, with the media of the original.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct GraphContent {
     /// The order of the passes, and what they read.
     pub graph: Graph,

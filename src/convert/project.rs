@@ -4,7 +4,8 @@ use thiserror::Error;
 use toyproof_diagnostic::Files;
 use toyproof_glsl::Dialect;
 use toyproof_gpu::Worker;
-use toyproof_project::{CompiledProject, PassKind, UnsupportedPass};
+use toyproof_player::BufferFormat;
+use toyproof_project::{Buffer, CompiledProject, PassKind, UnsupportedPass};
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
 
@@ -73,6 +74,12 @@ pub enum ProjectError {
     /// A pass is needed that cannot be rendered.
     #[error("the project {0}")]
     NotRendered(#[from] UnsupportedPass),
+    /// A pass renders a buffer whose textures are not made as those of `ShaderToy`.
+    #[error("{0} has a size of its own, or is cleared in each frame, which is not converted yet")]
+    BufferFormat(PassKind),
+    /// There are more buffers than on `ShaderToy`.
+    #[error("the project has more than four buffers, which is not converted yet")]
+    ManyBuffers,
     /// A pass renders a cube map.
     #[error("the project reads Cube A, which is not converted yet")]
     CubeA,
@@ -115,6 +122,17 @@ impl Converter {
         let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
         if rendering.passes.iter().any(is_cube) {
             return Err(ProjectError::CubeA);
+        }
+        for pass in rendering.passes.iter().map(|&at| &project.project.passes[at]) {
+            match pass.kind {
+                PassKind::Buffer(buffer) if !Buffer::OF_SITE.contains(&buffer) => {
+                    return Err(ProjectError::ManyBuffers);
+                }
+                kind if pass.format != BufferFormat::default() => {
+                    return Err(ProjectError::BufferFormat(kind));
+                }
+                _ => {}
+            }
         }
         let checked: Vec<_> = project.checked_of(&rendering).collect();
         let host_graph = HostGraph::new(&project.project, &rendering, &checked);

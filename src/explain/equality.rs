@@ -7,7 +7,7 @@
 //! use toyproof_diagnostic::{File, Files};
 //! use toyproof_explain::equality::Pair;
 //! use toyproof_image::Frame;
-//! use toyproof_player::{BUFFERS, Graph, Pass, Target};
+//! use toyproof_player::{Graph, Pass, Target};
 //! use toyproof_verify::project::bind::clock;
 //! use toyproof_verify::project::playback::PassShader;
 //!
@@ -20,7 +20,7 @@
 //! };
 //! let (a, b) = (checked("a.glsl", "vec4(p.x / 8.0)")?, checked("b.glsl", "vec4(p.x * .125)")?);
 //! let image = Pass { target: Target::Image, inputs: [None; 4] };
-//! let graph = Graph::new(vec![image], [false; BUFFERS]);
+//! let graph = Graph::new(vec![image], Default::default());
 //! let [a, b] = [&a, &b].map(|checked| PassShader {
 //!     checked: vec![checked],
 //!     graph: &graph,

@@ -151,14 +151,11 @@ fn render(frames: &Frames) -> Result<VecDeque<Rendered>, Failure> {
     let mut single = frames.start::<f32>((), timeout);
     let mut double = frames.start::<f64>((), timeout);
     let passes = shader.graph.passes();
-    let pixels: usize = frames
-        .clock
-        .inputs
-        .size
+    let image = frames.clock.inputs.size;
+    let texels = passes
         .iter()
-        .map(|&side| side as usize)
-        .product();
-    let max_frames = (MAX_KEPT_BYTES / (passes.len() * pixels * TEXEL_BYTES).max(1)).max(2);
+        .map(|pass| shader.graph.texels(pass.target, image) as usize);
+    let max_frames = (MAX_KEPT_BYTES / (texels.sum::<usize>() * TEXEL_BYTES).max(1)).max(2);
     let mut kept = VecDeque::new();
     for number in 0..=frames.last {
         let inputs = frames.clock.frame(number);

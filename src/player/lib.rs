@@ -5,13 +5,15 @@
 //! textures: a pass reads the one that was completed last, and renders into the other. So a pass reads a
 //! buffer that precedes it as of this frame, and itself or a later one as of the previous frame. Both
 //! textures are zero at first and never cleared, so that a discarded pixel of a buffer keeps its value of two
-//! frames ago, and one of the image that of the previous frame.
+//! frames ago, and one of the image that of the previous frame. In other hosts, a buffer may be cleared before
+//! each frame.
 //!
-//! Cube A is a buffer that is rendered after the others: the faces of a cube map, stacked in one image.
+//! A buffer has the size of the image, or one that follows from it. Cube A is a buffer that is rendered after
+//! the others: the faces of a cube map, stacked in one image.
 //!
 //! ```
 //! use toyproof_image::Frame;
-//! use toyproof_player::{BUFFERS, Channel, Graph, Pass, Player, Renderer, Source, Storage, Target};
+//! use toyproof_player::{Channel, Graph, Pass, Player, Renderer, Source, Storage, Target};
 //!
 //! /// Buffers of one number: Buffer A adds 1 to itself, and the image shows it.
 //! struct Counter;
@@ -34,7 +36,7 @@
 //!
 //! let read_a = [Some(Source::Buffer(0)), None, None, None];
 //! let passes = [Target::Buffer(0), Target::Image].map(|target| Pass { target, inputs: read_a });
-//! let graph = Graph::new(passes.to_vec(), [false; BUFFERS]);
+//! let graph = Graph::new(passes.to_vec(), Default::default());
 //! let mut player = Player::new(graph, Counter);
 //! for frame in 0..3 {
 //!     player.render(&Frame { frame, ..Frame::default() }).unwrap();
@@ -45,42 +47,50 @@
 //! # Parts
 //!
 //! - `play`: [`Player`], which decides what a pass reads and renders, and the trait [`Renderer`].
+//! - `buffer`: the size of a buffer, and what else its textures have; `size`: sizes that are computed.
 //! - `clock`: the inputs of each frame.
 //! - `state`: what the next frame depends on.
 
+mod buffer;
 mod clock;
 mod driver;
 mod failure;
 mod play;
+mod size;
 mod state;
 
 use std::borrow::Cow;
 use std::fmt;
 
+pub use buffer::{BufferFormat, BufferSize, OversizedBuffer};
 pub use clock::Clock;
 pub use driver::{DrawOutput, Driver, Readback};
 pub use failure::{DriverFailure, Phase};
 pub use play::{Channel, Player, Renderer, Storage};
 use serde::{Deserialize, Serialize};
+pub use size::{BinaryFunction, SizeExpr, Step, UnaryFunction};
 pub use state::State;
-use toyproof_image::{Component, Frame, Image, Texture, cube};
+use toyproof_image::{Component, Frame, Image, Texture};
 
-/// The number of buffers that a shader can have: four images, and Cube A.
-pub const BUFFERS: usize = 5;
+/// The number of images among the buffers: Buffer A to Buffer Z. `ShaderToy` has four of them.
+pub const IMAGE_BUFFERS: usize = 26;
+
+/// The number of buffers that a shader can have: images, and Cube A.
+pub const BUFFERS: usize = IMAGE_BUFFERS + 1;
 
 /// The number of Cube A among the buffers.
-pub const CUBE_A: usize = 4;
+pub const CUBE_A: usize = IMAGE_BUFFERS;
 
 /// The side of the faces of Cube A, in texels.
 pub const CUBE_SIDE: u32 = 1024;
 
 /// The passes of a shader, and what each reads.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Graph {
     /// Buffers in the order in which they are rendered, then Cube A, and the image last.
     passes: Vec<Pass>,
-    /// Whether mipmaps of each buffer are made.
-    mipmaps: [bool; BUFFERS],
+    /// How the textures of each buffer are made.
+    formats: Box<[BufferFormat; BUFFERS]>,
 }
 
 /// A pass: its target and its inputs.
@@ -112,18 +122,6 @@ impl fmt::Display for Target {
 }
 
 impl Target {
-    /// The frame as the pass of this target renders it: Cube A has its own size.
-    pub fn frame(self, frame: &Frame) -> Cow<'_, Frame> {
-        match self {
-            Self::Buffer(CUBE_A) => Cow::Owned(Frame {
-                size: [CUBE_SIDE, CUBE_SIDE * cube::FACES],
-                resolution: Some([CUBE_SIDE; 2]),
-                ..frame.clone()
-            }),
-            Self::Buffer(_) | Self::Image => Cow::Borrowed(frame),
-        }
-    }
-
     /// The texture that passes read, of what the pass of this target rendered.
     pub fn texture<T: Component>(self, image: Image<T>) -> Texture {
         match self {
@@ -147,12 +145,12 @@ pub enum Source {
 }
 
 impl Graph {
-    /// Creates a graph of these passes; `mipmaps` selects the buffers with mipmaps.
+    /// Creates a graph of these passes; `formats` are those of the buffers. The size of Cube A is ignored.
     ///
     /// # Panics
     /// If a pass other than the last renders the image, the last does not, or a buffer has a number
-    /// of 5 or more.
-    pub fn new(passes: Vec<Pass>, mipmaps: [bool; BUFFERS]) -> Self {
+    /// of [`BUFFERS`] or more.
+    pub fn new(passes: Vec<Pass>, formats: [BufferFormat; BUFFERS]) -> Self {
         let image = passes.iter().position(|pass| pass.target == Target::Image);
         assert_eq!(image, passes.len().checked_sub(1), "the image is rendered last");
         let numbers = passes.iter().flat_map(|pass| {
@@ -164,8 +162,11 @@ impl Graph {
                 .into_iter()
                 .chain(pass.inputs.iter().flatten().filter_map(|input| input.buffer()))
         });
-        assert!(numbers.max() < Some(BUFFERS), "there are five buffers");
-        Self { passes, mipmaps }
+        assert!(numbers.max() < Some(BUFFERS), "there are {BUFFERS} buffers");
+        Self {
+            passes,
+            formats: Box::new(formats),
+        }
     }
 
     /// The passes in the order in which they are rendered.
@@ -187,9 +188,65 @@ impl Graph {
         }
     }
 
+    /// How the textures of each buffer are made.
+    pub fn formats(&self) -> &[BufferFormat; BUFFERS] {
+        &self.formats
+    }
+
     /// Whether mipmaps of a buffer are made.
     pub fn has_mipmaps(&self, buffer: usize) -> bool {
-        self.mipmaps[buffer]
+        self.formats[buffer].mipmaps
+    }
+
+    /// What the textures of a buffer store if the image has this size, in pixels.
+    pub fn storage(&self, buffer: usize, image: [u32; 2]) -> Storage {
+        match buffer {
+            CUBE_A => Storage::Cube(CUBE_SIDE),
+            _ => Storage::Image(self.formats[buffer].size.of(image)),
+        }
+    }
+
+    /// The size of what a pass renders if the image has this size, in pixels; the faces of a cube map are
+    /// stacked.
+    pub fn size(&self, target: Target, image: [u32; 2]) -> [u32; 2] {
+        match target {
+            Target::Image => image,
+            Target::Buffer(buffer) => self.storage(buffer, image).size(),
+        }
+    }
+
+    /// The number of texels of what a pass renders if the image has this size, in pixels.
+    pub fn texels(&self, target: Target, image: [u32; 2]) -> u64 {
+        self.size(target, image).into_iter().map(u64::from).product()
+    }
+
+    /// The frame as the pass of this target renders it.
+    pub fn frame<'f>(&self, target: Target, frame: &'f Frame) -> Cow<'f, Frame> {
+        let size = self.size(target, frame.size);
+        let resolution = (target == Target::Buffer(CUBE_A)).then_some([CUBE_SIDE; 2]);
+        if size == frame.size && resolution.is_none() {
+            return Cow::Borrowed(frame);
+        }
+        Cow::Owned(Frame {
+            size,
+            resolution,
+            ..frame.clone()
+        })
+    }
+
+    /// Checks the computed sizes of the buffers for an image of this size, in pixels.
+    ///
+    /// # Errors
+    /// The first buffer that is larger than an image can be.
+    pub fn check_sizes(&self, image: [u32; 2]) -> Result<(), OversizedBuffer> {
+        let mut used = (0..CUBE_A).filter(|&buffer| self.uses(buffer));
+        used.try_for_each(|buffer| {
+            let size = self.formats[buffer].size.check(image);
+            size.map_err(|error| OversizedBuffer {
+                buffer: Target::Buffer(buffer),
+                error,
+            })
+        })
     }
 
     /// Whether a buffer is rendered or read. One that is only read stays zero.

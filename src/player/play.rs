@@ -1,8 +1,8 @@
 //! Frames of a graph, by a renderer.
 
-use toyproof_image::Frame;
+use toyproof_image::{Frame, cube};
 
-use crate::{BUFFERS, CUBE_A, CUBE_SIDE, Graph, Source, Target};
+use crate::{BUFFERS, Graph, Source, Target};
 
 /// Renders single passes.
 pub trait Renderer {
@@ -44,6 +44,16 @@ pub enum Storage {
     Image([u32; 2]),
     /// A cube map whose faces have this side, in texels.
     Cube(u32),
+}
+
+impl Storage {
+    /// The size in pixels; the faces of a cube map are stacked.
+    pub fn size(self) -> [u32; 2] {
+        match self {
+            Self::Image(size) => size,
+            Self::Cube(side) => [side, side * cube::FACES],
+        }
+    }
 }
 
 /// The content of a channel of a pass.
@@ -178,6 +188,7 @@ impl<R: Renderer> Player<R> {
     /// If a pass fails; the player must not be used again.
     pub fn render(&mut self, frame: &Frame) -> Result<(), R::Error> {
         self.resize(frame.size)?;
+        self.clear(frame.size)?;
         for number in 0..self.graph.passes().len() {
             let target = self.graph.passes()[number].target;
             let over = match self.take(target) {
@@ -189,7 +200,8 @@ impl<R: Renderer> Player<R> {
                 buffer.textures[buffer.last].as_ref()
             };
             let channels = channels(&self.graph, number, last);
-            let drawn = self.renderer.draw(number, over, &target.frame(frame), channels)?;
+            let frame = self.graph.frame(target, frame);
+            let drawn = self.renderer.draw(number, over, &frame, channels)?;
             match target {
                 Target::Image => self.image = Some(drawn),
                 Target::Buffer(number) => {
@@ -214,6 +226,23 @@ impl<R: Renderer> Player<R> {
         }
     }
 
+    /// Makes the textures of the buffers that do not keep their content anew.
+    fn clear(&mut self, size: [u32; 2]) -> Result<(), R::Error> {
+        for (number, buffer) in self.buffers.iter_mut().enumerate() {
+            let Some(buffer) = buffer
+                .as_mut()
+                .filter(|_| self.graph.formats()[number].is_cleared)
+            else {
+                continue;
+            };
+            for texture in &mut buffer.textures {
+                let storage = self.graph.storage(number, size);
+                *texture = Some(self.renderer.zeros(storage, self.graph.has_mipmaps(number))?);
+            }
+        }
+        Ok(())
+    }
+
     /// Makes the textures, or changes their size.
     fn resize(&mut self, size: [u32; 2]) -> Result<(), R::Error> {
         if self.size == Some(size) {
@@ -227,10 +256,7 @@ impl<R: Renderer> Player<R> {
             let mut textures = [const { None }; 2];
             for (at, texture) in textures.iter_mut().enumerate() {
                 let old = buffer.as_mut().and_then(|buffer| buffer.textures[at].take());
-                let storage = match number {
-                    CUBE_A => Storage::Cube(CUBE_SIDE),
-                    _ => Storage::Image(size),
-                };
+                let storage = self.graph.storage(number, size);
                 *texture = Some(match (old, storage) {
                     (Some(old), Storage::Image(size)) => self.renderer.resized(old, size)?,
                     (Some(old), Storage::Cube(_)) => old,

@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 use toyproof_image::Texture;
 
-use crate::{BUFFERS, CUBE_A, CUBE_SIDE, Graph, Player, Renderer, Target};
+use crate::{BUFFERS, Graph, Player, Renderer, Storage, Target};
 
 /// The textures between two frames, so that a run can continue later.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// The number of the frame that was rendered last.
     pub frame: i32,
-    /// Width and height in pixels.
+    /// Width and height of the image in pixels.
     pub size: [u32; 2],
     /// The textures of each buffer that is used, the one that was completed last first, without mipmaps.
     pub buffers: [Option<[Texture; 2]>; BUFFERS],
@@ -19,16 +19,15 @@ pub struct State {
 }
 
 impl State {
-    /// Whether a state that was read from a file is one of this graph: all its textures are there, in one
-    /// size.
+    /// Whether a state that was read from a file is one of this graph: all its textures are there, in their
+    /// sizes.
     pub fn fits(&self, graph: &Graph) -> bool {
         let mut buffers = self.buffers.iter().enumerate();
         let has_buffers = buffers.all(|(number, textures)| match textures {
             Some(textures) => {
-                let size = if number == CUBE_A {
-                    [CUBE_SIDE; 2]
-                } else {
-                    self.size
+                let size = match graph.storage(number, self.size) {
+                    Storage::Image(size) => size,
+                    Storage::Cube(side) => [side; 2],
                 };
                 graph.uses(number) && textures.iter().all(|texture| texture.is_whole(size))
             }

@@ -65,11 +65,15 @@ fn frame(frame: i32, width: u32) -> Frame {
     }
 }
 
+/// Plays frames of these widths; Buffer B has mipmaps.
 fn play(passes: Vec<Pass>, widths: &[u32]) -> Player<Recorder> {
-    let mut player = Player::new(
-        Graph::new(passes, [false, true, false, false, false]),
-        Recorder::default(),
-    );
+    let mut formats: [BufferFormat; BUFFERS] = Default::default();
+    formats[1].mipmaps = true;
+    play_formats(passes, formats, widths)
+}
+
+fn play_formats(passes: Vec<Pass>, formats: [BufferFormat; BUFFERS], widths: &[u32]) -> Player<Recorder> {
+    let mut player = Player::new(Graph::new(passes, formats), Recorder::default());
     for (number, &width) in (0..).zip(widths) {
         let Ok(()) = player.render(&frame(number, width));
     }
@@ -131,6 +135,63 @@ fn a_new_size_keeps_both_textures_of_a_buffer() {
 }
 
 #[test]
+fn a_cleared_buffer_is_zero_until_its_pass() {
+    let mut formats: [BufferFormat; BUFFERS] = Default::default();
+    formats[1].is_cleared = true;
+    let passes = vec![
+        pass(Target::Buffer(0), &[Source::Buffer(0), Source::Buffer(1)]),
+        pass(Target::Buffer(1), &[Source::Buffer(1)]),
+        pass(Target::Image, &[Source::Buffer(0), Source::Buffer(1)]),
+    ];
+    let player = play_formats(passes, formats, &[4, 4]);
+    assert_eq!(
+        player.renderer().drawn[3..],
+        [
+            "0.1 over zeros4: 0.0 zeros4",
+            "1.1 over zeros4: zeros4",
+            "2.1 over 2.0: 0.1 1.1"
+        ]
+    );
+    // What the pass read is known afterwards.
+    assert!(matches!(player.inputs(1)[0], Channel::Texture(name) if name == "zeros4"));
+}
+
+#[test]
+fn a_buffer_may_have_a_size_of_its_own() {
+    let mut formats: [BufferFormat; BUFFERS] = Default::default();
+    let half = [
+        Step::Width,
+        Step::Constant(2.0),
+        Step::Binary(BinaryFunction::Divide),
+    ];
+    let sides = [half.to_vec(), vec![Step::Constant(1.0)]].map(|steps| SizeExpr::new(steps).unwrap());
+    formats[5].size = BufferSize::Computed(Box::new(sides));
+    let passes = vec![
+        pass(Target::Buffer(5), &[Source::Buffer(5)]),
+        pass(Target::Image, &[Source::Buffer(5)]),
+    ];
+    let player = play_formats(passes, formats, &[8, 11]);
+    assert_eq!(
+        player.renderer().drawn,
+        [
+            "0.0 over zeros4: zeros4",
+            "1.0 over zeros8: 0.0",
+            "0.1 over 0.0@5: zeros4@5",
+            "1.1 over zeros11: 0.1"
+        ]
+    );
+    let (graph, target) = (player.graph(), Target::Buffer(5));
+    assert_eq!(graph.frame(target, &frame(0, 11)).size, [5, 1]);
+    assert_eq!(graph.texels(target, [11, 7]), 5);
+    let cube = graph.frame(Target::Buffer(CUBE_A), &frame(0, 11)).into_owned();
+    assert_eq!((cube.size, cube.resolution), ([1024, 6144], Some([1024, 1024])));
+    assert_eq!(
+        (target.to_string(), graph.size(Target::Image, [11, 7])),
+        ("Buffer F".to_owned(), [11, 7])
+    );
+}
+
+#[test]
 fn a_buffer_that_is_rendered_twice_reads_its_own_result() {
     let passes = vec![
         pass(Target::Buffer(0), &[Source::Buffer(0)]),
@@ -179,6 +240,6 @@ fn a_restored_state_goes_on_as_before() {
 fn the_image_is_last() {
     let _ = Graph::new(
         vec![pass(Target::Image, &[]), pass(Target::Buffer(0), &[])],
-        [false; BUFFERS],
+        Default::default(),
     );
 }

@@ -4,9 +4,10 @@ use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, File, FileId, Files};
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked, Options, Stage};
 use toyproof_lint::{Lints, lint};
+use toyproof_player::{BUFFERS, CUBE_A};
 
 use crate::files::IncludeFolders;
-use crate::pass::{Pass, PassKind, SourceType, Tab};
+use crate::pass::{Pass, PassKind, SourceType};
 use crate::project::Project;
 
 /// A project all of whose tabs compile.
@@ -254,7 +255,12 @@ impl Project {
                 }
             }
         }
-        let order = |kind: &PassKind| Tab::ALL.iter().position(|tab| *tab == Tab::Pass(*kind));
+        let order = |kind: &PassKind| match kind {
+            PassKind::Buffer(buffer) => buffer.number(),
+            PassKind::CubeA => CUBE_A,
+            PassKind::Image => BUFFERS,
+            PassKind::Sound => BUFFERS + 1,
+        };
         needed.sort_by_key(order);
         needed
     }

@@ -446,7 +446,7 @@ fn complete_document(members: &mut Vec<Member>) {
 /// The passes of a folder without `project.toml`, in the order of the site.
 fn assumed_passes(tabs: &[(Tab, FileId)]) -> Node {
     let has = |tab: Tab| tabs.iter().any(|(known, _)| *known == tab);
-    let inputs: Vec<Node> = Buffer::ALL
+    let inputs: Vec<Node> = Buffer::OF_SITE
         .into_iter()
         .map(|buffer| Tab::Pass(PassKind::Buffer(buffer)))
         .enumerate()

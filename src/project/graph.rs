@@ -3,7 +3,7 @@
 
 use toyproof_glsl::{Filter, Sampling, Wrap};
 use toyproof_image::{MovingTextures, Texture};
-use toyproof_player::{self as player, BUFFERS, Graph, Target};
+use toyproof_player::{self as player, BUFFERS, BufferFormat, Graph, Target};
 
 use crate::pass::{Input, Pass, PassKind, Source, SourceType};
 use crate::project::Project;
@@ -64,16 +64,21 @@ impl Project {
                 }),
             });
         let nodes = nodes.collect();
-        let mut mipmaps = [false; BUFFERS];
+        let mut formats: [BufferFormat; BUFFERS] = Default::default();
+        for pass in &self.passes {
+            if let Target::Buffer(buffer) = pass.kind.target() {
+                formats[buffer] = pass.format.clone();
+            }
+        }
         for input in self.rendered_inputs() {
             if let (Some(Target::Buffer(buffer)), Filter::Mipmap) =
                 (input.source.pass().map(PassKind::target), input.sampler.filter)
             {
-                mipmaps[buffer] = true;
+                formats[buffer].mipmaps = true;
             }
         }
         Ok(Rendering {
-            graph: Graph::new(nodes, mipmaps),
+            graph: Graph::new(nodes, formats),
             passes,
             media: textures.media,
             films: MovingTextures(textures.moving),
@@ -100,7 +105,7 @@ impl Project {
             inputs,
         };
         Some(Rendering {
-            graph: Graph::new(vec![pass], [false; BUFFERS]),
+            graph: Graph::new(vec![pass], Default::default()),
             passes: vec![at],
             media: textures.media,
             films: MovingTextures(textures.moving),

@@ -37,7 +37,7 @@ pub(crate) fn lint(project: &Project, passes: &[CheckedPass]) -> Vec<Diagnostic>
     }
     let mut warnings = Vec::new();
     missing_passes(project, &reads, &mut warnings);
-    for buffer in Buffer::ALL {
+    for buffer in Buffer::OF_SITE {
         let source = Source::Buffer(buffer);
         let of_buffer: Vec<_> = reads.iter().filter(|read| read.input.source == source).collect();
         conflicting_samplers(buffer, &of_buffer, &mut warnings);

@@ -207,7 +207,7 @@ fn is_inside(path: &str) -> bool {
 pub(crate) fn buffer(id: &str, path: &str) -> Option<Buffer> {
     // The numbers of the API: 257 to 260.
     let number = |index: usize| (257 + index).to_string() == id;
-    let mut buffers = Buffer::ALL.into_iter().enumerate();
+    let mut buffers = Buffer::OF_SITE.into_iter().enumerate();
     let named = buffers.find(|&(index, _)| FIXED[index].id == id || number(index));
     named.map(|(_, buffer)| buffer).or_else(|| {
         let file = path
@@ -215,13 +215,13 @@ pub(crate) fn buffer(id: &str, path: &str) -> Option<Buffer> {
             .next()?
             .strip_prefix("buffer0")?
             .strip_suffix(".png")?;
-        Buffer::ALL.get(file.parse::<usize>().ok()?).copied()
+        Buffer::OF_SITE.get(file.parse::<usize>().ok()?).copied()
     })
 }
 
-/// The id of a buffer.
+/// The id of a buffer of the site.
 pub(crate) fn buffer_id(buffer: Buffer) -> &'static str {
-    FIXED[buffer as usize].id
+    FIXED[buffer.number()].id
 }
 
 impl Source {
@@ -295,7 +295,7 @@ mod tests {
         assert_eq!(buffer("257", ""), Some(Buffer::A));
         assert_eq!(buffer("x", "/media/previz/buffer03.png"), Some(Buffer::D));
         assert_eq!(buffer("x", "/media/previz/buffer04.png"), None);
-        for buffer in Buffer::ALL {
+        for buffer in Buffer::OF_SITE {
             assert_eq!(super::buffer(buffer_id(buffer), ""), Some(buffer));
         }
     }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use toyproof_diagnostic::{FileId, Span};
 use toyproof_glsl::{Filter, Wrap};
-use toyproof_player::{CUBE_A, Target};
+use toyproof_player::{BufferFormat, CUBE_A, IMAGE_BUFFERS, Target};
 
 /// The maximum size of a tab in bytes. The site's editor takes 65,536 characters.
 pub const MAX_TAB_BYTES: usize = 1 << 20;
@@ -23,7 +23,7 @@ pub enum Tab {
 pub enum PassKind {
     /// The image.
     Image,
-    /// A buffer, of the size of the image.
+    /// A buffer.
     Buffer(Buffer),
     /// The cube map.
     CubeA,
@@ -31,18 +31,9 @@ pub enum PassKind {
     Sound,
 }
 
-/// The name of a buffer.
+/// The name of a buffer: a letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Buffer {
-    /// Buffer A.
-    A,
-    /// Buffer B.
-    B,
-    /// Buffer C.
-    C,
-    /// Buffer D.
-    D,
-}
+pub struct Buffer(u8);
 
 /// A pass: its kind, its code and its inputs.
 #[derive(Debug, Clone)]
@@ -53,6 +44,9 @@ pub struct Pass {
     pub file: FileId,
     /// The inputs of `iChannel0` to `iChannel3`.
     pub inputs: [Option<Input>; 4],
+    /// How the textures of the buffer that the pass renders are made; its inputs determine whether they have
+    /// mipmaps. The format of other passes does not count.
+    pub format: BufferFormat,
 }
 
 /// An input of a pass.
@@ -108,7 +102,7 @@ impl PassKind {
     #[must_use]
     pub fn target(self) -> Target {
         match self {
-            Self::Buffer(buffer) => Target::Buffer(buffer as usize),
+            Self::Buffer(buffer) => Target::Buffer(buffer.number()),
             Self::CubeA => Target::Buffer(CUBE_A),
             Self::Image | Self::Sound => Target::Image,
         }
@@ -116,23 +110,48 @@ impl PassKind {
 }
 
 impl Buffer {
-    /// All buffers.
-    pub const ALL: [Self; 4] = [Self::A, Self::B, Self::C, Self::D];
+    /// Buffer A.
+    pub const A: Self = Self(0);
+    /// Buffer B.
+    pub const B: Self = Self(1);
+    /// Buffer C.
+    pub const C: Self = Self(2);
+    /// Buffer D.
+    pub const D: Self = Self(3);
+
+    /// The buffers of `ShaderToy`. Other hosts have more, up to Buffer Z.
+    pub const OF_SITE: [Self; 4] = [Self::A, Self::B, Self::C, Self::D];
+
+    /// The buffer with this number, from 0; `None` from [`IMAGE_BUFFERS`] on.
+    #[must_use]
+    pub fn nth(number: usize) -> Option<Self> {
+        let number = u8::try_from(number).ok()?;
+        (usize::from(number) < IMAGE_BUFFERS).then_some(Self(number))
+    }
+
+    /// The number, from 0.
+    #[must_use]
+    pub fn number(self) -> usize {
+        usize::from(self.0)
+    }
 }
 
 impl fmt::Display for Buffer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::A => "Buffer A",
-            Self::B => "Buffer B",
-            Self::C => "Buffer C",
-            Self::D => "Buffer D",
-        })
+        f.pad(&Target::Buffer(self.number()).to_string())
     }
 }
 
+/// The names of the files of buffers without `.glsl`, by their numbers.
+const BUFFER_NAMES: [&str; IMAGE_BUFFERS] = [
+    "buffer-a", "buffer-b", "buffer-c", "buffer-d", "buffer-e", "buffer-f", "buffer-g", "buffer-h",
+    "buffer-i", "buffer-j", "buffer-k", "buffer-l", "buffer-m", "buffer-n", "buffer-o", "buffer-p",
+    "buffer-q", "buffer-r", "buffer-s", "buffer-t", "buffer-u", "buffer-v", "buffer-w", "buffer-x",
+    "buffer-y", "buffer-z",
+];
+
 impl Tab {
-    /// All tabs, in the order in which they are listed.
+    /// All tabs of `ShaderToy`, in the order in which they are listed.
     pub const ALL: [Self; 8] = [
         Self::Common,
         Self::Pass(PassKind::Buffer(Buffer::A)),
@@ -150,10 +169,7 @@ impl Tab {
         match self {
             Self::Common => "common",
             Self::Pass(PassKind::Image) => "image",
-            Self::Pass(PassKind::Buffer(Buffer::A)) => "buffer-a",
-            Self::Pass(PassKind::Buffer(Buffer::B)) => "buffer-b",
-            Self::Pass(PassKind::Buffer(Buffer::C)) => "buffer-c",
-            Self::Pass(PassKind::Buffer(Buffer::D)) => "buffer-d",
+            Self::Pass(PassKind::Buffer(buffer)) => BUFFER_NAMES[buffer.number()],
             Self::Pass(PassKind::CubeA) => "cube-a",
             Self::Pass(PassKind::Sound) => "sound",
         }

@@ -2,6 +2,7 @@
 
 use toyproof_diagnostic::{Diagnostic, Diagnostics, File, FileId, Files, nearest, one_of};
 use toyproof_glsl::{Filter, Wrap};
+use toyproof_player::BufferFormat;
 
 use crate::format::{Format, Wrapper};
 use crate::json;
@@ -196,7 +197,12 @@ pub(crate) fn read(
         found.tabs.push((tab, file));
         match tab {
             Tab::Common => found.common = Some(file),
-            Tab::Pass(kind) => found.passes.push(Pass { kind, file, inputs }),
+            Tab::Pass(kind) => found.passes.push(Pass {
+                kind,
+                file,
+                inputs,
+                format: BufferFormat::default(),
+            }),
         }
     }
     if errors.is_empty() && !found.passes.iter().any(|pass| pass.kind == PassKind::Image) {

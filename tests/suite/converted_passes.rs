@@ -12,7 +12,7 @@ use toyproof::convert::{
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::glsl::{self, Checked, Filter, Wrap};
 use toyproof::image;
-use toyproof::player::{BUFFERS, Graph, Pass, Source as Read, Target};
+use toyproof::player::{Graph, Pass, Source as Read, Target};
 use toyproof::project::{PassKind, Project, Rendering, check};
 use toyproof::translate::wgsl::{Style, wgsl};
 
@@ -76,8 +76,7 @@ impl Converted {
     fn edit(&mut self, edit: impl FnOnce(&mut [Pass])) {
         let mut passes = self.graph.graph.passes().to_vec();
         edit(&mut passes);
-        let mipmaps = std::array::from_fn(|buffer| self.graph.graph.has_mipmaps(buffer));
-        self.graph.graph = Graph::new(passes, mipmaps);
+        self.graph.graph = Graph::new(passes, self.graph.graph.formats().clone());
     }
 
     /// Proves it; none without a driver.
@@ -312,7 +311,7 @@ fn faults_in_the_graph_are_found() {
     }
     repeated.difference();
     let mut flat = Converted::new("mipmap-pyramid");
-    flat.graph.graph = Graph::new(flat.graph.graph.passes().to_vec(), [false; BUFFERS]);
+    flat.graph.graph = Graph::new(flat.graph.graph.passes().to_vec(), Default::default());
     flat.difference();
     assert_eq!(flat.graph.graph.passes().last().unwrap().target, Target::Image);
 }

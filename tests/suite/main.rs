@@ -51,6 +51,7 @@ mod growth;
 mod hostile;
 mod hostile_class;
 mod interpreted;
+mod isf;
 mod large_batch;
 mod layers;
 mod limits;

@@ -12,7 +12,7 @@ use toyproof::eval::{Number, Settings};
 use toyproof::glsl::{self, Checked, Filter, Stage, Wrap};
 use toyproof::gpu::Worker;
 use toyproof::image::{Frame, Texture};
-use toyproof::player::{BUFFERS, Clock, Graph, Target};
+use toyproof::player::{Clock, Graph, Target};
 use toyproof::project::{PassKind, Project, Rendering, Tab, check};
 use toyproof::translate::FloatMode;
 use toyproof::verify::project::playback::{CpuPlayback, DevicePlayback, PassShader};
@@ -317,7 +317,7 @@ const FAULTS: [Fault; 8] = [
         order.sort_by_key(number);
         let passes = order.iter().map(|&at| rendering.graph.passes()[at]).collect();
         rendering.passes = order.iter().map(|&at| rendering.passes[at]).collect();
-        rendering.graph = Graph::new(passes, mipmaps(rendering));
+        rendering.graph = Graph::new(passes, rendering.graph.formats().clone());
     }),
     ("a missing buffer is unbound", |_, rendering, _| {
         let exists = rendering
@@ -331,7 +331,7 @@ const FAULTS: [Fault; 8] = [
             let is_missing = |source| matches!(source, toyproof::player::Source::Buffer(number) if !exists.contains(&Target::Buffer(number)));
             *input = input.filter(|source| !is_missing(*source));
         }
-        rendering.graph = Graph::new(passes, mipmaps(rendering));
+        rendering.graph = Graph::new(passes, rendering.graph.formats().clone());
     }),
     ("every input has its own wrap", |case, _, _| {
         for (pass, checked) in case.project.passes.iter().zip(&mut case.passes) {
@@ -350,7 +350,7 @@ const FAULTS: [Fault; 8] = [
         }
     }),
     ("no mipmaps are made", |_, rendering, _| {
-        rendering.graph = Graph::new(rendering.graph.passes().to_vec(), [false; BUFFERS]);
+        rendering.graph = Graph::new(rendering.graph.passes().to_vec(), Default::default());
     }),
     ("the alpha of buffers is 1", |case, _, _| {
         case.passes
@@ -364,11 +364,6 @@ const FAULTS: [Fault; 8] = [
         clock.start = 1.0 / clock.rate;
     }),
 ];
-
-/// Of which buffers mipmaps are made.
-fn mipmaps(rendering: &Rendering) -> [bool; BUFFERS] {
-    std::array::from_fn(|buffer| rendering.graph.has_mipmaps(buffer))
-}
 
 #[test]
 fn planted_faults_of_the_player_are_revealed() {

@@ -259,7 +259,7 @@ impl<'a> ShaderCheck<'a> {
         let (Some(passes), Some(reference)) = (self.shader.project(), solution.project()) else {
             return;
         };
-        let renderings = [passes, reference].map(|passes| rendering(passes, PassKind::Image));
+        let renderings = [passes, reference].map(|passes| rendering(passes, PassKind::Image, frame.size));
         let [Ok(rendering), Ok(of_reference)] = &renderings else {
             return;
         };
@@ -299,7 +299,7 @@ impl<'a> ShaderCheck<'a> {
     /// Binds the inputs of the image of a project in a frame, and reports the findings on its passes in the
     /// frames up to it.
     fn bind(&mut self, passes: &CompiledProject, frame: &mut Frame) -> Result<Option<BoundFrame>, Failure> {
-        let rendering = rendering(passes, PassKind::Image)?;
+        let rendering = rendering(passes, PassKind::Image, frame.size)?;
         let missing = rendering.missing.iter().map(MissingMedium::diagnostic);
         self.report(missing.collect(), &self.shader.files);
         let driver = &self.checker.options.driver;

@@ -8,7 +8,7 @@ use toyproof_diagnostic::Deadline;
 use toyproof_explain::equality::{Pair, PairFailure};
 use toyproof_glsl::{Checked, Filter};
 use toyproof_image::{self as image, Frame, MovingTextures, Texture};
-use toyproof_player::{BUFFERS, Clock, Graph, Pass, Source, Target};
+use toyproof_player::{Clock, Graph, Pass, Source, Target};
 use toyproof_project::{CompiledProject, PassKind, Rendering};
 use toyproof_report::{ComparedImages, ComparedShaders, ComparisonReport, FirstDifferenceRecord};
 use toyproof_verify::Quantization;
@@ -188,7 +188,7 @@ impl<'a> Passes<'a> {
     fn new(shader: &'a Shader, frame: &Frame) -> Result<Self, CliError> {
         if let Some(project) = shader.project() {
             let failed = |failure| CliError::new(format_args!("{}: {failure}", shader.name));
-            let mut rendering = rendering(project, PassKind::Image).map_err(failed)?;
+            let mut rendering = rendering(project, PassKind::Image, frame.size).map_err(failed)?;
             bind_channels(project, &mut rendering, &frame.channels);
             return Ok(Self::Project(project, rendering));
         }
@@ -210,7 +210,7 @@ impl<'a> Passes<'a> {
         };
         Ok(Self::Single {
             checked,
-            graph: Graph::new(vec![image], [false; BUFFERS]),
+            graph: Graph::new(vec![image], Default::default()),
             media,
         })
     }

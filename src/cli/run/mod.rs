@@ -85,7 +85,7 @@ pub(in crate::cli) struct Args {
     /// Keep the alpha that the shader writes: in .png, .exr, .apng, .webm and rgba; ShaderToy sets it to 1
     #[arg(long, hide_short_help = true)]
     transparent: bool,
-    /// The pass of a project to show: `image`, or `buffer-a` to `buffer-d` [default: image]
+    /// The pass of a project to show: `image`, or `buffer-a`, `buffer-b` and so on [default: image]
     #[arg(long, value_name = "PASS", value_parser = parse_pass, hide_short_help = true)]
     pass: Option<PassKind>,
     /// The number of frames of a project to render before the first one that is shown, instead of all
@@ -356,7 +356,7 @@ impl Runner<'_> {
             self.args.driver.float().lower(checked).text().hash(&mut hasher);
         }
         let fingerprint = self.fingerprint(hasher);
-        let Some(sequence) = self.open_sequence(output, path, &fingerprint, None)? else {
+        let Some(sequence) = self.open_sequence((output, self.frame.size), path, &fingerprint, None)? else {
             return Ok(());
         };
         let clock = self.clock(0);
@@ -621,24 +621,24 @@ impl Runner<'_> {
 
 impl<'a> Runner<'a> {
     /// Starts the sequence of an output, or goes on with an interrupted one with the same fingerprint; `None`
-    /// for a single image. `sound` is the file of a film's sound.
+    /// for a single image. The images have this size in pixels; `sound` is the file of a film's sound.
     fn open_sequence(
         &self,
-        output: Output,
+        (output, size): (Output, [u32; 2]),
         path: &Path,
         fingerprint: &str,
         sound: Option<&Path>,
     ) -> Result<Option<Sequence<'a>>, CliError> {
         if output != Output::Image {
             // Frames are in memory as a whole.
-            let [width, height] = self.frame.size.map(u64::from);
+            let [width, height] = size.map(u64::from);
             check_size(width, height).map_err(CliError::new)?;
         }
         let args = &self.args.sequence;
         let settings = |frames, format| FilmSettings {
             keeps_alpha: self.args.transparent,
             sound: sound.map(Path::to_owned),
-            ..args.film(frames, format, self.frame.size)
+            ..args.film(frames, format, size)
         };
         Ok(Some(match output {
             Output::Image => return Ok(None),

@@ -14,7 +14,7 @@ use toyproof_glsl as glsl;
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Source, State, Target};
-use toyproof_project::{CompiledProject, PassKind, Rendering, Tab};
+use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, Tab};
 use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::state::{self, Owner};
@@ -25,20 +25,12 @@ use crate::cli::sequence::{FrameEnd, Output, Sequence};
 use crate::cli::shader::Shader;
 use crate::cli::{CliError, Exit, Terminal};
 
-/// Parses the name of a pass whose texture can be shown: `image`, `buffer-a` to `buffer-d`, or `cube-a`.
+/// Parses the name of a pass whose texture can be shown: `image`, `buffer-a` to `buffer-z`, or `cube-a`.
 pub(in crate::cli) fn parse_pass(text: &str) -> Result<PassKind, String> {
-    let shown = Tab::ALL.into_iter().filter_map(|tab| match tab {
-        Tab::Pass(kind @ (PassKind::Image | PassKind::Buffer(_) | PassKind::CubeA)) => {
-            Some((tab.name(), kind))
-        }
-        _ => None,
-    });
-    let shown: Vec<_> = shown.collect();
-    let found = shown.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
-    found.map(|(_, kind)| *kind).ok_or_else(|| {
-        let names: Vec<_> = shown.iter().map(|(name, _)| *name).collect();
-        format!("expected one of {}", names.join(", "))
-    })
+    let buffers = (0..).map_while(Buffer::nth).map(PassKind::Buffer);
+    let mut shown = buffers.chain([PassKind::Image, PassKind::CubeA]);
+    let found = shown.find(|kind| Tab::Pass(*kind).name().eq_ignore_ascii_case(text));
+    found.ok_or_else(|| "expected image, buffer-a to buffer-z, or cube-a".to_owned())
 }
 
 /// Reports the media of the site that are not available. `bound` are the channels of the image that the user
@@ -178,6 +170,12 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// A frame as the shown pass renders it.
+    fn shown_frame(&self, number: i32) -> Frame {
+        let frame = self.clock.frame(number);
+        self.graph.frame(self.target, &frame).into_owned()
+    }
+
     /// Renders the frames up to this one, and returns the image of the shown pass in it.
     fn show(&mut self, number: i32, interrupted: &AtomicBool) -> Result<RenderedImage, FrameFailure> {
         let start = Instant::now();
@@ -332,7 +330,8 @@ impl Runner<'_> {
         let fingerprint = self.fingerprint_of_project(shader, passes);
         let sound = self.film_sound(shader, passes, output)?;
         let sound = sound.as_ref().map(tempfile::NamedTempFile::path);
-        let sequence = self.open_sequence(output, path, &fingerprint, sound)?;
+        let size = rendering.graph.size(kind.target(), self.frame.size);
+        let sequence = self.open_sequence((output, size), path, &fingerprint, sound)?;
         let has_history = rendering.graph.passes().len() > 1;
         let first = match (&sequence, self.args.sequence.frames()?) {
             (Some(sequence), Some(frames)) => sequence.first_missing().unwrap_or(frames.first()),
@@ -483,6 +482,8 @@ impl Runner<'_> {
         let rendering = passes.rendering(kind);
         let mut rendering =
             rendering.map_err(|error| refusal(shader, error, "`toyproof check` compiles all its tabs"))?;
+        let sizes = rendering.graph.check_sizes(self.frame.size);
+        sizes.map_err(|error| refusal(shader, error, "change the size of the pass, or --size"))?;
         report_missing(&rendering, &self.frame.channels, &shader.name, self.terminal);
         bind_channels(passes, &mut rendering, &self.frame.channels);
         Ok(rendering)
@@ -500,7 +501,7 @@ impl Runner<'_> {
             return Ok(None);
         };
         let refuse = |error: String| refusal(shader, error, "name another file with --state");
-        let Some(state) = state::read(file, owner).map_err(refuse)? else {
+        let Some(state) = state::read(file, owner, passes.graph).map_err(refuse)? else {
             return Ok(None);
         };
         if !state.fits(passes.graph) {
@@ -576,7 +577,7 @@ impl Runner<'_> {
     ) -> Result<(), CliError> {
         let rendered = run.show(number, interrupted);
         let rendered = rendered.map_err(|failure| self.frame_error(failure, run.graph, number, shader))?;
-        self.write_confirmed(&rendered, &run.clock.frame(number), &shader.name, path)
+        self.write_confirmed(&rendered, &run.shown_frame(number), &shader.name, path)
     }
 
     fn all_frames(
@@ -586,10 +587,13 @@ impl Runner<'_> {
         (shader, output, path): (&Shader, Output, &Path),
     ) -> Result<(), CliError> {
         let mut film = self.written_film(output, &run.clock, &shader.name, path);
+        if let Some(film) = &mut film {
+            film.size = run.graph.size(run.target, film.size);
+        }
         sequence.render(self.terminal, |number, destination, interrupted| {
             match run.show(number, interrupted) {
                 Ok(rendered) => {
-                    let frame = run.clock.frame(number);
+                    let frame = run.shown_frame(number);
                     self.put(&rendered, &frame, &shader.name, destination, film.as_mut())?;
                 }
                 Err(FrameFailure::Interrupted(_)) => return Ok(FrameEnd::Interrupted),

@@ -7,18 +7,20 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Files, path_name};
 use toyproof_image::{input, output};
-use toyproof_player::{BUFFERS, Clock, State};
+use toyproof_player::{BUFFERS, Clock, Graph, State, Target};
 use toyproof_project::{CompiledProject, Rendering};
 
 /// Identifies the format.
-const FORMAT: &str = "toyproof state 2";
+const FORMAT: &str = "toyproof state 3";
 
 /// The maximum size of the header before the textures, in bytes.
 const MAX_HEAD_BYTES: u64 = 1024;
 
-/// The maximum size of a pixel in all textures, in bytes: four doubles in two textures of each buffer and in
-/// the image.
-const MAX_PIXEL_BYTES: u64 = 32 * (2 * BUFFERS as u64 + 1);
+/// The maximum size of a texel, in bytes: four doubles.
+const MAX_TEXEL_BYTES: u64 = 32;
+
+/// The maximum size of what is stored beside the texels, in bytes: sizes, and the borders of Cube A.
+const MAX_REST_BYTES: u64 = 1 << 20;
 
 /// The owner of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -80,11 +82,19 @@ impl Owner {
     }
 }
 
-/// Reads a state; `None` if there is no such file.
+/// The maximum size of a state of a graph, in bytes: two textures of each buffer, and the image.
+fn max_bytes(graph: &Graph, image: [u32; 2]) -> u64 {
+    let buffers = (0..BUFFERS).filter(|&buffer| graph.uses(buffer));
+    let texels = buffers.map(|buffer| 2 * graph.texels(Target::Buffer(buffer), image));
+    let texels = texels.sum::<u64>() + graph.texels(Target::Image, image);
+    texels * MAX_TEXEL_BYTES + MAX_REST_BYTES
+}
+
+/// Reads a state of a graph; `None` if there is no such file.
 ///
 /// # Errors
 /// Why it cannot be used.
-pub(super) fn read(path: &Path, owner: &Owner) -> Result<Option<State>, String> {
+pub(super) fn read(path: &Path, owner: &Owner, graph: &Graph) -> Result<Option<State>, String> {
     let name = path_name(path);
     let unreadable = |error: io::Error| format!("cannot read {name}: {error}");
     let mut file = match input::open(path) {
@@ -112,8 +122,7 @@ pub(super) fn read(path: &Path, owner: &Owner) -> Result<Option<State>, String> 
         return Err(format!("{name} {reason}"));
     }
     let head = bytes.len() - rest.len();
-    let [width, height] = owner.size.map(u64::from);
-    file.take(width * height * MAX_PIXEL_BYTES)
+    file.take(max_bytes(graph, owner.size))
         .read_to_end(&mut bytes)
         .map_err(unreadable)?;
     let state = postcard::from_bytes::<State>(&bytes[head..]).map_err(damaged)?;

@@ -8,7 +8,7 @@ use toyproof_eval::{Number, Settings, UndefinedPolicy};
 use toyproof_eval_native::Program;
 use toyproof_glsl::{Checked, Filter};
 use toyproof_image::{Frame, Image, Texture};
-use toyproof_player::{Source, Target};
+use toyproof_player::{Graph, Source, Target};
 use toyproof_verify::MAX_DIFFERING;
 use toyproof_verify::project::bind::{clock, programs};
 use toyproof_verify::project::playback::{CpuPlayback, PassShader};
@@ -81,9 +81,12 @@ impl<'a> Players<'a> {
     /// Compiles the passes; `None` if they are too large, or no pass is in both.
     pub(super) fn new(case: &'a ProjectCase<'a>, deadline: Instant) -> Option<Self> {
         let [own, reference] = [case.project.shader, case.reference.shader];
+        let size = |graph: &Graph, target| graph.size(target, case.frame.size);
         let position = |target| {
+            // Textures of different sizes hold different things.
+            let has_size = size(own.graph, target) == size(reference.graph, target);
             let mut passes = reference.graph.passes().iter();
-            passes.position(|pass| pass.target == target)
+            passes.position(|pass| pass.target == target && has_size)
         };
         let passes = own.graph.passes().iter().enumerate();
         let pairs = passes.filter_map(|(own, pass)| {

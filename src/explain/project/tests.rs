@@ -4,7 +4,7 @@ use toyproof_diagnostic::{File, FileId, Files};
 use toyproof_glsl::{self as glsl, Checked, Stage};
 use toyproof_image::{Frame, MovingTextures};
 use toyproof_lint::Lints;
-use toyproof_player::{BUFFERS, Graph, Pass, Source, Target};
+use toyproof_player::{Graph, Pass, Source, Target};
 use toyproof_verify::project::bind::{bind_reference, clock};
 use toyproof_verify::project::playback::PassShader;
 use toyproof_verify::{DEFAULT_TOLERANCE, Expected, ShaderReference};
@@ -50,7 +50,7 @@ impl Compiled {
             files,
             tabs,
             checked,
-            graph: Graph::new(passes.to_vec(), [false; BUFFERS]),
+            graph: Graph::new(passes.to_vec(), Default::default()),
         }
     }
 

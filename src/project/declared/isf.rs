@@ -6,8 +6,11 @@ use std::fmt::Write;
 
 use toyproof_diagnostic::{Diagnostic, File, FileId, Files, Span};
 use toyproof_glsl::{Dialect, Filter, Options, Wrap};
+use toyproof_player::{BufferFormat, BufferSize};
 
 use super::declarations::{Declarations, Declared, components, in_front_of, is_name};
+use super::isf_passes::{IsfPass, Sizes, passes, set_channels};
+use super::pass_index::has_word;
 use crate::format::{Format, Wrapper};
 use crate::json;
 use crate::node::{Node, Value};
@@ -49,46 +52,6 @@ pub(super) fn header(text: &str) -> Option<(u32, u32)> {
     is_header.then_some((start as u32, end as u32))
 }
 
-/// A pass that renders a buffer, or the image.
-struct IsfPass {
-    /// The name of the buffer; `None` for the image.
-    target: Option<String>,
-}
-
-/// Reads the passes of a header: none if the shader has one that renders the image.
-///
-/// # Errors
-/// A pass that cannot be rendered.
-fn passes(root: &Node) -> Result<Vec<IsfPass>, Diagnostic> {
-    let nodes = root.get("PASSES").and_then(Node::as_array).unwrap_or_default();
-    let mut passes: Vec<IsfPass> = Vec::new();
-    for (index, node) in nodes.iter().enumerate() {
-        let target = node.get("TARGET").and_then(Node::as_str);
-        for (key, whole) in [("WIDTH", "$WIDTH"), ("HEIGHT", "$HEIGHT")] {
-            if let Some(size) = node.get(key).filter(|size| size.as_str() != Some(whole)) {
-                let error = size.error("a pass of another size than the image is not supported");
-                return Err(error.help("leave out WIDTH and HEIGHT"));
-            }
-        }
-        if target.is_none() && index + 1 < nodes.len() {
-            return Err(node.error("only the last pass may be without a `TARGET`"));
-        }
-        if target.is_some_and(|target| !is_name(target)) {
-            return Err(node.error("a `TARGET` must be a name in GLSL"));
-        }
-        let target = target.map(str::to_owned);
-        if target.is_some() && passes.iter().any(|pass| pass.target == target) {
-            return Err(node.error("a second pass with the same `TARGET` is not supported"));
-        }
-        passes.push(IsfPass { target });
-        if passes.iter().filter(|pass| pass.target.is_some()).count() > Buffer::ALL.len() {
-            return Err(node.error("more than four passes with a `TARGET` are not supported"));
-        }
-    }
-    let is_single = passes.iter().all(|pass| pass.target.is_none());
-    Ok(if is_single { Vec::new() } else { passes })
-}
-
 /// Reads a shader with the header in these bytes, and adds its texts.
 ///
 /// # Errors
@@ -104,7 +67,6 @@ pub(super) fn read(
     let json = files.join_parts(name, &[Span::new(file, start, end)], "");
     let root = json::parse_lenient(files, json).map_err(|error| *error)?;
     let body = files.get(file).text()[end as usize..].to_owned();
-    let passes = passes(&root)?;
     let mut declared = Declarations::default();
     let mut images = Vec::new();
     for input in root.get("INPUTS").and_then(Node::as_array).unwrap_or_default() {
@@ -120,14 +82,21 @@ pub(super) fn read(
         _ => {}
     }
     images.retain(|image| is_name(image));
+    options.add_uniforms(&declared.uniforms);
+    let sizes = Sizes {
+        files,
+        declared: &declared,
+        options,
+    };
+    let mut passes = passes(&root, &sizes)?;
     let targets: Vec<String> = passes.iter().filter_map(|pass| pass.target.clone()).collect();
     // Channels are those of the images and buffers that the text names, in this order.
+    images.retain(|image| passes.is_empty() || has_word(&body, image));
+    let mut read = targets.clone();
+    read.retain(|target| has_word(&body, target));
+    set_channels(&mut passes, &root, &body, (&images, &read))?;
+    let values = std::mem::take(&mut declared.text);
     let uses = |name: &str| body.contains(name);
-    images.extend(targets.iter().cloned());
-    images.retain(|image| passes.is_empty() || uses(image));
-    for image in &images {
-        declared.uniform("sampler2D", image, None);
-    }
     let is_used = |(name, _): &&(&str, &str)| {
         // Functions at the current pixel read its coordinates.
         uses(name) || *name == "isf_FragNormCoord" && uses("IMG_THIS_")
@@ -138,18 +107,24 @@ pub(super) fn read(
     for (function, definition) in ISF_FUNCTIONS.iter().filter(is_used) {
         declared.line(&format!("#define {function}{definition}"));
     }
-    options.add_uniforms(&declared.uniforms);
-    let mut text = |declared: &Declarations, index: usize| {
-        let mut text = declared.text.clone();
+    let mut text = |declared: &Declarations, channels: &[String], index: usize| {
+        let mut text = values.clone();
+        for channel in channels {
+            let _ = writeln!(text, "uniform sampler2D {channel};");
+        }
+        // A texture without a channel is only named in branches that the pass does not take.
+        for name in images.iter().chain(&read).filter(|name| !channels.contains(name)) {
+            let _ = writeln!(text, "#define {name} {}", channels[0]);
+        }
+        text += &declared.text;
         if uses("PASSINDEX") {
             let _ = writeln!(text, "const int PASSINDEX = {index};");
         }
         in_front_of(files, file, text)
     };
     if passes.is_empty() {
-        return Ok(Declared::Shader(text(&declared, 0)));
+        return Ok(Declared::Shader(text(&declared, &images, 0)));
     }
-    let inputs = [0, 1, 2, 3].map(|channel: usize| buffer_input(images.get(channel)?, &targets));
     let mut project_passes = Vec::new();
     for (index, pass) in passes.iter().enumerate() {
         project_passes.push(Pass {
@@ -157,21 +132,13 @@ pub(super) fn read(
                 .target
                 .as_ref()
                 .map_or(PassKind::Image, |target| kind(target, &targets)),
-            file: text(&declared, index),
-            inputs: inputs.clone(),
+            file: text(&declared, &pass.channels, index),
+            inputs: [0, 1, 2, 3].map(|channel: usize| buffer_input(pass.channels.get(channel)?, &targets)),
+            format: pass.format.clone(),
         });
     }
-    // A buffer that is rendered last is shown.
-    if let Some(target) = passes.last().and_then(|last| last.target.as_ref()) {
-        let shown = format!(
-            "uniform sampler2D {target};\nvoid main() {{\n    gl_FragColor = texelFetch({target}, \
-             ivec2(gl_FragCoord.xy), 0);\n}}\n"
-        );
-        project_passes.push(Pass {
-            kind: PassKind::Image,
-            file: files.add(File::new(format!("<{target}>"), shown)),
-            inputs: [buffer_input(target, &targets), None, None, None],
-        });
+    if let Some(last) = passes.last() {
+        project_passes.extend(shown_buffer(last, &targets, files));
     }
     let tabs = project_passes
         .iter()
@@ -191,16 +158,38 @@ pub(super) fn read(
     })))
 }
 
+/// The pass that shows a buffer that is rendered last, enlarged if it has another size; `None` if the last
+/// pass renders the image.
+fn shown_buffer(last: &IsfPass, targets: &[String], files: &mut Files) -> Option<Pass> {
+    let target = last.target.as_ref()?;
+    let texel = match last.format.size {
+        BufferSize::Image => format!("texelFetch({target}, ivec2(gl_FragCoord.xy), 0)"),
+        BufferSize::Computed(_) => format!("texture({target}, isf_FragNormCoord)"),
+    };
+    let shown = format!(
+        "uniform sampler2D {target};\nin vec2 isf_FragNormCoord;\nvoid main() {{\n    gl_FragColor = {texel};\n}}\n"
+    );
+    Some(Pass {
+        kind: PassKind::Image,
+        file: files.add(File::new(format!("<{target}>"), shown)),
+        inputs: [buffer_input(target, targets), None, None, None],
+        format: BufferFormat::default(),
+    })
+}
+
 fn kind(target: &str, targets: &[String]) -> PassKind {
-    let number = targets.iter().position(|other| other == target).unwrap_or(0);
-    PassKind::Buffer(Buffer::ALL[number])
+    buffer(target, targets).map_or(PassKind::Image, PassKind::Buffer)
+}
+
+/// The buffer of this name; `None` for an image.
+fn buffer(name: &str, targets: &[String]) -> Option<Buffer> {
+    Buffer::nth(targets.iter().position(|target| target == name)?)
 }
 
 /// The input that reads a buffer; `None` for an image.
 fn buffer_input(name: &str, targets: &[String]) -> Option<Input> {
-    let number = targets.iter().position(|target| target == name)?;
     Some(Input {
-        source: Source::Buffer(Buffer::ALL[number]),
+        source: Source::Buffer(buffer(name, targets)?),
         sampler: Sampler {
             filter: Filter::Linear,
             wrap: Wrap::Clamp,
@@ -334,15 +323,66 @@ mod tests {
     }
 
     #[test]
+    fn sizes_are_those_of_buffers() {
+        let sizes = |passes: &str| {
+            let (project, _) = project(passes).unwrap();
+            let sizes = project.passes.iter().map(|pass| pass.format.size.of([64, 36]));
+            sizes.collect::<Vec<_>>()
+        };
+        // The last buffer is shown in the size of the image.
+        let sides = "\"WIDTH\": \"floor($WIDTH * 0.3)\", \"HEIGHT\": 5";
+        let passes =
+            format!("[{{ \"TARGET\": \"b\", \"HEIGHT\": \"$WIDTH\" }}, {{ \"TARGET\": \"c\", {sides} }}]");
+        assert_eq!(sizes(&passes), [[64, 64], [19, 5], [64, 36]]);
+        let (project, _) = project("[{ \"TARGET\": \"b\", \"WIDTH\": \"$WIDTH\" }, {}]").unwrap();
+        assert_eq!(project.passes[0].format.size, BufferSize::Image);
+    }
+
+    #[test]
+    fn buffers_that_a_pass_reads_before_they_are_rendered_are_cleared_unless_they_persist() {
+        // The text reads `b` in both passes.
+        let is_cleared = |pass: &str| {
+            let (project, _) = project(&format!("[{pass}, {{}}]")).unwrap();
+            project.passes[0].format.is_cleared
+        };
+        assert!(is_cleared("{ \"TARGET\": \"b\" }"));
+        assert!(!is_cleared("{ \"TARGET\": \"b\", \"PERSISTENT\": true }"));
+        assert!(!is_cleared("{ \"TARGET\": \"b\", \"PERSISTENT\": 1 }"));
+        assert!(!is_cleared("{ \"TARGET\": \"c\" }"));
+    }
+
+    #[test]
+    fn version_1_lists_its_buffers() {
+        let format = |buffers: &str| {
+            let (project, _) = project(&format!(
+                "[{{ \"TARGET\": \"b\" }}, {{}}], \"PERSISTENT_BUFFERS\": {buffers}"
+            ))
+            .unwrap();
+            let BufferFormat { size, is_cleared, .. } = &project.passes[0].format;
+            (size.of([64, 36]), *is_cleared)
+        };
+        assert_eq!(format("[\"b\"]"), ([64, 36], false));
+        assert_eq!(
+            format("{ \"b\": { \"WIDTH\": \"$WIDTH/4\" } }"),
+            ([16, 36], false)
+        );
+        assert_eq!(format("[\"c\"]"), ([64, 36], true));
+    }
+
+    #[test]
     fn passes_that_cannot_be_rendered_are_errors() {
         let error = |passes: &str| project(passes).map(|_| ()).unwrap_err();
-        let found = error("[{ \"TARGET\": \"b\", \"WIDTH\": \"$WIDTH/2.0\" }, {}]");
+        // The columns are those of the expression.
+        let found = error("[{ \"TARGET\": \"b\", \"WIDTH\": \"$WIDTH/$x\" }, {}]");
         assert!(
-            found.starts_with("a:3:") && found.contains("another size than the image"),
+            found.starts_with("a:3:47: ") && found.contains("no input `x` that is a number"),
             "{found}"
         );
+        assert!(error("[{ \"TARGET\": \"b\", \"WIDTH\": true }, {}]").contains("a number, or an expression"));
+        assert!(error("[{ \"TARGET\": \"b\" }, { \"HEIGHT\": 1 }]").contains("has the size of the image"));
         assert!(error("[{}, { \"TARGET\": \"b\" }]").contains("only the last pass"));
-        let five = ["a", "b", "c", "d", "e"].map(|name| format!("{{ \"TARGET\": \"{name}\" }}"));
-        assert!(error(&format!("[{}]", five.join(","))).contains("more than four passes"));
+        let many = (0..27).map(|number| format!("{{ \"TARGET\": \"t{number}\" }}"));
+        let many = many.collect::<Vec<_>>().join(",");
+        assert!(error(&format!("[{many}]")).contains("more than 26 passes"));
     }
 }

@@ -3,6 +3,9 @@
 
 mod declarations;
 mod isf;
+mod isf_passes;
+mod pass_index;
+mod size;
 
 use toyproof_diagnostic::{Code, Diagnostic, Diagnostics, FileId, Files, Span};
 use toyproof_glsl::{Dialect, Options};

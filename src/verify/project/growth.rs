@@ -245,7 +245,7 @@ fn find_step(frames: &Frames, until: i32) -> Result<Option<(GrowthCause, Option<
             };
             let share = Share {
                 count: differing.len() as u64,
-                of: inputs.size.iter().copied().map(u64::from).product(),
+                of: frames.shader.graph.texels(target, inputs.size),
             };
             if share.ratio() > MAX_UNSTABLE {
                 let bound = single.bound(pass, &inputs);

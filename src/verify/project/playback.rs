@@ -119,8 +119,9 @@ impl<'a, N: Number> CpuPlayback<'a, N> {
     #[must_use]
     pub fn bound(&self, pass: usize, frame: &Frame) -> Frame {
         let channels = self.player.inputs(pass);
-        let target = self.player.graph().passes()[pass].target;
-        self.player.renderer().bound(&target.frame(frame), channels)
+        let graph = self.player.graph();
+        let frame = graph.frame(graph.passes()[pass].target, frame);
+        self.player.renderer().bound(&frame, channels)
     }
 
     /// The state after a frame.
