@@ -64,7 +64,7 @@ pub(super) struct FrameArgs {
     /// iDate: year, month from 0 to 11, day, seconds since midnight
     #[arg(long, value_name = "Y,M,D,S", value_parser = parse_date, allow_hyphen_values = true, hide_short_help = true)]
     date: Option<[f32; 4]>,
-    /// The texture of iChannel0: an image (.png, .exr) or `noise` [default: black]
+    /// The texture of iChannel0: an image (.png, .jpg, .hdr, .exr, …) or `noise` [default: black]
     #[arg(long, value_name = "FILE|noise", hide_short_help = true)]
     channel0: Option<PathBuf>,
     /// The texture of iChannel1

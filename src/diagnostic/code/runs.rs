@@ -143,7 +143,7 @@ macro_rules! runs {
     NeverWritten "W0604" "A read of an uninitialized variable",
 
     /// The shader samples `iChannel0` to `iChannel3`, and its text does not specify what ShaderToy binds to
-    /// them. A channel without an image is black. `--channel0 FILE` binds a PNG or EXR image, `--channel0
+    /// them. A channel without an image is black. `--channel0 FILE` binds an image, `--channel0
     /// noise` binds noise. Cube maps and volumes are those of a project.
     ///
     /// Wrong:
