@@ -309,11 +309,8 @@ impl Runner<'_> {
                 let text = module.and_then(|module| {
                     roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))
                 });
-                let original = glsl::Options {
-                    stage: Stage::Image,
-                    ..original.options()
-                };
-                let written = read_shadertoy(&text.map_err(Failure::Gpu)?, original, timeout)?;
+                let text = text.map_err(Failure::Gpu)?;
+                let written = read_shadertoy(&text, original, Stage::Image, timeout)?;
                 let stop = AtomicBool::new(false);
                 let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;
                 let images = singles.into_iter().map(|single| {
@@ -329,16 +326,16 @@ impl Runner<'_> {
     }
 }
 
-/// Reads a converted shader, as `ShaderToy` would run it in the stage and with the textures of the original,
-/// with our own front end.
+/// Reads a converted shader, as `ShaderToy` would run it with the original's textures, with our own front end.
 pub(super) fn read_shadertoy(
     text: &str,
-    original: glsl::Options,
+    original: &Checked,
+    stage: Stage,
     timeout: Duration,
 ) -> Result<Checked, ProofError> {
     let options = glsl::Options {
-        stage: original.stage,
-        channels: original.channels,
+        stage,
+        channels: original.channels.map(Some),
         sampling: original.sampling,
         ..glsl::Options::default()
     };

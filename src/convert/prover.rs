@@ -271,7 +271,7 @@ impl Prover<'_> {
             }
             Target::Glsl => {
                 let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
-                let again = read_shadertoy(&text, checked.options(), self.timeout)?;
+                let again = read_shadertoy(&text, checked, checked.stage, self.timeout)?;
                 let lowered = FloatMode::Fast.lower_within(&again, &Deadline::after(self.timeout));
                 let lowered = lowered.map_err(ProofError::Overdue)?;
                 readings.push((Reader::FrontEnd, ShaderArtifact::Lowered(lowered)));

@@ -151,9 +151,11 @@ impl Chromium {
             })
         };
         let frames_json = frames.iter().map(|frame| {
-            let channels = frame.channels.iter();
-            let channels = channels.map(|texture| number_of(texture.as_ref().unwrap_or(&black)));
-            frame_json(frame, channels.collect())
+            let channels = frame.channels.each_ref();
+            frame_json(
+                frame,
+                channels.map(|texture| number_of(texture.as_ref().unwrap_or(&black))),
+            )
         });
         let frames_json: Vec<Value> = frames_json.collect();
         let textures: Vec<Value> = textures.into_iter().map(texture_json).collect();
@@ -212,7 +214,7 @@ fn sampling_json(Sampling { filter, wrap }: Sampling) -> Value {
 }
 
 /// A frame with the numbers of its channels' textures.
-fn frame_json(frame: &Frame, channels: Vec<usize>) -> Value {
+fn frame_json(frame: &Frame, channels: [usize; 4]) -> Value {
     json!({
         "width": frame.size[0],
         "height": frame.size[1],

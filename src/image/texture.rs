@@ -400,6 +400,7 @@ impl Image<f64> {
 
 impl<T: Copy + Default> Image<T> {
     /// The lower left part, in this size; zeros where this image ends.
+    #[must_use]
     pub fn cropped(&self, [width, height]: [u32; 2]) -> Self {
         let [own_width, own_height] = self.size();
         let pixel = |x, y| {
