@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toyproof_glsl::tree::{SamplerShape, StatementKind, walk};
 use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
-use toyproof_image::{BLOCK_BYTES, Shape, Texture};
+use toyproof_image::{BLOCK_BYTES, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
 use toyproof_project::{Input, PassKind, Project, Rendering, Source, Tab};
 
@@ -194,12 +194,7 @@ impl<'a> HostGraph<'a> {
         let number = if let Some(player::Source::Medium(number)) = source {
             number
         } else {
-            // Each image has a different size and content, so that no two can be confused.
-            let noise = noise(shape);
-            let texture = match noise.shape() {
-                Shape::Flat => noise.cropped([255 - (self.media.len() as u32).min(127), 256]),
-                Shape::Cube | Shape::Volume => noise,
-            };
+            let texture = noise(shape, self.media.len());
             let is_mipmapped = input.sampler.filter == Filter::Mipmap;
             self.media.push(if is_mipmapped {
                 texture.with_mipmaps()

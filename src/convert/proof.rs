@@ -139,7 +139,7 @@ pub const FRAMES: [TestFrame; 3] = [
 #[must_use]
 pub fn frames(checked: &Checked) -> Vec<Frame> {
     let channels = if checked.reads_textures() {
-        checked.channels.map(|shape| Some(noise(shape)))
+        std::array::from_fn(|channel| Some(noise(checked.channels[channel], channel)))
     } else {
         [const { None }; 4]
     };
@@ -156,13 +156,18 @@ pub fn frames(checked: &Checked) -> Vec<Frame> {
 }
 
 /// A texture of this shape, in which no two faces or slices are equal. The sides of a volume differ, so that
-/// its axes do.
-pub(crate) fn noise(shape: SamplerShape) -> Texture {
+/// its axes do. Textures of other numbers have other sizes and texels, so that no two can be confused.
+pub(crate) fn noise(shape: SamplerShape, number: usize) -> Texture {
     let noise = image::noise();
+    let [width, height] = noise.size();
+    let mut pixels = noise.pixels().to_vec();
+    pixels.rotate_left(37 * (number % 256));
+    let noise = Image::new(width, height, pixels);
+    let less = (number % 16) as u32;
     match shape {
-        SamplerShape::D2 | SamplerShape::D2Array => noise.into(),
-        SamplerShape::Cube => Texture::cube(&noise.cropped([32, 32 * cube::FACES])),
-        SamplerShape::D3 => Texture::volume(noise.cropped([32, 16 * 8]), 16),
+        SamplerShape::D2 | SamplerShape::D2Array => noise.cropped([width - less, height]).into(),
+        SamplerShape::Cube => Texture::cube(&noise.cropped([32 - less, (32 - less) * cube::FACES])),
+        SamplerShape::D3 => Texture::volume(noise.cropped([32 - less, 16 * 8]), 16),
     }
 }
 

@@ -121,13 +121,14 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// The passes that both shaders have, in the order of the first one.
+    /// The passes that both shaders have, with buffers of the same size, in the order of the first one.
     #[must_use]
     pub fn common_passes(&self) -> Vec<Target> {
         let [first, second] = [0, 1].map(|shader| self.targets(shader));
         first
             .into_iter()
             .filter(|target| second.contains(target))
+            .filter(|&target| self.shaders[0].graph.is_sized_like(self.shaders[1].graph, target))
             .collect()
     }
 

@@ -1,6 +1,7 @@
 //! How the textures of a buffer are made.
 
 use serde::{Deserialize, Serialize};
+use toyproof_diagnostic::grouped;
 use toyproof_image::{MAX_PIXELS, MAX_SIDE, SizeError, check_size};
 
 use crate::{SizeExpr, Target};
@@ -26,19 +27,34 @@ pub enum BufferSize {
     Computed(Box<[SizeExpr; 2]>),
 }
 
-/// A buffer that would be larger than an image can be.
+/// Buffers that are too large.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{buffer}: {error}")]
-pub struct OversizedBuffer {
-    /// The buffer.
-    pub buffer: Target,
-    /// Its size and the limit.
-    pub error: SizeError,
+pub enum OversizedBuffer {
+    /// One would be larger than an image can be.
+    #[error("{buffer}: {error}")]
+    One {
+        /// The buffer.
+        buffer: Target,
+        /// Its size and the limit.
+        error: SizeError,
+    },
+    /// All buffers together.
+    #[error(
+        "the buffers have {} pixels together, more than {}",
+        grouped(*.texels),
+        grouped(*.limit)
+    )]
+    All {
+        /// The number of their pixels.
+        texels: u64,
+        /// The limit.
+        limit: u64,
+    },
 }
 
 impl BufferSize {
     /// Width and height in pixels for an image of this size: integers, rounded down, of at least 1. A size
-    /// beyond the limits of an image, which [`Self::check`] reports, is reduced to them.
+    /// beyond the limits of an image is reduced to them.
     pub fn of(&self, image: [u32; 2]) -> [u32; 2] {
         let Some(size) = self.computed(image) else {
             return image;

@@ -70,7 +70,7 @@ pub use play::{Channel, Player, Renderer, Storage};
 use serde::{Deserialize, Serialize};
 pub use size::{BinaryFunction, SizeExpr, Step, UnaryFunction};
 pub use state::State;
-use toyproof_image::{Component, Frame, Image, Texture};
+use toyproof_image::{Component, Frame, Image, MAX_PIXELS, Texture};
 
 /// The number of images among the buffers: Buffer A to Buffer Z. `ShaderToy` has four of them.
 pub const IMAGE_BUFFERS: usize = 26;
@@ -234,19 +234,37 @@ impl Graph {
         })
     }
 
-    /// Checks the computed sizes of the buffers for an image of this size, in pixels.
+    /// Checks the computed sizes of the buffers for an image of this size, in pixels. Together they may have
+    /// the pixels of the largest image, or as many as buffers of the image's size.
     ///
     /// # Errors
-    /// The first buffer that is larger than an image can be.
+    /// The first buffer that is larger than an image can be, or the pixels of all.
     pub fn check_sizes(&self, image: [u32; 2]) -> Result<(), OversizedBuffer> {
-        let mut used = (0..CUBE_A).filter(|&buffer| self.uses(buffer));
-        used.try_for_each(|buffer| {
+        let used: Vec<usize> = (0..CUBE_A).filter(|&buffer| self.uses(buffer)).collect();
+        for &buffer in &used {
             let size = self.formats[buffer].size.check(image);
-            size.map_err(|error| OversizedBuffer {
+            size.map_err(|error| OversizedBuffer::One {
                 buffer: Target::Buffer(buffer),
                 error,
-            })
-        })
+            })?;
+        }
+        let texels = used
+            .iter()
+            .map(|&buffer| self.texels(Target::Buffer(buffer), image));
+        let texels = texels.sum();
+        let limit = MAX_PIXELS.max(used.len() as u64 * self.texels(Target::Image, image));
+        if texels > limit {
+            return Err(OversizedBuffer::All { texels, limit });
+        }
+        Ok(())
+    }
+
+    /// Whether a target of this graph has the size of the same target of another, for images of any size.
+    pub fn is_sized_like(&self, other: &Self, target: Target) -> bool {
+        match target {
+            Target::Image => true,
+            Target::Buffer(buffer) => self.formats[buffer].size == other.formats[buffer].size,
+        }
     }
 
     /// Whether a buffer is rendered or read. One that is only read stays zero.

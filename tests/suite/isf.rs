@@ -272,6 +272,75 @@ void main() {{ gl_FragColor = IMG_THIS_PIXEL(sum) + (PASSINDEX == 0 ? 0.25 : 0.0
 }
 
 #[test]
+fn pixels_that_a_pass_discards_are_those_of_a_cleared_buffer() {
+    let folder = tempfile::tempdir().unwrap();
+    let shader = |key: &str| {
+        format!(
+            "/*{{ \"ISFVSN\": \"2\", \"PASSES\": [{{ \"TARGET\": \"first\"{key} }}, {{}}] }}*/
+void main() {{
+    if (PASSINDEX == 0) {{
+        if (FRAMEINDEX > 0) discard;
+        gl_FragColor = vec4(0.5);
+    }} else {{
+        gl_FragColor = IMG_THIS_PIXEL(first);
+    }}
+}}
+"
+        )
+    };
+    write(
+        folder.path(),
+        &[("a.fs", &shader("")), ("b.fs", &shader(", \"PERSISTENT\": true"))],
+    );
+    for device in devices() {
+        // What persists is what was rendered two frames ago.
+        for (name, expected) in [("a.fs", 0.0), ("b.fs", 0.5)] {
+            let image = render(folder.path(), &[name, "--frame", "2", "--device", device]);
+            assert_eq!(image.get(3, 3)[0], expected, "{name} {device}");
+        }
+    }
+}
+
+#[test]
+fn buffers_of_other_sizes_are_not_compared_and_all_have_a_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let shader = |width: &str, offset: &str| {
+        format!(
+            "/*{{ \"ISFVSN\": \"2\", \"PASSES\": [{{ \"TARGET\": \"line\", \"WIDTH\": \"{width}\" }}, {{}}] }}*/
+void main() {{ gl_FragColor = PASSINDEX == 0 ? vec4(gl_FragCoord.x) : vec4({offset}) + 0.0 * IMG_THIS_PIXEL(line); }}
+"
+        )
+    };
+    write(
+        folder.path(),
+        &[
+            ("a.fs", &shader("2", "0.5")),
+            ("b.fs", &shader("$WIDTH * 2", "0.5")),
+            ("c.fs", &shader("$WIDTH * 2", "0.25")),
+        ],
+    );
+    for (other, code) in [("b.fs", 0), ("c.fs", 1)] {
+        let run = toyproof(folder.path(), &["compare", "a.fs", other, "--size", "8x6"]);
+        assert_eq!(run.code, code, "{other}: {}{}", run.stdout, run.stderr);
+        assert!(!run.stdout.contains("in Buffer A"), "{}", run.stdout);
+    }
+    let large = "/*{ \"ISFVSN\": \"2\", \"PASSES\": [
+    { \"TARGET\": \"a\", \"WIDTH\": 8192, \"HEIGHT\": 4000 }, { \"TARGET\": \"b\", \"WIDTH\": 4000, \"HEIGHT\": 8192 }, {}] }*/
+void main() { gl_FragColor = IMG_THIS_PIXEL(a) + IMG_THIS_PIXEL(b); }
+";
+    write(folder.path(), &[("large.fs", large)]);
+    let run = toyproof(
+        folder.path(),
+        &["run", "large.fs", "--size", "8x6", "-o", "large.png"],
+    );
+    assert!(
+        run.code != 0 && run.stderr.contains("the buffers have 65,536,000 pixels together"),
+        "{}",
+        run.stderr
+    );
+}
+
+#[test]
 fn a_buffer_that_is_rendered_last_is_shown_in_the_size_of_the_image() {
     let folder = tempfile::tempdir().unwrap();
     let shader = "/*{ \"ISFVSN\": \"2\", \"PASSES\": [{ \"TARGET\": \"small\", \"WIDTH\": \"$WIDTH / 4\", \"HEIGHT\": 1 }] }*/

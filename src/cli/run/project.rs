@@ -576,7 +576,7 @@ impl Runner<'_> {
         interrupted: &AtomicBool,
     ) -> Result<(), CliError> {
         let rendered = run.show(number, interrupted);
-        let rendered = rendered.map_err(|failure| self.frame_error(failure, run.graph, number, shader))?;
+        let rendered = rendered.map_err(|failure| frame_error(failure, run.graph, number, shader))?;
         self.write_confirmed(&rendered, &run.shown_frame(number), &shader.name, path)
     }
 
@@ -597,7 +597,7 @@ impl Runner<'_> {
                     self.put(&rendered, &frame, &shader.name, destination, film.as_mut())?;
                 }
                 Err(FrameFailure::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
-                Err(failure) => return Err(self.frame_error(failure, run.graph, number, shader)),
+                Err(failure) => return Err(frame_error(failure, run.graph, number, shader)),
             }
             Ok(FrameEnd::Written)
         })?;
@@ -619,23 +619,6 @@ impl Runner<'_> {
         )
         .hash(&mut hasher);
         self.fingerprint(hasher)
-    }
-
-    /// The error of a frame that is not shown.
-    fn frame_error(&self, failure: FrameFailure, graph: &Graph, number: i32, shader: &Shader) -> CliError {
-        match failure {
-            FrameFailure::Device(failure) => draw_error(failure, shader),
-            FrameFailure::Evaluator(PassFailure { pass, failure }) => {
-                pass_error(&failure, target_of(graph, pass), shader)
-            }
-            FrameFailure::Interrupted(next) => {
-                let error = format!("interrupted before frame {next}; frame {number} was to be shown");
-                CliError::new(error).with_help(match self.args.state {
-                    Some(_) => "run the same command again to go on",
-                    None => "with --state FILE, the same command goes on",
-                })
-            }
-        }
     }
 
     /// Writes the state after the last frame, if there is one and the user wants it.
@@ -670,6 +653,20 @@ fn compiled_programs(
 /// What the pass with this number renders, which has the name of its tab.
 fn target_of(graph: &Graph, pass: usize) -> Option<Target> {
     graph.passes().get(pass).map(|pass| pass.target)
+}
+
+/// The error of a frame that is not shown.
+fn frame_error(failure: FrameFailure, graph: &Graph, number: i32, shader: &Shader) -> CliError {
+    match failure {
+        FrameFailure::Device(failure) => draw_error(failure, shader),
+        FrameFailure::Evaluator(PassFailure { pass, failure }) => {
+            pass_error(&failure, target_of(graph, pass), shader)
+        }
+        FrameFailure::Interrupted(next) => {
+            let error = format!("interrupted before frame {next}; frame {number} was to be shown");
+            CliError::new(error).with_help("run the same command again to go on")
+        }
+    }
 }
 
 #[cfg(test)]

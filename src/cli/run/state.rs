@@ -19,8 +19,9 @@ const MAX_HEAD_BYTES: u64 = 1024;
 /// The maximum size of a texel, in bytes: four doubles.
 const MAX_TEXEL_BYTES: u64 = 32;
 
-/// The maximum size of what is stored beside the texels, in bytes: sizes, and the borders of Cube A.
-const MAX_REST_BYTES: u64 = 1 << 20;
+/// The maximum size of what is stored beside the texels, in bytes: sizes, and the borders of Cube A, which are
+/// 1.6 MB in doubles.
+const MAX_REST_BYTES: u64 = 2 << 20;
 
 /// The owner of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

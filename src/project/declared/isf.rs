@@ -10,7 +10,7 @@ use toyproof_player::{BufferFormat, BufferSize};
 
 use super::declarations::{Declarations, Declared, components, in_front_of, is_name};
 use super::isf_passes::{IsfPass, Sizes, passes, set_channels};
-use super::pass_index::has_word;
+use super::pass_index::Tokens;
 use crate::format::{Format, Wrapper};
 use crate::json;
 use crate::node::{Node, Value};
@@ -91,10 +91,20 @@ pub(super) fn read(
     let mut passes = passes(&root, &sizes)?;
     let targets: Vec<String> = passes.iter().filter_map(|pass| pass.target.clone()).collect();
     // Channels are those of the images and buffers that the text names, in this order.
-    images.retain(|image| passes.is_empty() || has_word(&body, image));
+    let tokens = Tokens::new(&body);
+    let (names, members) = (tokens.names(), tokens.members());
+    images.retain(|image| passes.is_empty() || names.contains(image.as_str()));
     let mut read = targets.clone();
-    read.retain(|target| has_word(&body, target));
-    set_channels(&mut passes, &root, &body, (&images, &read))?;
+    read.retain(|target| names.contains(target.as_str()));
+    set_channels(&mut passes, &root, &tokens, (&images, &read))?;
+    let is_replaced = |name: &&String| passes.iter().any(|pass| !pass.channels.contains(name));
+    let mut replaced = images.iter().chain(&read).filter(is_replaced);
+    if let Some(name) = replaced.find(|name| members.contains(name.as_str())) {
+        let error = root.error(format!(
+            "`{name}` is also the name of a member, and not every pass has a channel for it"
+        ));
+        return Err(error.help("rename the buffer or the image"));
+    }
     let values = std::mem::take(&mut declared.text);
     let uses = |name: &str| body.contains(name);
     let is_used = |(name, _): &&(&str, &str)| {

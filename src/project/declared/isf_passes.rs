@@ -5,7 +5,7 @@ use toyproof_glsl::Options;
 use toyproof_player::{BufferFormat, BufferSize, IMAGE_BUFFERS, SizeExpr, Step};
 
 use super::declarations::{Declarations, components, is_name};
-use super::pass_index::{has_word, live_text};
+use super::pass_index::Tokens;
 use super::size;
 use crate::node::{Node, Value};
 
@@ -152,20 +152,26 @@ pub(super) fn passes(root: &Node, sizes: &Sizes) -> Result<Vec<IsfPass>, Diagnos
 pub(super) fn set_channels(
     passes: &mut [IsfPass],
     root: &Node,
-    text: &str,
+    tokens: &Tokens,
     (images, targets): (&[String], &[String]),
 ) -> Result<(), Diagnostic> {
-    let texts = (0..).map(|index| live_text(text, index));
-    let texts: Vec<String> = texts.take(passes.len()).collect();
-    for (index, (pass, text)) in passes.iter_mut().zip(&texts).enumerate() {
-        // Only a pass that reads a buffer before it is rendered can see that the buffer was cleared.
-        let reads = |target: &String| texts[..=index].iter().any(|text| has_word(text, target));
+    let names = (0..).map(|index| tokens.live_names(index));
+    let names: Vec<_> = names.take(passes.len()).collect();
+    for (index, (pass, live)) in passes.iter_mut().zip(&names).enumerate() {
+        // That a buffer was cleared is visible to passes that read it before it is rendered, and where its own
+        // pass discards pixels.
+        let reads = |target: &String| {
+            let mut before = names[..=index].iter();
+            live.contains("discard") || before.any(|names| names.contains(target.as_str()))
+        };
         pass.format.is_cleared = !pass.persists && pass.target.as_ref().is_some_and(reads);
-        let channels = channels(images, targets, |name| has_word(text, name));
+        let channels = channels(images, targets, |name| live.contains(name));
         pass.channels = channels.ok_or_else(|| {
             let nodes = root.get("PASSES").and_then(Node::as_array).unwrap_or_default();
             let node = nodes.get(index).unwrap_or(root);
-            let error = node.error(format!("this pass reads more than {CHANNELS} images and buffers"));
+            let error = node.error(format!(
+                "this pass reads more than {CHANNELS} images and buffers, or an image after the {CHANNELS}th"
+            ));
             error.help("what it does not read must be in branches of `if (PASSINDEX == …)`")
         })?;
     }
@@ -173,7 +179,8 @@ pub(super) fn set_channels(
 }
 
 /// The channels of a pass by the names of what they read: all images, and all targets, if they are at most
-/// four. Otherwise those that the pass reads, where an image keeps its channel; `None` if they are too many.
+/// four. Otherwise those that the pass reads, where an image keeps its channel; `None` if they are too many, or
+/// an image has no channel.
 fn channels(images: &[String], targets: &[String], is_read: impl Fn(&str) -> bool) -> Option<Vec<String>> {
     let (first, others) = images.split_at(images.len().min(CHANNELS));
     let mut channels = first.to_vec();
@@ -181,7 +188,10 @@ fn channels(images: &[String], targets: &[String], is_read: impl Fn(&str) -> boo
         channels.extend_from_slice(targets);
         return Some(channels);
     }
-    for name in others.iter().chain(targets).filter(|name| is_read(name)) {
+    if others.iter().any(|name| is_read(name)) {
+        return None;
+    }
+    for name in targets.iter().filter(|name| is_read(name)) {
         if channels.len() < CHANNELS {
             channels.push(name.clone());
         } else {
@@ -223,11 +233,12 @@ mod tests {
         );
         assert_eq!(channels(&["i", "j"], &many, &["a", "b", "c", "d", "e"]), None);
         assert_eq!(channels(&[], &many, &[]), Some(named(&["a"])));
-        // The fifth image has a channel where it is read.
+        // The fifth image has no channel.
         let images = ["i", "j", "k", "l", "m"];
+        assert_eq!(channels(&images, &["a"], &["m", "a"]), None);
         assert_eq!(
-            channels(&images, &["a"], &["m", "a"]),
-            Some(named(&["i", "j", "a", "m"]))
+            channels(&images, &["a"], &["i", "a"]),
+            Some(named(&["i", "j", "k", "a"]))
         );
     }
 }
