@@ -28,7 +28,10 @@ pub enum BrowserFailure {
     #[error("Chromium cannot render the shader: {0}")]
     Refused(String),
     /// The textures are larger than a message to Chromium may be.
-    #[error("Chromium cannot be given textures of more than {} MB", MAX_CALL_BYTES >> 20)]
+    #[error(
+        "the textures are too large for Chromium, which reads at most {} MiB, as text",
+        MAX_CALL_BYTES >> 20
+    )]
     TooLarge,
     /// Chromium did not respond in time.
     #[error("Chromium did not answer within {:.1} s", .0.as_secs_f64())]

@@ -17,7 +17,7 @@ use toyproof::glsl::tree::SamplerShape;
 use toyproof::glsl::{Options, Sampling, check};
 use toyproof::gpu::Worker;
 use toyproof::gpu::browser::{BrowserFailure, Chromium, Text, as_shadertoy};
-use toyproof::image::Frame;
+use toyproof::image::{Frame, Image};
 use toyproof::translate::backend::{Target, emit};
 use toyproof::translate::naga_ir::ValidModule;
 use toyproof::translate::wgsl::{Style, wgsl};
@@ -51,6 +51,32 @@ fn frames() -> Vec<Frame> {
 fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, BrowserFailure> {
     let images = browser.render(text, [Sampling::default(); 4], &frames())?;
     Ok(images.iter().flat_map(|image| image.pixels().to_vec()).collect())
+}
+
+/// A texture that all frames share is sent once; one above the largest message that Chromium reads is refused.
+#[test]
+fn textures_are_sent_once_and_have_a_limit() {
+    let Some(program) = require_chromium() else { return };
+    let mut browser = Chromium::new(program, TIME_LIMIT);
+    let shader = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2(0.5)); }";
+    let text = as_shadertoy(shader, [SamplerShape::D2; 4]);
+    let mut render = |side: u32, count: usize| {
+        let image = Image::new(side, side, vec![[0.25; 4]; (side * side) as usize]);
+        let frame = Frame {
+            size: [2, 1],
+            channels: [Some(image.into()), None, None, None],
+            ..Frame::default()
+        };
+        browser.render(Text::Glsl(&text), [Sampling::default(); 4], &vec![frame; count])
+    };
+    // 43 MB as text: three would be too many.
+    let images = render(1400, 3).unwrap();
+    assert!(
+        images
+            .iter()
+            .all(|image| image.get(1, 0) == [0.25, 0.25, 0.25, 1.0])
+    );
+    assert!(matches!(render(2200, 1), Err(BrowserFailure::TooLarge)));
 }
 
 /// A shader's WGSL from our own writer.

@@ -171,12 +171,7 @@ fn a_signal_ends_the_frames_before_a_sequence_and_saves_their_state() {
             .spawn()
             .unwrap();
         std::thread::sleep(waited);
-        let handled = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
-        let mask = handled
-            .lines()
-            .find_map(|line| line.strip_prefix("SigCgt:"))
-            .unwrap();
-        let handles_term = u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 14 != 0;
+        let handles_term = handles_term(child.id());
         kill_process(Pid::from_child(&child), Signal::TERM).unwrap();
         let output = child.wait_with_output().unwrap();
         if handles_term && folder.join("s").is_file() {
@@ -194,6 +189,42 @@ fn a_signal_ends_the_frames_before_a_sequence_and_saves_their_state() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     let image = image::read(&folder.join("i.exr")).unwrap();
     assert_eq!(image.get(0, 0)[0], 0.125 * (last + 2) as f32);
+}
+
+/// Whether a process handles SIGTERM.
+#[cfg(unix)]
+fn handles_term(process: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let mut lines = status.lines();
+    let mask = lines.find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+    u64::from_str_radix(mask.trim(), 16).unwrap() & 1 << 14 != 0
+}
+
+/// Nothing is saved, so that an interrupt need not wait for the frame in progress, which a driver may compile
+/// for minutes.
+#[cfg(unix)]
+#[test]
+fn a_run_without_a_state_ends_at_once() {
+    use rustix::process::{Pid, Signal, kill_process};
+
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let slow = "void mainImage(out vec4 c, in vec2 p) {
+        float x = p.x;
+        for (int i = 0; i < 60000000; i++) x = sin(x) + 1e-3 * float(i & 3);
+        c = vec4(x) + texelFetch(iChannel0, ivec2(p), 0);
+    }";
+    write(folder, &[("slow/buffer-a.glsl", SUM), ("slow/image.glsl", slow)]);
+    let child = command(folder)
+        .args(["run", "slow", "-o", "i.png", "--device", "cpu"])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_until(|| handles_term(child.id()));
+    kill_process(Pid::from_child(&child), Signal::TERM).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{output:?}");
+    assert!(!folder.join("i.png").exists());
 }
 
 /// A sequence with a state goes on after its last frame, although the state is beyond its first one.

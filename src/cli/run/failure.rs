@@ -1,10 +1,10 @@
 //! Why `run` renders no image.
 
 use toyproof_diagnostic::Diagnostic;
-use toyproof_eval as eval;
+use toyproof_eval::{self as eval, PassFailure};
 use toyproof_glsl as glsl;
 use toyproof_gpu::Failure;
-use toyproof_player::Target;
+use toyproof_player::{Graph, Target};
 use toyproof_report as report;
 
 use crate::cli::shader::Shader;
@@ -21,6 +21,16 @@ impl From<CliError> for ImageFailure {
     fn from(error: CliError) -> Self {
         Self::Failed(error)
     }
+}
+
+/// Why there is no image of a frame.
+pub(super) enum FrameFailure {
+    /// The driver failed.
+    Device(Failure),
+    /// The evaluator failed.
+    Evaluator(PassFailure),
+    /// The user interrupted the run before this frame.
+    Interrupted(i32),
 }
 
 /// Whether a shader is too large for the evaluator, so that a driver may be able to render it.
@@ -83,4 +93,23 @@ pub(in crate::cli) fn pass_error(failure: &eval::Failure, pass: Option<Target>, 
             .with_exit(Exit::ShaderFault),
         _ => error.with_exit(Exit::ShaderFault),
     }
+}
+
+/// The error of a frame that is not shown.
+pub(super) fn frame_error(failure: FrameFailure, graph: &Graph, number: i32, shader: &Shader) -> CliError {
+    match failure {
+        FrameFailure::Device(failure) => draw_error(failure, shader),
+        FrameFailure::Evaluator(PassFailure { pass, failure }) => {
+            pass_error(&failure, target_of(graph, pass), shader)
+        }
+        FrameFailure::Interrupted(next) => {
+            let error = format!("interrupted before frame {next}; frame {number} was to be shown");
+            CliError::new(error).with_help("run the same command again to go on")
+        }
+    }
+}
+
+/// What the pass with this number renders, which has the name of its tab.
+pub(super) fn target_of(graph: &Graph, pass: usize) -> Option<Target> {
+    graph.passes().get(pass).map(|pass| pass.target)
 }

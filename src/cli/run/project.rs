@@ -17,8 +17,9 @@ use toyproof_player::{Channel, Clock, Graph, Source, State, Target};
 use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, Tab};
 use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
+use super::failure::{FrameFailure, draw_error, frame_error, target_of};
 use super::state::{self, Owner};
-use super::{Precision, RenderedImage, Runner, draw_error, is_too_large, pass_error, shader_error};
+use super::{Precision, RenderedImage, Runner, is_too_large, pass_error, shader_error};
 use crate::cli::inputs::short_device;
 use crate::cli::project::{bind_channels, pass_shader};
 use crate::cli::sequence::{FrameEnd, Output, Sequence};
@@ -74,16 +75,6 @@ enum Renderer<'w> {
 struct Backend<'w> {
     renderer: Renderer<'w>,
     has_no_driver: bool,
-}
-
-/// Why there is no image of a frame.
-enum FrameFailure {
-    /// The driver failed.
-    Device(Failure),
-    /// The evaluator failed.
-    Evaluator(PassFailure),
-    /// The user interrupted the run before this frame.
-    Interrupted(i32),
 }
 
 impl Playback<'_> {
@@ -648,25 +639,6 @@ fn compiled_programs(
     shader: &Shader,
 ) -> Result<Vec<Program>, CliError> {
     result.map_err(|(pass, refusal)| pass_error(&refusal.into(), target_of(graph, pass), shader))
-}
-
-/// What the pass with this number renders, which has the name of its tab.
-fn target_of(graph: &Graph, pass: usize) -> Option<Target> {
-    graph.passes().get(pass).map(|pass| pass.target)
-}
-
-/// The error of a frame that is not shown.
-fn frame_error(failure: FrameFailure, graph: &Graph, number: i32, shader: &Shader) -> CliError {
-    match failure {
-        FrameFailure::Device(failure) => draw_error(failure, shader),
-        FrameFailure::Evaluator(PassFailure { pass, failure }) => {
-            pass_error(&failure, target_of(graph, pass), shader)
-        }
-        FrameFailure::Interrupted(next) => {
-            let error = format!("interrupted before frame {next}; frame {number} was to be shown");
-            CliError::new(error).with_help("run the same command again to go on")
-        }
-    }
 }
 
 #[cfg(test)]

@@ -129,11 +129,11 @@ impl<'t> Tokens<'t> {
             return None;
         }
         let then = self.ends[at + 1]?;
-        let condition = &self.words[at + 2..then - 1];
+        let words = &self.words[at + 2..then - 1];
         // The other operators that bind less tightly than `&&`.
-        let is_simple = condition.len() <= MAX_CONDITION
-            && !condition.iter().any(|word| ["?", ",", "^", "="].contains(word));
-        let is_taken = is_simple.then(|| any(condition, index))??;
+        let is_simple =
+            words.len() <= MAX_CONDITION && !words.iter().any(|word| ["?", ",", "^", "="].contains(word));
+        let is_taken = is_simple.then(|| condition(words, index))??;
         let end = self.statement_end(then)?;
         if !is_taken {
             return Some(then..end);
@@ -219,29 +219,28 @@ fn words(mut text: &str) -> Vec<&str> {
 }
 
 /// The value of a condition, if `PASSINDEX` decides it.
-fn any(condition: &[&str], index: i64) -> Option<bool> {
-    let mut is_known = true;
-    for part in split(condition, "||") {
-        match all(part, index) {
-            Some(true) => return Some(true),
-            Some(false) => {}
-            None => is_known = false,
-        }
-    }
-    is_known.then_some(false)
+fn condition(words: &[&str], index: i64) -> Option<bool> {
+    chain(words, "||", true, |part| {
+        chain(part, "&&", false, |part| comparison(part, index))
+    })
 }
 
-/// The value of a condition without `||` outside of parentheses.
-fn all(condition: &[&str], index: i64) -> Option<bool> {
+/// The value of operands with an operator between them that one operand with the value `decides` decides.
+fn chain(
+    words: &[&str],
+    operator: &'static str,
+    decides: bool,
+    value: impl Fn(&[&str]) -> Option<bool>,
+) -> Option<bool> {
     let mut is_known = true;
-    for part in split(condition, "&&") {
-        match comparison(part, index) {
-            Some(false) => return Some(false),
-            Some(true) => {}
+    for operand in split(words, operator) {
+        match value(operand) {
+            Some(value) if value == decides => return Some(decides),
+            Some(_) => {}
             None => is_known = false,
         }
     }
-    is_known.then_some(true)
+    is_known.then_some(!decides)
 }
 
 /// Splits a condition at an operator outside of parentheses.
