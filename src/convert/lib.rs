@@ -40,8 +40,9 @@ use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::wgsl::{self, Style, Unprintable};
-use toyproof_translate::{FloatMode, Lowered};
+use toyproof_translate::c_family::{self, Host};
+use toyproof_translate::wgsl::{self, Style};
+use toyproof_translate::{FloatMode, Lowered, Unprintable, WriteFailure};
 
 /// A shader to convert.
 #[derive(Debug, Clone, Copy)]
@@ -77,6 +78,8 @@ pub struct Converter {
     pub target: Option<Target>,
     /// The kind of host that WGSL is written for.
     pub style: Style,
+    /// The host that HLSL is written for.
+    pub host: Host,
     /// The host that GLSL is written for, in the author's words; `None` for GLSL by naga.
     pub dialect: Option<Dialect>,
     /// Whether functions such as `sin` are expanded.
@@ -107,6 +110,8 @@ pub enum TargetCode {
     Wgsl(String, Style),
     /// GLSL for a host.
     Glsl(String, Dialect),
+    /// Code of a language with the syntax of C, for a host.
+    CFamily(String, Host),
     /// A file of naga's in a language other than WGSL.
     Naga {
         /// The language.
@@ -124,7 +129,7 @@ impl TargetCode {
     pub fn into_bytes(self) -> Vec<u8> {
         match self {
             Self::Lowered(lowered) => lowered.text().as_bytes().to_vec(),
-            Self::Wgsl(text, _) | Self::Glsl(text, _) => text.into_bytes(),
+            Self::Wgsl(text, _) | Self::Glsl(text, _) | Self::CFamily(text, _) => text.into_bytes(),
             Self::Naga { bytes, .. } => bytes,
         }
     }
@@ -137,29 +142,29 @@ pub struct Conversion {
     pub code: TargetCode,
     /// The proof; `None` if no proof was requested.
     pub proof: Option<Result<ShaderProof, ProofError>>,
-    /// Why naga wrote the WGSL, which the author recognizes less well.
+    /// Why naga wrote the file, which the author recognizes less well.
     pub fallback: Option<FallbackReason>,
 }
 
-/// Why our own WGSL writer was not used.
+/// Why our own writer was not used.
 #[derive(Debug, Error)]
 pub enum FallbackReason {
     /// The writer wrote nothing.
     #[error(transparent)]
-    Unwritable(WgslError),
+    Unwritable(WriterError),
     /// The text could not be proved, and naga's could.
     #[error(transparent)]
     Unproved(ProofError),
 }
 
-/// Why our own WGSL writer wrote nothing.
+/// Why our own writer wrote nothing.
 #[derive(Debug, Error)]
-pub enum WgslError {
+pub enum WriterError {
     /// The shader has a construct that it does not support.
-    #[error("cannot be written in the style `{}`: {why}", style.name())]
+    #[error("cannot be written in the style `{style}`: {why}")]
     Unprintable {
-        /// The kind of host.
-        style: Style,
+        /// The name of the host.
+        style: &'static str,
         /// The construct.
         why: Unprintable,
     },
@@ -180,9 +185,9 @@ pub enum ConvertError {
     /// naga or its worker failed.
     #[error(transparent)]
     Worker(#[from] gpu::Failure),
-    /// The shader cannot be written as WGSL for this kind of host, and naga only writes for the plain one.
+    /// The shader cannot be written for this kind of host, and naga only writes for the plain one.
     #[error(transparent)]
-    Unwritable(WgslError),
+    Unwritable(WriterError),
     /// The shader cannot be written for another host of GLSL.
     #[error(transparent)]
     Port(PortError),
@@ -218,14 +223,15 @@ impl Conversion {
 }
 
 impl Converter {
-    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL
-    /// that our own writer cannot write, or that is not proved, is naga's.
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL and
+    /// HLSL that our own writer cannot write, or that is not proved, is naga's. `name` is the shader's.
     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.
     pub fn convert(
         &self,
         source: Source,
+        name: &str,
         translator: &mut Worker,
         mut prover: Option<&mut Prover>,
     ) -> Result<Conversion, ConvertError> {
@@ -237,13 +243,15 @@ impl Converter {
             let written = self.port(source, dialect)?;
             return Conversion::new(source, written, prover);
         }
-        if !self.prints_wgsl() {
+        if !self.prints() {
             let written = self.write_with_naga(source, target, translator)?;
             return Conversion::new(source, written, prover);
         }
-        let own = self
-            .write_wgsl(source, translator)
-            .and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
+        let own = match target {
+            Target::Wgsl => self.write_wgsl(source, translator),
+            _ => self.write_c(source, name),
+        };
+        let own = own.and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
         let is_plain = self.may_fall_back();
         let own = match own {
             Ok(own) if is_plain && own.is_replaceable() => Ok(own),
@@ -278,19 +286,24 @@ impl Converter {
     pub fn extension(&self) -> &'static str {
         match (self.dialect, self.target) {
             (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
+            (None, Some(Target::Hlsl)) => self.host.extension(),
             (_, Some(target)) => target.extension(),
             (_, None) => LOWERED_EXTENSION,
         }
     }
 
     /// Whether our own writer prints the files.
-    fn prints_wgsl(&self) -> bool {
-        self.target == Some(Target::Wgsl) && self.float == FloatMode::Fast
+    fn prints(&self) -> bool {
+        matches!(self.target, Some(Target::Wgsl | Target::Hlsl)) && self.float == FloatMode::Fast
     }
 
     /// Whether naga can write what our own writer cannot.
     fn may_fall_back(&self) -> bool {
-        self.prints_wgsl() && self.style == Style::Plain
+        let is_plain = match self.target {
+            Some(Target::Wgsl) => self.style == Style::Plain,
+            _ => self.host == Host::Hlsl,
+        };
+        self.prints() && is_plain
     }
 
     fn lower(&self, source: Source) -> Result<Lowered, ConvertError> {
@@ -320,17 +333,31 @@ impl Converter {
         let checked = kept.as_ref().unwrap_or(source.checked);
         let text = wgsl::wgsl(checked, source.files, self.style, &deadline);
         let text = text.map_err(|failure| match failure {
-            wgsl::WgslFailure::Overdue(overdue) => ConvertError::Overdue(overdue),
-            wgsl::WgslFailure::Unprintable(why) => ConvertError::Unwritable(WgslError::Unprintable {
-                style: self.style,
+            WriteFailure::Overdue(overdue) => ConvertError::Overdue(overdue),
+            WriteFailure::Unprintable(why) => ConvertError::Unwritable(WriterError::Unprintable {
+                style: self.style.name(),
                 why,
             }),
         })?;
         match translator.read_wgsl(&self.style.hosted(&text).text) {
             Ok(()) => Ok(TargetCode::Wgsl(text, self.style)),
             Err(failure @ gpu::Failure::Timeout { .. }) => Err(failure.into()),
-            Err(gpu::Failure::Reread(why)) => Err(ConvertError::Unwritable(WgslError::Refused(why))),
-            Err(failure) => Err(ConvertError::Unwritable(WgslError::Worker(failure))),
+            Err(gpu::Failure::Reread(why)) => Err(ConvertError::Unwritable(WriterError::Refused(why))),
+            Err(failure) => Err(ConvertError::Unwritable(WriterError::Worker(failure))),
+        }
+    }
+
+    /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
+    fn write_c(&self, source: Source, name: &str) -> Result<TargetCode, ConvertError> {
+        let deadline = Deadline::after(self.timeout);
+        let text = c_family::write(source.checked, source.files, self.host, name, &deadline);
+        match text {
+            Ok(text) => Ok(TargetCode::CFamily(text, self.host)),
+            Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),
+            Err(WriteFailure::Unprintable(why)) => Err(ConvertError::Unwritable(WriterError::Unprintable {
+                style: self.host.name(),
+                why,
+            })),
         }
     }
 

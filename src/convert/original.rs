@@ -118,9 +118,7 @@ impl Original {
         artifacts: Vec<ShaderArtifact>,
         graph: &GraphContent,
     ) -> Result<Vec<PassComparison>, Failure> {
-        let upside_down = artifacts
-            .iter()
-            .any(|artifact| matches!(artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down));
+        let upside_down = artifacts.iter().any(ShaderArtifact::is_upside_down);
         let code = PassCode::Converted(artifacts);
         let sampling = graph.sampling.iter().copied();
         let mut playback = open(worker, code, sampling, &graph.graph, passes.media)?;

@@ -7,6 +7,7 @@ use toyproof_gpu::Worker;
 use toyproof_player::BufferFormat;
 use toyproof_project::{Buffer, CompiledProject, PassKind, UnsupportedPass};
 use toyproof_translate::backend::Target;
+use toyproof_translate::c_family::Host;
 use toyproof_translate::wgsl::Style;
 
 use crate::graph::{GRAPH_FILE, HostGraph, target_name};
@@ -68,6 +69,9 @@ pub enum ProjectError {
         Style::WgpuShadertoy.name()
     )]
     Style(Style),
+    /// Hosts of this kind render one pass.
+    #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
+    Host(Host),
     /// GLSL is written for hosts that render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
     Dialect(Dialect),
@@ -114,10 +118,13 @@ impl Converter {
         if matches!(self.style, Style::ComputeToys | Style::Bevy) {
             return Err(ProjectError::Style(self.style));
         }
+        if self.target == Some(Target::Hlsl) && !self.host.has_passes() {
+            return Err(ProjectError::Host(self.host));
+        }
         if let Some(dialect) = self.dialect {
             return Err(ProjectError::Dialect(dialect));
         }
-        let ProjectSource { project, files, .. } = source;
+        let ProjectSource { project, files, name } = source;
         let rendering = project.rendering(PassKind::Image)?;
         let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
         if rendering.passes.iter().any(is_cube) {
@@ -152,7 +159,7 @@ impl Converter {
         let mut codes = Vec::new();
         let mut fallback = None;
         for (pass, &source) in sources.iter().enumerate() {
-            let converted = self.convert(source, translator, None);
+            let converted = self.convert(source, name, translator, None);
             let converted = converted.map_err(|error| ProjectError::Pass {
                 pass: kind(pass),
                 error,

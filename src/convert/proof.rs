@@ -302,14 +302,14 @@ impl Runner<'_> {
                 Ok(rendered.map_err(Failure::Gpu)?)
             }
             Self::Evaluator => {
-                let upside_down = matches!(&artifact, ShaderArtifact::Wgsl(hosted) if hosted.upside_down);
+                let upside_down = artifact.is_upside_down();
                 let module = match artifact {
                     ShaderArtifact::Wgsl(hosted) => ValidModule::of_wgsl(&hosted.text)
                         .map_err(|error| gpu::Failure::Reread(error.to_string())),
                     ShaderArtifact::Lowered(lowered) => {
                         ValidModule::parse(&lowered).map_err(|errors| gpu::Failure::Refused(errors.into()))
                     }
-                    ShaderArtifact::Words(..) => return Err(ProofError::Binary),
+                    ShaderArtifact::Words { .. } => return Err(ProofError::Binary),
                 };
                 let text = module.and_then(|module| {
                     roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))

@@ -14,6 +14,7 @@ use toyproof_gpu::{self as gpu, ShaderArtifact};
 use toyproof_image::{Frame, Image};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
+use toyproof_translate::c_family::Host;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 use toyproof_verify::Failure;
@@ -107,6 +108,9 @@ pub enum ProofError {
     /// The evaluator does not run SPIR-V.
     #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
     Binary,
+    /// No compiler that reads the file is installed.
+    #[error("no compiler that reads it for {0} is installed; on Debian: apt-get install glslang-tools")]
+    NoReader(&'static str),
     /// The evaluator does not play converted passes.
     #[error("several passes can be verified only with a Vulkan driver")]
     PassesWithoutDriver,
@@ -256,18 +260,19 @@ impl Prover<'_> {
                 let lowered = lowered.map_err(ProofError::Overdue)?;
                 return Ok(vec![(Reader::FrontEnd, ShaderArtifact::Lowered(lowered))]);
             }
+            TargetCode::CFamily(text, host) => return self.compiled(checked, text, *host),
             TargetCode::Naga { target, bytes, .. } => (*target, bytes),
         };
-        let channels = checked.channels.map(|shape| match shape {
-            SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
-            SamplerShape::D3 => Shape::D3,
-            SamplerShape::Cube => Shape::Cube,
-        });
+        let artifact = |words, upside_down| ShaderArtifact::Words {
+            words,
+            channels: shapes(checked),
+            upside_down,
+        };
         let mut readings = Vec::new();
         match target {
             Target::Spirv => {
                 let words = spirv::of_bytes(bytes).ok_or(ProofError::PartialWord)?;
-                readings.push((Reader::Driver, ShaderArtifact::Words(words, channels)));
+                readings.push((Reader::Driver, artifact(words, false)));
             }
             Target::Glsl => {
                 let text = roundtrip::as_shadertoy(&String::from_utf8_lossy(bytes));
@@ -281,9 +286,30 @@ impl Prover<'_> {
         if let Runner::Driver(_) = self.runner
             && let Some((words, compiler)) = tool::compile(target, bytes)?
         {
-            readings.push((Reader::Compiler(compiler), ShaderArtifact::Words(words, channels)));
+            readings.push((Reader::Compiler(compiler), artifact(words, false)));
         }
         Ok(readings)
+    }
+
+    /// The results of the compilers that read a file for a host, in a substitute for it.
+    fn compiled(
+        &self,
+        checked: &Checked,
+        text: &str,
+        host: Host,
+    ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
+        let hosted = host.hosted(text, checked.stage);
+        let Runner::Driver(_) = self.runner else {
+            return Err(ProofError::Binary);
+        };
+        let compiled = tool::compile(host.target(), hosted.text.as_bytes())?;
+        let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
+        let artifact = ShaderArtifact::Words {
+            words,
+            channels: shapes(checked),
+            upside_down: hosted.upside_down,
+        };
+        Ok(vec![(Reader::Compiler(compiler), artifact)])
     }
 
     /// Runs each reader's result; all of them must agree with the shader.
@@ -323,6 +349,15 @@ impl Prover<'_> {
     }
 }
 
+/// The shapes of the textures that a shader reads.
+fn shapes(checked: &Checked) -> [Shape; 4] {
+    checked.channels.map(|shape| match shape {
+        SamplerShape::D2 | SamplerShape::D2Array => Shape::D2,
+        SamplerShape::D3 => Shape::D3,
+        SamplerShape::Cube => Shape::Cube,
+    })
+}
+
 fn differing_passes(passes: &[PassComparison]) -> String {
     let differing = passes.iter().filter(|pass| pass.differing > 0);
     differing.map(ToString::to_string).collect::<Vec<_>>().join("; ")
@@ -353,7 +388,7 @@ pub(super) fn validate(
             tool::validate(Target::Glsl, complete.as_bytes())
         }
         // Only their hosts complete them.
-        TargetCode::Wgsl(..) | TargetCode::Lowered(_) => Ok(None),
+        TargetCode::Wgsl(..) | TargetCode::CFamily(..) | TargetCode::Lowered(_) => Ok(None),
     }
 }
 
@@ -423,7 +458,10 @@ pub(super) fn in_browser(
             let images = browser.render(Text::Glsl(&text), sampling, frames);
             (original, images.map_err(ProofError::Browser)?)
         }
-        TargetCode::Naga { .. } | TargetCode::Lowered(_) | TargetCode::Glsl(..) => return Ok(None),
+        TargetCode::Naga { .. }
+        | TargetCode::Lowered(_)
+        | TargetCode::Glsl(..)
+        | TargetCode::CFamily(..) => return Ok(None),
     };
     let shown = Rgb8Comparison::new(&original, &converted, undefined);
     if shown.differing > 0 {

@@ -102,15 +102,26 @@ pub enum ShaderArtifact {
     Wgsl(HostedShader),
     /// GLSL: the lowered shader from which naga emitted a file, or a file that was parsed again.
     Lowered(Lowered),
-    /// The words of a SPIR-V file, or those that a different compiler produced from a file, and the shapes of
-    /// channels 0 to 3.
-    Words(Vec<u32>, [Shape; 4]),
+    /// A SPIR-V file, or what a different compiler produced from a file.
+    Words {
+        /// The module.
+        words: Vec<u32>,
+        /// The shapes of channels 0 to 3.
+        channels: [Shape; 4],
+        /// Whether row 0 of the target is the top of the image.
+        upside_down: bool,
+    },
 }
 
 impl ShaderArtifact {
     /// Whether row 0 of the target is the top of the image.
-    pub(super) fn is_upside_down(&self) -> bool {
-        matches!(self, Self::Wgsl(hosted) if hosted.upside_down)
+    #[must_use]
+    pub fn is_upside_down(&self) -> bool {
+        match self {
+            Self::Wgsl(hosted) => hosted.upside_down,
+            Self::Words { upside_down, .. } => *upside_down,
+            Self::Lowered(_) => false,
+        }
     }
 }
 

@@ -333,7 +333,7 @@ fn artifact_program(artifact: ShaderArtifact) -> Result<Program, Failure> {
         ShaderArtifact::Lowered(lowered) => {
             words_and_channels(&ValidModule::parse(&lowered).map_err(refused)?)?
         }
-        ShaderArtifact::Words(words, channels) => (words, channels),
+        ShaderArtifact::Words { words, channels, .. } => (words, channels),
     };
     let words = spirv::expanded(&words).map_err(naga_failed)?;
     Ok(Program::from_words(words, channels, FloatMode::Strict))

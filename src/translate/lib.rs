@@ -59,11 +59,15 @@
 //! - [`backend`]: SPIR-V, either strict or as naga writes it; WGSL, MSL, HLSL and GLSL.
 //! - `inexact`: the list of functions whose last bits are implementation-defined.
 
+mod author;
 pub mod backend;
+pub mod c_family;
 mod inexact;
 pub mod lower;
 pub mod naga_ir;
 mod print;
+mod template;
+mod unprintable;
 pub mod wgsl;
 
 pub use lower::{lower, lower_strict, lower_within};
@@ -72,6 +76,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
+pub use unprintable::{Unprintable, WriteFailure};
 
 use crate::lower::{Pass, Passes};
 

@@ -216,7 +216,11 @@ fn words(checked: &Checked, from: Op, to: Op) -> ShaderArtifact {
         at += (words[at] >> 16) as usize;
     }
     assert!(changed > 0, "{from:?}");
-    ShaderArtifact::Words(words, [Shape::D2; 4])
+    ShaderArtifact::Words {
+        words,
+        channels: [Shape::D2; 4],
+        upside_down: false,
+    }
 }
 
 #[test]

@@ -103,7 +103,11 @@ impl Renderers<'_> {
         }
         if let Some(folder) = self.glslang {
             let words = glslang::words(program, folder).map_err(wrong("glslang refuses it"))?;
-            let artifact = ShaderArtifact::Words(words, [Shape::D2; 4]);
+            let artifact = ShaderArtifact::Words {
+                words,
+                channels: [Shape::D2; 4],
+                upside_down: false,
+            };
             let theirs = self.again_after_a_crash(|worker| {
                 let (images, _) = worker.render(artifact.clone(), Default::default(), vec![frame()])?;
                 Ok(images.into_iter().next().expect("an image for each frame"))

@@ -6,7 +6,7 @@ use rayon::ThreadPool;
 use toyproof_convert::header::{self, ProofStatus};
 use toyproof_convert::{
     self as convert, ConvertError, Converter, FRAMES, FallbackReason, ProjectConversion, ProjectError,
-    ProjectSource, ProofError, Prover, Runner, Source, TargetCode, WgslError,
+    ProjectSource, ProofError, Prover, Runner, Source, TargetCode, WriterError,
 };
 use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_glsl::{self as glsl, Checked, PortError};
@@ -14,7 +14,7 @@ use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{Failure, Worker};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_project::{CompiledProject, PassKind};
-use toyproof_translate::wgsl::Unprintable;
+use toyproof_translate::Unprintable;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable};
@@ -148,7 +148,8 @@ impl Settings<'_> {
             checked,
             files: &shader.files,
         };
-        let converted = self.converter.convert(source, translator, prover.as_mut());
+        let name = shader.name.as_str();
+        let converted = self.converter.convert(source, name, translator, prover.as_mut());
         let convert::Conversion {
             code,
             proof,
@@ -241,7 +242,7 @@ fn refusal(error: ConvertError) -> Refusal {
             Refusal::Diagnostics(vec![*diagnostic], Exit::Error)
         }
         ConvertError::Port(error) => Refusal::Message(error.to_string(), Exit::Error),
-        ConvertError::Unwritable(WgslError::Unprintable {
+        ConvertError::Unwritable(WriterError::Unprintable {
             why: Unprintable::Host(diagnostic),
             ..
         }) => Refusal::Diagnostics(vec![*diagnostic], Exit::Error),

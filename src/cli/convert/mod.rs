@@ -11,6 +11,7 @@ use toyproof_diagnostic::Deadline;
 use toyproof_gpu::browser;
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
+use toyproof_translate::c_family::Host;
 
 use self::batch::{Batch, Job};
 use self::conversion::Settings;
@@ -127,6 +128,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         converter: Converter {
             target: to.target(),
             style: args.style.wgsl().unwrap_or_default(),
+            host: args.style.c_family().unwrap_or(Host::Hlsl),
             dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),

@@ -8,6 +8,7 @@ use toyproof_diagnostic::path_name;
 use toyproof_glsl::Dialect;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
+use toyproof_translate::c_family::Host;
 use toyproof_translate::wgsl::Style;
 
 use super::Args;
@@ -39,6 +40,12 @@ pub(super) enum StyleName {
     ComputeToys,
     /// A fragment shader for a Material2d of Bevy
     Bevy,
+    /// A shader in ShaderLab for Unity
+    Unity,
+    /// A pixel shader for Windows Terminal
+    WindowsTerminal,
+    /// A module of Slang with the bindings below
+    Slang,
     /// GLSL for ShaderToy
     Shadertoy,
     /// GLSL for the terminal Ghostty
@@ -62,6 +69,26 @@ impl StyleName {
             Self::ComputeToys => Some(Style::ComputeToys),
             Self::Bevy => Some(Style::Bevy),
             _ => None,
+        }
+    }
+
+    /// The host of HLSL, ShaderLab and Slang; `None` for the plain one.
+    pub(super) fn c_family(self) -> Option<Host> {
+        match self {
+            Self::Unity => Some(Host::Unity),
+            Self::WindowsTerminal => Some(Host::WindowsTerminal),
+            Self::Slang => Some(Host::Slang),
+            _ => None,
+        }
+    }
+
+    /// The language of the style, if it is of one only.
+    fn language(self) -> Option<To> {
+        match self {
+            Self::Plain => None,
+            _ if self.c_family().is_some() => Some(To::Hlsl),
+            _ if self.dialect().is_some() => Some(To::Glsl),
+            _ => Some(To::Wgsl),
         }
     }
 
@@ -134,7 +161,7 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
     let of_extension = (!is_standard_output && !output.is_dir())
         .then(|| To::from_extension(output))
         .flatten();
-    let of_style = args.style.dialect().map(|_| To::Glsl);
+    let of_style = args.style.language();
     let to = match (args.to.or(of_style), of_extension) {
         (Some(to), Some(other)) if !other.may_contain(to) => {
             let error = CliError::new(format_args!(
@@ -175,11 +202,14 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
 /// Checks that the options apply to the target language.
 pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     let dialect = args.style.dialect();
-    if dialect.is_none() && args.style != StyleName::Plain && to != To::Wgsl {
-        return Err("this --style applies to WGSL only");
+    match args.style.language() {
+        Some(To::Hlsl) if to != To::Hlsl => return Err("this --style applies to HLSL only"),
+        Some(To::Glsl) if to != To::Glsl => return Err("this --style applies to GLSL only"),
+        Some(language) if to != language => return Err("this --style applies to WGSL only"),
+        _ => {}
     }
-    if dialect.is_some() && to != To::Glsl {
-        return Err("this --style applies to GLSL only");
+    if args.style.c_family().is_some() && args.driver.explicit_float() == Some(FloatMode::Strict) {
+        return Err("this --style keeps the author's functions: leave out --float strict");
     }
     if dialect.is_some() && args.driver.explicit_float() == Some(FloatMode::Strict) {
         return Err("this --style keeps the author's operations: leave out --float strict");

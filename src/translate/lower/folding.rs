@@ -4,7 +4,7 @@
 //! and refuses some legal arguments: `pow(0.0, 0.0)`. Literals leave it nothing to evaluate. Values that are
 //! not finite are left to [`super::constant`].
 
-use toyproof_glsl::tree::{BuiltIn, Constructor, ExprId, ExprKind, Type};
+use toyproof_glsl::tree::{BuiltIn, Constructor, ExprId, ExprKind, Scalar, Type};
 
 use super::float32::{Float32Values, floats, function_of_floats};
 use crate::inexact::InexactFunction;
@@ -42,6 +42,26 @@ pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn) ->
         let are_plain = arguments.iter().flatten().chain(&value).all(is_plain);
         if are_plain {
             replace(cx, id, &value);
+        }
+    });
+}
+
+/// Folds operations on constants whose value depends on the precision in which a compiler computes them: most
+/// compute in double precision, and the evaluator rounds each operation. All others stay as they are written.
+pub(crate) fn fold_by_precision(cx: &mut LoweringContext) {
+    cx.each_expression_postorder(|cx, id| {
+        let is_operation = matches!(cx.tree[id].kind, ExprKind::Binary { .. });
+        if !is_operation || !cx.tree[id].constant || cx.tree[id].ty.scalar() != Some(Scalar::Float) {
+            return;
+        }
+        // Expressions may be rewritten, so values are not kept from one to the next.
+        let rounded = Float32Values::default().value(&cx.tree, id);
+        let (Some(rounded), Some(exact)) = (rounded.as_ref().and_then(floats), cx.tree.value(id)) else {
+            return;
+        };
+        let is_plain = |value: &f32| value.is_finite() && !value.is_subnormal();
+        if floats(&exact).is_some_and(|exact| exact != rounded) && rounded.iter().all(is_plain) {
+            replace(cx, id, &rounded);
         }
     });
 }

@@ -228,7 +228,7 @@ fn zero_out_parameters(cx: &mut LoweringContext, function: FunctionId, body: &Bl
 }
 
 /// Whether the first statements write the variable and nothing reads it before.
-fn is_written_first(cx: &LoweringContext, variable: VariableId, body: &Block) -> bool {
+pub(crate) fn is_written_first(cx: &LoweringContext, variable: VariableId, body: &[Statement]) -> bool {
     for statement in body {
         let written = match statement.kind {
             StatementKind::Expression(expr) => match cx.tree[expr].kind {

@@ -7,6 +7,7 @@
 
 mod branch;
 mod builtin;
+mod conditional;
 mod constant;
 pub(crate) mod context;
 #[cfg(test)]
@@ -15,6 +16,7 @@ mod flatten;
 mod float32;
 mod folding;
 mod generated;
+mod helper_tree;
 mod initializer;
 mod lookup;
 mod lookup_text;
@@ -29,7 +31,10 @@ mod stage_io;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use folding::fold_except;
+pub(crate) use conditional::branch_for_effects;
+pub(crate) use folding::{fold_by_precision, fold_except};
+pub(crate) use helper_tree::helper_tree;
+pub(crate) use initializer::is_written_first;
 use toyproof_diagnostic::{Deadline, Overdue};
 use toyproof_glsl::Checked;
 
@@ -175,6 +180,16 @@ impl Passes {
     /// All passes, including those that make a shader's bits the same on every driver.
     pub fn strict() -> Self {
         Self(u64::MAX)
+    }
+
+    /// No pass.
+    pub(crate) fn none() -> Self {
+        Self(0)
+    }
+
+    /// This set with one pass.
+    pub(crate) fn with(self, pass: Pass) -> Self {
+        Self(self.0 | 1 << pass as u32)
     }
 
     /// This set without one pass.

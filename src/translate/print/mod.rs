@@ -12,7 +12,7 @@ mod statement;
 
 use std::ops::Range;
 
-pub(super) use names::Numbering;
+pub(super) use names::{Names, Numbering, Vocabulary};
 pub(super) use order::{CaseLabels, Order};
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue, Span};
@@ -21,13 +21,13 @@ use toyproof_glsl::tree::{
 };
 use toyproof_glsl::{Sampling, Stage};
 
-use self::names::Names;
+use self::names::NagasGlsl;
 use crate::lower::context::LoweringContext;
 
 /// Prints everything that a shader's image depends on.
 pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered, Overdue> {
     let order = Order::new(cx, CaseLabels::Values);
-    let names = Names::new(cx, &order);
+    let names = Names::new(cx, &order, &NagasGlsl);
     let mut printer = Printer::new(cx, &names);
     printer.prelude(&order);
     for &item in &order.items {

@@ -1,4 +1,4 @@
-//! Names of all items: the author's names wherever naga accepts them.
+//! Names of all items: the author's names wherever the language accepts them.
 //!
 //! naga has one scope for types and looks for a type first, whatever the name denotes (`ray ray;`);
 //! identifiers of ES 3.00 are keywords in 450 (`sample`, `buffer`); and declarations moved by lowering may
@@ -6,7 +6,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::tree::{ExprKind, FunctionId, Input, Item, StructId, Type, VariableId, walk};
+use toyproof_glsl::tree::{ExprKind, FunctionId, Input, Item, StructId, Tree, Type, VariableId, walk};
 
 use super::order::Order;
 use crate::lower::context::LoweringContext;
@@ -19,25 +19,78 @@ const GENERATED_NAMES: [&str; 3] = ["toyproof_color", "toyproof_image_color", "T
 /// The prefix of generated names.
 const GENERATED_PREFIX: &str = "toyproof_";
 
+/// The names that are not free in a language.
+pub(crate) trait Vocabulary {
+    /// Whether nothing may have the name.
+    fn is_reserved(&self, word: &str) -> bool;
+    /// Whether the name is a function's that code may call.
+    fn is_function(&self, word: &str) -> bool;
+    /// The names that the code around the shader declares.
+    fn declared(&self) -> Vec<String>;
+    /// Whether a declaration's own initializer is in the scope of its name, and functions share their names
+    /// with variables, as in C.
+    fn has_scopes_of_c(&self) -> bool;
+    /// A stem for `word` such that `{stem}_1` is not reserved.
+    fn with_free_stem(&self, word: &str) -> String;
+
+    /// The name itself if it is free, or the first numbered one.
+    fn free(&self, name: &str, is_taken: impl Fn(&str) -> bool) -> String
+    where
+        Self: Sized,
+    {
+        let name = &self.with_free_stem(name);
+        let numbered = (1_usize..).map(|number| format!("{name}_{number}"));
+        std::iter::once(name.to_owned())
+            .chain(numbered)
+            .find(|name| !is_taken(name))
+            .unwrap_or_default()
+    }
+}
+
+/// GLSL 450 as naga reads it.
+pub(super) struct NagasGlsl;
+
+impl Vocabulary for NagasGlsl {
+    fn is_reserved(&self, word: &str) -> bool {
+        keyword::is_reserved(word)
+    }
+
+    fn is_function(&self, word: &str) -> bool {
+        keyword::is_function(word)
+    }
+
+    fn declared(&self) -> Vec<String> {
+        let inputs = Input::ALL.iter().map(|input| input.name().to_owned());
+        let channels =
+            (0..4).flat_map(|number| [format!("iChannel{number}"), format!("iChannel{number}_sampler")]);
+        let generated = GENERATED_NAMES.map(str::to_owned);
+        inputs.chain(channels).chain(generated).collect()
+    }
+
+    fn has_scopes_of_c(&self) -> bool {
+        false
+    }
+
+    fn with_free_stem(&self, word: &str) -> String {
+        keyword::with_free_stem(word)
+    }
+}
+
 /// The names of a shader's items.
 #[derive(Default)]
-pub(super) struct Names {
-    pub(super) variables: HashMap<VariableId, String>,
-    pub(super) functions: HashMap<FunctionId, String>,
-    pub(super) structs: HashMap<StructId, String>,
-    pub(super) members: HashMap<(StructId, usize), String>,
+pub(crate) struct Names {
+    pub(crate) variables: HashMap<VariableId, String>,
+    pub(crate) functions: HashMap<FunctionId, String>,
+    pub(crate) structs: HashMap<StructId, String>,
+    pub(crate) members: HashMap<(StructId, usize), String>,
 }
 
 impl Names {
-    pub(super) fn new(cx: &LoweringContext, order: &Order) -> Self {
+    pub(crate) fn new(cx: &LoweringContext, order: &Order, vocabulary: &impl Vocabulary) -> Self {
         let mut names = Self::default();
         let mut types = HashSet::new();
         // Names at global scope, which must be unique.
-        let mut taken: HashSet<String> = Input::ALL.iter().map(|input| input.name().to_owned()).collect();
-        for channel in 0..4 {
-            taken.extend([format!("iChannel{channel}"), format!("iChannel{channel}_sampler")]);
-        }
-        taken.extend(GENERATED_NAMES.map(str::to_owned));
+        let mut taken: HashSet<String> = vocabulary.declared().into_iter().collect();
         let mut surroundings = taken.clone();
         for &input in &order.inputs {
             names.variables.insert(input, cx.tree[input].name.clone());
@@ -51,12 +104,12 @@ impl Names {
                 } else {
                     &tree[id].name
                 };
-                let is_taken = |name: &str| keyword::is_reserved(name) || taken.contains(name);
-                let name = numbering.free(&keyword::with_free_stem(name), is_taken);
+                let is_taken = |name: &str| vocabulary.is_reserved(name) || taken.contains(name);
+                let name = numbering.free(&vocabulary.with_free_stem(name), is_taken);
                 types.insert(name.clone());
                 taken.insert(name.clone());
                 names.structs.insert(id, name);
-                names.name_members(cx, id);
+                names.name_members(cx, id, vocabulary);
             }
         }
         let mut counts: HashMap<&str, usize> = HashMap::new();
@@ -68,9 +121,9 @@ impl Names {
                 // A variable moved out of a function may clash with any local.
                 let moved = cx.moved.contains(&id);
                 let own = tree[id].name.as_str();
-                let name = numbering.free(&keyword::with_free_stem(own), |name| {
-                    keyword::is_reserved(name)
-                        || keyword::is_function(name)
+                let name = numbering.free(&vocabulary.with_free_stem(own), |name| {
+                    vocabulary.is_reserved(name)
+                        || vocabulary.is_function(name)
                         || taken.contains(name)
                         || (moved && name != own && counts.contains_key(name))
                         || (moved && name == own && counts.get(name).is_some_and(|&count| count > 1))
@@ -79,7 +132,7 @@ impl Names {
                 names.variables.insert(id, name);
             }
         }
-        names.name_functions(cx, order, &taken);
+        names.name_functions(cx, order, &taken, vocabulary);
         let own = names
             .functions
             .values()
@@ -87,17 +140,17 @@ impl Names {
         surroundings.extend(own.cloned());
         for item in &order.items {
             if let Item::Function(id) = *item {
-                names.name_locals(cx, id, &types, &surroundings);
+                names.name_locals(cx, id, &types, &surroundings, vocabulary);
             }
         }
         names
     }
 
-    fn name_members(&mut self, cx: &LoweringContext, id: StructId) {
+    fn name_members(&mut self, cx: &LoweringContext, id: StructId, vocabulary: &impl Vocabulary) {
         let mut taken = HashSet::new();
         for (at, member) in cx.tree[id].members.iter().enumerate() {
-            let name = free(&member.name, |name| {
-                keyword::is_reserved(name) || taken.contains(name)
+            let name = vocabulary.free(&member.name, |name| {
+                vocabulary.is_reserved(name) || taken.contains(name)
             });
             taken.insert(name.clone());
             self.members.insert((id, at), name);
@@ -105,7 +158,13 @@ impl Names {
     }
 
     /// Overloads share a name unless lowering or naga makes their parameters equal.
-    fn name_functions(&mut self, cx: &LoweringContext, order: &Order, taken: &HashSet<String>) {
+    fn name_functions(
+        &mut self,
+        cx: &LoweringContext,
+        order: &Order,
+        taken: &HashSet<String>,
+        vocabulary: &impl Vocabulary,
+    ) {
         let firsts = self.equal_structs(cx, order);
         let mut defined: HashSet<(String, Vec<Type>)> = HashSet::new();
         for item in &order.items {
@@ -120,9 +179,9 @@ impl Names {
                     ty => ty,
                 })
                 .collect();
-            let name = free(&cx.tree[id].name, |name| {
-                keyword::is_reserved(name)
-                    || keyword::is_function(name)
+            let name = vocabulary.free(&cx.tree[id].name, |name| {
+                vocabulary.is_reserved(name)
+                    || vocabulary.is_function(name)
                     || taken.contains(name)
                     || defined.contains(&(name.to_owned(), types.clone()))
             });
@@ -159,6 +218,7 @@ impl Names {
         function: FunctionId,
         types: &HashSet<String>,
         surroundings: &HashSet<String>,
+        vocabulary: &impl Vocabulary,
     ) {
         let tree = &cx.tree;
         let mut locals = tree[function].parameters.clone();
@@ -169,13 +229,17 @@ impl Names {
                 .into_iter()
                 .flat_map(|root| tree.postorder(root))
             {
-                if let ExprKind::Variable(variable) = tree[id].kind {
-                    globals.extend(self.variables.get(&variable).cloned());
+                match tree[id].kind {
+                    ExprKind::Variable(variable) => globals.extend(self.variables.get(&variable).cloned()),
+                    ExprKind::Call { function, .. } if vocabulary.has_scopes_of_c() => {
+                        globals.extend(self.functions.get(&function).cloned());
+                    }
+                    _ => {}
                 }
             }
         }
         let clashes = |name: &str| {
-            keyword::is_reserved(name)
+            vocabulary.is_reserved(name)
                 || types.contains(name)
                 || globals.contains(name)
                 || surroundings.contains(name)
@@ -188,12 +252,13 @@ impl Names {
         let mut numbering = Numbering::default();
         for &id in &locals {
             let own = tree[id].name.as_str();
-            let is_ambiguous = cx.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1);
+            let is_ambiguous = cx.moved.contains(&id) && counts.get(own).is_some_and(|&count| count > 1)
+                || vocabulary.has_scopes_of_c() && names_its_equal(tree, id);
             let name = if own.is_empty() || is_ambiguous || clashes(own) {
                 let stem = if own.is_empty() {
                     "unused".to_owned()
                 } else {
-                    keyword::with_free_stem(own)
+                    vocabulary.with_free_stem(own)
                 };
                 numbering.next(&stem, |name| clashes(name) || taken.contains(name))
             } else {
@@ -233,12 +298,14 @@ impl Numbering {
     }
 }
 
-/// The name itself if it is free, or the first numbered one.
-fn free(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
-    let name = &keyword::with_free_stem(name);
-    let numbered = (1_usize..).map(|number| format!("{name}_{number}"));
-    std::iter::once(name.to_owned())
-        .chain(numbered)
-        .find(|name| !is_taken(name))
-        .unwrap_or_default()
+/// Whether the initializer of a variable names another variable of the same name.
+fn names_its_equal(tree: &Tree, id: VariableId) -> bool {
+    let variable = &tree[id];
+    variable.initializer.is_some_and(|value| {
+        walk::any(
+            tree,
+            value,
+            |kind| matches!(kind, ExprKind::Variable(other) if tree[*other].name == variable.name),
+        )
+    })
 }

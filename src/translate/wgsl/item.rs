@@ -1,16 +1,14 @@
 //! Prints structures, globals and functions, in the author's order.
 
-use toyproof_diagnostic::{File, Files};
 use toyproof_glsl::tree::{
     Block, Direction, ExprKind, FunctionId, Item, Statement, StatementKind, StructId, Type, VariableId,
     VariableKind, walk,
 };
-use toyproof_glsl::{self as glsl, Options};
 
 use super::Unprintable;
 use super::names::Names;
 use super::writer::{Facts, Writer, is_out};
-use crate::lower::context::LoweringContext;
+use crate::lower::helper_tree;
 use crate::print::Order;
 
 impl Writer<'_> {
@@ -192,30 +190,7 @@ impl Writer<'_> {
     /// Prints a helper function of lowering, by parsing its text as GLSL.
     fn helper(&mut self, id: FunctionId, text: &str) -> Result<(), Unprintable> {
         const BROKEN: Unprintable = Unprintable::Construct("a generated function");
-        let tree = &self.cx.tree;
-        let function = &tree[id];
-        let parameters = function.parameters.iter().map(|&parameter| {
-            let variable = &tree[parameter];
-            let direction = if is_out(self.cx, parameter) { "out " } else { "" };
-            format!("{direction}{} {}", tree.type_name(variable.ty), variable.name)
-        });
-        let parameters: Vec<_> = parameters.collect();
-        // A comment for helpers whose names do not say enough.
-        let about = if function.name.ends_with("_remainder") {
-            "// `a % b` of GLSL as Mesa and SwiftShader round it, down: WGSL's rounds towards zero.\n"
-        } else {
-            ""
-        };
-        let source = format!(
-            "{about}{} {}({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
-            tree.type_name(function.return_type),
-            function.name,
-            parameters.join(", ")
-        );
-        let mut files = Files::default();
-        let file = files.add(File::new("<helper>", source));
-        let checked = glsl::check(&files, file, &Options::default()).map_err(|_| BROKEN)?;
-        let cx = LoweringContext::new(&checked);
+        let (files, cx) = helper_tree(self.cx, id, text).ok_or(BROKEN)?;
         let first = cx.tree.items.iter().find_map(|item| match item {
             Item::Function(id) => Some(*id),
             _ => None,

@@ -3,6 +3,7 @@
 use toyproof_glsl::tree::{ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value};
 
 use super::writer::Writer;
+use crate::author::{float, is_hexadecimal};
 
 impl Writer<'_> {
     /// Whether an expression consists of literals only, so that WGSL gives it an abstract type. Results are
@@ -98,14 +99,9 @@ impl Writer<'_> {
     }
 
     fn macro_name(&self, at: Place) -> Option<String> {
-        if !at.is_expanded() {
-            return None;
-        }
-        let text = self.source.text(at.span)?;
-        let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-            && text.starts_with(|c: char| c.is_ascii_alphabetic());
-        let is_free = !super::names::is_taken(text) && !self.names.all.contains(text);
-        (is_name && is_free && self.source.is_whole_macro(text, at)).then(|| text.to_owned())
+        let name = self.source.macro_name(at)?;
+        let is_free = !super::names::is_taken(name) && !self.names.all.contains(name);
+        is_free.then(|| name.to_owned())
     }
 
     /// The zero value of a type.
@@ -118,47 +114,6 @@ impl Writer<'_> {
                 toyproof_glsl::tree::Scalar::Uint => "0u".to_owned(),
             },
             _ => format!("{}()", self.type_name(ty)),
-        }
-    }
-}
-
-fn is_hexadecimal(text: &str) -> bool {
-    text.starts_with("0x") || text.starts_with("0X")
-}
-
-/// A float as written, with digits on both sides of its point; or its value, where WGSL does not accept the
-/// text.
-fn float(text: &str, value: f64) -> String {
-    let text = text.trim_end_matches(['f', 'F']);
-    let is_plain = text
-        .chars()
-        .all(|c| c.is_ascii_digit() || matches!(c, '.' | 'e' | 'E' | '+' | '-'));
-    if !is_plain {
-        return format!("{:?}", value as f32);
-    }
-    let (mantissa, exponent) = text.find(['e', 'E']).map_or((text, ""), |at| text.split_at(at));
-    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let whole = whole.trim_start_matches('0');
-    let whole = if whole.is_empty() { "0" } else { whole };
-    let fraction = if fraction.is_empty() { "0" } else { fraction };
-    format!("{whole}.{fraction}{exponent}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::float;
-
-    #[test]
-    fn a_float_has_digits_on_both_sides() {
-        for (glsl, wgsl) in [
-            ("1.", "1.0"),
-            (".5", "0.5"),
-            ("1e3", "1.0e3"),
-            ("1.5f", "1.5"),
-            ("00.10", "0.10"),
-            ("2.E-3", "2.0E-3"),
-        ] {
-            assert_eq!(float(glsl, 0.0), wgsl);
         }
     }
 }

@@ -7,7 +7,6 @@
 //! naga's writer. Section numbers are those of the WGSL specification.
 
 mod builtin;
-mod comment;
 mod construct;
 mod effect;
 mod expression;
@@ -15,42 +14,19 @@ mod item;
 mod literal;
 mod loops;
 mod names;
-mod source_text;
 mod statement;
 mod style;
 mod writer;
 
 pub use style::{HostedShader, Style};
-use thiserror::Error;
-use toyproof_diagnostic::{Deadline, Diagnostic, Files, Overdue};
+use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::BuiltIn;
 
 use crate::lower::context::LoweringContext;
 use crate::lower::{Pass, Passes, fold_except};
 use crate::print::{CaseLabels, Order};
-
-/// Why this writer cannot print a shader.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Unprintable {
-    /// A construct that the writer does not support, whose place is not known.
-    #[error("{0} is not supported")]
-    Construct(&'static str),
-    /// A feature that the host does not provide, or a construct that is not supported.
-    #[error("{}", .0.message)]
-    Host(Box<Diagnostic>),
-}
-
-/// Why no text was printed.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum WgslFailure {
-    /// An unsupported construct or feature.
-    #[error(transparent)]
-    Unprintable(#[from] Unprintable),
-    /// The deadline passed.
-    #[error(transparent)]
-    Overdue(#[from] Overdue),
-}
+pub use crate::unprintable::{Unprintable, WriteFailure};
 
 /// Prints a checked shader as WGSL for a kind of host; the author's comments are read from `files`.
 ///
@@ -61,7 +37,7 @@ pub fn wgsl(
     files: &Files,
     style: Style,
     deadline: &Deadline,
-) -> Result<String, WgslFailure> {
+) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
     fold_except(&mut cx, is_computed_alike);
     passes().run(&mut cx, deadline)?;

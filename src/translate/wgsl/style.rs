@@ -1,8 +1,7 @@
 //! The code around a shader: entry point, bindings and direction of y for each kind of host, and substitutes
 //! for the hosts to run the result here. `docs/guide/converting.md` cites the hosts' documentation.
 //!
-//! The code is in `styles/`, as WGSL with two additions: `$name` is replaced by a value ([`fill`]), and a
-//! line that ends in `//? a b` is only printed if condition `a` or `b` holds.
+//! The code is in `styles/`, as templates.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,6 +16,7 @@ use toyproof_glsl::tree::{
 use super::Unprintable;
 use super::writer::{Class, Text, Writer};
 use crate::print::Order;
+use crate::template::{around_shader, channel_number, fill};
 
 /// The kind of host that WGSL is written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
@@ -403,34 +403,6 @@ fn dimension(shape: SamplerShape) -> Option<&'static str> {
     }
 }
 
-/// The parts of a template before and after the shader.
-fn around_shader(template: &str) -> [&str; 2] {
-    let parts = template.split_once("$shader\n");
-    parts.map_or([template, ""], |(before, after)| [before, after])
-}
-
-/// Fills in a part of a template: leaves out the lines none of whose conditions holds, and replaces names by
-/// values.
-fn fill(template: &str, holds: impl Fn(&str) -> bool, values: &[(&str, String)]) -> String {
-    let mut text = String::new();
-    for line in template.lines() {
-        let line = match line.split_once("//?") {
-            Some((_, conditions)) if !conditions.split_whitespace().any(&holds) => continue,
-            Some((line, _)) => line.trim_end(),
-            None => line,
-        };
-        let replace = |line: String, (name, value): &(&str, String)| line.replace(name, value);
-        text += &values.iter().fold(line.to_owned(), replace);
-        text.push('\n');
-    }
-    text
-}
-
-/// The channel in the name of a condition.
-fn channel_number(condition: &str) -> Option<u8> {
-    condition.strip_prefix("channel")?.parse().ok()
-}
-
 /// The block of the author's uniforms, as the template declares it.
 const BLOCK: &str = "@group(0) @binding(9) var<uniform> uniforms: Uniforms;";
 
@@ -600,12 +572,5 @@ mod tests {
                 assert!(template.contains(code), "{code}");
             }
         }
-    }
-
-    #[test]
-    fn lines_are_there_if_one_of_their_conditions_holds() {
-        let part = "a $x\nb //? no\nc($x, $x); //? no yes\n//? yes\nd // ?";
-        let filled = fill(part, |name| name == "yes", &[("$x", "1".to_owned())]);
-        assert_eq!(filled, "a 1\nc(1, 1);\n\nd // ?\n");
     }
 }

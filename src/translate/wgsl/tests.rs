@@ -4,7 +4,7 @@ use toyproof_glsl::{Options, check};
 
 use super::names::Names;
 use super::writer::{Facts, Writer};
-use super::{CaseLabels, LoweringContext, Order, Style, Unprintable, WgslFailure, wgsl};
+use super::{CaseLabels, LoweringContext, Order, Style, Unprintable, WriteFailure, wgsl};
 
 fn print(shader: &str, style: Style) -> String {
     let mut files = Files::default();
@@ -21,7 +21,7 @@ fn printing_stops_after_the_deadline() {
     let checked = check(&files, file, &Options::default()).unwrap();
     let over = Deadline::after(std::time::Duration::ZERO);
     let late = wgsl(&checked, &files, Style::Plain, &over);
-    assert!(matches!(late, Err(WgslFailure::Overdue(_))), "{late:?}");
+    assert!(matches!(late, Err(WriteFailure::Overdue(_))), "{late:?}");
 
     // Each value, statement and item checks the deadline.
     let cx = LoweringContext::new(&checked);
@@ -246,7 +246,7 @@ fn unsupported_inputs_and_derivatives_are_refused() {
         let file = files.add(File::new("shader", text));
         let checked = check(&files, file, &Options::default()).unwrap();
         match wgsl(&checked, &files, style, &Deadline::default()) {
-            Err(WgslFailure::Unprintable(Unprintable::Host(diagnostic))) => {
+            Err(WriteFailure::Unprintable(Unprintable::Host(diagnostic))) => {
                 assert_eq!(diagnostic.message, message);
                 assert_eq!(files.position(diagnostic.span.unwrap()).line, line, "{message}");
             }

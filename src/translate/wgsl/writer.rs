@@ -9,10 +9,9 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
-use super::comment::Comments;
 use super::names::Names;
-use super::source_text::SourceText;
 use super::style::Style;
+use crate::author::{Comments, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::print::Order;
 

@@ -4,17 +4,17 @@ use toyproof_diagnostic::{Files, Span};
 use toyproof_glsl::tree::{Place, Swizzle};
 
 /// The texts of the author's files.
-pub(super) struct SourceText<'a> {
+pub(crate) struct SourceText<'a> {
     files: &'a Files,
 }
 
 impl<'a> SourceText<'a> {
-    pub(super) fn new(files: &'a Files) -> Self {
+    pub(crate) fn new(files: &'a Files) -> Self {
         Self { files }
     }
 
     /// The letters of a swizzle: `rgba` where the author wrote these, `xyzw` otherwise.
-    pub(super) fn letters(&self, components: Swizzle, at: Place) -> String {
+    pub(crate) fn letters(&self, components: Swizzle, at: Place) -> String {
         let color: String = components
             .components()
             .iter()
@@ -29,15 +29,26 @@ impl<'a> SourceText<'a> {
     }
 
     /// The source text of a span.
-    pub(super) fn text(&self, span: Span) -> Option<&'a str> {
+    fn text(&self, span: Span) -> Option<&'a str> {
         self.files
             .get(span.file)
             .text()
             .get(span.start as usize..span.end as usize)
     }
 
+    /// The macro whose entire replacement text is the literal at a place, which it expands to.
+    pub(crate) fn macro_name(&self, at: Place) -> Option<&'a str> {
+        if !at.is_expanded() {
+            return None;
+        }
+        let text = self.text(at.span)?;
+        let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            && text.starts_with(|c: char| c.is_ascii_alphabetic());
+        (is_name && self.is_whole_macro(text, at)).then_some(text)
+    }
+
     /// Whether a place is the entire replacement text of `#define NAME`.
-    pub(super) fn is_whole_macro(&self, name: &str, at: Place) -> bool {
+    fn is_whole_macro(&self, name: &str, at: Place) -> bool {
         let text = self.files.get(at.spelling.file).text();
         let (Some(before), Some(after)) = (
             text.get(..at.spelling.start as usize),

@@ -7,7 +7,7 @@ use toyproof_diagnostic::{FileId, Files};
 use toyproof_glsl::tree::Place;
 
 /// Finds the author's comments and tracks which are printed.
-pub(super) struct Comments<'a> {
+pub(crate) struct Comments<'a> {
     files: &'a Files,
     /// What is printed: comment and blank lines by the byte where they begin, comments at the end of a line
     /// by the byte where the code before them ends.
@@ -15,7 +15,7 @@ pub(super) struct Comments<'a> {
 }
 
 impl<'a> Comments<'a> {
-    pub(super) fn new(files: &'a Files) -> Self {
+    pub(crate) fn new(files: &'a Files) -> Self {
         Self {
             files,
             printed: HashSet::new(),
@@ -23,7 +23,7 @@ impl<'a> Comments<'a> {
     }
 
     /// Returns the comment lines directly above a place's line as `//` lines, each only once.
-    pub(super) fn above(&mut self, at: Place) -> Vec<String> {
+    pub(crate) fn above(&mut self, at: Place) -> Vec<String> {
         let (lines, _) = self.lines_above(at);
         let fresh = lines
             .into_iter()
@@ -34,7 +34,7 @@ impl<'a> Comments<'a> {
     }
 
     /// Whether a blank line is above a place, or above the comment there; reported only once.
-    pub(super) fn follows_blank_line(&mut self, at: Place) -> bool {
+    pub(crate) fn follows_blank_line(&mut self, at: Place) -> bool {
         let (_, blank) = self.lines_above(at);
         blank.is_some_and(|begin| self.printed.insert((at.span.file, begin)))
     }
@@ -74,7 +74,7 @@ impl<'a> Comments<'a> {
     }
 
     /// Returns the comment that ends a place's line, if only `;` or `,` comes between; only once.
-    pub(super) fn trailing(&mut self, at: Place) -> Option<String> {
+    pub(crate) fn trailing(&mut self, at: Place) -> Option<String> {
         let file = at.span.file;
         let text = self.files.get(file).text();
         let rest = text.get(at.span.end as usize..)?.lines().next()?.trim();
@@ -86,7 +86,7 @@ impl<'a> Comments<'a> {
     }
 
     /// Returns the comment that the file of a place begins with.
-    pub(super) fn first(&mut self, at: Place) -> Vec<String> {
+    pub(crate) fn first(&mut self, at: Place) -> Vec<String> {
         let file = at.span.file;
         let text = self.files.get(file).text();
         let mut lines = Vec::new();

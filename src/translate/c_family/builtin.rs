@@ -1,0 +1,138 @@
+//! Built-in functions: most have the same name in HLSL, some are operators there, few are missing.
+
+use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, Scalar, Type, Wgsl};
+
+use super::Unprintable;
+use super::expression::{Part, Parts, level};
+use super::writer::{PrintResult, Writer};
+
+impl Writer<'_> {
+    pub(super) fn built_in(
+        &mut self,
+        function: BuiltIn,
+        arguments: &[ExprId],
+        ty: Type,
+    ) -> PrintResult<Parts> {
+        use BuiltIn as B;
+        if function.is_texture() {
+            return self.lookup(function, arguments);
+        }
+        let types: Vec<Type> = arguments
+            .iter()
+            .map(|&argument| self.cx.tree[argument].ty)
+            .collect();
+        // Comparisons of vectors component by component.
+        if let (Wgsl::Operator(op), &[left, right]) = (function.wgsl(), arguments) {
+            return Ok(Self::infix(left, op, right));
+        }
+        let name = match function {
+            B::Not => {
+                let operand = Part::Print(arguments[0], level::POSTFIX);
+                return Ok((vec![Part::token("!"), operand], level::UNARY));
+            }
+            B::Sign if ty.scalar() == Some(Scalar::Float) => {
+                // HLSL's returns integers.
+                let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+                parts.extend(Self::call("sign", arguments));
+                parts.push(Part::token(")"));
+                return Ok((parts, level::POSTFIX));
+            }
+            B::DFdy if self.host.is_upside_down(self.cx.stage) => {
+                let mut parts = vec![Part::token("-")];
+                parts.extend(Self::call("ddy", arguments));
+                return Ok((parts, level::UNARY));
+            }
+            B::MatrixCompMult => return Ok(Self::infix(arguments[0], BinaryOp::Multiply, arguments[1])),
+            B::Atan if arguments.len() == 2 => "atan2".to_owned(),
+            B::DFdx => "ddx".to_owned(),
+            B::DFdy => "ddy".to_owned(),
+            B::Fract => "frac".to_owned(),
+            B::InverseSqrt => "rsqrt".to_owned(),
+            B::RoundEven => "round".to_owned(),
+            B::FloatBitsToInt => "asint".to_owned(),
+            B::FloatBitsToUint => "asuint".to_owned(),
+            B::IntBitsToFloat | B::UintBitsToFloat => "asfloat".to_owned(),
+            B::Mix if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => {
+                let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
+                self.helper_function("mix", &types, ty, "", &body)?
+            }
+            B::Mix => "lerp".to_owned(),
+            B::Mod => self.helper_function(
+                "mod",
+                &types,
+                ty,
+                "// `mod` of GLSL: `fmod` rounds towards zero.\n",
+                "return x - y * floor(x / y);",
+            )?,
+            B::Asinh => self.helper_function("asinh", &types, ty, "", "return log(x + sqrt(x * x + 1.0));")?,
+            B::Acosh => self.helper_function("acosh", &types, ty, "", "return log(x + sqrt(x * x - 1.0));")?,
+            B::Atanh => {
+                self.helper_function("atanh", &types, ty, "", "return 0.5 * log((1.0 + x) / (1.0 - x));")?
+            }
+            B::PackHalf2x16 => self.helper_function(
+                "packHalf2x16",
+                &types,
+                ty,
+                "",
+                "return f32tof16(x.x) | f32tof16(x.y) << 16;",
+            )?,
+            B::UnpackHalf2x16 => self.helper_function(
+                "unpackHalf2x16",
+                &types,
+                ty,
+                "",
+                "return float2(f16tof32(x & 0xffff), f16tof32(x >> 16));",
+            )?,
+            B::PackSnorm2x16
+            | B::UnpackSnorm2x16
+            | B::PackUnorm2x16
+            | B::UnpackUnorm2x16
+            | B::Modf
+            | B::IsNan
+            | B::IsInf
+            | B::OuterProduct
+            | B::Inverse => return Err(Unprintable::Construct("this built-in function")),
+            other => other.name().to_owned(),
+        };
+        Ok((Self::call(name, arguments), level::POSTFIX))
+    }
+
+    /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and returns
+    /// its name.
+    pub(super) fn helper_function(
+        &mut self,
+        name: &str,
+        types: &[Type],
+        returned: Type,
+        comment: &str,
+        body: &str,
+    ) -> PrintResult<String> {
+        if self.indent == 0 {
+            return Err(Unprintable::Construct("this built-in function in a global constant"));
+        }
+        let function = self.free(name);
+        let parameters = types
+            .iter()
+            .zip(["x", "y", "a"])
+            .map(|(&ty, name)| self.declarator(ty, name));
+        let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
+        let returned = self.type_name(returned)?;
+        let text = format!("{comment}{returned} {function}({parameters}) {{\n    {body}\n}}\n");
+        self.helpers.insert((function.clone(), parameters), text);
+        Ok(function)
+    }
+}
+
+/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways before
+/// and since its version of 2021.
+fn mix_of_bool(ty: &str, size: u8) -> String {
+    if size == 1 {
+        return "return a ? y : x;".to_owned();
+    }
+    let component = |at: u8| {
+        let letter = char::from(b"xyzw"[usize::from(at)]);
+        format!("a.{letter} ? y.{letter} : x.{letter}")
+    };
+    let components: Vec<_> = (0..size.min(4)).map(component).collect();
+    format!("return {ty}({});", components.join(", "))
+}

@@ -1,0 +1,205 @@
+//! Constructors. HLSL has casts for a single argument, and lists of components; structures are made by
+//! functions.
+
+use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type};
+
+use super::Unprintable;
+use super::expression::{Part, Parts, level};
+use super::writer::{PrintResult, Writer};
+
+impl Writer<'_> {
+    pub(super) fn construct(
+        &mut self,
+        constructor: Constructor,
+        arguments: &[ExprId],
+        ty: Type,
+    ) -> PrintResult<Parts> {
+        let only = arguments.first().copied();
+        let only = only.ok_or(Unprintable::Construct("a constructor without arguments"))?;
+        let from = self.cx.tree[only].ty;
+        let primary = |parts| Ok((parts, level::POSTFIX));
+        match constructor {
+            Constructor::Struct => {
+                let Type::Struct(id) = ty else {
+                    return Err(Unprintable::Construct("this constructor"));
+                };
+                self.made.insert(id);
+                primary(Self::call(self.maker_name(id), arguments))
+            }
+            Constructor::Array => Err(Unprintable::Construct("an array outside a declaration")),
+            Constructor::Scalar => self.scalar(only, from, ty),
+            Constructor::Splat => {
+                if self.is_short(only) {
+                    let size = usize::from(ty.component_count().unwrap_or(1));
+                    return primary(Self::call(self.type_name(ty)?, &vec![only; size]));
+                }
+                self.cast(only, ty)
+            }
+            Constructor::Vector => self.vector(arguments, ty),
+            Constructor::Matrix => self.matrix(arguments, ty),
+            Constructor::Diagonal => self.diagonal(only, ty),
+            Constructor::Resize => self.resize(only, from, ty),
+        }
+    }
+
+    /// `(float3)x`, which also converts a scalar to a vector.
+    fn cast(&self, value: ExprId, ty: Type) -> PrintResult<Parts> {
+        let cast = format!("({})", self.type_name(ty)?);
+        Ok((vec![Part::Token(cast), Part::Print(value, level::POSTFIX)], level::UNARY))
+    }
+
+    /// Whether a value may be repeated: a literal or a variable.
+    fn is_short(&self, id: ExprId) -> bool {
+        matches!(
+            self.cx.tree[id].kind,
+            ExprKind::Literal(_) | ExprKind::Variable(_)
+        )
+    }
+
+    fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+        let part = match from {
+            Type::Vector(..) => ".x",
+            Type::Matrix { .. } => "[0].x",
+            _ => "",
+        };
+        let name = self.type_name(ty)?;
+        let converts = from.scalar() != ty.scalar();
+        Ok(match (converts, part) {
+            (false, "") => (vec![Part::Print(value, level::UNARY)], level::UNARY),
+            (false, part) => (
+                vec![Part::Print(value, level::POSTFIX), Part::token(part)],
+                level::POSTFIX,
+            ),
+            (true, "") => (Self::call(name, &[value]), level::POSTFIX),
+            (true, part) => (
+                vec![
+                    Part::Token(format!("{name}(")),
+                    Part::Print(value, level::POSTFIX),
+                    Part::Token(format!("{part})")),
+                ],
+                level::POSTFIX,
+            ),
+        })
+    }
+
+    fn vector(&self, arguments: &[ExprId], ty: Type) -> PrintResult<Parts> {
+        let Type::Vector(scalar, size) = ty else {
+            return Err(Unprintable::Construct("this vector constructor"));
+        };
+        // A vector's first components.
+        if let &[only] = arguments
+            && let Type::Vector(from, has) = self.cx.tree[only].ty
+            && has > size
+        {
+            let mut parts = vec![Part::Print(only, level::POSTFIX), Part::token(first(size))];
+            if from != scalar {
+                parts.insert(0, Part::Token(format!("{}(", self.type_name(ty)?)));
+                parts.push(Part::token(")"));
+            }
+            return Ok((parts, level::POSTFIX));
+        }
+        let mut room = size;
+        let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+        for (position, &argument) in arguments.iter().enumerate() {
+            let count = match self.cx.tree[argument].ty {
+                Type::Scalar(_) => 1,
+                Type::Vector(_, count) => count,
+                _ => return Err(Unprintable::Construct("a vector constructed from a matrix")),
+            };
+            if position > 0 {
+                parts.push(Part::token(", "));
+            }
+            if count > room {
+                parts.extend([Part::Print(argument, level::POSTFIX), Part::token(first(room))]);
+            } else {
+                parts.push(Part::Print(argument, level::ASSIGN));
+            }
+            room = room.saturating_sub(count);
+        }
+        parts.push(Part::token(")"));
+        Ok((parts, level::POSTFIX))
+    }
+
+    /// A matrix of its components or columns, which are rows here.
+    fn matrix(&self, arguments: &[ExprId], ty: Type) -> PrintResult<Parts> {
+        let counts = arguments.iter().map(|&argument| match self.cx.tree[argument].ty {
+            Type::Scalar(_) => Some(1),
+            Type::Vector(_, count) => Some(count),
+            _ => None,
+        });
+        let given: Option<u8> = counts.sum();
+        if given != ty.component_count() {
+            return Err(Unprintable::Construct("this matrix constructor"));
+        }
+        Ok((Self::call(self.type_name(ty)?, arguments), level::POSTFIX))
+    }
+
+    fn diagonal(&self, value: ExprId, ty: Type) -> PrintResult<Parts> {
+        let Type::Matrix { columns, rows } = ty else {
+            return Err(Unprintable::Construct("this matrix constructor"));
+        };
+        if !self.is_short(value) {
+            return Err(Unprintable::Construct("a diagonal matrix of a computed number"));
+        }
+        let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+        for column in 0..columns {
+            for row in 0..rows {
+                if (column, row) != (0, 0) {
+                    parts.push(Part::token(", "));
+                }
+                parts.push(if column == row {
+                    Part::Print(value, level::ASSIGN)
+                } else {
+                    Part::token("0.0")
+                });
+            }
+        }
+        parts.push(Part::token(")"));
+        Ok((parts, level::POSTFIX))
+    }
+
+    /// The first columns and rows of a matrix; a larger matrix is completed by the identity's components.
+    fn resize(&self, matrix: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+        let (
+            Type::Matrix { columns, rows },
+            Type::Matrix {
+                columns: has,
+                rows: long,
+            },
+        ) = (ty, from)
+        else {
+            return Err(Unprintable::Construct("this matrix constructor"));
+        };
+        if columns <= has && rows <= long {
+            return self.cast(matrix, ty);
+        }
+        if !self.is_short(matrix) {
+            return Err(Unprintable::Construct("a matrix constructed from a smaller one"));
+        }
+        let identity = |column, row| if column == row { "1.0" } else { "0.0" };
+        let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+        let vector = self.type_name(Type::Vector(Scalar::Float, rows))?;
+        for column in 0..columns {
+            parts.push(Part::Token(format!("{}{vector}(", if column > 0 { ", " } else { "" })));
+            let mut row = 0;
+            if column < has {
+                row = rows.min(long);
+                parts.push(Part::Print(matrix, level::POSTFIX));
+                let components = if row < long { first(row) } else { "" };
+                parts.push(Part::Token(format!("[{column}]{components}")));
+            }
+            for at in row..rows {
+                let comma = if at > 0 { ", " } else { "" };
+                parts.push(Part::Token(format!("{comma}{}", identity(column, at))));
+            }
+            parts.push(Part::token(")"));
+        }
+        parts.push(Part::token(")"));
+        Ok((parts, level::POSTFIX))
+    }
+}
+
+/// The swizzle of a vector's first components.
+fn first(size: u8) -> &'static str {
+    [".x", ".xy", ".xyz", ".xyzw"][usize::from(size.clamp(1, 4)) - 1]
+}

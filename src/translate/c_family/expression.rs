@@ -1,0 +1,338 @@
+//! Prints expressions with the fewest parentheses that preserve their meaning. An explicit stack keeps chains
+//! of any length off the call stack.
+
+use toyproof_glsl::tree::{
+    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value,
+    VariableId, VariableKind, walk,
+};
+
+use super::Unprintable;
+use super::writer::{PrintResult, Writer};
+use crate::author::{float, is_hexadecimal};
+
+/// Precedence levels, from the weakest binding to the strongest.
+pub(super) mod level {
+    pub(in super::super) const SEQUENCE: u8 = 0;
+    pub(in super::super) const ASSIGN: u8 = 1;
+    pub(in super::super) const CONDITIONAL: u8 = 2;
+    /// The offset of the levels of binary operators: each adds the operator's own precedence, 1 to 11.
+    pub(in super::super) const BINARY: u8 = 2;
+    pub(in super::super) const UNARY: u8 = 14;
+    pub(in super::super) const POSTFIX: u8 = 15;
+}
+
+/// A piece of the code of an expression.
+pub(super) enum Part {
+    /// An expression, in parentheses if its precedence is below the level.
+    Print(ExprId, u8),
+    Token(String),
+}
+
+impl Part {
+    pub(super) fn token(text: impl Into<String>) -> Self {
+        Self::Token(text.into())
+    }
+}
+
+/// The pieces of an expression from left to right, and its precedence level.
+pub(super) type Parts = (Vec<Part>, u8);
+
+impl Writer<'_> {
+    /// The code of an expression that stands alone.
+    pub(super) fn expression(&mut self, id: ExprId) -> PrintResult<String> {
+        self.operand(id, level::SEQUENCE)
+    }
+
+    /// The code of an expression, in parentheses if its precedence is below the level.
+    pub(super) fn operand(&mut self, id: ExprId, at_least: u8) -> PrintResult<String> {
+        let mut code = String::new();
+        let mut pending = vec![Part::Print(id, at_least)];
+        while let Some(next) = pending.pop() {
+            match next {
+                Part::Token(text) => code += &text,
+                Part::Print(id, at_least) => {
+                    let (mut parts, level) = self.parts(id).inspect_err(|_| {
+                        self.failed_at.get_or_insert(self.cx.tree[id].at);
+                    })?;
+                    if level < at_least {
+                        code.push('(');
+                        parts.push(Part::token(")"));
+                    }
+                    pending.extend(parts.into_iter().rev());
+                }
+            }
+        }
+        Ok(code)
+    }
+
+    fn parts(&mut self, id: ExprId) -> PrintResult<Parts> {
+        use Part::{Print, Token};
+        let tree = &self.cx.tree;
+        let parts = match &tree[id].kind {
+            ExprKind::Literal(literal) => {
+                let code = self.literal(literal, tree[id].at);
+                let level = if code.starts_with('-') {
+                    level::UNARY
+                } else {
+                    level::POSTFIX
+                };
+                (vec![Token(code)], level)
+            }
+            &ExprKind::Variable(variable) => (vec![Token(self.variable_code(variable)?)], level::POSTFIX),
+            &ExprKind::Unary { op, operand } => match op {
+                UnaryOp::Plus => (vec![Print(operand, level::UNARY)], level::UNARY),
+                // `- -x` without the space is another operator.
+                _ => (
+                    vec![Part::token(op.symbol()), Print(operand, level::POSTFIX)],
+                    level::UNARY,
+                ),
+            },
+            &ExprKind::Binary { op, left, right } => self.binary(op, left, right),
+            &ExprKind::Assign { op, target, value } => self.assignment(op, target, value)?,
+            &ExprKind::Step { op, postfix, target } => {
+                let symbol = Part::token(op.symbol());
+                if postfix {
+                    (vec![Print(target, level::POSTFIX), symbol], level::POSTFIX)
+                } else {
+                    (vec![symbol, Print(target, level::UNARY)], level::UNARY)
+                }
+            }
+            &ExprKind::Conditional { condition, yes, no } => {
+                let has_effect = |side| walk::has_side_effects(tree, side);
+                if has_effect(yes) || has_effect(no) {
+                    return Err(Unprintable::Construct("`?:` or `&&` with a side effect here"));
+                }
+                let parts = vec![
+                    Print(condition, level::CONDITIONAL + 1),
+                    Part::token(" ? "),
+                    Print(yes, level::ASSIGN),
+                    Part::token(" : "),
+                    Print(no, level::CONDITIONAL),
+                ];
+                (parts, level::CONDITIONAL)
+            }
+            &ExprKind::Sequence { first, second } => {
+                let parts = vec![
+                    Print(first, level::SEQUENCE),
+                    Part::token(", "),
+                    Print(second, level::ASSIGN),
+                ];
+                (parts, level::SEQUENCE)
+            }
+            ExprKind::Call { function, arguments } => {
+                let name = self.function(*function).to_owned();
+                (Self::call(name, arguments), level::POSTFIX)
+            }
+            ExprKind::BuiltIn { function, arguments } => {
+                let (function, arguments) = (*function, arguments.clone());
+                self.built_in(function, &arguments, tree[id].ty)?
+            }
+            ExprKind::Construct {
+                constructor,
+                arguments,
+            } => {
+                let (constructor, arguments) = (*constructor, arguments.clone());
+                self.construct(constructor, &arguments, tree[id].ty)?
+            }
+            &ExprKind::Swizzle { vector, components } => {
+                let letters = self.source.letters(components, tree[id].at);
+                let parts = vec![
+                    Print(vector, level::POSTFIX),
+                    Token(format!(".{letters}")),
+                ];
+                (parts, level::POSTFIX)
+            }
+            &ExprKind::Member { structure, member } => {
+                let Type::Struct(id) = tree[structure].ty else {
+                    return Err(Unprintable::Construct("this member"));
+                };
+                let name = self.member_name(id, member);
+                let parts = vec![Print(structure, level::POSTFIX), Token(format!(".{name}"))];
+                (parts, level::POSTFIX)
+            }
+            &ExprKind::Index { base, index } => {
+                let parts = vec![
+                    Print(base, level::POSTFIX),
+                    Part::token("["),
+                    Print(index, level::SEQUENCE),
+                    Part::token("]"),
+                ];
+                (parts, level::POSTFIX)
+            }
+            ExprKind::Length { array } => {
+                let Type::Array(array) = tree[*array].ty else {
+                    return Err(Unprintable::Construct("this length"));
+                };
+                let size = tree.array(array).size.to_string();
+                (vec![Token(size)], level::POSTFIX)
+            }
+        };
+        Ok(parts)
+    }
+
+    /// `name(a, b)`
+    pub(super) fn call(name: impl Into<String>, arguments: &[ExprId]) -> Vec<Part> {
+        let mut parts = vec![Part::Token(name.into() + "(")];
+        parts.extend(Self::list(arguments));
+        parts.push(Part::token(")"));
+        parts
+    }
+
+    /// `a, b`
+    pub(super) fn list(arguments: &[ExprId]) -> Vec<Part> {
+        let mut parts = Vec::new();
+        for (position, &argument) in arguments.iter().enumerate() {
+            if position > 0 {
+                parts.push(Part::token(", "));
+            }
+            parts.push(Part::Print(argument, level::ASSIGN));
+        }
+        parts
+    }
+
+    /// `a + b`
+    pub(super) fn infix(left: ExprId, op: BinaryOp, right: ExprId) -> Parts {
+        let level = op.precedence() + level::BINARY;
+        let symbol = Part::Token(format!(" {} ", op.symbol()));
+        let parts = vec![Part::Print(left, level), symbol, Part::Print(right, level + 1)];
+        (parts, level)
+    }
+
+    fn binary(&self, op: BinaryOp, left: ExprId, right: ExprId) -> Parts {
+        let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
+        let is_number = |ty| matches!(ty, Type::Scalar(_));
+        match op {
+            BinaryOp::Multiply if is_product(left_type, right_type) => {
+                // Matrices are stored with columns as rows.
+                (Self::call("mul", &[right, left]), level::POSTFIX)
+            }
+            BinaryOp::Equal | BinaryOp::NotEqual if !is_number(left_type) => {
+                let (all, _) = Self::infix(left, op, right);
+                let quantifier = if op == BinaryOp::Equal { "all(" } else { "any(" };
+                let mut parts = vec![Part::token(quantifier)];
+                parts.extend(all);
+                parts.push(Part::token(")"));
+                (parts, level::POSTFIX)
+            }
+            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
+            _ => Self::infix(left, op, right),
+        }
+    }
+
+    fn assignment(&self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
+        let tree = &self.cx.tree;
+        let mut parts = vec![Part::Print(target, level::UNARY)];
+        if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
+            if walk::has_side_effects(tree, target) {
+                return Err(Unprintable::Construct("a product that is assigned to an index with a side effect"));
+            }
+            parts.push(Part::token(" = "));
+            parts.extend(Self::call("mul", &[value, target]));
+        } else {
+            let symbol = op.map_or("", BinaryOp::symbol);
+            parts.extend([
+                Part::Token(format!(" {symbol}= ")),
+                Part::Print(value, level::ASSIGN),
+            ]);
+        }
+        Ok((parts, level::ASSIGN))
+    }
+
+    fn variable_code(&mut self, id: VariableId) -> PrintResult<String> {
+        let variable = &self.cx.tree[id];
+        match variable.kind {
+            VariableKind::BuiltIn(BuiltInVariable::FragCoord) => self.reads_position = true,
+            VariableKind::Channel(_) => return Err(Unprintable::Construct("a sampler here")),
+            _ => {}
+        }
+        Ok(self.variable(id).to_owned())
+    }
+
+    /// The value of a declaration: lists in braces for structures and arrays.
+    pub(super) fn initializer(&mut self, id: ExprId) -> PrintResult<String> {
+        match &self.cx.tree[id].kind {
+            ExprKind::Construct {
+                constructor: Constructor::Struct | Constructor::Array,
+                arguments,
+            } => {
+                let arguments = arguments.clone();
+                let values = arguments.into_iter().map(|argument| self.initializer(argument));
+                let values = values.collect::<PrintResult<Vec<_>>>()?;
+                Ok(format!("{{ {} }}", values.join(", ")))
+            }
+            _ => self.operand(id, level::ASSIGN),
+        }
+    }
+
+    /// The value of a declaration whose every component is zero.
+    pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
+        /// Maximum number of elements in a list of zeros.
+        const MAX_ZEROS: u32 = 64;
+        Ok(match ty {
+            Type::Array(id) => {
+                let array = self.cx.tree.array(id);
+                if array.size > MAX_ZEROS {
+                    return Err(Unprintable::Construct("a large array without initial values"));
+                }
+                let zeros = vec![self.zero(array.element)?; array.size as usize];
+                format!("{{ {} }}", zeros.join(", "))
+            }
+            Type::Struct(id) => format!("({})0", self.structure_name(id)),
+            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            _ => format!("({})0", self.type_name(ty)?),
+        })
+    }
+
+    /// Prints a literal, or the constant of the macro that it comes from.
+    fn literal(&mut self, literal: &Literal, at: Place) -> String {
+        let code = number(literal);
+        let Some(name) = self.source.macro_name(at).filter(|name| self.is_free(name)) else {
+            return code;
+        };
+        let ty = match literal.value {
+            Value::Float(_) => "float",
+            Value::Int(_) => "int",
+            Value::Uint(_) => "uint",
+            Value::Bool(_) => "bool",
+        };
+        let declaration = format!("static const {ty} {name} = {code};");
+        let known = self.macros.entry(name.to_owned());
+        // A macro may be redefined; its first definition keeps the name.
+        if *known.or_insert_with(|| declaration.clone()) == declaration {
+            name.to_owned()
+        } else {
+            code
+        }
+    }
+}
+
+fn zero_of(ty: Type) -> Value {
+    match ty {
+        Type::BOOL => Value::Bool(false),
+        Type::INT => Value::Int(0),
+        Type::UINT => Value::Uint(0),
+        _ => Value::Float(0.0),
+    }
+}
+
+/// Whether `*` is a product of linear algebra (§5.9).
+fn is_product(left: Type, right: Type) -> bool {
+    let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
+    let is_operand = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
+    (is_matrix(left) || is_matrix(right)) && is_operand(left) && is_operand(right)
+}
+
+fn number(literal: &Literal) -> String {
+    match literal.value {
+        Value::Bool(value) => value.to_string(),
+        Value::Float(value) => float(&literal.text, value),
+        // Without the cast, a minus would apply to a number that is out of range.
+        Value::Int(i32::MIN) => "int(0x80000000)".to_owned(),
+        Value::Int(value) if value >= 0 && is_hexadecimal(&literal.text) => literal.text.to_string(),
+        Value::Int(value) => value.to_string(),
+        Value::Uint(_) if is_hexadecimal(&literal.text) => {
+            format!("{}u", literal.text.trim_end_matches(['u', 'U']))
+        }
+        Value::Uint(value) => format!("{value}u"),
+    }
+}

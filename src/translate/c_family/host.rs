@@ -1,0 +1,355 @@
+//! The hosts: a row of the table for each, with the template of the code around a shader. The conditions in a
+//! template name the inputs that the host has.
+//!
+//! A host whose files only its engine completes has a second template: a substitute for the engine, so that
+//! other compilers read the written code.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+use toyproof_diagnostic::{Code, Diagnostic};
+use toyproof_glsl::Stage;
+use toyproof_glsl::tree::{
+    Direction, ExprKind, Input, InputType, Place, SamplerShape, Type, VariableId, VariableKind,
+};
+
+use super::Unprintable;
+use super::lookup::texture_type;
+use super::writer::{PrintResult, Writer};
+use crate::backend::Target;
+use crate::print::Order;
+use crate::template::{around_shader, channel_number, fill};
+
+/// A host of a language with the syntax of C.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Host {
+    /// HLSL with our own bindings; row 0 of the target is the bottom.
+    Hlsl,
+    /// A module of Slang with our own bindings.
+    Slang,
+    /// A shader of Unity in ShaderLab, for the built-in pipeline and URP.
+    Unity,
+    /// A pixel shader of Windows Terminal.
+    WindowsTerminal,
+}
+
+/// A row of the table.
+struct Row {
+    /// The value of `--style`.
+    name: &'static str,
+    /// The name for people.
+    title: &'static str,
+    /// The extension of its files, without the dot.
+    extension: &'static str,
+    /// The code around a shader.
+    template: &'static str,
+    /// The code around the file in a substitute for the host; empty if the file is complete.
+    substitute: &'static str,
+    /// Code of the file, and the code that does the same in the substitute.
+    adaptations: &'static [(&'static str, &'static str)],
+    /// The names that the template and the host declare, other than those of inputs and channels.
+    declared: &'static str,
+    /// Whether y points down in the host's coordinates, which inverts the sign of its derivatives.
+    is_upside_down: bool,
+}
+
+impl Host {
+    /// Every host.
+    pub const ALL: [Self; 4] = [Self::Hlsl, Self::Slang, Self::Unity, Self::WindowsTerminal];
+
+    fn row(self) -> Row {
+        match self {
+            Self::Hlsl => Row {
+                name: "plain",
+                title: "HLSL",
+                extension: "hlsl",
+                template: include_str!("hosts/plain.hlsl"),
+                substitute: "",
+                adaptations: &[],
+                declared: "Inputs gl_FragCoord",
+                is_upside_down: false,
+            },
+            Self::Slang => Row {
+                name: "slang",
+                title: "Slang",
+                extension: "slang",
+                template: include_str!("hosts/plain.slang"),
+                substitute: "$shader\n",
+                adaptations: &[
+                    ("[[vk::binding(0, 0)]] cbuffer Inputs {", "cbuffer Inputs : register(b0) {"),
+                    ("[shader(\"fragment\")]\n", ""),
+                ],
+                declared: "Inputs gl_FragCoord",
+                is_upside_down: false,
+            },
+            Self::Unity => Row {
+                name: "unity",
+                title: "Unity",
+                extension: "shader",
+                template: include_str!("hosts/unity.shader"),
+                substitute: include_str!("hosts/unity_substitute.hlsl"),
+                adaptations: &[
+                    ("input.uv * iResolution.xy", "input.uv"),
+                    ("int iFrame;", ""),
+                    ("float4 iMouse;", ""),
+                    ("float4 iDate;", ""),
+                    (" iChannel0;", " iChannel0 : register(t1);"),
+                    (" iChannel1;", " iChannel1 : register(t3);"),
+                    (" iChannel2;", " iChannel2 : register(t5);"),
+                    (" iChannel3;", " iChannel3 : register(t7);"),
+                    (" sampleriChannel0;", " sampleriChannel0 : register(s2);"),
+                    (" sampleriChannel1;", " sampleriChannel1 : register(s4);"),
+                    (" sampleriChannel2;", " sampleriChannel2 : register(s6);"),
+                    (" sampleriChannel3;", " sampleriChannel3 : register(s8);"),
+                    ("float4 iChannel0_TexelSize;", ""),
+                    ("float4 iChannel1_TexelSize;", ""),
+                    ("float4 iChannel2_TexelSize;", ""),
+                    ("float4 iChannel3_TexelSize;", ""),
+                ],
+                declared: "vertex fragment Varyings appdata_base appdata_tan appdata_full appdata_img v2f_img \
+                    v2f_vertex_lit",
+                is_upside_down: true,
+            },
+            Self::WindowsTerminal => Row {
+                name: "windows-terminal",
+                title: "Windows Terminal",
+                extension: "hlsl",
+                template: include_str!("hosts/windows_terminal.hlsl"),
+                substitute: "$block\n$shader\n",
+                adaptations: &[
+                    (TERMINALS_BLOCK, "#define Resolution toyproof_iResolution.xy\n#define Time toyproof_iTime\n"),
+                    ("iTimeDelta (1.0 / 60.0)", "iTimeDelta toyproof_iTimeDelta"),
+                    ("iFrame int(Time * 60.0)", "iFrame toyproof_iFrame"),
+                    ("iFrameRate 60.0", "iFrameRate toyproof_iFrameRate"),
+                    ("iMouse float4(0.0, 0.0, 0.0, 0.0)", "iMouse toyproof_iMouse"),
+                    (", float2 uv : TEXCOORD0) : SV_Target {", ") : SV_Target0 {"),
+                    ("    float4 text = shaderTexture.Sample(samplerState, uv);\n", ""),
+                    ("lerp(color.xyz, text.xyz, text.w)", "color.xyz"),
+                ],
+                declared: "shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
+                is_upside_down: true,
+            },
+        }
+    }
+
+    /// The value of `--style`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// The name for people.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        self.row().title
+    }
+
+    /// The extension of its files, without the dot.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        self.row().extension
+    }
+
+    /// Whether its passes are described by a graph, as those of our own bindings are.
+    #[must_use]
+    pub fn has_passes(self) -> bool {
+        matches!(self, Self::Hlsl | Self::Slang)
+    }
+
+    /// The language.
+    #[must_use]
+    pub fn target(self) -> Target {
+        Target::Hlsl
+    }
+
+    /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.
+    pub(super) fn is_upside_down(self, stage: Stage) -> bool {
+        self.row().is_upside_down && stage == Stage::Image
+    }
+
+    /// The names that the code around a shader declares.
+    pub(super) fn declared_words(self) -> Vec<&'static str> {
+        const CHANNELS: [&str; 8] = [
+            "iChannel0",
+            "iChannel1",
+            "iChannel2",
+            "iChannel3",
+            "iChannel0_sampler",
+            "iChannel1_sampler",
+            "iChannel2_sampler",
+            "iChannel3_sampler",
+        ];
+        let inputs = Input::ALL.iter().map(|input| input.name());
+        let own = self.row().declared.split(' ');
+        own.chain(inputs).chain(CHANNELS).collect()
+    }
+
+    /// Whether the template has a line for a condition.
+    fn knows(self, condition: &str) -> bool {
+        let lines = self.row().template.lines();
+        let mut conditions = lines
+            .filter_map(|line| Some(line.split_once("//?")?.1))
+            .flat_map(|conditions| conditions.split([' ', '&']));
+        conditions.any(|known| known == condition)
+            || self.row().template.contains(&format!("#define {condition} "))
+    }
+
+    /// Embeds a written file in a substitute for its host, which reads our uniform block.
+    #[must_use]
+    pub fn hosted(self, text: &str, stage: Stage) -> HostedText {
+        let row = self.row();
+        let upside_down = self.is_upside_down(stage);
+        if row.substitute.is_empty() {
+            let text = text.to_owned();
+            return HostedText { text, upside_down };
+        }
+        let program = match (text.split_once("HLSLPROGRAM\n"), text.rsplit_once("ENDHLSL")) {
+            (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
+            _ => text,
+        };
+        let is_for_host = |line: &&str| !line.trim().starts_with("#pragma") && !line.trim().starts_with("#include");
+        let lines = program.lines().filter(is_for_host);
+        let program: String = lines.flat_map(|line| [line, "\n"]).collect();
+        let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
+        let program = row.adaptations.iter().fold(program, replace);
+        let holds = |condition: &str| match channel_number(condition) {
+            Some(channel) => program.contains(&format!("iChannel{channel}")),
+            None => program.contains(condition),
+        };
+        let values = [("$block", block())];
+        let [before, after] = around_shader(row.substitute).map(|part| fill(part, holds, &values));
+        HostedText {
+            text: format!("{before}{program}{after}"),
+            upside_down,
+        }
+    }
+}
+
+/// What Windows Terminal declares.
+const TERMINALS_BLOCK: &str = "\
+Texture2D shaderTexture : register(t0);
+SamplerState samplerState : register(s0);
+cbuffer PixelShaderSettings : register(b0) {
+    float Time;
+    float Scale;
+    float2 Resolution;
+    float4 Background;
+};
+";
+
+/// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
+fn block() -> String {
+    let mut text = "cbuffer ToyproofFrame : register(b0) {\n".to_owned();
+    for input in Input::ALL {
+        let ty = match (input.ty(), input.length()) {
+            (InputType::Float, None) => "float",
+            (InputType::Int, _) => "int",
+            (InputType::Vec3, _) => "float3",
+            (InputType::Float, Some(_)) | (InputType::Vec4, _) => "float4",
+        };
+        let length = input.length().map_or_else(String::new, |length| format!("[{length}]"));
+        let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
+        let _ = writeln!(
+            text,
+            "    {ty} toyproof_{}{length} : packoffset(c{}{component});",
+            input.name(),
+            input.offset() / 16
+        );
+    }
+    text + "};\n"
+}
+
+/// A file that other compilers than the host's read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HostedText {
+    /// The text, with our bindings and the entry point `main`.
+    pub text: String,
+    /// Whether row 0 of its target is the top of the image.
+    pub upside_down: bool,
+}
+
+impl Writer<'_> {
+    /// The whole file: the author's first comment, and the text in the host's code.
+    pub(super) fn embed(&self, order: &Order, first: &str, text: &str, name: &str) -> PrintResult<String> {
+        let tree = &self.cx.tree;
+        let mut inputs = BTreeSet::new();
+        let mut channels = BTreeMap::new();
+        for &id in &order.inputs {
+            match (tree[id].kind, tree[id].ty) {
+                (VariableKind::Channel(channel), Type::Sampler(sampler)) => {
+                    if !self.host.knows(&format!("channel{channel}")) {
+                        return Err(self.not_provided(&format!("`{}`", tree[id].name), id));
+                    }
+                    channels.insert(channel, sampler.shape);
+                }
+                (VariableKind::Input(input), _) => {
+                    if !self.host.knows(input.name()) {
+                        return Err(self.not_provided(&format!("`{}`", input.name()), id));
+                    }
+                    inputs.insert(input);
+                }
+                _ => {}
+            }
+        }
+        let main_image = self.cx.main_image;
+        let brings = tree[main_image].parameters.first().map(|&color| tree[color].kind);
+        let brings_color = brings == Some(VariableKind::Parameter(Direction::InOut));
+        let holds = |condition: &str| match condition {
+            "inputs" => !inputs.is_empty(),
+            "channels" => !channels.is_empty(),
+            "position" => self.reads_position,
+            "image" => self.cx.stage == Stage::Image,
+            "buffer" => self.cx.stage != Stage::Image,
+            "inout" => brings_color,
+            "out" => !brings_color,
+            "no_channels" => channels.is_empty(),
+            _ => match Input::ALL.into_iter().find(|input| input.name() == condition) {
+                Some(input) => inputs.contains(&input),
+                None => channel_number(condition).is_some_and(|channel| channels.contains_key(&channel)),
+            },
+        };
+        let mut values = vec![
+            ("$main_image", self.function(main_image).to_owned()),
+            ("$name", name.replace(['"', '\\', '\n'], "_")),
+        ];
+        for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
+            let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
+            values.push((value, texture_type(shape).to_owned()));
+        }
+        let template = self.host.row().template;
+        // The text is indented as its place in the template.
+        let at = template.find("$shader\n").unwrap_or(0);
+        let line = template[..at].rfind('\n').map_or(0, |end| end + 1);
+        let indent = &template[line..at];
+        let template = template.replace(&format!("{indent}$shader\n"), "$shader\n");
+        let [before, after] = around_shader(&template).map(|part| fill(part, holds, &values));
+        let text = text.lines().fold(String::new(), |mut text, line| {
+            let indent = if line.is_empty() { "" } else { indent };
+            let _ = writeln!(text, "{indent}{line}");
+            text
+        });
+        Ok(format!("{first}{before}{text}{after}"))
+    }
+
+    /// The first place where a variable is used.
+    fn first_use(&self, id: VariableId) -> Option<Place> {
+        let exprs = self.cx.tree.exprs.iter();
+        let uses = exprs.filter(|(_, expr)| matches!(expr.kind, ExprKind::Variable(used) if used == id));
+        uses.map(|(_, expr)| expr.at).min_by_key(|at| at.span.start)
+    }
+
+    /// The error about an input that the host does not have.
+    fn not_provided(&self, what: &str, id: VariableId) -> Unprintable {
+        let host = self.host.name();
+        let message = format!("{what} is not available in the style `{host}`");
+        let diagnostic = Diagnostic::new(Code::UnsupportedByTarget, message);
+        let diagnostic = match self.first_use(id) {
+            Some(at) => diagnostic.at(at.span),
+            None => diagnostic,
+        };
+        Unprintable::Host(Box::new(
+            diagnostic.help("use `--style plain`, which has every input and channel"),
+        ))
+    }
+}

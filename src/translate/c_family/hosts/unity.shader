@@ -1,0 +1,86 @@
+Shader "ShaderToy/$name" {
+    Properties {
+        iChannel0 ("iChannel0", 2D) = "black" {} //? channel0
+        iChannel1 ("iChannel1", 2D) = "black" {} //? channel1
+        iChannel2 ("iChannel2", 2D) = "black" {} //? channel2
+        iChannel3 ("iChannel3", 2D) = "black" {} //? channel3
+        iMouse ("iMouse", Vector) = (0, 0, 0, 0) //? iMouse
+        iDate ("iDate", Vector) = (2000, 0, 1, 0) //? iDate
+        iFrame ("iFrame", Integer) = 0 //? iFrame
+    }
+    SubShader {
+        Tags { "RenderType" = "Opaque" "PreviewType" = "Plane" }
+        Cull Off
+        Pass {
+            HLSLPROGRAM
+            #pragma target 4.0
+            #pragma vertex vertex
+            #pragma fragment fragment
+            #include "UnityCG.cginc"
+
+            // The inputs of ShaderToy.
+            #define iResolution float3(_ScreenParams.xy, 1.0)
+            #define iTime _Time.y //? iTime
+            #define iTimeDelta unity_DeltaTime.x //? iTimeDelta
+            #define iFrameRate unity_DeltaTime.w //? iFrameRate
+            #define iSampleRate 44100.0 //? iSampleRate
+            int iFrame; //? iFrame
+            float4 iMouse; //? iMouse
+            float4 iDate; //? iDate
+            static float3 iChannelResolution[4]; //? iChannelResolution
+            static float4 iChannelTime[4]; //? iChannelTime
+            $texture0 iChannel0; //? channel0
+            SamplerState sampleriChannel0; //? channel0
+            #define iChannel0_sampler sampleriChannel0 //? channel0
+            float4 iChannel0_TexelSize; //? channel0&iChannelResolution
+            $texture1 iChannel1; //? channel1
+            SamplerState sampleriChannel1; //? channel1
+            #define iChannel1_sampler sampleriChannel1 //? channel1
+            float4 iChannel1_TexelSize; //? channel1&iChannelResolution
+            $texture2 iChannel2; //? channel2
+            SamplerState sampleriChannel2; //? channel2
+            #define iChannel2_sampler sampleriChannel2 //? channel2
+            float4 iChannel2_TexelSize; //? channel2&iChannelResolution
+            $texture3 iChannel3; //? channel3
+            SamplerState sampleriChannel3; //? channel3
+            #define iChannel3_sampler sampleriChannel3 //? channel3
+            float4 iChannel3_TexelSize; //? channel3&iChannelResolution
+            static float4 gl_FragCoord; //? position
+
+            $shader
+
+            struct Varyings {
+                float4 position : SV_POSITION;
+                float2 uv : TEXCOORD0;
+            };
+
+            Varyings vertex(appdata_img input) {
+                Varyings output;
+                output.position = UnityObjectToClipPos(input.vertex);
+                output.uv = input.texcoord;
+                return output;
+            }
+
+            float4 fragment(Varyings input) : SV_Target {
+                float2 fragCoord = input.uv * iResolution.xy;
+                gl_FragCoord = float4(fragCoord, input.position.zw); //? position
+                for (int i = 0; i < 4; i++) { //? iChannelTime
+                    iChannelTime[i] = _Time.yyyy; //? iChannelTime
+                } //? iChannelTime
+                iChannelResolution[0] = float3(iChannel0_TexelSize.zw, 1.0); //? channel0&iChannelResolution
+                iChannelResolution[1] = float3(iChannel1_TexelSize.zw, 1.0); //? channel1&iChannelResolution
+                iChannelResolution[2] = float3(iChannel2_TexelSize.zw, 1.0); //? channel2&iChannelResolution
+                iChannelResolution[3] = float3(iChannel3_TexelSize.zw, 1.0); //? channel3&iChannelResolution
+                float4 color; //? out
+                float4 color = float4(0.0, 0.0, 0.0, 1.0); //? inout
+                $main_image(color, fragCoord);
+                // ShaderToy shows its values as they are.
+                #ifndef UNITY_COLORSPACE_GAMMA
+                color.xyz = GammaToLinearSpace(saturate(color.xyz));
+                #endif
+                return float4(color.xyz, 1.0);
+            }
+            ENDHLSL
+        }
+    }
+}

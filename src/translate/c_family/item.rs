@@ -1,0 +1,145 @@
+//! Prints structures, globals and functions, in the author's order.
+
+use toyproof_glsl::tree::{Direction, FunctionId, Item, StructId, Type, VariableId, VariableKind};
+
+use super::Unprintable;
+use super::language::Words;
+use super::writer::{PrintResult, Writer};
+use crate::lower::helper_tree;
+use crate::print::{Names, Order};
+
+impl Writer<'_> {
+    pub(super) fn item(&mut self, item: Item) -> PrintResult {
+        self.check_deadline()?;
+        match item {
+            Item::Struct(id) => self.structure(id),
+            Item::Variable(id) => self.global(id),
+            Item::Function(id) => match self.cx.helpers.get(&id) {
+                Some(text) => self.helper(id, text),
+                None => self.definition(id),
+            },
+            Item::Prototype(_) => Ok(()),
+        }
+    }
+
+    fn structure(&mut self, id: StructId) -> PrintResult {
+        let tree = &self.cx.tree;
+        self.line("");
+        self.comment(tree[id].at);
+        self.line(&format!("struct {} {{", self.structure_name(id)));
+        for (at, member) in tree[id].members.iter().enumerate() {
+            let declared = self.declarator(member.ty, self.member_name(id, at))?;
+            self.indented(|writer| {
+                writer.comment(member.at);
+                writer.line(&format!("{declared};"));
+                writer.trailing_comment(member.at);
+            });
+        }
+        self.line("};");
+        Ok(())
+    }
+
+    /// The function that makes a structure of its members.
+    pub(super) fn maker(&mut self, id: StructId) -> PrintResult {
+        let tree = &self.cx.tree;
+        let name = self.structure_name(id);
+        let members = tree[id].members.iter().enumerate();
+        let parameters = members.map(|(at, member)| self.declarator(member.ty, self.member_name(id, at)));
+        let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
+        let result = self.free("result");
+        self.line("");
+        self.line(&format!("{name} {}({parameters}) {{", self.maker_name(id)));
+        self.indented(|writer| {
+            writer.line(&format!("{name} {result};"));
+            for at in 0..tree[id].members.len() {
+                let member = writer.member_name(id, at);
+                writer.line(&format!("{result}.{member} = {member};"));
+            }
+            writer.line(&format!("return {result};"));
+        });
+        self.line("}");
+        Ok(())
+    }
+
+    pub(super) fn maker_name(&self, id: StructId) -> String {
+        self.free(&format!("make_{}", self.structure_name(id)))
+    }
+
+    pub(super) fn member_name(&self, id: StructId, at: usize) -> &str {
+        self.names.members.get(&(id, at)).map_or("", String::as_str)
+    }
+
+    fn global(&mut self, id: VariableId) -> PrintResult {
+        let variable = &self.cx.tree[id];
+        let follows_blank_line = variable.at.is_some_and(|at| self.comments.follows_blank_line(at));
+        if follows_blank_line {
+            self.line("");
+        }
+        if let Some(at) = variable.at {
+            self.comment(at);
+        }
+        let is_constant = variable.kind == VariableKind::Const
+            || variable.kind == VariableKind::Uniform && variable.initializer.is_some();
+        let word = if is_constant { "static const" } else { "static" };
+        let declared = self.declarator(variable.ty, self.variable(id))?;
+        let value = match variable.initializer {
+            Some(value) => self.initializer(value)?,
+            None => self.zero(variable.ty)?,
+        };
+        self.line(&format!("{word} {declared} = {value};"));
+        if let Some(at) = variable.at {
+            self.trailing_comment(at);
+        }
+        Ok(())
+    }
+
+    fn definition(&mut self, id: FunctionId) -> PrintResult {
+        let function = &self.cx.tree[id];
+        let Some(body) = &function.body else {
+            return Err(Unprintable::Construct("a function without a body"));
+        };
+        if matches!(function.return_type, Type::Array(_)) {
+            return Err(Unprintable::Construct("a function that returns an array"));
+        }
+        self.line("");
+        self.comment(function.at);
+        let parameters = function.parameters.iter().map(|&parameter| {
+            let variable = &self.cx.tree[parameter];
+            let direction = match variable.kind {
+                VariableKind::Parameter(Direction::Out) => "out ",
+                VariableKind::Parameter(Direction::InOut) => "inout ",
+                _ => "",
+            };
+            let declared = self.declarator(variable.ty, self.variable(parameter))?;
+            Ok(format!("{direction}{declared}"))
+        });
+        let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
+        let returned = self.type_name(function.return_type)?;
+        self.line(&format!("{returned} {}({parameters}) {{", self.function(id)));
+        self.indented(|writer| writer.statements(body))?;
+        self.line("}");
+        Ok(())
+    }
+
+    /// Prints a helper function of lowering, by parsing its text as GLSL.
+    fn helper(&mut self, id: FunctionId, text: &str) -> PrintResult {
+        const BROKEN: Unprintable = Unprintable::Construct("a generated function");
+        let (files, cx) = helper_tree(self.cx, id, text).ok_or(BROKEN)?;
+        let first = cx.tree.items.iter().find_map(|item| match item {
+            Item::Function(id) => Some(*id),
+            _ => None,
+        });
+        let first = first.ok_or(BROKEN)?;
+        let order = Order {
+            items: vec![Item::Function(first)],
+            inputs: Vec::new(),
+        };
+        let mut names = Names::new(&cx, &order, &Words::new(self.host));
+        names.functions.insert(first, self.function(id).to_owned());
+        let mut writer = Writer::new(&cx, &names, self.host, &files, self.deadline);
+        writer.definition(first)?;
+        self.helpers.append(&mut writer.helpers);
+        self.out.push_str(&writer.out);
+        Ok(())
+    }
+}

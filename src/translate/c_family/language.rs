@@ -1,0 +1,107 @@
+//! What differs between the languages: types, reserved words, and the functions that they have.
+
+use toyproof_glsl::tree::{BuiltIn, Scalar, Type};
+
+use super::host::Host;
+use crate::print::Vocabulary;
+use crate::print::keyword::lists;
+
+/// Keywords and types of HLSL (Microsoft's “Keywords” and “Reserved Words”), of Slang, and names that FXC
+/// treats as keywords in any case. Only words that GLSL allows as names matter.
+const RESERVED: &str = "\
+    AppendStructuredBuffer asm asm_fragment BlendState bool break Buffer ByteAddressBuffer case cbuffer \
+    centroid class column_major compile compile_fragment CompileShader const ConstantBuffer continue \
+    ComputeShader ConsumeStructuredBuffer default DepthStencilState DepthStencilView discard do double \
+    DomainShader dword else export extern false float for fxgroup GeometryShader globallycoherent \
+    groupshared half Hullshader if in inline inout InputPatch int int8_t int16_t int32_t int64_t interface \
+    line lineadj linear LineStream matrix min10float min12int min16float min16int min16uint namespace nointerpolation \
+    noperspective NULL out OutputPatch packoffset pass pixelfragment PixelShader point PointStream precise \
+    RasterizerState RenderTargetView return register row_major RWBuffer RWByteAddressBuffer \
+    RWStructuredBuffer RWTexture1D RWTexture2D RWTexture3D sample sampler SamplerState \
+    SamplerComparisonState shared snorm stateblock stateblock_state static string struct switch \
+    StructuredBuffer tbuffer technique technique10 technique11 texture Texture1D Texture2D Texture3D \
+    Texture2DMS Texture2DArray TextureCube true typedef triangle triangleadj TriangleStream uint uint8_t \
+    uint16_t uint32_t uint64_t uniform unorm unsigned vector vertexfragment VertexShader void volatile \
+    while auto catch char const_cast delete dynamic_cast enum explicit friend goto long mutable new \
+    operator private protected public reinterpret_cast short signed sizeof static_cast template this throw \
+    try typename union using virtual extension func import let var property associatedtype where module \
+    implementing __init __subscript no_diff none is as each expand";
+
+/// Functions of HLSL that GLSL does not have, or that take other arguments there.
+const FUNCTIONS: &str = "\
+    abort all any asdouble asfloat asint asuint atan2 clip countbits D3DCOLORtoUBYTE4 ddx ddx_coarse \
+    ddx_fine ddy ddy_coarse ddy_fine dst errorf f16tof32 f32tof16 firstbithigh firstbitlow fma fmod frac \
+    frexp ldexp lerp lit log10 mad main modf msad4 mul noise printf rcp reversebits rsqrt saturate sincos \
+    select tex1D tex1Dbias tex1Dlod tex2D tex2Dbias tex2Dgrad tex2Dlod tex2Dproj tex3D tex3Dlod texCUBE \
+    texCUBElod isfinite transpose";
+
+/// The names that are not free.
+pub(super) struct Words {
+    host: Host,
+}
+
+impl Words {
+    pub(super) fn new(host: Host) -> Self {
+        Self { host }
+    }
+}
+
+impl Vocabulary for Words {
+    fn is_reserved(&self, word: &str) -> bool {
+        lists(RESERVED, word) || is_numbered_type(word) || word.starts_with("__")
+    }
+
+    fn is_function(&self, word: &str) -> bool {
+        lists(FUNCTIONS, word) || BuiltIn::ALL.iter().any(|function| function.name() == word)
+    }
+
+    fn declared(&self) -> Vec<String> {
+        let declared = self.host.declared_words();
+        declared.into_iter().map(str::to_owned).collect()
+    }
+
+    fn has_scopes_of_c(&self) -> bool {
+        true
+    }
+
+    fn with_free_stem(&self, word: &str) -> String {
+        match word.trim_start_matches('_') {
+            _ if !word.starts_with("__") => word.to_owned(),
+            "" => "unused".to_owned(),
+            stem => stem.to_owned(),
+        }
+    }
+}
+
+/// Whether the word is a vector or matrix type, such as `float3` or `half3x3`.
+fn is_numbered_type(word: &str) -> bool {
+    let scalars = [
+        "bool", "int", "uint", "half", "float", "double", "dword", "min16float",
+    ];
+    let number = scalars.iter().find_map(|scalar| word.strip_prefix(scalar));
+    let is_size = |size: &str| matches!(size, "1" | "2" | "3" | "4");
+    number.is_some_and(|number| match number.split_once('x') {
+        Some((rows, columns)) => is_size(rows) && is_size(columns),
+        None => is_size(number),
+    })
+}
+
+/// The name of a scalar, vector or matrix type. A matrix of GLSL is stored with its columns as rows, so that
+/// an index selects what it selects in GLSL; products exchange their sides.
+pub(super) fn numeric_type(ty: Type) -> Option<String> {
+    Some(match ty {
+        Type::Scalar(scalar) => scalar_name(scalar).to_owned(),
+        Type::Vector(scalar, size) => format!("{}{size}", scalar_name(scalar)),
+        Type::Matrix { columns, rows } => format!("float{columns}x{rows}"),
+        _ => return None,
+    })
+}
+
+fn scalar_name(scalar: Scalar) -> &'static str {
+    match scalar {
+        Scalar::Bool => "bool",
+        Scalar::Int => "int",
+        Scalar::Uint => "uint",
+        Scalar::Float => "float",
+    }
+}

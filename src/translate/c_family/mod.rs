@@ -1,0 +1,87 @@
+//! Prints a shader in a language with the syntax of C, as its author wrote it: with the original names,
+//! comments, loops and expressions.
+//!
+//! The tree is printed after the few lowering passes that these languages require too. Shaders that the
+//! writer does not support ([`Unprintable`]) are left to naga's writers. A host is a row of the table in
+//! [`host`](Host) and a template in `hosts/`.
+
+mod builtin;
+mod construct;
+mod expression;
+mod host;
+mod item;
+mod language;
+mod lookup;
+mod statement;
+#[cfg(test)]
+mod tests;
+mod writer;
+
+pub use host::{Host, HostedText};
+use toyproof_diagnostic::{Deadline, Files};
+use toyproof_glsl::Checked;
+
+use self::language::Words;
+use self::writer::Writer;
+use crate::lower::context::LoweringContext;
+use crate::lower::{Pass, Passes, branch_for_effects, fold_by_precision, fold_except};
+use crate::print::{CaseLabels, Names, Order};
+pub use crate::unprintable::{Unprintable, WriteFailure};
+
+/// Prints a checked shader for a host; the author's comments are read from `files`. `name` is the shader's,
+/// for hosts whose files state it.
+///
+/// # Errors
+/// If a construct is not supported, the host lacks an input, or the deadline passes.
+pub fn write(
+    checked: &Checked,
+    files: &Files,
+    host: Host,
+    name: &str,
+    deadline: &Deadline,
+) -> Result<String, WriteFailure> {
+    let mut cx = LoweringContext::new(checked);
+    fold_except(&mut cx, |_| false);
+    fold_by_precision(&mut cx);
+    let (early, late) = passes();
+    early.run(&mut cx, deadline)?;
+    branch_for_effects(&mut cx);
+    late.run(&mut cx, deadline)?;
+    writer::shorten_generated_names(&mut cx);
+    let order = Order::new(&cx, CaseLabels::Values);
+    deadline.check()?;
+    let names = Names::new(&cx, &order, &Words::new(host));
+    deadline.check()?;
+    let writer = Writer::new(&cx, &names, host, files, deadline);
+    let written = writer.write(&order, name);
+    // An expired deadline also makes the writer fail.
+    deadline.check()?;
+    Ok(written?)
+}
+
+/// The lowering passes for constructs that these languages lack too: those before `&&`, `||` and `?:` with
+/// side effects are lowered, and those after.
+fn passes() -> (Passes, Passes) {
+    let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
+    let not_needed = [
+        Pass::Folding,
+        Pass::Matrices,
+        Pass::Booleans,
+        Pass::Swizzles,
+        Pass::Negations,
+        Pass::OutArguments,
+        Pass::Inequality,
+        Pass::Members,
+        Pass::Globals,
+        Pass::Steps,
+        Pass::DoWhile,
+        Pass::DeadCode,
+        Pass::Nesting,
+    ];
+    let late = early
+        .into_iter()
+        .chain(not_needed)
+        .fold(Passes::required(), Passes::without);
+    let early = early.into_iter().fold(Passes::none(), Passes::with);
+    (early, late)
+}

@@ -1,0 +1,180 @@
+//! Prints statements, one per line.
+
+use toyproof_glsl::tree::{
+    Arm, Block, Case, Condition, ExprId, Label, Scalar, Statement, StatementKind, Type, VariableId,
+    VariableKind,
+};
+
+use super::Unprintable;
+use super::writer::{PrintResult, Writer};
+use crate::lower::is_written_first;
+
+impl Writer<'_> {
+    pub(super) fn statements(&mut self, block: &[Statement]) -> PrintResult {
+        for (number, statement) in block.iter().enumerate() {
+            // Structures are printed at global scope.
+            if matches!(statement.kind, StatementKind::Struct(_)) {
+                continue;
+            }
+            self.check_deadline()?;
+            if self.comments.follows_blank_line(statement.at) && number > 0 {
+                self.line("");
+            }
+            self.comment(statement.at);
+            self.statement(statement, &block[number + 1..])?;
+            if !statement.kind.is_compound() {
+                self.trailing_comment(statement.at);
+            }
+        }
+        Ok(())
+    }
+
+    /// Prints a block behind the head of its statement.
+    fn block(&mut self, head: &str, block: &Block) -> PrintResult {
+        self.line(&format!("{head}{{"));
+        self.indented(|writer| writer.statements(block))
+    }
+
+    /// Prints a statement; `rest` follows it in its block.
+    fn statement(&mut self, statement: &Statement, rest: &[Statement]) -> PrintResult {
+        match &statement.kind {
+            StatementKind::Struct(_) => return Ok(()),
+            StatementKind::Expression(expr) => {
+                let code = self.expression(*expr)?;
+                self.line(&format!("{code};"));
+                return Ok(());
+            }
+            StatementKind::Declare(variable) => {
+                let needs_value = self.cx.tree[*variable].initializer.is_none()
+                    && !is_written_first(self.cx, *variable, rest);
+                let code = self.declaration(*variable, needs_value)?;
+                self.line(&format!("{code};"));
+                return Ok(());
+            }
+            StatementKind::Break => self.line("break;"),
+            StatementKind::Continue => self.line("continue;"),
+            StatementKind::Discard => self.line("discard;"),
+            StatementKind::Return(None) => self.line("return;"),
+            StatementKind::Return(Some(value)) => {
+                let code = self.expression(*value)?;
+                self.line(&format!("return {code};"));
+            }
+            StatementKind::Block(body) => {
+                self.block("", body)?;
+                self.line("}");
+            }
+            StatementKind::If { arms, otherwise } => self.branches(arms, otherwise.as_ref())?,
+            StatementKind::Switch { selector, cases } => self.switch(*selector, cases)?,
+            StatementKind::For {
+                init,
+                condition,
+                step,
+                body,
+            } => {
+                let init = self.init(init)?;
+                let condition = match condition {
+                    Some(condition) => format!(" {}", self.condition(*condition)?),
+                    None => String::new(),
+                };
+                let step = match step {
+                    Some(step) => format!(" {}", self.expression(*step)?),
+                    None => String::new(),
+                };
+                self.block(&format!("for ({init};{condition};{step}) "), body)?;
+                self.line("}");
+            }
+            StatementKind::While { condition, body } => {
+                let condition = self.condition(*condition)?;
+                self.block(&format!("while ({condition}) "), body)?;
+                self.line("}");
+            }
+            StatementKind::DoWhile { body, condition } => {
+                self.block("do ", body)?;
+                let condition = self.expression(*condition)?;
+                self.line(&format!("}} while ({condition});"));
+            }
+        }
+        Ok(())
+    }
+
+    fn condition(&mut self, condition: Condition) -> PrintResult<String> {
+        match condition {
+            Condition::Expression(condition) => self.expression(condition),
+            Condition::Declare(_) => Err(Unprintable::Construct("a declaration in a condition")),
+        }
+    }
+
+    /// `float a = 1.0`; without an initial value, zero if it needs one.
+    fn declaration(&mut self, id: VariableId, needs_value: bool) -> PrintResult<String> {
+        let variable = &self.cx.tree[id];
+        let declared = self.declarator(variable.ty, self.variable(id))?;
+        let is_constant = variable.kind == VariableKind::Const;
+        let word = match variable.ty {
+            // Arrays of constants are not copied to the stack in each call.
+            Type::Array(_) if is_constant && variable.value.is_some() => "static const ",
+            _ if is_constant => "const ",
+            _ => "",
+        };
+        let value = match variable.initializer {
+            Some(value) => self.initializer(value)?,
+            None if needs_value => self.zero(variable.ty)?,
+            None => return Ok(declared),
+        };
+        Ok(format!("{word}{declared} = {value}"))
+    }
+
+    /// `int i = 0, j = 1`: all variables share a type.
+    fn init(&mut self, init: &Block) -> PrintResult<String> {
+        let mut parts = Vec::new();
+        for statement in init {
+            let part = match statement.kind {
+                StatementKind::Declare(variable) if parts.is_empty() => self.declaration(variable, true)?,
+                StatementKind::Declare(variable) => {
+                    let declared = self.declaration(variable, true)?;
+                    let declared = declared.strip_prefix("const ").unwrap_or(&declared);
+                    let ty = self.type_name(self.cx.tree[variable].ty)?;
+                    declared.strip_prefix(&ty).unwrap_or(declared).trim().to_owned()
+                }
+                StatementKind::Expression(expr) => self.expression(expr)?,
+                _ => return Err(Unprintable::Construct("this statement in a loop's head")),
+            };
+            parts.push(part);
+        }
+        Ok(parts.join(", "))
+    }
+
+    fn branches(&mut self, arms: &[Arm], otherwise: Option<&Block>) -> PrintResult {
+        let mut head = "if";
+        for arm in arms {
+            let condition = self.expression(arm.condition)?;
+            self.block(&format!("{head} ({condition}) "), &arm.body)?;
+            head = "} else if";
+        }
+        if let Some(body) = otherwise {
+            self.block("} else ", body)?;
+        }
+        self.line("}");
+        Ok(())
+    }
+
+    fn switch(&mut self, selector: ExprId, cases: &[Case]) -> PrintResult {
+        let is_unsigned = self.cx.tree[selector].ty.scalar() == Some(Scalar::Uint);
+        let selector = self.expression(selector)?;
+        self.line(&format!("switch ({selector}) {{"));
+        self.indent += 1;
+        for case in cases {
+            for label in &case.labels {
+                let label = match *label {
+                    Label::Default => "default:".to_owned(),
+                    Label::Case { value, .. } if is_unsigned => format!("case {value}u:"),
+                    Label::Case { value, .. } => format!("case {}:", value.cast_signed()),
+                };
+                self.line(&label);
+            }
+            self.indented(|writer| writer.statements(&case.body))?;
+        }
+        self.indent -= 1;
+        self.line("}");
+        Ok(())
+    }
+}

@@ -1,0 +1,239 @@
+//! The state of printing: lines, names and types.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
+use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
+
+use super::Unprintable;
+use super::host::Host;
+use super::language::{Words, numeric_type};
+use crate::author::{Comments, SourceText};
+use crate::lower::context::LoweringContext;
+use crate::print::{Names, Order, Vocabulary};
+
+pub(super) type PrintResult<T = ()> = Result<T, Unprintable>;
+
+/// Prints a lowered shader.
+pub(super) struct Writer<'a> {
+    pub(super) cx: &'a LoweringContext,
+    pub(super) names: &'a Names,
+    pub(super) host: Host,
+    pub(super) comments: Comments<'a>,
+    pub(super) source: SourceText<'a>,
+    pub(super) deadline: &'a Deadline,
+    pub(super) out: String,
+    pub(super) indent: usize,
+    /// The constant declarations for macros that expand to a literal, by name.
+    pub(super) macros: BTreeMap<String, String>,
+    /// Functions that replace built-in ones, by name and the types of their arguments.
+    pub(super) helpers: BTreeMap<(String, String), String>,
+    /// The structures that need a function that makes them: these languages list values in declarations only.
+    pub(super) made: BTreeSet<StructId>,
+    /// All names in use.
+    pub(super) taken: HashSet<&'a str>,
+    /// The innermost expression that could not be printed.
+    pub(super) failed_at: Option<Place>,
+    /// Whether `gl_FragCoord` is read other than by `mainImage`'s caller.
+    pub(super) reads_position: bool,
+}
+
+impl<'a> Writer<'a> {
+    pub(super) fn new(
+        cx: &'a LoweringContext,
+        names: &'a Names,
+        host: Host,
+        files: &'a Files,
+        deadline: &'a Deadline,
+    ) -> Self {
+        let all = names.variables.values().chain(names.functions.values());
+        let all = all.chain(names.structs.values());
+        Self {
+            cx,
+            names,
+            host,
+            comments: Comments::new(files),
+            source: SourceText::new(files),
+            deadline,
+            out: String::new(),
+            indent: 0,
+            macros: BTreeMap::new(),
+            helpers: BTreeMap::new(),
+            made: BTreeSet::new(),
+            taken: all.map(String::as_str).collect(),
+            failed_at: None,
+            reads_position: false,
+        }
+    }
+
+    /// Fails if the deadline has passed; [`super::write`] then reports that instead.
+    pub(super) fn check_deadline(&self) -> PrintResult {
+        if self.deadline.is_over() {
+            return Err(Unprintable::Construct("a shader that exceeds the time limit"));
+        }
+        Ok(())
+    }
+
+    /// Prints a line at the current indentation.
+    pub(super) fn line(&mut self, text: &str) {
+        // Blank lines are empty.
+        let indent = if text.is_empty() { 0 } else { self.indent };
+        self.out += &"    ".repeat(indent);
+        self.out += text;
+        self.out.push('\n');
+    }
+
+    /// Prints lines indented by one more level.
+    pub(super) fn indented<T>(&mut self, inside: impl FnOnce(&mut Self) -> T) -> T {
+        self.indent += 1;
+        let value = inside(self);
+        self.indent -= 1;
+        value
+    }
+
+    /// Prints the comment lines above a place, unless printed already.
+    pub(super) fn comment(&mut self, at: Place) {
+        for line in self.comments.above(at) {
+            self.line(&line);
+        }
+    }
+
+    /// Prints the author's comment at the end of a place's line after the line printed last.
+    pub(super) fn trailing_comment(&mut self, at: Place) {
+        if let Some(comment) = self.comments.trailing(at) {
+            self.out.pop();
+            self.out.push(' ');
+            self.out.push_str(&comment);
+            self.out.push('\n');
+        }
+    }
+
+    pub(super) fn variable(&self, id: VariableId) -> &'a str {
+        self.names.variables.get(&id).unwrap_or(&self.cx.tree[id].name)
+    }
+
+    pub(super) fn function(&self, id: FunctionId) -> &'a str {
+        self.names.functions.get(&id).unwrap_or(&self.cx.tree[id].name)
+    }
+
+    pub(super) fn structure_name(&self, id: StructId) -> &'a str {
+        self.names.structs.get(&id).map_or("", String::as_str)
+    }
+
+    /// `float3 name`, or `float name[2]`.
+    pub(super) fn declarator(&self, ty: Type, name: &str) -> PrintResult<String> {
+        let mut sizes = String::new();
+        let mut element = ty;
+        while let Type::Array(id) = element {
+            let array = self.cx.tree.array(id);
+            sizes += &format!("[{}]", array.size);
+            element = array.element;
+        }
+        Ok(format!("{} {name}{sizes}", self.type_name(element)?))
+    }
+
+    /// The name of a type that is not an array.
+    pub(super) fn type_name(&self, ty: Type) -> PrintResult<String> {
+        match ty {
+            Type::Struct(id) => Ok(self.structure_name(id).to_owned()),
+            Type::Void => Ok("void".to_owned()),
+            _ => numeric_type(ty).ok_or(Unprintable::Construct("this type")),
+        }
+    }
+
+    /// Whether nothing has the name of a macro.
+    pub(super) fn is_free(&self, name: &str) -> bool {
+        let words = Words::new(self.host);
+        let is_declared = words.declared().iter().any(|declared| declared == name);
+        let is_word = words.is_reserved(name) || words.is_function(name);
+        !is_declared && !is_word && !self.taken.contains(name)
+    }
+
+    /// A name that nothing else has.
+    pub(super) fn free(&self, stem: &str) -> String {
+        let mut name = stem.to_owned();
+        while self.taken.contains(name.as_str()) {
+            name.push('_');
+        }
+        name
+    }
+
+    /// Adds the place of the expression that could not be printed.
+    fn placed(&self, why: Unprintable) -> Unprintable {
+        match (why, self.failed_at) {
+            (Unprintable::Construct(what), Some(at)) => {
+                let host = self.host.name();
+                let message = format!("{what} is not supported in the style `{host}`");
+                Unprintable::Host(Box::new(
+                    Diagnostic::new(Code::UnsupportedByTarget, message)
+                        .at(at.span)
+                        .help("`--style plain` supports it"),
+                ))
+            }
+            (why, _) => why,
+        }
+    }
+
+    /// Prints the whole text: the author's first comment, and the items in the host's code.
+    pub(super) fn write(mut self, order: &Order, name: &str) -> PrintResult<String> {
+        let entry = self.cx.tree[self.cx.main_image].at;
+        let mut first = self.comments.first(entry).join("\n");
+        if !first.is_empty() {
+            first.push_str("\n\n");
+        }
+        let mut items = Vec::new();
+        for &item in &order.items {
+            let printed = self.item(item);
+            printed.map_err(|why| self.placed(why))?;
+            items.push((item, std::mem::take(&mut self.out)));
+        }
+        let mut makers = HashMap::new();
+        for id in self.made.clone() {
+            self.maker(id)?;
+            makers.insert(id, std::mem::take(&mut self.out));
+        }
+        let mut text = String::new();
+        for declaration in self.macros.values() {
+            text += declaration;
+            text.push('\n');
+        }
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        for helper in self.helpers.values() {
+            text += helper;
+            text.push('\n');
+        }
+        let mut shader = String::new();
+        for (item, printed) in items {
+            shader += &printed;
+            if let Item::Struct(id) = item {
+                shader += makers.get(&id).map_or("", String::as_str);
+            }
+        }
+        text += shader.trim_start_matches('\n');
+        self.embed(order, &first, &text, name)
+    }
+}
+
+/// Shortens generated names, which a prefix distinguishes from the author's in GLSL.
+pub(super) fn shorten_generated_names(cx: &mut LoweringContext) {
+    const PREFIX: &str = "toyproof_";
+    let tree = &mut cx.tree;
+    let names = tree.variables.iter().map(|(_, variable)| &variable.name);
+    let names = names.chain(tree.functions.iter().map(|(_, function)| &function.name));
+    let all: HashSet<String> = names.cloned().collect();
+    let short = |name: &mut String| {
+        if let Some(rest) = name.strip_prefix(PREFIX)
+            && !all.contains(rest)
+        {
+            *name = rest.to_owned();
+        }
+    };
+    for id in tree.variables.ids() {
+        short(&mut tree[id].name);
+    }
+    for id in tree.functions.ids() {
+        short(&mut tree[id].name);
+    }
+}
