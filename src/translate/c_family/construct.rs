@@ -120,18 +120,54 @@ impl Writer<'_> {
         Ok((parts, level::POSTFIX))
     }
 
-    /// A matrix of its components or columns, which are rows here.
+    /// A matrix of its components or columns, which are rows here. Components that are mixed with vectors are
+    /// grouped into columns: Slang takes either.
     fn matrix(&self, arguments: &[ExprId], ty: Type) -> PrintResult<Parts> {
-        let counts = arguments.iter().map(|&argument| match self.cx.tree[argument].ty {
-            Type::Scalar(_) => Some(1),
-            Type::Vector(_, count) => Some(count),
-            _ => None,
-        });
-        let given: Option<u8> = counts.sum();
-        if given != ty.component_count() {
-            return Err(Unprintable::Construct("this matrix constructor"));
+        const MIXED: Unprintable = Unprintable::Construct("a matrix whose columns are made of parts of vectors");
+        let Type::Matrix { columns, rows } = ty else {
+            return Err(MIXED);
+        };
+        let count = |argument: ExprId| match self.cx.tree[argument].ty {
+            Type::Scalar(_) => Ok(1),
+            Type::Vector(_, count) => Ok(count),
+            _ => Err(MIXED),
+        };
+        let name = self.type_name(ty)?;
+        if let &[only] = arguments {
+            let fits = count(only)? == columns * rows;
+            return if fits { self.cast(only, ty) } else { Err(MIXED) };
         }
-        Ok((Self::call(self.type_name(ty)?, arguments), level::POSTFIX))
+        let counts = arguments.iter().map(|&argument| count(argument));
+        let counts = counts.collect::<PrintResult<Vec<u8>>>()?;
+        if counts.iter().all(|&count| count == 1) || counts.iter().all(|&count| count == rows) {
+            return Ok((Self::call(name, arguments), level::POSTFIX));
+        }
+        let column_type = self.type_name(Type::Vector(Scalar::Float, rows))?;
+        let mut parts = vec![Part::Token(format!("{name}("))];
+        let mut rest = arguments;
+        while !rest.is_empty() {
+            let mut filled = 0;
+            let parts_of_column = rest.iter().take_while(|&&argument| {
+                let is_inside = filled < rows;
+                filled += count(argument).unwrap_or(0);
+                is_inside
+            });
+            let (column, others) = rest.split_at(parts_of_column.count());
+            let size: u8 = column.iter().map(|&argument| count(argument).unwrap_or(0)).sum();
+            if size != rows {
+                return Err(MIXED);
+            }
+            if rest.len() < arguments.len() {
+                parts.push(Part::token(", "));
+            }
+            match column {
+                &[only] => parts.push(Part::Print(only, level::ASSIGN)),
+                _ => parts.extend(Self::call(column_type.as_str(), column)),
+            }
+            rest = others;
+        }
+        parts.push(Part::token(")"));
+        Ok((parts, level::POSTFIX))
     }
 
     fn diagonal(&self, value: ExprId, ty: Type) -> PrintResult<Parts> {

@@ -185,14 +185,24 @@ impl Host {
         own.chain(inputs).chain(CHANNELS).collect()
     }
 
+    /// The code around a shader.
+    pub(super) fn template(self) -> &'static str {
+        self.row().template
+    }
+
+    /// Code of the file, and the code that does the same in the substitute for the host.
+    pub(super) fn adaptations(self) -> &'static [(&'static str, &'static str)] {
+        self.row().adaptations
+    }
+
     /// Whether the template has a line for a condition.
     fn knows(self, condition: &str) -> bool {
-        let lines = self.row().template.lines();
+        let lines = self.template().lines();
         let mut conditions = lines
             .filter_map(|line| Some(line.split_once("//?")?.1))
             .flat_map(|conditions| conditions.split([' ', '&']));
         conditions.any(|known| known == condition)
-            || self.row().template.contains(&format!("#define {condition} "))
+            || self.template().contains(&format!("#define {condition} "))
     }
 
     /// Embeds a written file in a substitute for its host, which reads our uniform block.
@@ -212,7 +222,7 @@ impl Host {
         let lines = program.lines().filter(is_for_host);
         let program: String = lines.flat_map(|line| [line, "\n"]).collect();
         let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
-        let program = row.adaptations.iter().fold(program, replace);
+        let program = self.adaptations().iter().fold(program, replace);
         let holds = |condition: &str| match channel_number(condition) {
             Some(channel) => program.contains(&format!("iChannel{channel}")),
             None => program.contains(condition),
@@ -317,7 +327,7 @@ impl Writer<'_> {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
             values.push((value, texture_type(shape).to_owned()));
         }
-        let template = self.host.row().template;
+        let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);
         let line = template[..at].rfind('\n').map_or(0, |end| end + 1);

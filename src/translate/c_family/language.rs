@@ -1,6 +1,6 @@
 //! What differs between the languages: types, reserved words, and the functions that they have.
 
-use toyproof_glsl::tree::{BuiltIn, Scalar, Type};
+use toyproof_glsl::tree::{Scalar, Type};
 
 use super::host::Host;
 use crate::print::Vocabulary;
@@ -27,13 +27,15 @@ const RESERVED: &str = "\
     try typename union using virtual extension func import let var property associatedtype where module \
     implementing __init __subscript no_diff none is as each expand";
 
-/// Functions of HLSL that GLSL does not have, or that take other arguments there.
+/// The functions of HLSL.
 const FUNCTIONS: &str = "\
-    abort all any asdouble asfloat asint asuint atan2 clip countbits D3DCOLORtoUBYTE4 ddx ddx_coarse \
-    ddx_fine ddy ddy_coarse ddy_fine dst errorf f16tof32 f32tof16 firstbithigh firstbitlow fma fmod frac \
-    frexp ldexp lerp lit log10 mad main modf msad4 mul noise printf rcp reversebits rsqrt saturate sincos \
-    select tex1D tex1Dbias tex1Dlod tex2D tex2Dbias tex2Dgrad tex2Dlod tex2Dproj tex3D tex3Dlod texCUBE \
-    texCUBElod isfinite transpose";
+    abort abs acos all any asdouble asfloat asin asint asuint atan atan2 ceil clamp clip cos cosh countbits \
+    cross D3DCOLORtoUBYTE4 ddx ddx_coarse ddx_fine ddy ddy_coarse ddy_fine degrees determinant distance dot \
+    dst errorf exp exp2 f16tof32 f32tof16 faceforward firstbithigh firstbitlow floor fma fmod frac frexp \
+    fwidth isfinite isinf isnan ldexp length lerp lit log log10 log2 mad main max min modf msad4 mul noise \
+    normalize pow printf radians rcp reflect refract reversebits round rsqrt saturate select sign sin sincos \
+    sinh smoothstep sqrt step tan tanh tex1D tex1Dbias tex1Dlod tex2D tex2Dbias tex2Dgrad tex2Dlod tex2Dproj \
+    tex3D tex3Dlod texCUBE texCUBElod transpose trunc";
 
 /// The names that are not free.
 pub(super) struct Words {
@@ -52,7 +54,7 @@ impl Vocabulary for Words {
     }
 
     fn is_function(&self, word: &str) -> bool {
-        lists(FUNCTIONS, word) || BuiltIn::ALL.iter().any(|function| function.name() == word)
+        lists(FUNCTIONS, word)
     }
 
     fn declared(&self) -> Vec<String> {

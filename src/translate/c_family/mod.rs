@@ -72,6 +72,7 @@ fn passes() -> (Passes, Passes) {
         Pass::OutArguments,
         Pass::Inequality,
         Pass::Members,
+        Pass::Constants,
         Pass::Globals,
         Pass::Steps,
         Pass::DoWhile,

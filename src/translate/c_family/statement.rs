@@ -2,7 +2,7 @@
 
 use toyproof_glsl::tree::{
     Arm, Block, Case, Condition, ExprId, Label, Scalar, Statement, StatementKind, Type, VariableId,
-    VariableKind,
+    VariableKind, walk,
 };
 
 use super::Unprintable;
@@ -58,6 +58,12 @@ impl Writer<'_> {
             StatementKind::Return(Some(value)) => {
                 let code = self.expression(*value)?;
                 self.line(&format!("return {code};"));
+            }
+            // Lowering adds a scope to a `switch`.
+            StatementKind::Block(body)
+                if matches!(&body[..], [only] if matches!(only.kind, StatementKind::Switch { .. })) =>
+            {
+                self.statements(body)?;
             }
             StatementKind::Block(body) => {
                 self.block("", body)?;
@@ -171,10 +177,33 @@ impl Writer<'_> {
                 };
                 self.line(&label);
             }
-            self.indented(|writer| writer.statements(&case.body))?;
+            // C++ and DXC do not jump over declarations to a label.
+            let declares = case.body.iter().any(|statement| walk::declared(statement).is_some());
+            if declares {
+                self.check_scopes(case, cases)?;
+                self.out.pop();
+                self.out += " {\n";
+                self.indented(|writer| writer.statements(&case.body))?;
+                self.line("}");
+            } else {
+                self.indented(|writer| writer.statements(&case.body))?;
+            }
         }
         self.indent -= 1;
         self.line("}");
+        Ok(())
+    }
+
+    /// Checks that no other case uses a variable that a case declares.
+    fn check_scopes(&self, case: &Case, cases: &[Case]) -> PrintResult {
+        let tree = &self.cx.tree;
+        let others = cases.iter().filter(|other| other.at != case.at);
+        let used: Vec<ExprId> = others.flat_map(|other| walk::roots(tree, &other.body)).collect();
+        let declared = case.body.iter().filter_map(walk::declared);
+        let is_used = |variable| used.iter().any(|&root| walk::mentions(tree, root, variable));
+        if declared.into_iter().any(is_used) {
+            return Err(Unprintable::Construct("a variable that several cases share"));
+        }
         Ok(())
     }
 }

@@ -1,0 +1,227 @@
+use toyproof_diagnostic::{Deadline, File, Files};
+use toyproof_glsl::{self as glsl, Options, Stage};
+
+use super::host::Host;
+use super::{Unprintable, WriteFailure, write};
+
+/// Converts a shader for a host.
+fn converted(host: Host, text: &str) -> Result<String, WriteFailure> {
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", text));
+    let checked = glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
+    write(&checked, &files, host, "shader", &Deadline::default())
+}
+
+/// The HLSL of a shader whose image function has this body, from that function on.
+fn body(statements: &str) -> String {
+    with_items("", statements)
+}
+
+fn with_items(items: &str, statements: &str) -> String {
+    let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\ncolor = vec4(0);\n{statements}\n}}");
+    let written = converted(Host::Hlsl, &text).unwrap();
+    let start = written.find("    color = ").unwrap_or_else(|| panic!("{written}"));
+    let end = written.find("\n}\n\nfloat4 main(").unwrap_or_else(|| panic!("{written}"));
+    written[start..end].trim_start().split_once(";\n").map_or("", |(_, rest)| rest).to_owned()
+}
+
+#[track_caller]
+fn assert_lines(written: &str, lines: &[&str]) {
+    let own: Vec<&str> = written.lines().map(str::trim).collect();
+    assert_eq!(own, lines, "{written}");
+}
+
+#[test]
+fn names_comments_macros_and_loops_stay() {
+    let text = "// Waves\n\n#define STEPS 8\n#define SCALE .5 // of all\n\n\
+        struct Ray { vec3 origin; float t; }; \n// Height\nfloat height(vec3 p) { return p.y - SCALE; }\n\
+        void mainImage(out vec4 color, in vec2 at) {\n    Ray ray = Ray(vec3(at, 1), 0.);\n    // March\n    \
+        for (int i = 0; i < STEPS; i++) ray.t += height(ray.origin); // on\n    color = vec4(ray.t);\n}";
+    let written = converted(Host::Hlsl, text).unwrap();
+    for expected in [
+        "// Waves\n\nstatic const float SCALE = 0.5;\nstatic const int STEPS = 8;\n\nstruct Ray {",
+        "// Height\nfloat height(float3 p) {\n    return p.y - SCALE;\n}\n",
+        "    Ray ray = { float3(at, 1), 0.0 };\n    // March\n    for (int i = 0; i < STEPS; i++) {\n",
+        "float4 main(float4 position : SV_Position) : SV_Target0 {\n    float4 color;\n    mainImage(color, position.xy);\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+    // Nothing is declared that is not used.
+    assert!(!written.contains("cbuffer") && !written.contains("gl_FragCoord"), "{written}");
+}
+
+#[test]
+fn products_of_matrices_exchange_their_sides() {
+    let written = body("mat2 m = mat2(1, 2, 3, 4);\nat *= m;\nat = m * at;\nm = m * m * 2.;\ncolor.xy = at + m[1];");
+    assert_lines(
+        &written,
+        &[
+            "float2x2 m = float2x2(1, 2, 3, 4);",
+            "at = mul(m, at);",
+            "at = mul(at, m);",
+            "m = mul(m, m) * 2.0;",
+            "color.xy = at + m[1];",
+        ],
+    );
+}
+
+#[test]
+fn constructors_become_casts_and_lists() {
+    let written = body(
+        "vec3 a = vec3(.1) + vec3(at.x * 2.);\nvec2 b = vec2(color);\nivec2 c = ivec2(color);\n\
+         mat3 m = mat3(1);\nmat2 s = mat2(m);\nmat2 p = mat2(at, 1, at.x);\ncolor = vec4(a, b + vec2(c) + s[0] + p[1]);",
+    );
+    assert_lines(
+        &written,
+        &[
+            "float3 a = float3(0.1, 0.1, 0.1) + (float3)(at.x * 2.0);",
+            "float2 b = color.xy;",
+            "int2 c = int2(color.xy);",
+            "float3x3 m = float3x3(1, 0.0, 0.0, 0.0, 1, 0.0, 0.0, 0.0, 1);",
+            "float2x2 s = (float2x2)m;",
+            "float2x2 p = float2x2(at, float2(1, at.x));",
+            "color = float4(a, (b + float2(c) + s[0] + p[1]).x);",
+        ],
+    );
+}
+
+#[test]
+fn functions_have_the_names_of_hlsl() {
+    let written = body(
+        "float a = mix(fract(at.x), inversesqrt(at.y), .5) + atan(at.y, at.x) + dFdx(at.x);\n\
+         bvec2 b = lessThan(at, vec2(.5));\nif (all(not(b)) ^^ at == vec2(1)) discard;\ncolor *= sign(a) * mod(a, 2.);",
+    );
+    assert_lines(
+        &written,
+        &[
+            "float a = lerp(frac(at.x), rsqrt(at.y), 0.5) + atan2(at.y, at.x) + ddx(at.x);",
+            "bool2 b = at < float2(0.5, 0.5);",
+            "if (all(!b) != all(at == float2(1, 1))) {",
+            "discard;",
+            "}",
+            "color *= float(sign(a)) * mod(a, 2.0);",
+        ],
+    );
+}
+
+#[test]
+fn constants_are_folded_where_their_precision_matters() {
+    // Both precisions round the first to the same float.
+    let written = body("color.x = at.x * (1. / 4.);\ncolor.y = at.x * (3.14159265 / 1.1);\ncolor.z = sin(1.);");
+    let own: Vec<&str> = written.lines().map(str::trim).collect();
+    assert_eq!(own[0], "color.x = at.x * (1.0 / 4.0);");
+    let folded = format!("color.y = at.x * {:?};", 3.141_592_65_f32 / 1.1);
+    let exact = (3.141_592_65_f64 / 1.1) as f32;
+    let kept = "color.y = at.x * (3.14159265 / 1.1);";
+    assert_eq!(own[1], if exact == 3.141_592_65_f32 / 1.1 { kept } else { &folded });
+    assert_eq!(own[2], "color.z = 0.84147096;");
+}
+
+#[test]
+fn both_sides_of_a_condition_may_have_effects() {
+    let items = "float count = 0.; float next() { return ++count; }";
+    let written = with_items(items, "float a = at.x > 1. ? next() : 2.;\nif (at.y > 1. && next() > 2.) color.x = a;");
+    assert_lines(
+        &written,
+        &[
+            "float value_1 = 0.0;",
+            "if (at.x > 1.0) {",
+            "value_1 = next();",
+            "} else {",
+            "value_1 = 2.0;",
+            "}",
+            "float a = value_1;",
+            "bool value_2 = false;",
+            "if (at.y > 1.0) {",
+            "value_2 = next() > 2.0;",
+            "} else {",
+            "value_2 = false;",
+            "}",
+            "if (value_2) {",
+            "color.x = a;",
+            "}",
+        ],
+    );
+}
+
+#[test]
+fn variables_are_zero_where_a_value_may_be_read() {
+    let items = "struct Hit { float t; vec3 n; };";
+    let written = with_items(items, "Hit hit;\nfloat set;\nset = 1.;\nfloat sum;\nif (set > at.x) sum = 1.;\ncolor.x = hit.t + sum + set;");
+    assert_lines(
+        &written,
+        &[
+            "Hit hit = (Hit)0;",
+            "float set;",
+            "set = 1.0;",
+            "float sum = 0.0;",
+            "if (set > at.x) {",
+            "sum = 1.0;",
+            "}",
+            "color.x = hit.t + sum + set;",
+        ],
+    );
+}
+
+#[test]
+fn names_do_not_hide_what_their_declaration_calls() {
+    let items = "float map(float x) { return x; } float lerp(float x) { return x; }";
+    let written = with_items(items, "float map = map(at.x);\nfloat line = lerp(map);\n{ float line = line + 1.; color.x = line; }");
+    assert_lines(
+        &written,
+        &[
+            "float map_1 = map(at.x);",
+            "float line_1 = lerp_1(map_1);",
+            "{",
+            "float line_2 = line_1 + 1.0;",
+            "color.x = line_2;",
+            "}",
+        ],
+    );
+}
+
+#[test]
+fn cases_are_blocks_if_they_declare_variables() {
+    let written = body("switch (int(at.x)) {\ncase 0: { color.x = 1.; break; }\ncase 1: float a = at.y; color.x = a; break;\ndefault: break;\n}");
+    assert!(written.contains("case 1: {\n            float a = at.y;\n"), "{written}");
+    let shared = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); switch (int(p.x)) { case 0: float a = 1.; c.x = a; break; default: a = 2.; c.x = a; } }";
+    let refused = converted(Host::Hlsl, shared);
+    assert!(matches!(refused, Err(WriteFailure::Unprintable(Unprintable::Construct(_) | Unprintable::Host(_)))));
+}
+
+#[test]
+fn hosts_refuse_inputs_that_they_lack() {
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p) * iDate; }";
+    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(Host::WindowsTerminal, text) else {
+        panic!("it is not refused");
+    };
+    assert!(error.message.contains("in the style `windows-terminal`"), "{error:?}");
+    assert!(converted(Host::Unity, text).is_ok());
+}
+
+#[test]
+fn hosts_code_is_complete() {
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy) + iMouse + dFdy(p.y); }";
+    for (host, expected) in [
+        (Host::Slang, "[[vk::binding(1, 0)]] Texture2D iChannel0 : register(t1);"),
+        (Host::Unity, "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + -ddy(p.y);"),
+    ] {
+        let written = converted(host, text).unwrap();
+        assert!(written.contains(expected), "{written}");
+        assert!(!written.contains("//?") && !written.contains("$"), "{written}");
+        assert!(written.lines().all(|line| line.trim_end() == line), "{written}");
+        let hosted = host.hosted(&written, Stage::Image);
+        assert!(!hosted.text.contains("#pragma") && !hosted.text.contains("$"), "{}", hosted.text);
+        assert_eq!(hosted.upside_down, host == Host::Unity);
+    }
+}
+
+#[test]
+fn adaptations_are_of_the_templates() {
+    for host in Host::ALL {
+        for (code, _) in host.adaptations() {
+            assert!(host.template().replace("$texture", "Texture2D").contains(code), "{code}");
+        }
+        assert!(host.template().lines().all(|line| line.len() <= 130));
+    }
+}

@@ -4,7 +4,7 @@
 //! and refuses some legal arguments: `pow(0.0, 0.0)`. Literals leave it nothing to evaluate. Values that are
 //! not finite are left to [`super::constant`].
 
-use toyproof_glsl::tree::{BuiltIn, Constructor, ExprId, ExprKind, Scalar, Type};
+use toyproof_glsl::tree::{BuiltIn, Constructor, ExprId, ExprKind, Scalar, Type, Value};
 
 use super::float32::{Float32Values, floats, function_of_floats};
 use crate::inexact::InexactFunction;
@@ -50,7 +50,10 @@ pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn) ->
 /// compute in double precision, and the evaluator rounds each operation. All others stay as they are written.
 pub(crate) fn fold_by_precision(cx: &mut LoweringContext) {
     cx.each_expression_postorder(|cx, id| {
-        let is_operation = matches!(cx.tree[id].kind, ExprKind::Binary { .. });
+        let is_operation = matches!(
+            cx.tree[id].kind,
+            ExprKind::Binary { .. } | ExprKind::BuiltIn { .. }
+        );
         if !is_operation || !cx.tree[id].constant || cx.tree[id].ty.scalar() != Some(Scalar::Float) {
             return;
         }
@@ -62,6 +65,14 @@ pub(crate) fn fold_by_precision(cx: &mut LoweringContext) {
         let is_plain = |value: &f32| value.is_finite() && !value.is_subnormal();
         if floats(&exact).is_some_and(|exact| exact != rounded) && rounded.iter().all(is_plain) {
             replace(cx, id, &rounded);
+            // Compilers read the digits, which round to this value, in double precision too.
+            for literal in cx.tree.postorder(id) {
+                if let ExprKind::Literal(literal) = &mut cx.tree[literal].kind
+                    && let Ok(value) = literal.text.parse()
+                {
+                    literal.value = Value::Float(value);
+                }
+            }
         }
     });
 }

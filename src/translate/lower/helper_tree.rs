@@ -6,7 +6,8 @@ use toyproof_glsl::{self as glsl, Options};
 
 use crate::lower::context::LoweringContext;
 
-/// Parses a generated function whose body is this GLSL: the first item of the result. `None` if it is not
+/// Parses a generated function whose body is this GLSL: the first item of the result, whose name is not the
+/// function's. `None` if it is not
 /// valid by itself.
 pub(crate) fn helper_tree(cx: &LoweringContext, id: FunctionId, text: &str) -> Option<(Files, LoweringContext)> {
     let tree = &cx.tree;
@@ -22,15 +23,14 @@ pub(crate) fn helper_tree(cx: &LoweringContext, id: FunctionId, text: &str) -> O
     });
     let parameters: Vec<_> = parameters.collect();
     // A comment for helpers whose names do not say enough.
-    let about = if function.name.ends_with("_remainder") {
+    let about = if function.name.ends_with("remainder") {
         "// `a % b` of GLSL as Mesa and SwiftShader round it, down: other languages round towards zero.\n"
     } else {
         ""
     };
     let source = format!(
-        "{about}{} {}({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
+        "{about}{} toyproof_helper({}) {{ {text} }}\nvoid mainImage(out vec4 c, in vec2 p) {{}}",
         tree.type_name(function.return_type),
-        function.name,
         parameters.join(", ")
     );
     let mut files = Files::default();
