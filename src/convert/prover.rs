@@ -458,10 +458,9 @@ pub(super) fn in_browser(
             let images = browser.render(Text::Glsl(&text), sampling, frames);
             (original, images.map_err(ProofError::Browser)?)
         }
-        TargetCode::Naga { .. }
-        | TargetCode::Lowered(_)
-        | TargetCode::Glsl(..)
-        | TargetCode::CFamily(..) => return Ok(None),
+        TargetCode::Naga { .. } | TargetCode::Lowered(_) | TargetCode::Glsl(..) | TargetCode::CFamily(..) => {
+            return Ok(None);
+        }
     };
     let shown = Rgb8Comparison::new(&original, &converted, undefined);
     if shown.differing > 0 {

@@ -48,6 +48,7 @@ mod glslang;
 mod grading;
 mod growth;
 #[cfg(target_os = "linux")]
+mod hlsl_hosts;
 mod hostile;
 mod hostile_class;
 mod interpreted;

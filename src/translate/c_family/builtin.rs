@@ -64,11 +64,19 @@ impl Writer<'_> {
                 "// `mod` of GLSL: `fmod` rounds towards zero.\n",
                 "return x - y * floor(x / y);",
             )?,
-            B::Asinh => self.helper_function("asinh", &types, ty, "", "return log(x + sqrt(x * x + 1.0));")?,
-            B::Acosh => self.helper_function("acosh", &types, ty, "", "return log(x + sqrt(x * x - 1.0));")?,
-            B::Atanh => {
-                self.helper_function("atanh", &types, ty, "", "return 0.5 * log((1.0 + x) / (1.0 - x));")?
+            B::Asinh => {
+                self.helper_function("asinh", &types, ty, "", "return log(x + sqrt(x * x + 1.0));")?
             }
+            B::Acosh => {
+                self.helper_function("acosh", &types, ty, "", "return log(x + sqrt(x * x - 1.0));")?
+            }
+            B::Atanh => self.helper_function(
+                "atanh",
+                &types,
+                ty,
+                "",
+                "return 0.5 * log((1.0 + x) / (1.0 - x));",
+            )?,
             B::PackHalf2x16 => self.helper_function(
                 "packHalf2x16",
                 &types,
@@ -108,7 +116,9 @@ impl Writer<'_> {
         body: &str,
     ) -> PrintResult<String> {
         if self.indent == 0 {
-            return Err(Unprintable::Construct("this built-in function in a global constant"));
+            return Err(Unprintable::Construct(
+                "this built-in function in a global constant",
+            ));
         }
         let function = self.free(name);
         let parameters = types

@@ -45,7 +45,10 @@ impl Writer<'_> {
     /// `(float3)x`, which also converts a scalar to a vector.
     fn cast(&self, value: ExprId, ty: Type) -> PrintResult<Parts> {
         let cast = format!("({})", self.type_name(ty)?);
-        Ok((vec![Part::Token(cast), Part::Print(value, level::POSTFIX)], level::UNARY))
+        Ok((
+            vec![Part::Token(cast), Part::Print(value, level::POSTFIX)],
+            level::UNARY,
+        ))
     }
 
     /// Whether a value may be repeated: a literal or a variable.
@@ -123,7 +126,8 @@ impl Writer<'_> {
     /// A matrix of its components or columns, which are rows here. Components that are mixed with vectors are
     /// grouped into columns: Slang takes either.
     fn matrix(&self, arguments: &[ExprId], ty: Type) -> PrintResult<Parts> {
-        const MIXED: Unprintable = Unprintable::Construct("a matrix whose columns are made of parts of vectors");
+        const MIXED: Unprintable =
+            Unprintable::Construct("a matrix whose columns are made of parts of vectors");
         let Type::Matrix { columns, rows } = ty else {
             return Err(MIXED);
         };
@@ -216,7 +220,10 @@ impl Writer<'_> {
         let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
         let vector = self.type_name(Type::Vector(Scalar::Float, rows))?;
         for column in 0..columns {
-            parts.push(Part::Token(format!("{}{vector}(", if column > 0 { ", " } else { "" })));
+            parts.push(Part::Token(format!(
+                "{}{vector}(",
+                if column > 0 { ", " } else { "" }
+            )));
             let mut row = 0;
             if column < has {
                 row = rows.min(long);

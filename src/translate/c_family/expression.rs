@@ -136,10 +136,7 @@ impl Writer<'_> {
             }
             &ExprKind::Swizzle { vector, components } => {
                 let letters = self.source.letters(components, tree[id].at);
-                let parts = vec![
-                    Print(vector, level::POSTFIX),
-                    Token(format!(".{letters}")),
-                ];
+                let parts = vec![Print(vector, level::POSTFIX), Token(format!(".{letters}"))];
                 (parts, level::POSTFIX)
             }
             &ExprKind::Member { structure, member } => {
@@ -224,7 +221,9 @@ impl Writer<'_> {
         let mut parts = vec![Part::Print(target, level::UNARY)];
         if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
             if walk::has_side_effects(tree, target) {
-                return Err(Unprintable::Construct("a product that is assigned to an index with a side effect"));
+                return Err(Unprintable::Construct(
+                    "a product that is assigned to an index with a side effect",
+                ));
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));

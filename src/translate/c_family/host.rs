@@ -77,7 +77,10 @@ impl Host {
                 template: include_str!("hosts/plain.slang"),
                 substitute: "$shader\n",
                 adaptations: &[
-                    ("[[vk::binding(0, 0)]] cbuffer Inputs {", "cbuffer Inputs : register(b0) {"),
+                    (
+                        "[[vk::binding(0, 0)]] cbuffer Inputs {",
+                        "cbuffer Inputs : register(b0) {",
+                    ),
                     ("[shader(\"fragment\")]\n", ""),
                 ],
                 declared: "Inputs gl_FragCoord",
@@ -118,7 +121,10 @@ impl Host {
                 template: include_str!("hosts/windows_terminal.hlsl"),
                 substitute: "$block\n$shader\n",
                 adaptations: &[
-                    (TERMINALS_BLOCK, "#define Resolution toyproof_iResolution.xy\n#define Time toyproof_iTime\n"),
+                    (
+                        TERMINALS_BLOCK,
+                        "#define Resolution toyproof_iResolution.xy\n#define Time toyproof_iTime\n",
+                    ),
                     ("iTimeDelta (1.0 / 60.0)", "iTimeDelta toyproof_iTimeDelta"),
                     ("iFrame int(Time * 60.0)", "iFrame toyproof_iFrame"),
                     ("iFrameRate 60.0", "iFrameRate toyproof_iFrameRate"),
@@ -218,7 +224,8 @@ impl Host {
             (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
             _ => text,
         };
-        let is_for_host = |line: &&str| !line.trim().starts_with("#pragma") && !line.trim().starts_with("#include");
+        let is_for_host =
+            |line: &&str| !line.trim().starts_with("#pragma") && !line.trim().starts_with("#include");
         let lines = program.lines().filter(is_for_host);
         let program: String = lines.flat_map(|line| [line, "\n"]).collect();
         let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
@@ -258,7 +265,9 @@ fn block() -> String {
             (InputType::Vec3, _) => "float3",
             (InputType::Float, Some(_)) | (InputType::Vec4, _) => "float4",
         };
-        let length = input.length().map_or_else(String::new, |length| format!("[{length}]"));
+        let length = input
+            .length()
+            .map_or_else(String::new, |length| format!("[{length}]"));
         let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
         let _ = writeln!(
             text,

@@ -78,7 +78,14 @@ impl Vocabulary for Words {
 /// Whether the word is a vector or matrix type, such as `float3` or `half3x3`.
 fn is_numbered_type(word: &str) -> bool {
     let scalars = [
-        "bool", "int", "uint", "half", "float", "double", "dword", "min16float",
+        "bool",
+        "int",
+        "uint",
+        "half",
+        "float",
+        "double",
+        "dword",
+        "min16float",
     ];
     let number = scalars.iter().find_map(|scalar| word.strip_prefix(scalar));
     let is_size = |size: &str| matches!(size, "1" | "2" | "3" | "4");

@@ -60,8 +60,7 @@ impl Writer<'_> {
                 self.line(&format!("return {code};"));
             }
             // Lowering adds a scope to a `switch`.
-            StatementKind::Block(body)
-                if matches!(&body[..], [only] if matches!(only.kind, StatementKind::Switch { .. })) =>
+            StatementKind::Block(body) if matches!(&body[..], [only] if matches!(only.kind, StatementKind::Switch { .. })) =>
             {
                 self.statements(body)?;
             }
@@ -178,7 +177,10 @@ impl Writer<'_> {
                 self.line(&label);
             }
             // C++ and DXC do not jump over declarations to a label.
-            let declares = case.body.iter().any(|statement| walk::declared(statement).is_some());
+            let declares = case
+                .body
+                .iter()
+                .any(|statement| walk::declared(statement).is_some());
             if declares {
                 self.check_scopes(case, cases)?;
                 self.out.pop();

@@ -8,7 +8,8 @@ use super::{Unprintable, WriteFailure, write};
 fn converted(host: Host, text: &str) -> Result<String, WriteFailure> {
     let mut files = Files::default();
     let file = files.add(File::new("shader", text));
-    let checked = glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
+    let checked =
+        glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
     write(&checked, &files, host, "shader", &Deadline::default())
 }
 
@@ -18,11 +19,20 @@ fn body(statements: &str) -> String {
 }
 
 fn with_items(items: &str, statements: &str) -> String {
-    let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\ncolor = vec4(0);\n{statements}\n}}");
+    let text =
+        format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\ncolor = vec4(0);\n{statements}\n}}");
     let written = converted(Host::Hlsl, &text).unwrap();
-    let start = written.find("    color = ").unwrap_or_else(|| panic!("{written}"));
-    let end = written.find("\n}\n\nfloat4 main(").unwrap_or_else(|| panic!("{written}"));
-    written[start..end].trim_start().split_once(";\n").map_or("", |(_, rest)| rest).to_owned()
+    let start = written
+        .find("    color = ")
+        .unwrap_or_else(|| panic!("{written}"));
+    let end = written
+        .find("\n}\n\nfloat4 main(")
+        .unwrap_or_else(|| panic!("{written}"));
+    written[start..end]
+        .trim_start()
+        .split_once(";\n")
+        .map_or("", |(_, rest)| rest)
+        .to_owned()
 }
 
 #[track_caller]
@@ -47,12 +57,16 @@ fn names_comments_macros_and_loops_stay() {
         assert!(written.contains(expected), "{expected}\n---\n{written}");
     }
     // Nothing is declared that is not used.
-    assert!(!written.contains("cbuffer") && !written.contains("gl_FragCoord"), "{written}");
+    assert!(
+        !written.contains("cbuffer") && !written.contains("gl_FragCoord"),
+        "{written}"
+    );
 }
 
 #[test]
 fn products_of_matrices_exchange_their_sides() {
-    let written = body("mat2 m = mat2(1, 2, 3, 4);\nat *= m;\nat = m * at;\nm = m * m * 2.;\ncolor.xy = at + m[1];");
+    let written =
+        body("mat2 m = mat2(1, 2, 3, 4);\nat *= m;\nat = m * at;\nm = m * m * 2.;\ncolor.xy = at + m[1];");
     assert_lines(
         &written,
         &[
@@ -107,20 +121,31 @@ fn functions_have_the_names_of_hlsl() {
 #[test]
 fn constants_are_folded_where_their_precision_matters() {
     // Both precisions round the first to the same float.
-    let written = body("color.x = at.x * (1. / 4.);\ncolor.y = at.x * (3.14159265 / 1.1);\ncolor.z = sin(1.);");
+    let written =
+        body("color.x = at.x * (1. / 4.);\ncolor.y = at.x * (3.14159265 / 1.1);\ncolor.z = sin(1.);");
     let own: Vec<&str> = written.lines().map(str::trim).collect();
     assert_eq!(own[0], "color.x = at.x * (1.0 / 4.0);");
     let folded = format!("color.y = at.x * {:?};", 3.141_592_65_f32 / 1.1);
     let exact = (3.141_592_65_f64 / 1.1) as f32;
     let kept = "color.y = at.x * (3.14159265 / 1.1);";
-    assert_eq!(own[1], if exact == 3.141_592_65_f32 / 1.1 { kept } else { &folded });
+    assert_eq!(
+        own[1],
+        if exact == 3.141_592_65_f32 / 1.1 {
+            kept
+        } else {
+            &folded
+        }
+    );
     assert_eq!(own[2], "color.z = 0.84147096;");
 }
 
 #[test]
 fn both_sides_of_a_condition_may_have_effects() {
     let items = "float count = 0.; float next() { return ++count; }";
-    let written = with_items(items, "float a = at.x > 1. ? next() : 2.;\nif (at.y > 1. && next() > 2.) color.x = a;");
+    let written = with_items(
+        items,
+        "float a = at.x > 1. ? next() : 2.;\nif (at.y > 1. && next() > 2.) color.x = a;",
+    );
     assert_lines(
         &written,
         &[
@@ -147,7 +172,10 @@ fn both_sides_of_a_condition_may_have_effects() {
 #[test]
 fn variables_are_zero_where_a_value_may_be_read() {
     let items = "struct Hit { float t; vec3 n; };";
-    let written = with_items(items, "Hit hit;\nfloat set;\nset = 1.;\nfloat sum;\nif (set > at.x) sum = 1.;\ncolor.x = hit.t + sum + set;");
+    let written = with_items(
+        items,
+        "Hit hit;\nfloat set;\nset = 1.;\nfloat sum;\nif (set > at.x) sum = 1.;\ncolor.x = hit.t + sum + set;",
+    );
     assert_lines(
         &written,
         &[
@@ -166,7 +194,10 @@ fn variables_are_zero_where_a_value_may_be_read() {
 #[test]
 fn names_do_not_hide_what_their_declaration_calls() {
     let items = "float map(float x) { return x; } float lerp(float x) { return x; }";
-    let written = with_items(items, "float map = map(at.x);\nfloat line = lerp(map);\n{ float line = line + 1.; color.x = line; }");
+    let written = with_items(
+        items,
+        "float map = map(at.x);\nfloat line = lerp(map);\n{ float line = line + 1.; color.x = line; }",
+    );
     assert_lines(
         &written,
         &[
@@ -182,20 +213,34 @@ fn names_do_not_hide_what_their_declaration_calls() {
 
 #[test]
 fn cases_are_blocks_if_they_declare_variables() {
-    let written = body("switch (int(at.x)) {\ncase 0: { color.x = 1.; break; }\ncase 1: float a = at.y; color.x = a; break;\ndefault: break;\n}");
-    assert!(written.contains("case 1: {\n            float a = at.y;\n"), "{written}");
+    let written = body(
+        "switch (int(at.x)) {\ncase 0: { color.x = 1.; break; }\ncase 1: float a = at.y; color.x = a; break;\ndefault: break;\n}",
+    );
+    assert!(
+        written.contains("case 1: {\n            float a = at.y;\n"),
+        "{written}"
+    );
     let shared = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); switch (int(p.x)) { case 0: float a = 1.; c.x = a; break; default: a = 2.; c.x = a; } }";
     let refused = converted(Host::Hlsl, shared);
-    assert!(matches!(refused, Err(WriteFailure::Unprintable(Unprintable::Construct(_) | Unprintable::Host(_)))));
+    assert!(matches!(
+        refused,
+        Err(WriteFailure::Unprintable(
+            Unprintable::Construct(_) | Unprintable::Host(_)
+        ))
+    ));
 }
 
 #[test]
 fn hosts_refuse_inputs_that_they_lack() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p) * iDate; }";
-    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(Host::WindowsTerminal, text) else {
+    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(Host::WindowsTerminal, text)
+    else {
         panic!("it is not refused");
     };
-    assert!(error.message.contains("in the style `windows-terminal`"), "{error:?}");
+    assert!(
+        error.message.contains("in the style `windows-terminal`"),
+        "{error:?}"
+    );
     assert!(converted(Host::Unity, text).is_ok());
 }
 
@@ -203,15 +248,25 @@ fn hosts_refuse_inputs_that_they_lack() {
 fn hosts_code_is_complete() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy) + iMouse + dFdy(p.y); }";
     for (host, expected) in [
-        (Host::Slang, "[[vk::binding(1, 0)]] Texture2D iChannel0 : register(t1);"),
-        (Host::Unity, "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + -ddy(p.y);"),
+        (
+            Host::Slang,
+            "[[vk::binding(1, 0)]] Texture2D iChannel0 : register(t1);",
+        ),
+        (
+            Host::Unity,
+            "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + -ddy(p.y);",
+        ),
     ] {
         let written = converted(host, text).unwrap();
         assert!(written.contains(expected), "{written}");
         assert!(!written.contains("//?") && !written.contains("$"), "{written}");
         assert!(written.lines().all(|line| line.trim_end() == line), "{written}");
         let hosted = host.hosted(&written, Stage::Image);
-        assert!(!hosted.text.contains("#pragma") && !hosted.text.contains("$"), "{}", hosted.text);
+        assert!(
+            !hosted.text.contains("#pragma") && !hosted.text.contains("$"),
+            "{}",
+            hosted.text
+        );
         assert_eq!(hosted.upside_down, host == Host::Unity);
     }
 }
@@ -220,7 +275,10 @@ fn hosts_code_is_complete() {
 fn adaptations_are_of_the_templates() {
     for host in Host::ALL {
         for (code, _) in host.adaptations() {
-            assert!(host.template().replace("$texture", "Texture2D").contains(code), "{code}");
+            assert!(
+                host.template().replace("$texture", "Texture2D").contains(code),
+                "{code}"
+            );
         }
         assert!(host.template().lines().all(|line| line.len() <= 130));
     }

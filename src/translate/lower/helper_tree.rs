@@ -9,7 +9,11 @@ use crate::lower::context::LoweringContext;
 /// Parses a generated function whose body is this GLSL: the first item of the result, whose name is not the
 /// function's. `None` if it is not
 /// valid by itself.
-pub(crate) fn helper_tree(cx: &LoweringContext, id: FunctionId, text: &str) -> Option<(Files, LoweringContext)> {
+pub(crate) fn helper_tree(
+    cx: &LoweringContext,
+    id: FunctionId,
+    text: &str,
+) -> Option<(Files, LoweringContext)> {
     let tree = &cx.tree;
     let function = &tree[id];
     let parameters = function.parameters.iter().map(|&parameter| {

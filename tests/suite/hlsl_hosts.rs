@@ -1,0 +1,149 @@
+//! HLSL from the tree, and the files for hosts that take it: Unity, Windows Terminal and Slang.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use toyproof_convert::{ProofError, Prover, Runner, ShaderProof, Source, TargetCode};
+use toyproof_diagnostic::{Deadline, File, Files};
+use toyproof_glsl::check;
+use toyproof_translate::c_family::{Host, write};
+
+use crate::program::toyproof;
+use crate::requirements::{require_driver, require_program, require_worker};
+
+const TIMEOUT: Duration = Duration::from_secs(60);
+
+/// Reads what differs between hosts: inputs, a texture, derivatives and the position.
+const INPUTS: &str = "
+float shade(vec2 p) { return p.y * 0.01 + dFdy(p.y * p.y) * 0.02 + gl_FragCoord.y * 0.001; }
+void mainImage(out vec4 color, in vec2 p) {
+    vec2 uv = p / iResolution.xy;
+    color = vec4(fract(shade(p)), uv, 1.0) + sin(iTime) * 0.1 + float(iFrame % 7) * 0.01 + iMouse.x * 0.001;
+}";
+
+/// Proves the file for a host after one edit.
+fn prove(host: Host, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
+    if !require_program("glslangValidator") {
+        return None;
+    }
+    let mut worker = require_worker()?;
+    let mut files = Files::default();
+    let file = files.add(File::new("shader", shader));
+    let checked = check(&files, file, &Default::default()).expect("it is valid");
+    let text = write(&checked, &files, host, "shader", &Deadline::default()).expect("it is written");
+    assert!(text.contains(from), "{text}");
+    let mut prover = Prover {
+        runner: Runner::Driver(&mut worker),
+        browser: None,
+        timeout: TIMEOUT,
+        pool: None,
+    };
+    let source = Source {
+        checked: &checked,
+        files: &files,
+    };
+    Some(prover.prove(source, &TargetCode::CFamily(text.replacen(from, to, 1), host)))
+}
+
+#[test]
+fn files_for_hosts_are_proved() {
+    for host in Host::ALL {
+        let Some(proved) = prove(host, INPUTS, "", "") else {
+            return;
+        };
+        let proof = proved.unwrap_or_else(|error| panic!("{}: {error}", host.name()));
+        assert_eq!(proof.proof().equal(), proof.proof().pixels(), "{}", host.name());
+    }
+}
+
+#[test]
+fn faults_in_a_hosts_code_are_found() {
+    for (host, from, to) in [
+        (Host::Hlsl, "position.xy);", "position.yx);"),
+        (Host::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
+        (Host::Unity, "-ddy(", "ddy("),
+        (Host::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
+        (Host::WindowsTerminal, "Resolution.y - position.y", "position.y"),
+        (
+            Host::WindowsTerminal,
+            "#define iMouse float4(0.0",
+            "#define iMouse float4(1.0",
+        ),
+        (Host::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
+    ] {
+        let Some(proved) = prove(host, INPUTS, from, to) else {
+            return;
+        };
+        assert!(
+            matches!(proved, Err(ProofError::Differs { differing: 1.., .. })),
+            "{}, {to}: {proved:?}",
+            host.name()
+        );
+    }
+}
+
+#[test]
+fn the_course_is_written_for_every_host() {
+    if !require_driver() || !require_program("glslangValidator") {
+        return;
+    }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let hosts = [
+        ("unity", "shader"),
+        ("windows-terminal", "hlsl"),
+        ("slang", "slang"),
+        ("plain", "hlsl"),
+    ];
+    for (style, extension) in hosts {
+        let out = tempfile::tempdir().unwrap();
+        let to = out.path().to_str().unwrap();
+        let shaders = [
+            "glsl/06-reflections.glsl",
+            "glsl/13-importance-sampling.glsl",
+            "glsl/2d",
+        ];
+        let options = ["--to", "hlsl", "--style", style, "-o", to, "--verify"];
+        let run = toyproof(folder, &[&["convert"][..], &shaders, &options].concat());
+        assert_eq!(run.code, 0, "{style}: {}{}", run.stdout, run.stderr);
+        assert!(!run.stdout.contains("by naga"), "{style}: {}", run.stdout);
+        let written =
+            fs::read_to_string(out.path().join("06-reflections").with_extension(extension)).unwrap();
+        // The author's words are there, and no generated ones.
+        assert!(
+            written.contains("// Proved: this file, as read by glslangValidator"),
+            "{written}"
+        );
+        assert!(
+            !written.contains("toyproof_") && !written.contains("_e"),
+            "{written}"
+        );
+    }
+}
+
+#[test]
+fn what_a_host_lacks_is_refused_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {\n    c = iDate;\n}";
+    fs::write(folder.path().join("date.glsl"), text).unwrap();
+    let arguments = [
+        "convert",
+        "date.glsl",
+        "-o",
+        "date.hlsl",
+        "--style",
+        "windows-terminal",
+    ];
+    let run = toyproof(folder.path(), &arguments);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(
+        run.stderr
+            .contains("`iDate` is not available in the style `windows-terminal`"),
+        "{}",
+        run.stderr
+    );
+    assert!(run.stderr.contains("date.glsl:2:9"), "{}", run.stderr);
+    let arguments = ["convert", "date.glsl", "-o", "date.wgsl", "--style", "unity"];
+    let run = toyproof(folder.path(), &arguments);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+}
