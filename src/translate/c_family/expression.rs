@@ -265,14 +265,9 @@ impl Writer<'_> {
 
     /// The value of a declaration whose every component is zero.
     pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
-        /// Maximum number of elements in a list of zeros.
-        const MAX_ZEROS: u32 = 64;
         Ok(match ty {
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
-                if array.size > MAX_ZEROS {
-                    return Err(Unprintable::Construct("a large array without initial values"));
-                }
                 let zeros = vec![self.zero(array.element)?; array.size as usize];
                 format!("{{ {} }}", zeros.join(", "))
             }

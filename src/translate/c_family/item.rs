@@ -8,6 +8,9 @@ use super::writer::{PrintResult, Writer};
 use crate::lower::helper_tree;
 use crate::print::{Names, Order};
 
+/// Maximum number of elements in a global list of zeros.
+const MAX_ZEROS: u64 = 64;
+
 impl Writer<'_> {
     pub(super) fn item(&mut self, item: Item) -> PrintResult {
         self.check_deadline()?;
@@ -83,14 +86,27 @@ impl Writer<'_> {
         let word = if is_constant { "static const" } else { "static" };
         let declared = self.declarator(variable.ty, self.variable(id))?;
         let value = match variable.initializer {
-            Some(value) => self.initializer(value)?,
-            None => self.zero(variable.ty)?,
+            Some(value) => format!(" = {}", self.initializer(value)?),
+            // Static variables are zero without a value, too (Microsoft's “Variable Syntax”).
+            None if self.element_count(variable.ty) > MAX_ZEROS => String::new(),
+            None => format!(" = {}", self.zero(variable.ty)?),
         };
-        self.line(&format!("{word} {declared} = {value};"));
+        self.line(&format!("{word} {declared}{value};"));
         if let Some(at) = variable.at {
             self.trailing_comment(at);
         }
         Ok(())
+    }
+
+    /// The number of elements of an array of arrays; 1 for other types.
+    fn element_count(&self, ty: Type) -> u64 {
+        match ty {
+            Type::Array(id) => {
+                let array = self.cx.tree.array(id);
+                u64::from(array.size) * self.element_count(array.element)
+            }
+            _ => 1,
+        }
     }
 
     fn definition(&mut self, id: FunctionId) -> PrintResult {

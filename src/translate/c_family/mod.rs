@@ -24,7 +24,9 @@ use toyproof_glsl::Checked;
 use self::language::Words;
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{Pass, Passes, branch_for_effects, fold_by_precision, fold_except};
+use crate::lower::{
+    Pass, Passes, branch_for_effects, fold_by_precision, fold_except, name_array_values,
+};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -46,6 +48,7 @@ pub fn write(
     let (early, late) = passes();
     early.run(&mut cx, deadline)?;
     branch_for_effects(&mut cx);
+    name_array_values(&mut cx);
     late.run(&mut cx, deadline)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);
@@ -68,6 +71,7 @@ fn passes() -> (Passes, Passes) {
         Pass::Matrices,
         Pass::Booleans,
         Pass::Swizzles,
+        Pass::Indices,
         Pass::Negations,
         Pass::OutArguments,
         Pass::Inequality,

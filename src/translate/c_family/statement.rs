@@ -47,9 +47,7 @@ impl Writer<'_> {
             StatementKind::Declare(variable) => {
                 let needs_value = self.cx.tree[*variable].initializer.is_none()
                     && !is_written_first(self.cx, *variable, rest);
-                let code = self.declaration(*variable, needs_value)?;
-                self.line(&format!("{code};"));
-                return Ok(());
+                return self.declare(*variable, needs_value);
             }
             StatementKind::Break => self.line("break;"),
             StatementKind::Continue => self.line("continue;"),
@@ -107,6 +105,32 @@ impl Writer<'_> {
             Condition::Expression(condition) => self.expression(condition),
             Condition::Declare(_) => Err(Unprintable::Construct("a declaration in a condition")),
         }
+    }
+
+    /// Declares a local variable. The elements of a large array are set to zero by a loop.
+    fn declare(&mut self, id: VariableId, needs_value: bool) -> PrintResult {
+        /// Maximum number of elements in a list of zeros.
+        const MAX_ZEROS: u32 = 16;
+        let large = match self.cx.tree[id].ty {
+            Type::Array(array) if needs_value => Some(self.cx.tree.array(array)),
+            _ => None,
+        };
+        let large = large.filter(|array| array.size > MAX_ZEROS);
+        let code = self.declaration(id, needs_value && large.is_none())?;
+        self.line(&format!("{code};"));
+        if let Some(array) = large {
+            let index = self.free("index");
+            let zero = match array.element {
+                Type::Array(_) => return Err(Unprintable::Construct("a large array of arrays without values")),
+                element => self.zero(element)?,
+            };
+            let size = array.size;
+            self.line(&format!("for (int {index} = 0; {index} < {size}; {index}++) {{"));
+            let name = self.variable(id);
+            self.indented(|writer| writer.line(&format!("{name}[{index}] = {zero};")));
+            self.line("}");
+        }
+        Ok(())
     }
 
     /// `float a = 1.0`; without an initial value, zero if it needs one.

@@ -170,6 +170,60 @@ fn both_sides_of_a_condition_may_have_effects() {
 }
 
 #[test]
+fn conditions_with_effects_move_to_the_body() {
+    let items = "float count = 0.; float next() { return ++count; }";
+    let written = with_items(items, "while (at.x > 1. && next() < 3.) at.x -= 1.;\nif (at.y > 2.) at.y = 0.; else if (at.x > 0. || next() > 1.) color.x = 1.;");
+    assert_lines(
+        &written,
+        &[
+            "while (true) {",
+            "bool value_1 = false;",
+            "if (at.x > 1.0) {",
+            "value_1 = next() < 3.0;",
+            "} else {",
+            "value_1 = false;",
+            "}",
+            "if (!value_1) {",
+            "break;",
+            "}",
+            "at.x -= 1.0;",
+            "}",
+            "if (at.y > 2.0) {",
+            "at.y = 0.0;",
+            "} else {",
+            "bool value_2 = false;",
+            "if (at.x > 0.0) {",
+            "value_2 = true;",
+            "} else {",
+            "value_2 = next() > 1.0;",
+            "}",
+            "if (value_2) {",
+            "color.x = 1.0;",
+            "}",
+            "}",
+        ],
+    );
+}
+
+#[test]
+fn arrays_have_names() {
+    let written = body("color.x = float[2](at.x, 1.)[int(at.y)];\nfloat large[99];\nlarge[int(at.x)] = 1.;\ncolor.y = large[3];");
+    assert_lines(
+        &written,
+        &[
+            "float array[2] = { at.x, 1.0 };",
+            "color.x = array[int(at.y)];",
+            "float large[99];",
+            "for (int index = 0; index < 99; index++) {",
+            "large[index] = 0.0;",
+            "}",
+            "large[int(at.x)] = 1.0;",
+            "color.y = large[3];",
+        ],
+    );
+}
+
+#[test]
 fn variables_are_zero_where_a_value_may_be_read() {
     let items = "struct Hit { float t; vec3 n; };";
     let written = with_items(

@@ -5,6 +5,7 @@
 //! b`, which naga evaluates in order. Later passes rewrite statements; finally `sequence` turns sequences
 //! into statements.
 
+mod array_value;
 mod branch;
 mod builtin;
 mod conditional;
@@ -31,6 +32,7 @@ mod stage_io;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use array_value::name_array_values;
 pub(crate) use conditional::branch_for_effects;
 pub(crate) use folding::{fold_by_precision, fold_except};
 pub(crate) use helper_tree::helper_tree;
