@@ -71,6 +71,7 @@ mod povray;
 mod program;
 mod projects;
 mod random_draws;
+mod reduce;
 mod references;
 mod rendering;
 mod repairs;
