@@ -16,8 +16,8 @@ use toyproof_project::files::{self, Input, Texts};
 use toyproof_reduce::fault::{CommandLine, Fault, FaultTester, Finding, Session, Subject, Wanted, find};
 use toyproof_reduce::report::Report;
 use toyproof_reduce::{Limits, Progress, Reduction, reduce};
-use toyproof_translate::NAGA_VERSION;
 use toyproof_translate::lower::Pass;
+use toyproof_translate::{FloatMode, NAGA_VERSION};
 use toyproof_verify::{Expected, Verdict};
 
 use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, check_output, parse_time_limit, shell_word};
@@ -121,7 +121,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         language,
         frame,
         expected: expected.as_ref(),
-        float: args.driver.float(),
+        float: float(args, &wanted),
         without: args.without,
         max_iterations: MAX_ITERATIONS,
         timeout: args.driver.timeout(),
@@ -160,6 +160,16 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         terminal.warn("the reduction was ended before it was complete\nhelp: reduce the result to go on");
     }
     Ok(Exit::Success)
+}
+
+/// The float mode: what naga gets is shorter without the functions that strict runs expand.
+fn float(args: &Args, wanted: &Wanted) -> FloatMode {
+    let default = if *wanted == Wanted::Naga {
+        FloatMode::Fast
+    } else {
+        FloatMode::Strict
+    };
+    args.driver.explicit_float().unwrap_or(default)
 }
 
 /// Reduces the text, and writes each smaller one to the output, so that an interrupt loses nothing.
@@ -289,6 +299,7 @@ fn report(
         lowered: tools.lowered.as_deref(),
         spirv: tools.spirv.as_deref(),
         device: tools.device.as_deref(),
+        without: args.without.map(pass_name).as_deref(),
         naga: NAGA_VERSION,
         system: &format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
     }

@@ -32,6 +32,8 @@ pub struct Report<'a> {
     pub spirv: Option<&'a [u8]>,
     /// The driver's name and version.
     pub device: Option<&'a str>,
+    /// toyproof's workaround for a fault of naga that was left out, so that naga is at fault.
+    pub without: Option<&'a str>,
     /// The version of naga.
     pub naga: &'a str,
     /// The operating system.
@@ -95,6 +97,9 @@ impl Report<'_> {
                 language(*target)
             ),
             Fault::Driver { .. } => format!("{}: {message}", self.device.unwrap_or("Vulkan driver")),
+            Fault::Toolchain { .. } if self.without.is_some() => {
+                "A valid fragment shader is translated to SPIR-V that renders wrong values".to_owned()
+            }
             Fault::Toolchain { .. } => format!(
                 "{}: a fragment shader with `NoContraction` renders wrong values",
                 self.device.unwrap_or("Vulkan driver")
@@ -109,29 +114,37 @@ impl Report<'_> {
         match &self.finding.fault {
             Fault::Naga { .. } => {
                 "naga's GLSL front end, its validator or one of its writers does not accept a shader that \
-                 the specification allows."
+                 the specification allows. It was found with toyproof, a tool for ShaderToy shaders, which gives \
+                 them to naga as GLSL 4.50."
                     .to_owned()
             }
             Fault::Driver { .. } => {
                 "The driver does not survive a fragment shader whose SPIR-V is valid.".to_owned()
             }
+            Fault::Toolchain { .. } if self.without.is_some() => format!(
+                "naga's GLSL front end gives a shader another meaning: the image of its SPIR-V has other values than \
+                 the specification defines. {} It was found with toyproof, a tool for ShaderToy shaders, which gives \
+                 them to naga as GLSL 4.50.",
+                self.differing()
+            ),
             Fault::Toolchain { .. } => format!(
                 "A driver renders other float32 values than IEEE 754 arithmetic gives, although all arithmetic is \
                  decorated with `NoContraction`. {} None of these pixels depends on an operation with an undefined \
                  result.",
-                self.finding
-                    .differing
-                    .map_or_else(String::new, |[differing, pixels]| format!(
-                        "{} of {} pixels differ.",
-                        grouped(differing),
-                        grouped(pixels)
-                    ))
+                self.differing()
             ),
             Fault::Diagnostic { .. } | Fault::Verdict { .. } => {
                 "toyproof's result on this shader is in question.".to_owned()
             }
             Fault::Command { .. } => "The command ends like this for the following shader.".to_owned(),
         }
+    }
+
+    fn differing(&self) -> String {
+        let differing = self.finding.differing;
+        differing.map_or_else(String::new, |[differing, pixels]| {
+            format!("{} of {} pixels differ.", grouped(differing), grouped(pixels))
+        })
     }
 
     fn expected_and_actual(&self) -> (String, String) {
@@ -164,18 +177,30 @@ impl Report<'_> {
             "With toyproof: save the shader as `{}`, and run `{}`.",
             self.file_name, self.command
         );
-        match &self.finding.fault {
-            Fault::Naga { target, .. } => format!(
+        let own = match self.without {
+            Some(_) => format!("{own} Without `--without`, toyproof works around the fault."),
+            None => own,
+        };
+        let draw = format!(
+            "draw one triangle that covers a target of {width}×{height} pixels in `R32G32B32A32_SFLOAT`, with this \
+             fragment shader and any vertex shader that sets the position. Binding 0 of set 0 is a uniform block with \
+             zeros but for `iResolution`, which is ({width}, {height}, 1). Read pixels back as floats; row 0 is the \
+             bottom."
+        );
+        let translate = |extension: &str| {
+            format!(
                 "With naga's command line (`cargo install naga-cli`): save the GLSL 4.50 above as `shader.frag`, and \
-                 run `naga --input-kind glsl --shader-stage frag shader.frag shader.{}`.\n\n{own}",
-                target.extension()
-            ),
-            Fault::Driver { .. } | Fault::Toolchain { .. } => format!(
-                "Without toyproof: assemble the SPIR-V above with `spirv-as`, and draw one triangle that covers a \
-                 target of {width}×{height} pixels in `R32G32B32A32_SFLOAT`, with this fragment shader and any vertex \
-                 shader that sets the position. Binding 0 of set 0 is a uniform block with zeros but for \
-                 `iResolution`, which is ({width}, {height}, 1). Read pixels back as floats; row 0 is the bottom.\n\n{own}"
-            ),
+                 run `naga --input-kind glsl --shader-stage frag shader.frag shader.{extension}`."
+            )
+        };
+        match &self.finding.fault {
+            Fault::Naga { target, .. } => format!("{}\n\n{own}", translate(target.extension())),
+            Fault::Toolchain { .. } if self.without.is_some() => {
+                format!("{} Read the result, or {draw}\n\n{own}", translate("spv"))
+            }
+            Fault::Driver { .. } | Fault::Toolchain { .. } => {
+                format!("Without toyproof: assemble the SPIR-V above with `spirv-as`, and {draw}\n\n{own}")
+            }
             Fault::Command { command, .. } => {
                 format!("Save the shader as a file, and run `{command}` on it.")
             }
@@ -185,7 +210,7 @@ impl Report<'_> {
 }
 
 /// A language, as its users write it.
-fn language(target: Target) -> &'static str {
+pub(crate) fn language(target: Target) -> &'static str {
     match target {
         Target::Wgsl => "WGSL",
         Target::Spirv => "SPIR-V",
@@ -249,6 +274,7 @@ mod tests {
             lowered: None,
             spirv: None,
             device: Some("llvmpipe Mesa 22.3.6"),
+            without: None,
             naga: "30.0.1",
             system: "Linux x86_64",
         };
@@ -264,5 +290,14 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
+        let of_naga = Report {
+            without: Some("short-circuit"),
+            ..report
+        };
+        assert!(
+            of_naga
+                .markdown()
+                .starts_with("# A valid fragment shader is translated")
+        );
     }
 }

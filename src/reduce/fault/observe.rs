@@ -102,11 +102,17 @@ impl<'a> Session<'a> {
             return found.is_some_and(|found| found.fault == *fault);
         }
         // A panic of toyproof itself is another fault.
-        let found = contain(Part::Shader, || self.find(&fault.wanted(), text));
-        match found {
-            Ok(Ok(found)) => is_same(fault, &found.fault),
-            _ => false,
-        }
+        let shows = contain(Part::Shader, || match fault {
+            Fault::Diagnostic {
+                code,
+                message,
+                errors,
+            } => self.has_diagnostic(text, (*code, message), errors),
+            _ => self
+                .find(&fault.wanted(), text)
+                .is_ok_and(|found| is_same(fault, &found.fault)),
+        });
+        shows.unwrap_or(false)
     }
 
     /// Finds a fault of a text.
@@ -184,6 +190,9 @@ impl<'a> Session<'a> {
         match fault {
             Fault::Naga { .. } => tools.lowered = Some(lowered.text().to_owned()),
             Fault::Driver { .. } | Fault::Toolchain { .. } => {
+                if self.subject.without.is_some() {
+                    tools.lowered = Some(lowered.text().to_owned());
+                }
                 if let Some(worker) = self.worker() {
                     tools.spirv = worker.translate(lowered, Target::Spirv, float).ok();
                     let drivers = worker.probe().unwrap_or_default();
@@ -232,6 +241,10 @@ impl<'a> Session<'a> {
             _ if phase(&failure) == Some(Phase::Translating) => failure.to_string(),
             _ => return None,
         };
+        let message = message
+            .strip_prefix("naga cannot translate this: ")
+            .map(str::to_owned)
+            .unwrap_or(message);
         let fault = Fault::Naga {
             target,
             message: pattern(&message),
@@ -332,25 +345,40 @@ impl<'a> Session<'a> {
     }
 
     /// A warning with a code, or the first one.
-    fn warning(&mut self, compiled: &Compiled, code: Option<Code>) -> Option<Finding> {
+    fn warning(&self, compiled: &Compiled, code: Option<Code>) -> Option<Finding> {
+        let warnings = self.warnings(compiled, code);
+        let found = warnings
+            .iter()
+            .find(|warning| code.is_none_or(|code| warning.code == code))?;
+        Some(Finding::of_diagnostic(found, Vec::new()))
+    }
+
+    /// The warnings about a shader; those about its runs only where a warning with the code may be among them.
+    fn warnings(&self, compiled: &Compiled, code: Option<Code>) -> Vec<Diagnostic> {
         let timeout = self.subject.timeout;
         let lints = lint(&compiled.files, &compiled.checked, &Deadline::after(timeout));
-        let is_wanted = |warning: &&Diagnostic| {
-            warning.severity == Severity::Warning && code.is_none_or(|code| warning.code == code)
-        };
-        let mut found = lints.warnings.iter().find(is_wanted).cloned();
-        if found.is_none() && code.is_none_or(Code::is_of_runs) {
+        let mut warnings = lints.warnings.clone();
+        let is_of_text = |warning: &Diagnostic| code.is_none_or(|code| warning.code == code);
+        if code.is_none_or(Code::is_of_runs) && !warnings.iter().any(is_of_text) {
             let mut case = Case::new(&compiled.checked, &lints, &self.subject.frame).with_timeout(timeout);
             case.expected = self.subject.expected;
-            let verified = self.verify(&case).ok()?;
-            found = verified.results.notes.iter().find(is_wanted).cloned();
+            if let Ok(verified) = self.verify(&case) {
+                warnings.extend(verified.results.notes);
+            }
         }
-        let found = found?;
-        let fault = Fault::Diagnostic {
-            code: found.code,
-            errors: Vec::new(),
+        warnings.retain(|warning| warning.severity == Severity::Warning);
+        warnings
+    }
+
+    /// Whether a text has an error or a warning, without errors that are not `accepted`.
+    fn has_diagnostic(&self, text: &str, (code, message): (Code, &str), accepted: &[Code]) -> bool {
+        let all = match self.compile(text) {
+            Ok(compiled) => self.warnings(&compiled, Some(code)),
+            Err(errors) => errors.into(),
         };
-        Some(Finding::new(fault).with_message(found.message))
+        let is_accepted = |one: &Diagnostic| one.severity != Severity::Error || accepted.contains(&one.code);
+        let is_wanted = |one: &Diagnostic| one.code == code && pattern(&one.message) == message;
+        all.iter().all(is_accepted) && all.iter().any(is_wanted)
     }
 
     fn run(&mut self, command: &CommandLine, text: &str) -> Result<Ending, CommandError> {
@@ -417,23 +445,12 @@ fn invalid(errors: &Diagnostics, wanted: &Wanted) -> Result<Finding, NotFound> {
     let mut codes: Vec<Code> = all.iter().map(|error| error.code).collect();
     codes.sort_unstable_by_key(|code| code.as_str());
     codes.dedup();
-    let fault = Fault::Diagnostic {
-        code: found.code,
-        errors: codes,
-    };
-    Ok(Finding::new(fault).with_message(found.message.clone()))
+    Ok(Finding::of_diagnostic(found, codes))
 }
 
 /// Whether a candidate's fault is that of the original.
 fn is_same(original: &Fault, candidate: &Fault) -> bool {
     match (original, candidate) {
-        (
-            Fault::Diagnostic { code, errors },
-            Fault::Diagnostic {
-                code: own,
-                errors: others,
-            },
-        ) => code == own && others.iter().all(|error| errors.contains(error)),
         (
             Fault::Verdict {
                 verdict,
