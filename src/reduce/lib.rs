@@ -28,13 +28,13 @@
 //!
 //! # How it works
 //!
-//! Candidates are texts: the tree shows what may go, and a rewrite edits the text, which is then tested like
-//! any other. So a fault in how a candidate is made loses the candidate, and cannot give a wrong result. A text
-//! that does not compile is reduced by its brackets and tokens.
+//! Candidates are texts: the tree shows what may go, and a rewrite edits the text, which is then tested
+//! like any other. So a fault in how a candidate is made loses the candidate, and cannot give a wrong result.
+//! A text that does not compile is reduced by its brackets and tokens.
 //!
-//! Kinds of rewrites follow each other from the largest to the smallest; of each, all are tried together, then
-//! halves of them, until each is tried alone (delta debugging, Zeller and Hildebrandt 2002). All of this is
-//! repeated until nothing succeeds.
+//! Kinds of rewrites follow each other from the largest to the smallest; of each, all are tried together,
+//! then halves of them, until each is tried alone (delta debugging, Zeller and Hildebrandt 2002). All of this
+//! is repeated until nothing succeeds.
 //!
 //! # Parts
 //!

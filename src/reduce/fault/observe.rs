@@ -41,8 +41,8 @@ pub struct Subject<'a> {
     pub float: FloatMode,
     /// A workaround for a fault of naga that is left out, to show this fault.
     pub without: Option<Pass>,
-    /// The largest number of loop iterations of a pixel on the CPU, so that candidates with loops without an end
-    /// are rejected at once.
+    /// The largest number of loop iterations of a pixel on the CPU, so that candidates with loops without an
+    /// end are rejected at once.
     pub max_iterations: u32,
     /// The time limit of a test.
     pub timeout: Duration,
@@ -290,8 +290,8 @@ impl<'a> Session<'a> {
         Ok((found, None))
     }
 
-    /// The difference between the driver's image and the evaluator's, which comes first: it rejects loops without
-    /// an end.
+    /// The difference between the driver's image and the evaluator's, which comes first: it rejects loops
+    /// without an end.
     fn toolchain(&mut self, compiled: &Compiled) -> Result<Option<Finding>, NotFound> {
         let evaluated = self
             .evaluated(compiled)

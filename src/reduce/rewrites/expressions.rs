@@ -40,7 +40,7 @@ fn values_at(tree: &Tree, depth: usize) -> Option<Vec<ExprId>> {
     Some(level)
 }
 
-/// Values replaced by 0, and divisors by 1: nobody reports that a division by 0 fails.
+/// Values replaced by 0, and divisors by 1: a division by 0 is another fault.
 pub(super) fn zero(source: &Source, depth: usize) -> Option<Vec<Rewrite>> {
     let tree = source.tree()?;
     let divisors: HashSet<ExprId> = tree
