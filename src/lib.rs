@@ -39,6 +39,7 @@
 //! | `stress` | numerical stability of ray–surface intersection, and tests of an author's own function |
 //! | `lab` | measurements of accuracy against time, and charts |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
+//! | `reduce` | the smallest shader that still shows a fault |
 //! | `film` | films of frames: GIF, APNG, and MP4 and `WebM` by an installed ffmpeg |
 //! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, autograders; with `classroom`, assignments |
 //! | `cli` | the command line |
@@ -107,6 +108,8 @@ pub use toyproof_metrics as metrics;
 pub use toyproof_player as player;
 #[cfg(feature = "project")]
 pub use toyproof_project as project;
+#[cfg(feature = "reduce")]
+pub use toyproof_reduce as reduce;
 #[cfg(feature = "report")]
 pub use toyproof_report as report;
 #[cfg(feature = "tracer")]

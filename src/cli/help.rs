@@ -10,7 +10,7 @@ use toyproof_diagnostic::nearest;
 const GROUPS: [(&str, &[&str]); 6] = [
     (
         "Shaders",
-        &["check", "test", "run", "debug", "convert", "compare"],
+        &["check", "test", "run", "debug", "convert", "compare", "reduce"],
     ),
     ("Scenes", &["scenes", "render"]),
     (

@@ -26,6 +26,7 @@ mod names;
 mod new;
 mod pool;
 mod project;
+mod reduce;
 mod reference;
 mod render;
 mod run;
@@ -111,6 +112,7 @@ enum Command {
     Debug(debug::Args),
     Explain(explain::Args),
     Compare(compare::Args),
+    Reduce(Box<reduce::Args>),
     Trade(trade::Args),
     Stress(stress::Args),
     Export(render::ExportArgs),
@@ -213,6 +215,7 @@ impl Command {
             Self::Debug(args) => debug::run(args, terminal),
             Self::Explain(args) => Ok(explain::run(args, terminal)),
             Self::Compare(args) => compare::run(args, terminal),
+            Self::Reduce(args) => reduce::run(args, terminal),
             Self::Trade(args) => trade::run(args, terminal),
             Self::Stress(args) => stress::run(args, terminal),
             Self::Export(args) => render::export(args, terminal),

@@ -3,14 +3,12 @@
 use std::fmt::Write as _;
 
 use toyproof_diagnostic::{grouped, plural};
+use toyproof_translate::NAGA_VERSION as NAGA;
 use toyproof_translate::backend::{Target, spirv};
 
 use crate::{
     FRAMES, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, ProofReference, Rgb8Comparison, ShaderProof,
 };
-
-/// The version of naga that is linked.
-const NAGA: &str = "30.0.1";
 
 /// The status of a conversion's proof.
 #[derive(Debug)]

@@ -91,6 +91,7 @@ pub use port::{PortError, Refusal, port};
 pub use preprocess::{ControlComment, Expansions, ReadInclude};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use single_edit::{single_edit, with_single_edit};
+pub use source::{Lexeme, lexemes};
 pub use stage::{ADDED_MAIN, Stage};
 use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Severity};
 pub use toyproof_image::{Filter, Sampling, UniformValue, Wrap};

@@ -22,6 +22,41 @@ struct Line {
     is_directive: bool,
 }
 
+/// A token of a text as it is written: directives are not executed, macros not expanded, comments not tokens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lexeme {
+    /// Its characters.
+    pub span: Span,
+    /// Whether it is part of a preprocessor directive.
+    pub is_in_directive: bool,
+    /// The number of its line from 0; lines that a `\\` continues are one.
+    pub line: usize,
+}
+
+/// The tokens of a text, valid or not, for edits of the text.
+///
+/// ```
+/// use toyproof_diagnostic::{File, Files};
+///
+/// let mut files = Files::default();
+/// let file = files.add(File::new("a.glsl", "#define A 1. // one\nfloat x;"));
+/// let lexemes = toyproof_glsl::lexemes(&files, file);
+/// let texts: Vec<_> = lexemes.iter().map(|lexeme| files.text(lexeme.span)).collect();
+/// assert_eq!(texts, ["#", "define", "A", "1.", "float", "x", ";"]);
+/// assert!(lexemes[3].is_in_directive && !lexemes[4].is_in_directive);
+/// ```
+pub fn lexemes(files: &Files, file: FileId) -> Vec<Lexeme> {
+    let source = Source::new(files, file);
+    let tokens = source.tokens.iter().zip(&source.lines);
+    tokens
+        .map(|(token, line)| Lexeme {
+            span: token.at.span,
+            is_in_directive: line.is_directive,
+            line: line.number,
+        })
+        .collect()
+}
+
 /// A source text as tokens. An index past the last token is valid and has no token.
 pub(crate) struct Source<'a> {
     pub(crate) text: &'a str,

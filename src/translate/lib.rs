@@ -80,6 +80,9 @@ pub use unprintable::{Unprintable, WriteFailure};
 
 use crate::lower::{Pass, Passes};
 
+/// The version of naga that is linked.
+pub const NAGA_VERSION: &str = "30.0.1";
+
 /// Why a module cannot be read, changed or written: mostly naga's message.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0}")]

@@ -132,6 +132,7 @@ fn tutorial_files(folder: &Path) {
         ("mine.glsl", block(student, "float intersect(")),
         ("far.toml", block(student, "screen_distance")),
         ("disk.glsl", block("docs/guide/function-tests.md", "@test disk")),
+        ("marbles.glsl", block("docs/guide/reducing.md", "float layers")),
         (
             "waves.frag",
             block("docs/guide/dialects.md", "uniform float speed"),

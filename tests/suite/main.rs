@@ -72,6 +72,7 @@ mod povray;
 mod program;
 mod projects;
 mod random_draws;
+mod reduce;
 mod references;
 mod rendering;
 mod repairs;

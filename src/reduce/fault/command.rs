@@ -1,0 +1,175 @@
+//! A command that tests a shader, as those of creduce and cvise do.
+
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+use thiserror::Error;
+
+/// What stands for the file in a command.
+const FILE: &str = "{}";
+
+/// The time between two checks whether a command has ended.
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
+
+/// A command of the shell in which `{}` stands for a file with the shader.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CommandLine {
+    text: String,
+    file_name: String,
+}
+
+/// How a command ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// With an exit status.
+    Exit(i32),
+    /// By a signal.
+    Signal(i32),
+    /// It exceeds the time limit, and is ended.
+    Timeout,
+}
+
+/// Why a command cannot be used.
+#[derive(Debug, Error)]
+pub enum CommandError {
+    /// It names no file.
+    #[error("the command has no `{{}}`, in place of which it gets the name of a file")]
+    NoFile,
+    /// It does not start, or its file cannot be written.
+    #[error("cannot run the command: {0}")]
+    NotRun(#[from] io::Error),
+}
+
+impl CommandLine {
+    /// A command that gets a file of a name, whose extension may matter to the command.
+    ///
+    /// # Errors
+    /// If the command has no `{}`.
+    pub fn new(text: &str, file_name: &str) -> Result<Self, CommandError> {
+        if !text.contains(FILE) {
+            return Err(CommandError::NoFile);
+        }
+        Ok(Self {
+            text: text.to_owned(),
+            file_name: file_name.to_owned(),
+        })
+    }
+
+    /// Runs the command on a text, in a folder of its own for temporary files.
+    ///
+    /// # Errors
+    /// If it does not start.
+    pub fn run(&self, folder: &TempDir, text: &str, limit: Duration) -> Result<Ending, CommandError> {
+        let file = folder.path().join(&self.file_name);
+        fs::write(&file, text)?;
+        let mut command = shell(&self.text, &file);
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut child = command.spawn()?;
+        let deadline = Instant::now() + limit;
+        loop {
+            if let Some(status) = child.try_wait()? {
+                return Ok(ending(status));
+            }
+            if Instant::now() > deadline {
+                #[cfg(unix)]
+                if let Some(group) = rustix::process::Pid::from_raw(child.id() as i32) {
+                    // Its children hold the driver or the file.
+                    let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+                }
+                let _ = child.kill();
+                child.wait()?;
+                return Ok(Ending::Timeout);
+            }
+            thread::sleep(POLL_INTERVAL);
+        }
+    }
+}
+
+impl fmt::Display for CommandLine {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Exit(code) => write!(f, "ends with exit status {code}"),
+            Self::Signal(signal) => write!(f, "is ended by signal {signal}"),
+            Self::Timeout => f.write_str("exceeds the time limit"),
+        }
+    }
+}
+
+/// The command in the shell, whose first argument is the file: so its name needs no quotes.
+#[cfg(unix)]
+fn shell(text: &str, file: &Path) -> Command {
+    let mut command = Command::new("/bin/sh");
+    command
+        .args(["-c", &text.replace(FILE, "\"$1\""), "sh"])
+        .arg(file);
+    command
+}
+
+#[cfg(not(unix))]
+fn shell(text: &str, file: &Path) -> Command {
+    let mut command = Command::new("cmd");
+    command.args(["/C", &text.replace(FILE, &file.to_string_lossy())]);
+    command
+}
+
+fn ending(status: ExitStatus) -> Ending {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        return Ending::Signal(signal);
+    }
+    Ending::Exit(status.code().unwrap_or_default())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    fn run(text: &str, limit: Duration) -> Ending {
+        let folder = tempfile::tempdir().unwrap();
+        let command = CommandLine::new(text, "it's a.glsl").unwrap();
+        command.run(&folder, "void f();", limit).unwrap()
+    }
+
+    #[test]
+    fn commands_end_in_several_ways() {
+        let limit = Duration::from_secs(10);
+        assert_eq!(run("grep -q void {}", limit), Ending::Exit(0));
+        assert_eq!(run("grep -q float {}", limit), Ending::Exit(1));
+        assert_eq!(run("kill -SEGV $$ # {}", limit), Ending::Signal(11));
+    }
+
+    #[test]
+    fn a_hang_ends_with_all_processes() {
+        let start = Instant::now();
+        assert_eq!(
+            run("sleep 60 & sleep 60; cat {}", Duration::from_millis(50)),
+            Ending::Timeout
+        );
+        assert!(start.elapsed() < Duration::from_secs(30));
+    }
+
+    #[test]
+    fn a_command_needs_a_file() {
+        assert!(matches!(
+            CommandLine::new("naga a.frag", "a.frag"),
+            Err(CommandError::NoFile)
+        ));
+    }
+}
