@@ -62,11 +62,14 @@
 pub mod backend;
 mod inexact;
 pub mod lower;
+mod module;
 pub mod naga_ir;
 mod print;
 pub mod wgsl;
 
 pub use lower::{lower, lower_strict, lower_within};
+pub use module::{GlslError, ModuleOptions, checked_to_module, glsl_to_module};
+pub use naga;
 pub use print::Lowered;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -130,10 +133,14 @@ impl FloatMode {
     /// # Errors
     /// If the deadline passes.
     pub fn lower_for_host(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
-        let passes = match self {
+        lower_within(checked, self.passes_for_host(), deadline)
+    }
+
+    /// The passes for a host that filters textures itself.
+    fn passes_for_host(self) -> Passes {
+        match self {
             Self::Strict => Passes::strict().without(Pass::Lookups),
             Self::Fast => Passes::required(),
-        };
-        lower_within(checked, passes, deadline)
+        }
     }
 }
