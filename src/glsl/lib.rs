@@ -68,6 +68,11 @@
 //! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
 
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
 mod built_in;
 mod check;
 mod constant;

@@ -59,6 +59,17 @@
 //! - [`backend`]: SPIR-V, either strict or as naga writes it; WGSL, MSL, HLSL and GLSL.
 //! - `inexact`: the list of functions whose last bits are implementation-defined.
 
+#![cfg_attr(
+    not(feature = "backend"),
+    expect(dead_code, reason = "only backends use some of the shared code")
+)]
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
+#[cfg(feature = "backend")]
 pub mod backend;
 mod inexact;
 pub mod lower;

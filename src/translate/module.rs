@@ -43,6 +43,16 @@ impl Default for ModuleOptions {
     }
 }
 
+impl ModuleOptions {
+    /// The default options for a shader of this name.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+}
+
 /// The errors of a shader. They are displayed with the lines of its text, also by `Debug`, so that `unwrap`
 /// and `main` show them.
 #[derive(Clone)]
