@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{IDLE_MOUSE, Script};
 #[cfg(feature = "files")]
 use crate::{Frame, Image, ImageError, Texture, noise, read};
+use crate::{IDLE_MOUSE, Script};
 
 /// The inputs of a frame.
 #[derive(Debug, Clone, PartialEq)]

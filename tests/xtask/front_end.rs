@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{BufReader, Write as _};
+use std::io::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -78,8 +78,17 @@ fn for_naga(text: &str, checked: &Checked) -> String {
         let _ = writeln!(modern, "{}", line.trim_start().trim_start_matches("uniform "));
     }
     modern += "};\n";
-    for (at, line) in text.lines().filter(|line| line.contains("uniform sampler2D")).enumerate() {
-        let name = line.trim_end().trim_end_matches(';').rsplit(' ').next().unwrap_or_default();
+    for (at, line) in text
+        .lines()
+        .filter(|line| line.contains("uniform sampler2D"))
+        .enumerate()
+    {
+        let name = line
+            .trim_end()
+            .trim_end_matches(';')
+            .rsplit(' ')
+            .next()
+            .unwrap_or_default();
         let _ = writeln!(
             modern,
             "layout(set = 0, binding = {}) uniform texture2D wrapped_t{at};\n\
@@ -91,7 +100,9 @@ fn for_naga(text: &str, checked: &Checked) -> String {
     }
     let kept = text.lines().filter(|line| {
         let line = line.trim_start();
-        !["#version", "precision ", "uniform ", "out vec4"].iter().any(|start| line.starts_with(start))
+        !["#version", "precision ", "uniform ", "out vec4"]
+            .iter()
+            .any(|start| line.starts_with(start))
     });
     kept.fold(modern, |modern, line| modern + line + "\n")
 }
@@ -130,7 +141,9 @@ fn is_valid(text: &str, checked: Option<&Checked>) -> bool {
 
 fn naga_parse(text: &str) -> Result<Module, String> {
     let options = Stage::from(ShaderStage::Fragment);
-    Frontend::default().parse(&options, text).map_err(|error| error.to_string())
+    Frontend::default()
+        .parse(&options, text)
+        .map_err(|error| error.to_string())
 }
 
 /// Calls a function that may panic.
@@ -152,7 +165,9 @@ fn is_wrong(module: Module, images: &[Option<Image>; 2]) -> Option<bool> {
         let (image, again) = (image.as_ref()?, again.as_ref()?);
         let differs = |(a, b): &(&[f32; 4], &[f32; 4])| {
             let shown = |component: f32| f64::from(component.clamp(0.0, 1.0));
-            (0..3).any(|at| !((shown(a[at]) - shown(b[at])).abs() <= TOLERANCE) && !(a[at].is_nan() && b[at].is_nan()))
+            (0..3).any(|at| {
+                !((shown(a[at]) - shown(b[at])).abs() <= TOLERANCE) && !(a[at].is_nan() && b[at].is_nan())
+            })
         };
         let differing = image.pixels().iter().zip(again.pixels()).filter(differs).count();
         wrong |= differing as f64 > WRONG_SHARE * image.pixels().len() as f64;
@@ -210,8 +225,14 @@ struct Side {
 }
 
 impl Side {
-    fn add(&mut self, name: &str, module: Result<Module, String>, images: Option<&[Option<Image>; 2]>) -> bool {
-        let valid = module.and_then(|module| caught(|| ValidModule::new(module).map_err(|error| error.to_string())));
+    fn add(
+        &mut self,
+        name: &str,
+        module: Result<Module, String>,
+        images: Option<&[Option<Image>; 2]>,
+    ) -> bool {
+        let valid =
+            module.and_then(|module| caught(|| ValidModule::new(module).map_err(|error| error.to_string())));
         let module = match valid {
             Ok(valid) => valid.into_module(),
             Err(error) => {
@@ -230,7 +251,8 @@ impl Side {
     fn print(&mut self, name: &str) {
         self.times.sort_by(f64::total_cmp);
         let median = self.times.get(self.times.len() / 2).unwrap_or(&f64::NAN);
-        let (accepted, panics, compared, wrong) = (self.accepted, self.panics, self.compared, self.wrong.len());
+        let (accepted, panics, compared, wrong) =
+            (self.accepted, self.panics, self.compared, self.wrong.len());
         println!("| {name} | {accepted} | {panics} | {wrong} of {compared} | {median:.2} ms |");
         println!("wrong: {}", self.wrong.join(" "));
     }
@@ -240,7 +262,11 @@ impl Side {
 /// site's JSON: a random choice.
 pub(super) fn compare(input: &Path, limit: usize, seed: u64) {
     std::panic::set_hook(Box::new(|_| {}));
-    let shaders = if input.join("HEAD").is_file() { of_repository(input, limit, seed) } else { of_folder(input) };
+    let shaders = if input.join("HEAD").is_file() {
+        of_repository(input, limit, seed)
+    } else {
+        of_folder(input)
+    };
     let (mut naga, mut ours) = (Side::default(), Side::default());
     let (mut valid, mut ratios) = (0, Vec::new());
     for (name, text) in &shaders {
@@ -255,7 +281,10 @@ pub(super) fn compare(input: &Path, limit: usize, seed: u64) {
             continue;
         };
         let given = for_naga(text, checked);
-        let options = ModuleOptions { validate: false, ..ModuleOptions::default() };
+        let options = ModuleOptions {
+            validate: false,
+            ..ModuleOptions::default()
+        };
         let images = images_of(checked);
         let comparable = checked.dialect.calls_main_image().then_some(&images);
         let by_naga = naga.add(name, caught(|| naga_parse(&given)), comparable);
@@ -274,7 +303,11 @@ pub(super) fn compare(input: &Path, limit: usize, seed: u64) {
         }
     }
     ratios.sort_by(f64::total_cmp);
-    println!("{} shaders, {valid} valid; median ratio of times {:.2}", shaders.len(), ratios.get(ratios.len() / 2).unwrap_or(&f64::NAN));
+    println!(
+        "{} shaders, {valid} valid; median ratio of times {:.2}",
+        shaders.len(),
+        ratios.get(ratios.len() / 2).unwrap_or(&f64::NAN)
+    );
     println!("| front end | accepted | panics | wrong | median |\n|---|---|---|---|---|");
     naga.print("naga");
     ours.print("ours");
@@ -284,9 +317,19 @@ pub(super) fn compare(input: &Path, limit: usize, seed: u64) {
 fn of_folder(folder: &Path) -> Vec<(String, String)> {
     let entries = fs::read_dir(folder).expect("the folder is readable");
     let paths = entries.map(|entry| entry.expect("it is readable").path());
-    let mut paths: Vec<_> = paths.filter(|path| path.extension().is_some_and(|ending| ending == "glsl" || ending == "frag")).collect();
+    let mut paths: Vec<_> = paths
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|ending| ending == "glsl" || ending == "frag")
+        })
+        .collect();
     paths.sort();
-    let read = |path: &std::path::PathBuf| (path.display().to_string(), fs::read_to_string(path).expect("it is text"));
+    let read = |path: &std::path::PathBuf| {
+        (
+            path.display().to_string(),
+            fs::read_to_string(path).expect("it is text"),
+        )
+    };
     paths.iter().map(read).collect()
 }
 
@@ -301,5 +344,8 @@ fn of_repository(repository: &Path, limit: usize, seed: u64) -> Vec<(String, Str
         }
     };
     let texts = projects::texts(repository, seed);
-    texts.filter_map(|(name, text)| Some((name, code(&text)?))).take(limit).collect()
+    texts
+        .filter_map(|(name, text)| Some((name, code(&text)?)))
+        .take(limit)
+        .collect()
 }
