@@ -151,7 +151,7 @@ fn caught<T>(call: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|_| Err("panic".to_owned()))
 }
 
-/// Whether a module computes another image than the shader, in double precision: it is written as GLSL by
+/// Whether a module computes another image than the shader, in float32: it is written as GLSL by
 /// naga, and evaluated. `None` if it cannot be.
 fn is_wrong(module: Module, images: &[Option<Image>; 2]) -> Option<bool> {
     let text = caught(|| {
@@ -183,7 +183,7 @@ fn images_of(checked: &Checked) -> [Option<Image>; 2] {
             channels: std::array::from_fn(|_| Some(Texture::from(noise()))),
             ..Frame::default()
         };
-        let settings = Settings::<f64> {
+        let settings = Settings::<f32> {
             deadline: Some(Instant::now() + TIMEOUT),
             ..Settings::default()
         };
@@ -236,6 +236,7 @@ impl Side {
         let module = match valid {
             Ok(valid) => valid.into_module(),
             Err(error) => {
+                println!("{name}: {error}");
                 self.panics += usize::from(error == "panic");
                 return false;
             }
@@ -289,9 +290,6 @@ pub(super) fn compare(input: &Path, limit: usize, seed: u64) {
         let comparable = checked.dialect.calls_main_image().then_some(&images);
         let by_naga = naga.add(name, caught(|| naga_parse(&given)), comparable);
         let by_us = caught(|| glsl_to_module(text, &options).map_err(|error| error.to_string()));
-        if let Err(error) = &by_us {
-            println!("{name}: {error}");
-        }
         if ours.add(name, by_us, Some(&images)) && by_naga {
             let [a, b] = [
                 milliseconds(|| drop(naga_parse(&given))),
