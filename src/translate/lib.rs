@@ -26,6 +26,8 @@
 //! }
 //! ```
 //!
+//! Programs that use wgpu or naga call [`glsl_to_module`], which does the first three steps.
+//!
 //! # Lowering
 //!
 //! Each pass of [`lower()`] rewrites one construct that naga or a driver gets wrong, and a test shows that it
@@ -54,6 +56,7 @@
 //!
 //! - [`lower`](mod@lower): one pass for each construct that naga or a driver gets wrong.
 //! - `print`: the GLSL 450 that naga reads, with a map back to the author's spans ([`Lowered`]).
+//! - `module`: [`glsl_to_module`], for programs that use naga.
 //! - [`wgsl`]: the tree as WGSL that its author recognizes, for several kinds of host.
 //! - [`naga_ir`]: naga's parsers and its validator.
 //! - [`backend`]: SPIR-V, either strict or as naga writes it; WGSL, MSL, HLSL and GLSL.

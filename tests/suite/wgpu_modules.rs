@@ -256,7 +256,7 @@ fn wgpu_accepts_the_modules_of_the_course() {
         for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap() {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|ending| ending == "glsl") {
-                let name = path.display().to_string();
+                let name = path.to_string_lossy().into_owned();
                 let text = fs::read_to_string(&path).unwrap();
                 let module = glsl_to_module(&text, &ModuleOptions::named(name)).unwrap();
                 // wgpu panics if it refuses the module or the pipeline.

@@ -163,12 +163,9 @@ fn is_wrong(module: Module, images: &[Option<Image>; 2]) -> Option<bool> {
     let mut wrong = false;
     for (image, again) in images.iter().zip(&again) {
         let (image, again) = (image.as_ref()?, again.as_ref()?);
-        let differs = |(a, b): &(&[f32; 4], &[f32; 4])| {
-            let shown = |component: f32| f64::from(component.clamp(0.0, 1.0));
-            (0..3).any(|at| {
-                !((shown(a[at]) - shown(b[at])).abs() <= TOLERANCE) && !(a[at].is_nan() && b[at].is_nan())
-            })
-        };
+        let shown = |component: f32| f64::from(component.clamp(0.0, 1.0));
+        let agrees = |a: f32, b: f32| (shown(a) - shown(b)).abs() <= TOLERANCE || (a.is_nan() && b.is_nan());
+        let differs = |(a, b): &(&[f32; 4], &[f32; 4])| !(0..3).all(|at| agrees(a[at], b[at]));
         let differing = image.pixels().iter().zip(again.pixels()).filter(differs).count();
         wrong |= differing as f64 > WRONG_SHARE * image.pixels().len() as f64;
     }
@@ -324,7 +321,7 @@ fn of_folder(folder: &Path) -> Vec<(String, String)> {
     paths.sort();
     let read = |path: &std::path::PathBuf| {
         (
-            path.display().to_string(),
+            path.to_string_lossy().into_owned(),
             fs::read_to_string(path).expect("it is text"),
         )
     };
