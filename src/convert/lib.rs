@@ -37,7 +37,7 @@ pub use prover::{ProofError, Prover, Reader, Readers, ShaderProof};
 use thiserror::Error;
 pub use tool::ToolError;
 use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
-use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
+use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, UniformMode};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
 use toyproof_translate::c_family::{self, Host};
@@ -94,7 +94,7 @@ fn with_uniforms(source: Source, deadline: &Deadline) -> Option<Checked> {
         return None;
     }
     let options = glsl::Options {
-        keeps_uniforms: true,
+        uniform_mode: UniformMode::Kept,
         deadline: deadline.clone(),
         ..source.checked.options()
     };

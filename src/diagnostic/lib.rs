@@ -18,6 +18,11 @@
 //! - `layout`: display width, wrapping and aligned columns.
 //! - `deadline`: [`Deadline`], which loops over a shader poll, and which rarely reads the clock.
 
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
 mod code;
 mod date;
 mod deadline;

@@ -74,6 +74,11 @@
     reason = "per-pixel code must be inlined to vectorize, with loops over lane indices"
 )]
 
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
 mod build;
 mod compile;
 mod exec;

@@ -68,6 +68,11 @@
 //! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
 
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
 mod built_in;
 mod check;
 mod constant;
@@ -107,6 +112,20 @@ use self::preprocess::PreprocessorOutput;
 /// `[i]`, of commas and of `else if` do not count.
 pub const MAX_NESTING: usize = 256;
 
+/// What becomes of the uniforms that a shader declares, apart from textures, which read channels.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum UniformMode {
+    /// The host's inputs and the given values take their places.
+    #[default]
+    Replaced,
+    /// The host's inputs take their places. Those with values stay variables, of which the values are the
+    /// initializers, for what is written in another language.
+    Kept,
+    /// All stay variables, also those that have the name of an input of the host: for a host that sets them
+    /// itself.
+    Own,
+}
+
 /// Options of a check.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
@@ -118,9 +137,8 @@ pub struct Options {
     pub dialect: Option<Dialect>,
     /// The values of uniforms that the shader declares.
     pub uniforms: Vec<UniformValue>,
-    /// Keeps uniforms with values as variables, of which the values are the initializers, for what is
-    /// written in another language. Otherwise the values take their places.
-    pub keeps_uniforms: bool,
+    /// What becomes of the uniforms that the shader declares.
+    pub uniform_mode: UniformMode,
     /// The tab of a project that the text is.
     pub stage: Stage,
     /// Calls [`ADDED_MAIN`], which has the form of `mainImage`, instead of the function that the host calls:
@@ -159,6 +177,8 @@ pub struct Checked {
     pub lenient: bool,
     /// The values of its uniforms, see [`Options::uniforms`].
     pub uniforms: Vec<UniformValue>,
+    /// What became of the uniforms that it declares.
+    pub uniform_mode: UniformMode,
     /// The shapes of `iChannel0` to `iChannel3`, as given in the options or inferred from use.
     pub channels: [SamplerShape; 4],
     /// How the textures of `iChannel0` to `iChannel3` are sampled.
@@ -191,13 +211,19 @@ impl Checked {
             lenient: self.lenient,
             dialect: Some(self.dialect),
             uniforms: self.uniforms.clone(),
-            keeps_uniforms: false,
+            uniform_mode: self.uniform_mode,
             stage: self.stage,
             calls_added_main: false,
             channels: self.channels.map(Some),
             sampling: self.sampling,
             deadline: Deadline::default(),
         }
+    }
+
+    /// Whether a uniform or varying that the shader declares has the value of an input, of a texture or of the
+    /// options: no expression reads the variable itself.
+    pub fn is_bound(&self, variable: tree::VariableId) -> bool {
+        self.bound.contains_key(&variable)
     }
 
     /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
@@ -279,6 +305,7 @@ pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, 
         version: text.wrapping.language.version,
         lenient: options.lenient,
         uniforms: options.uniforms.clone(),
+        uniform_mode: options.uniform_mode,
         channels: text.channels,
         sampling: options.sampling,
         stage: options.stage,

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Frame, IDLE_MOUSE, Image, ImageError, Script, Texture, noise, read};
+#[cfg(feature = "files")]
+use crate::{Frame, Image, ImageError, Texture, noise, read};
+use crate::{IDLE_MOUSE, Script};
 
 /// The inputs of a frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +77,7 @@ impl Default for FrameInputs {
 /// The texture of a channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Channel {
-    /// The noise texture, see [`noise`].
+    /// The noise texture, see [`noise`](crate::noise()).
     Noise,
     /// An image file.
     File(PathBuf),
@@ -102,6 +104,7 @@ impl Channel {
         }
     }
 
+    #[cfg(feature = "files")]
     fn load(&self) -> Result<Image, ImageError> {
         match self {
             Self::Noise => Ok(noise()),
@@ -120,6 +123,7 @@ impl FrameInputs {
     ///
     /// # Errors
     /// If an image file cannot be read.
+    #[cfg(feature = "files")]
     pub fn load(&self) -> Result<Frame, ImageError> {
         let mut channels = [const { None }; 4];
         for (image, channel) in channels.iter_mut().zip(&self.channels) {

@@ -27,22 +27,28 @@
 //! - [`input`]: the only place that opens files of others: regular files only.
 
 pub mod cube;
+#[cfg(feature = "files")]
 mod exr_channels;
+#[cfg(feature = "files")]
 mod file;
 mod frame;
 mod frame_inputs;
+#[cfg(feature = "files")]
 pub mod input;
 mod inputs;
 mod keys;
 mod moving;
 mod noise;
+#[cfg(feature = "files")]
 pub mod output;
 mod rgb8;
 mod sampling;
 mod script;
 mod texture;
 
+#[cfg(feature = "files")]
 pub use exr_channels::{ChannelValues, ExrAttributes, ExrChannel, encode_exr};
+#[cfg(feature = "files")]
 pub use file::{
     ImageError, check_extension, decoder_limits, encode, encode_shown, encode_transparent, from_decoded,
     open_image, read, read_shown, stream_png, write_png,

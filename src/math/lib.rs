@@ -33,6 +33,11 @@
     reason = "a call would keep loops over arrays from becoming SIMD"
 )]
 
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
 mod algebraic;
 mod cube;
 pub mod double;

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! tree ─► lower ─► print (GLSL 450) ─► naga_ir ─► backend (SPIR-V, WGSL, MSL, HLSL, GLSL)
-//!   └───► wgsl
+//!   └───► wgsl, c_family
 //! ```
 //!
 //! ```
@@ -25,6 +25,8 @@
 //!     Ok(())
 //! }
 //! ```
+//!
+//! Programs that use wgpu or naga call [`glsl_to_module`], which does the first three steps.
 //!
 //! # Lowering
 //!
@@ -54,16 +56,30 @@
 //!
 //! - [`lower`](mod@lower): one pass for each construct that naga or a driver gets wrong.
 //! - `print`: the GLSL 450 that naga reads, with a map back to the author's spans ([`Lowered`]).
+//! - `module`: [`glsl_to_module`], for programs that use naga.
 //! - [`wgsl`]: the tree as WGSL that its author recognizes, for several kinds of host.
+//! - [`c_family`]: the tree as HLSL that its author recognizes, for several hosts.
 //! - [`naga_ir`]: naga's parsers and its validator.
 //! - [`backend`]: SPIR-V, either strict or as naga writes it; WGSL, MSL, HLSL and GLSL.
 //! - `inexact`: the list of functions whose last bits are implementation-defined.
 
+#![cfg_attr(
+    not(feature = "backend"),
+    expect(dead_code, reason = "only backends use some of the shared code")
+)]
+
+/// The example of the README is a test.
+#[cfg(doctest)]
+#[doc = include_str!("README.md")]
+struct Readme;
+
 mod author;
+#[cfg(feature = "backend")]
 pub mod backend;
 pub mod c_family;
 mod inexact;
 pub mod lower;
+mod module;
 pub mod naga_ir;
 mod print;
 mod template;
@@ -71,6 +87,8 @@ mod unprintable;
 pub mod wgsl;
 
 pub use lower::{lower, lower_strict, lower_within};
+pub use module::{GlslError, ModuleOptions, checked_to_module, glsl_to_module};
+pub use naga;
 pub use print::Lowered;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -138,10 +156,14 @@ impl FloatMode {
     /// # Errors
     /// If the deadline passes.
     pub fn lower_for_host(self, checked: &Checked, deadline: &Deadline) -> Result<Lowered, Overdue> {
-        let passes = match self {
+        lower_within(checked, self.passes_for_host(), deadline)
+    }
+
+    /// The passes for a host that filters textures itself.
+    fn passes_for_host(self) -> Passes {
+        match self {
             Self::Strict => Passes::strict().without(Pass::Lookups),
             Self::Fast => Passes::required(),
-        };
-        lower_within(checked, passes, deadline)
+        }
     }
 }

@@ -91,6 +91,7 @@ mod trade;
 mod ui;
 mod unstable;
 mod value_noise;
+mod wgpu_modules;
 mod wording;
 #[cfg(target_os = "linux")]
 mod write_faults;

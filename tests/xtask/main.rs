@@ -5,6 +5,7 @@
 mod corpus;
 mod dist;
 mod faults;
+mod front_end;
 mod page;
 mod player;
 mod projects;
@@ -57,6 +58,17 @@ enum Task {
     },
     /// Build the files of a release: archives, and packages for Debian and Python, with their checksums
     Dist(dist::Arguments),
+    /// Compare our GLSL front end for naga with naga's own, the tables of docs/evidence/front-end.md
+    FrontEnd {
+        /// A folder of shaders, or the git directory of a repository with ShaderToy's JSON files
+        input: PathBuf,
+        /// The maximum number of single-pass shaders of a repository, chosen at random
+        #[arg(long, default_value_t = 300)]
+        limit: usize,
+        /// The seed of the choice
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
     /// Measure how long Chromium takes to open a report
     Page {
         /// The report.html
@@ -136,6 +148,7 @@ fn main() -> ExitCode {
                 return ExitCode::FAILURE;
             }
         }
+        Task::FrontEnd { input, limit, seed } => front_end::compare(&input, limit, seed),
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
         Task::Player(arguments) => player::play(&arguments),
         Task::Projects {

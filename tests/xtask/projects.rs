@@ -66,6 +66,16 @@ fn next_object(output: &mut BufReader<ChildStdout>) -> Vec<u8> {
     bytes
 }
 
+/// The texts of the repository's JSON files with their names, in a random order, read one by one.
+pub(super) fn texts(repository: &Path, seed: u64) -> impl Iterator<Item = (String, String)> {
+    let chosen = files(repository, usize::MAX, seed).into_iter();
+    chosen.filter_map(move |(name, object)| {
+        let shown = git(repository).args(["cat-file", "blob", &object]).output();
+        let text = String::from_utf8(shown.expect("git runs").stdout).ok()?;
+        Some((name, text))
+    })
+}
+
 /// The counts of projects.
 #[derive(Default)]
 struct Counts {

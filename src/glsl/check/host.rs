@@ -3,6 +3,7 @@
 use toyproof_diagnostic::{Code, plural};
 
 use super::{Checker, Entity};
+use crate::UniformMode;
 use crate::dialect::{Bound, InputValue};
 use crate::tree::{
     BinaryOp, BuiltInVariable, Constructor, Direction, ExprId, ExprKind, Function, FunctionId, Input, Item,
@@ -89,8 +90,15 @@ impl Checker<'_> {
         if !matches!(kind, VariableKind::Uniform | VariableKind::Varying) {
             return;
         }
-        let known = self.dialect.input(name).into_iter().flatten();
-        let known = known.copied().find(|&value| self.type_of_input(value) == ty);
+        let is_own = self.uniform_mode == UniformMode::Own
+            && kind == VariableKind::Uniform
+            && !matches!(ty, Type::Sampler(_));
+        let known = self.dialect.input(name).filter(|_| !is_own);
+        let known = known
+            .into_iter()
+            .flatten()
+            .copied()
+            .find(|&value| self.type_of_input(value) == ty);
         let value = known.or_else(|| match (kind, ty) {
             // The only coordinates of a quad that covers the image.
             (VariableKind::Varying, VEC2) => Some(InputValue::Quad),
@@ -169,7 +177,7 @@ impl Checker<'_> {
     fn set_value(&mut self, variable: VariableId, components: Vec<f64>) {
         let Variable { ty, at, .. } = self.tree[variable];
         let value = Bound::Value(ty, components);
-        match at.filter(|_| self.keeps_uniforms) {
+        match at.filter(|_| self.uniform_mode != UniformMode::Replaced) {
             Some(at) => self.tree[variable].initializer = Some(self.bound_value(value, at)),
             None => {
                 self.bound.insert(variable, value);

@@ -42,7 +42,7 @@ use crate::token::Symbol;
 use crate::tree::{
     Expr, ExprId, ExprKind, FunctionId, Literal, Place, Scalar, StructId, Tree, Type, Value, VariableId,
 };
-use crate::{Options, UniformValue};
+use crate::{Options, UniformMode, UniformValue};
 
 /// Builds the tree and enforces the rules.
 pub(crate) struct Checker<'a> {
@@ -57,8 +57,8 @@ pub(crate) struct Checker<'a> {
     pub(crate) values_read: HashSet<VariableId>,
     /// The values of uniforms that the caller gives.
     uniforms: &'a [UniformValue],
-    /// Whether uniforms with values stay variables.
-    keeps_uniforms: bool,
+    /// What becomes of the uniforms that the shader declares.
+    uniform_mode: UniformMode,
     /// The variable that holds the color, if the host runs `main`.
     pub(crate) output: Option<VariableId>,
     pub(crate) tree: Tree,
@@ -115,7 +115,7 @@ impl<'a> Checker<'a> {
             bound: HashMap::new(),
             values_read: HashSet::new(),
             uniforms: &options.uniforms,
-            keeps_uniforms: options.keeps_uniforms,
+            uniform_mode: options.uniform_mode,
             output: None,
             tree: Tree::default(),
             scopes: Scopes::default(),

@@ -15,7 +15,7 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, File, Files, Overdue, shor
 use self::edit::Port;
 use crate::dialect::{Dialect, Version};
 use crate::source::Source;
-use crate::{Checked, Options, check};
+use crate::{Checked, Options, UniformMode, check};
 
 /// Why a shader cannot be written for a host.
 #[derive(Debug, Error)]
@@ -100,6 +100,7 @@ fn check_written(
     let options = Options {
         lenient: false,
         dialect: Some(to),
+        uniform_mode: UniformMode::Replaced,
         deadline: deadline.clone(),
         ..original.options()
     };

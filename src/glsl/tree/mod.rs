@@ -25,7 +25,7 @@ use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
 pub use toyproof_diagnostic::Place;
-pub use toyproof_image::{Input, InputType};
+pub use toyproof_image::{BLOCK_BYTES, Input, InputType};
 
 pub use self::expr::{BinaryOp, Constructor, Expr, ExprId, ExprKind, Literal, StepOp, Swizzle, UnaryOp};
 pub use self::item::{

@@ -17,7 +17,6 @@ use toyproof_glsl::tree::{
 use super::Unprintable;
 use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
-use crate::backend::Target;
 use crate::print::Order;
 use crate::template::{around_shader, channel_number, fill};
 
@@ -161,12 +160,6 @@ impl Host {
     #[must_use]
     pub fn has_passes(self) -> bool {
         matches!(self, Self::Hlsl | Self::Slang)
-    }
-
-    /// The language.
-    #[must_use]
-    pub fn target(self) -> Target {
-        Target::Hlsl
     }
 
     /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.

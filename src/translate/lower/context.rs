@@ -19,6 +19,10 @@ pub(crate) struct LoweringContext {
     pub(crate) main_image: FunctionId,
     /// The tab that the shader is.
     pub(crate) stage: Stage,
+    /// Whether the image's alpha is 1 whatever the shader writes.
+    pub(crate) is_opaque: bool,
+    /// The uniforms that are members of the author's block, in the order of their declarations.
+    pub(crate) uniform_block: Vec<VariableId>,
     /// How the textures of the channels are sampled.
     pub(crate) sampling: [Sampling; 4],
     /// Assignments that run before `mainImage`, in order.
@@ -65,6 +69,8 @@ impl LoweringContext {
             tree,
             main_image: checked.main_image,
             stage: checked.stage,
+            is_opaque: checked.stage == Stage::Image,
+            uniform_block: Vec::new(),
             sampling: checked.sampling,
             startup: Vec::new(),
             startup_function: None,

@@ -31,14 +31,15 @@ mod sequence;
 mod stage_io;
 #[cfg(test)]
 mod tests;
+mod uniform_block;
 
 pub(crate) use array_value::name_array_values;
 pub(crate) use conditional::branch_for_effects;
 pub(crate) use folding::{fold_by_precision, fold_except};
 pub(crate) use helper_tree::helper_tree;
 pub(crate) use initializer::is_written_first;
-use toyproof_diagnostic::{Deadline, Overdue};
-use toyproof_glsl::Checked;
+use toyproof_diagnostic::{Deadline, Diagnostic, Overdue};
+use toyproof_glsl::{Checked, overdue};
 
 use self::context::LoweringContext;
 use crate::print::{Lowered, print};
@@ -68,6 +69,29 @@ pub fn lower_within(checked: &Checked, passes: Passes, deadline: &Deadline) -> R
     let mut cx = LoweringContext::new(checked);
     passes.run(&mut cx, deadline)?;
     print(&cx, deadline)
+}
+
+/// Lowers a shader for a host of the author's: its uniforms are members of a block, whose names are returned,
+/// and the alpha of a host that runs `main` is the shader's.
+///
+/// # Errors
+/// If the deadline passes, or the shader reads what no such module has.
+pub(crate) fn lower_module(
+    checked: &Checked,
+    passes: Passes,
+    deadline: &Deadline,
+) -> Result<(Lowered, Vec<String>), Vec<Diagnostic>> {
+    let too_slow = |late| vec![overdue(late)];
+    let mut cx = LoweringContext::new(checked);
+    cx.is_opaque &= checked.dialect.calls_main_image();
+    uniform_block::run(&mut cx, checked)?;
+    passes.run(&mut cx, deadline).map_err(too_slow)?;
+    let lowered = print(&cx, deadline).map_err(too_slow)?;
+    let members = cx
+        .uniform_block
+        .iter()
+        .map(|&member| cx.tree[member].name.clone());
+    Ok((lowered, members.collect()))
 }
 
 macro_rules! passes {

@@ -46,6 +46,11 @@ impl ValidModule {
         &self.module
     }
 
+    /// naga's module without the validator's results.
+    pub fn into_module(self) -> Module {
+        self.module
+    }
+
     /// The results of naga's validator.
     pub fn info(&self) -> &ModuleInfo {
         &self.info
@@ -61,17 +66,7 @@ impl ValidModule {
     /// # Errors
     /// naga's message, at the author's source lines.
     pub fn parse(lowered: &Lowered) -> Result<Self, Diagnostics> {
-        let mut module = Frontend::default()
-            .parse(&Options::from(ShaderStage::Fragment), lowered.text())
-            .map_err(|errors| {
-                let errors = errors.errors.iter();
-                errors
-                    .map(|error| {
-                        naga_diagnostic(Code::NagaParse, &error.kind.to_string(), error.meta, lowered)
-                    })
-                    .collect::<Vec<_>>()
-            })?;
-        naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+        let module = parse(lowered)?;
         // naga's Metal writer adds declarations to modules with a policy of zeros, whether or not they fetch
         // texels.
         let fetches = if lowered.checks_fetches() || !has_fetches(&module) {
@@ -149,6 +144,22 @@ impl ValidModule {
         }
         shapes
     }
+}
+
+/// Parses a lowered shader and removes unused items, without validating the module.
+///
+/// # Errors
+/// naga's message, at the author's source lines.
+pub(crate) fn parse(lowered: &Lowered) -> Result<Module, Vec<Diagnostic>> {
+    let parsed = Frontend::default().parse(&Options::from(ShaderStage::Fragment), lowered.text());
+    let mut module = parsed.map_err(|errors| {
+        let errors = errors.errors.iter();
+        errors
+            .map(|error| naga_diagnostic(Code::NagaParse, &error.kind.to_string(), error.meta, lowered))
+            .collect::<Vec<_>>()
+    })?;
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    Ok(module)
 }
 
 /// All functions of a module, and its entry points.

@@ -24,6 +24,12 @@ use toyproof_glsl::{Sampling, Stage};
 use self::names::NagasGlsl;
 use crate::lower::context::LoweringContext;
 
+/// The binding of the author's uniforms in group 0.
+pub(crate) const UNIFORM_BINDING: u32 = 9;
+
+/// The type of the block of the author's uniforms.
+pub(crate) const UNIFORM_BLOCK: &str = "ToyproofUniforms";
+
 /// Prints everything that a shader's image depends on.
 pub(super) fn print(cx: &LoweringContext, deadline: &Deadline) -> Result<Lowered, Overdue> {
     let order = Order::new(cx, CaseLabels::Values);
@@ -136,6 +142,9 @@ impl Printer<'_> {
         for (channel, sampler) in channels {
             self.channel(channel, sampler);
         }
+        if order.reads_uniform_block {
+            self.uniform_block();
+        }
         self.plain("\n");
     }
 
@@ -153,6 +162,26 @@ impl Printer<'_> {
                     (Some(length), InputType::Float) => format!("vec4[{length}] {name};\n"),
                     (Some(length), ty) => format!("{}[{length}] {name};\n", ty.name()),
                 });
+            }
+        });
+        self.plain(";\n");
+    }
+
+    /// Prints the block of the author's uniforms, with all of them: hosts know their offsets.
+    fn uniform_block(&mut self) {
+        self.plain(&format!(
+            "layout(std140, set = 0, binding = {UNIFORM_BINDING}) uniform {UNIFORM_BLOCK} "
+        ));
+        self.braces(|printer| {
+            for &member in &printer.cx.uniform_block {
+                let variable = &printer.cx.tree[member];
+                let text = format!(
+                    "{} {};\n",
+                    printer.type_name(variable.ty),
+                    printer.variable(member)
+                );
+                printer.line();
+                printer.spanned(&text, variable.at.map(|at| at.span));
             }
         });
         self.plain(";\n");
@@ -180,11 +209,10 @@ impl Printer<'_> {
             .map(|begin| format!("    {}();\n", self.function(begin)))
             .unwrap_or_default();
         let main_image = self.function(self.cx.main_image);
-        let is_image = self.cx.stage == Stage::Image;
         // An `out` parameter takes no value; the alpha of a buffer is visible.
-        let opaque = is_image || self.cx.tree.adds_to_color(self.cx.main_image);
+        let opaque = self.cx.stage == Stage::Image || self.cx.tree.adds_to_color(self.cx.main_image);
         let alpha = if opaque { "1.0" } else { "0.0" };
-        let written = if is_image {
+        let written = if self.cx.is_opaque {
             "vec4(toyproof_image_color.xyz, 1.0)"
         } else {
             "toyproof_image_color"

@@ -10,11 +10,16 @@ use toyproof_glsl::tree::{ExprKind, FunctionId, Input, Item, StructId, Tree, Typ
 
 use super::order::Order;
 use crate::lower::context::LoweringContext;
-use crate::print::keyword;
+use crate::print::{UNIFORM_BLOCK, keyword};
 
-/// The names of the shader's output, of its color in `main` and of its block. naga treats a name as a type
+/// The names of the shader's output, of its color in `main` and of its blocks. naga treats a name as a type
 /// wherever a type of that name exists.
-const GENERATED_NAMES: [&str; 3] = ["toyproof_color", "toyproof_image_color", "ToyproofFrame"];
+const GENERATED_NAMES: [&str; 4] = [
+    "toyproof_color",
+    "toyproof_image_color",
+    "ToyproofFrame",
+    UNIFORM_BLOCK,
+];
 
 /// The prefix of generated names.
 const GENERATED_PREFIX: &str = "toyproof_";

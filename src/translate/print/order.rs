@@ -26,6 +26,8 @@ pub(crate) struct Order {
     pub(crate) items: Vec<Item>,
     /// The inputs that are read.
     pub(crate) inputs: Vec<VariableId>,
+    /// Whether a uniform of the author's block is read; all of them are then among the items.
+    pub(crate) reads_uniform_block: bool,
 }
 
 impl Order {
@@ -47,6 +49,11 @@ impl Order {
         for &root in &roots {
             collector.push_postorder(root, &mut used, &mut reached);
         }
+        let mut block = cx.uniform_block.iter().map(|&id| Item::Variable(id));
+        let reads_uniform_block = block.any(|member| used.contains(&member));
+        if reads_uniform_block {
+            used.extend(cx.uniform_block.iter().map(|&id| Item::Variable(id)));
+        }
         // Follow the author's order, so that only misplaced items move.
         let mut done = HashSet::new();
         let mut items = Vec::new();
@@ -57,7 +64,11 @@ impl Order {
         let mut inputs = collector.inputs;
         inputs.sort_unstable();
         inputs.dedup();
-        Self { items, inputs }
+        Self {
+            items,
+            inputs,
+            reads_uniform_block,
+        }
     }
 }
 

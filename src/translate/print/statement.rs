@@ -12,6 +12,7 @@ impl Printer<'_> {
     pub(super) fn item(&mut self, item: Item) {
         match item {
             Item::Struct(id) => self.structure(id),
+            Item::Variable(id) if self.cx.uniform_block.contains(&id) => {}
             Item::Variable(id) => {
                 self.declaration(id);
                 self.plain(";\n");

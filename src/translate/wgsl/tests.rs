@@ -490,7 +490,7 @@ fn uniforms_of_the_author_are_a_block() {
             value("on", &[1.0]),
             value("size", &[1.0, -2.0]),
         ],
-        keeps_uniforms: true,
+        uniform_mode: toyproof_glsl::UniformMode::Kept,
         ..Options::default()
     };
     let checked = check(&files, file, &options).unwrap();
