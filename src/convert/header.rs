@@ -6,7 +6,7 @@ use toyproof_diagnostic::{grouped, plural};
 use toyproof_translate::backend::{Target, spirv};
 
 use crate::{
-    FRAMES, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, ProofReference, Rgb8Comparison, ShaderProof,
+    FRAMES, Host, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, ProofReference, Rgb8Comparison, ShaderProof,
 };
 
 /// The version of naga that is linked.
@@ -51,6 +51,15 @@ pub fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofSta
     };
     let head = header_text(name, status);
     bytes.splice(at..at, head.into_bytes());
+}
+
+/// The text of a host's file with the comment.
+#[must_use]
+pub fn insert_in_hosted(text: &str, host: Host, name: &str, status: &ProofStatus) -> String {
+    let head = header_text(name, status);
+    match host {
+        Host::Three => head + text,
+    }
 }
 
 fn header_text(name: &str, status: &ProofStatus) -> String {

@@ -12,6 +12,7 @@
 
 mod graph;
 pub mod header;
+mod hosts;
 mod original;
 mod passes;
 mod project;
@@ -26,6 +27,7 @@ mod tests;
 use std::time::Duration;
 
 pub use graph::GRAPH_FILE;
+pub use hosts::{Host, HostedConversion, HostedSource};
 pub use passes::{
     GraphContent, PASS_FRAMES, PASS_SIZES, PassComparison, PassSources, PassesProof, PixelDifference,
 };

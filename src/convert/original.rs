@@ -86,6 +86,14 @@ impl Original {
         })
     }
 
+    /// The frames, and the pixels of the image that depend on undefined behavior in each.
+    pub(super) fn images(&self) -> impl Iterator<Item = (&Frame, &[bool])> {
+        self.frames.iter().map(|frame| {
+            let undefined = frame.undefined.last();
+            (&frame.inputs, undefined.map_or(&[][..], Vec::as_slice))
+        })
+    }
+
     /// Renders each pass and its conversion in a browser, in every frame from the textures that the original
     /// read. Returns the browser's name and the comparison; `None` for languages that browsers do not run.
     pub(super) fn compare_in_browser(

@@ -6,6 +6,7 @@ use std::fmt;
 
 use toyproof_glsl::Sampling;
 use toyproof_gpu::ShaderArtifact;
+use toyproof_gpu::browser::Chromium;
 use toyproof_image::{Image, Texture};
 use toyproof_player::{Graph, Target};
 
@@ -139,6 +140,20 @@ impl Prover<'_> {
         written: &[TargetCode],
         graph: &GraphContent,
     ) -> Result<PassesProof, ProofError> {
+        self.prove_passes_with(passes, written, graph, |browser, original| {
+            original.compare_in_browser(browser, passes.sources, written)
+        })
+    }
+
+    /// Proves passes like [`Self::prove_passes`]; `in_browser` compares them with the original in the browser, if there
+    /// is one.
+    pub(super) fn prove_passes_with(
+        &mut self,
+        passes: &PassSources,
+        written: &[TargetCode],
+        graph: &GraphContent,
+        in_browser: impl FnOnce(&mut Chromium, &Original) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
+    ) -> Result<PassesProof, ProofError> {
         let mut validator = None;
         let mut readings: Vec<(Reader, Vec<ShaderArtifact>)> = Vec::new();
         let mut is_read = true;
@@ -171,7 +186,7 @@ impl Prover<'_> {
             readers.push(reader);
         }
         let browser = match &mut self.browser {
-            Some(browser) => original.compare_in_browser(browser, passes.sources, written)?,
+            Some(browser) => in_browser(browser, &original)?,
             None => None,
         };
         let proof = PassesProof {

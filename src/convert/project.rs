@@ -5,7 +5,7 @@ use toyproof_diagnostic::Files;
 use toyproof_glsl::Dialect;
 use toyproof_gpu::Worker;
 use toyproof_player::BufferFormat;
-use toyproof_project::{Buffer, CompiledProject, PassKind, UnsupportedPass};
+use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, UnsupportedPass};
 use toyproof_translate::backend::Target;
 use toyproof_translate::wgsl::Style;
 
@@ -23,6 +23,33 @@ pub struct ProjectSource<'a> {
     pub project: &'a CompiledProject,
     /// The files that it was read from.
     pub files: &'a Files,
+}
+
+impl ProjectSource<'_> {
+    /// The passes that the image needs.
+    ///
+    /// # Errors
+    /// A pass is needed that is not converted.
+    pub(crate) fn rendering(&self) -> Result<Rendering, ProjectError> {
+        let project = self.project;
+        let rendering = project.rendering(PassKind::Image)?;
+        let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
+        if rendering.passes.iter().any(is_cube) {
+            return Err(ProjectError::CubeA);
+        }
+        for pass in rendering.passes.iter().map(|&at| &project.project.passes[at]) {
+            match pass.kind {
+                PassKind::Buffer(buffer) if !Buffer::OF_SITE.contains(&buffer) => {
+                    return Err(ProjectError::ManyBuffers);
+                }
+                kind if pass.format != BufferFormat::default() => {
+                    return Err(ProjectError::BufferFormat(kind));
+                }
+                _ => {}
+            }
+        }
+        Ok(rendering)
+    }
 }
 
 /// A converted project.
@@ -89,6 +116,9 @@ pub enum ProjectError {
     /// The file of the graph is not read as it was written.
     #[error("{GRAPH_FILE}: {0}")]
     Graph(String),
+    /// The host's file cannot hold something of the shader.
+    #[error("{0}")]
+    Unwritable(String),
     /// A pass cannot be converted.
     #[error("{pass}: {error}")]
     Pass {
@@ -118,22 +148,7 @@ impl Converter {
             return Err(ProjectError::Dialect(dialect));
         }
         let ProjectSource { project, files, .. } = source;
-        let rendering = project.rendering(PassKind::Image)?;
-        let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
-        if rendering.passes.iter().any(is_cube) {
-            return Err(ProjectError::CubeA);
-        }
-        for pass in rendering.passes.iter().map(|&at| &project.project.passes[at]) {
-            match pass.kind {
-                PassKind::Buffer(buffer) if !Buffer::OF_SITE.contains(&buffer) => {
-                    return Err(ProjectError::ManyBuffers);
-                }
-                kind if pass.format != BufferFormat::default() => {
-                    return Err(ProjectError::BufferFormat(kind));
-                }
-                _ => {}
-            }
-        }
+        let rendering = source.rendering()?;
         let checked: Vec<_> = project.checked_of(&rendering).collect();
         let host_graph = HostGraph::new(&project.project, &rendering, &checked);
         let extension = self.extension();

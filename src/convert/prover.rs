@@ -104,6 +104,9 @@ pub enum ProofError {
     /// Our own front end rejects the file with this message.
     #[error("toyproof's GLSL front end rejects the output: {0}")]
     FrontEnd(String),
+    /// The file of a host is not read as it was written.
+    #[error("the output is not read again: {0}")]
+    Unreadable(String),
     /// The evaluator does not run SPIR-V.
     #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
     Binary,
@@ -209,6 +212,19 @@ impl Prover<'_> {
     /// # Errors
     /// Returns why it is not proved.
     pub fn prove(&mut self, source: Source, written: &TargetCode) -> Result<ShaderProof, ProofError> {
+        self.prove_with(source, written, |browser, frames, undefined| {
+            in_browser(browser, source, written, frames, undefined)
+        })
+    }
+
+    /// Proves a file like [`Self::prove`]; `in_browser` compares it with the original in the browser, if there is one, in
+    /// these frames and except in these pixels.
+    pub(super) fn prove_with(
+        &mut self,
+        source: Source,
+        written: &TargetCode,
+        in_browser: impl FnOnce(&mut Chromium, &[Frame], &[Vec<bool>]) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
+    ) -> Result<ShaderProof, ProofError> {
         let validator = validate(written, source.checked.channels)?;
         let mut readings = self.readings(source.checked, written)?;
         let is_unread = readings.is_empty();
@@ -221,7 +237,7 @@ impl Prover<'_> {
             return Ok(ShaderProof::Source(proof));
         }
         let browser = match &mut self.browser {
-            Some(browser) => in_browser(browser, source, written, &frames, &proof.undefined_at)?,
+            Some(browser) => in_browser(browser, &frames, &proof.undefined_at)?,
             None => None,
         };
         Ok(ShaderProof::File(
@@ -378,18 +394,8 @@ pub(super) fn in_browser(
     frames: &[Frame],
     undefined: &[Vec<bool>],
 ) -> Result<Option<(String, Rgb8Comparison)>, ProofError> {
-    let ported;
-    let original = if source.checked.dialect.calls_main_image() {
-        source.text()
-    } else {
-        // It has been compiled within the time limit, and is compiled once more.
-        let (to, deadline) = (Dialect::ShaderToy, Deadline::default());
-        let text = glsl::port(source.checked, source.files, to, &|_, _| None, &deadline);
-        ported = text.map_err(ProofError::BrowserHost)?;
-        &ported
-    };
     let channels = source.checked.channels;
-    let original = browser::as_shadertoy(original, channels);
+    let original = browser_text(source)?;
     let sampling = source.checked.sampling;
     let render_original = |browser: &mut Chromium| {
         let images = browser.render(Text::Glsl(&original), sampling, frames);
@@ -425,10 +431,34 @@ pub(super) fn in_browser(
         }
         TargetCode::Naga { .. } | TargetCode::Lowered(_) | TargetCode::Glsl(..) => return Ok(None),
     };
-    let shown = Rgb8Comparison::new(&original, &converted, undefined);
+    shown(&original, &converted, undefined).map(|shown| {
+        let name = browser.name().unwrap_or("Chromium").to_owned();
+        Some((name, shown))
+    })
+}
+
+/// Compares what a browser shows of a conversion and of its original, except in undefined pixels.
+pub(super) fn shown(
+    original: &[Image],
+    converted: &[Image],
+    undefined: &[Vec<bool>],
+) -> Result<Rgb8Comparison, ProofError> {
+    let shown = Rgb8Comparison::new(original, converted, undefined);
     if shown.differing > 0 {
         return Err(ProofError::BrowserDiffers(shown));
     }
-    let name = browser.name().unwrap_or("Chromium").to_owned();
-    Ok(Some((name, shown)))
+    Ok(shown)
+}
+
+/// The original as a complete shader for WebGL 2.
+pub(super) fn browser_text(source: Source) -> Result<String, ProofError> {
+    let channels = source.checked.channels;
+    if source.checked.dialect.calls_main_image() {
+        return Ok(browser::as_shadertoy(source.text(), channels));
+    }
+    // It has been compiled within the time limit, and is compiled once more.
+    let (to, deadline) = (Dialect::ShaderToy, Deadline::default());
+    let text = glsl::port(source.checked, source.files, to, &|_, _| None, &deadline);
+    let ported = text.map_err(ProofError::BrowserHost)?;
+    Ok(browser::as_shadertoy(&ported, channels))
 }

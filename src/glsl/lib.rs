@@ -87,7 +87,7 @@ pub mod tree;
 use std::collections::{HashMap, HashSet};
 
 pub use dialect::{Dialect, Version};
-pub use port::{PortError, Refusal, port};
+pub use port::{PortError, Refusal, port, port_in_versions};
 pub use preprocess::{ControlComment, Expansions, ReadInclude};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use single_edit::{single_edit, with_single_edit};
@@ -197,6 +197,34 @@ impl Checked {
             sampling: self.sampling,
             deadline: Deadline::default(),
         }
+    }
+
+    /// The uniforms that the text declares, with the components of their values; `None` for inputs, which the
+    /// host sets.
+    pub fn declared_uniforms(&self) -> impl Iterator<Item = (&str, tree::Type, Option<&[f64]>)> {
+        let variables = self.tree.variables.iter();
+        let declared = variables.filter(|(_, variable)| {
+            variable.kind == tree::VariableKind::Uniform && variable.at.is_some()
+        });
+        declared.map(|(id, variable)| {
+            let value = match self.bound.get(&id) {
+                Some(Bound::Input(_)) => None,
+                Some(Bound::Value(_, components)) => Some(&components[..]),
+                None => Some(&[][..]),
+            };
+            (&*variable.name, variable.ty, value)
+        })
+    }
+
+    /// Whether the shader has `discard`.
+    pub fn discards(&self) -> bool {
+        let mut found = false;
+        for (_, function) in self.tree.functions.iter() {
+            tree::walk::each(function.body.as_deref().unwrap_or_default(), &mut |statement| {
+                found |= matches!(statement.kind, tree::StatementKind::Discard);
+            });
+        }
+        found
     }
 
     /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
@@ -337,11 +365,12 @@ fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, Prep
         (wrapping, text)
     };
     if options.stage != Stage::Image {
-        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares.
-        let isf = options
-            .dialect
-            .filter(|&dialect| dialect == Dialect::Isf && options.stage == Stage::Buffer);
-        return read(isf.unwrap_or_default());
+        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares, and those that were
+        // written for another host.
+        let other = options.dialect.filter(|&dialect| {
+            matches!(dialect, Dialect::Isf | Dialect::WebGl) && options.stage == Stage::Buffer
+        });
+        return read(other.unwrap_or_default());
     }
     if let Some(dialect) = options.dialect {
         return read(dialect);

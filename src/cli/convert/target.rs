@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use toyproof_convert::Host;
 use toyproof_diagnostic::path_name;
 use toyproof_glsl::Dialect;
 use toyproof_translate::FloatMode;
@@ -24,6 +25,8 @@ pub(super) enum To {
     Metal,
     Hlsl,
     Glsl,
+    /// An ES module for three.js, with --style three
+    Js,
     /// The GLSL 450 that naga reads
     Lowered,
 }
@@ -47,7 +50,7 @@ pub(super) enum StyleName {
     BookOfShaders,
     /// GLSL for GLSL Sandbox
     GlslSandbox,
-    /// GLSL for three.js or p5.js
+    /// GLSL for three.js or p5.js; with an output .js, an ES module for three.js
     Three,
     /// GLSL for a page with WebGL that sets ShaderToy's inputs as uniforms
     Webgl,
@@ -79,14 +82,17 @@ impl To {
             Self::Spv => Some(Target::Spirv),
             Self::Metal => Some(Target::Msl),
             Self::Hlsl => Some(Target::Hlsl),
-            Self::Glsl => Some(Target::Glsl),
+            Self::Glsl | Self::Js => Some(Target::Glsl),
             Self::Lowered => None,
         }
     }
 
     /// The name on the command line.
     pub(super) fn name(self) -> &'static str {
-        self.target().map_or("lowered", Target::name)
+        match self {
+            Self::Js => "js",
+            _ => self.target().map_or("lowered", Target::name),
+        }
     }
 
     /// Returns whether a file with the extension of this language may contain `written`: lowered output is
@@ -96,6 +102,9 @@ impl To {
     }
 
     fn from_extension(path: &Path) -> Option<Self> {
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("js")) {
+            return Some(Self::Js);
+        }
         let target = Target::from_path(path)?;
         Self::value_variants()
             .iter()
@@ -113,6 +122,13 @@ pub(super) enum OutputKind {
     Passes,
     /// Several shaders or projects.
     Shaders,
+}
+
+/// The host whose file has all passes of a shader, if the arguments name one.
+pub(super) fn host(args: &Args) -> Option<Host> {
+    let of_output = args.output.as_deref().and_then(To::from_extension);
+    let is_module = args.to.or(of_output) == Some(To::Js);
+    (args.style == StyleName::Three && is_module).then_some(Host::Three)
 }
 
 /// Returns the output that the arguments name, or its default, which several shaders do not have.
@@ -134,7 +150,10 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
     let of_extension = (!is_standard_output && !output.is_dir())
         .then(|| To::from_extension(output))
         .flatten();
-    let of_style = args.style.dialect().map(|_| To::Glsl);
+    let of_style = match host(args) {
+        Some(Host::Three) => Some(To::Js),
+        None => args.style.dialect().map(|_| To::Glsl),
+    };
     let to = match (args.to.or(of_style), of_extension) {
         (Some(to), Some(other)) if !other.may_contain(to) => {
             let error = CliError::new(format_args!(
@@ -178,16 +197,20 @@ pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     if dialect.is_none() && args.style != StyleName::Plain && to != To::Wgsl {
         return Err("this --style applies to WGSL only");
     }
-    if dialect.is_some() && to != To::Glsl {
+    if to == To::Js && host(args).is_none() {
+        return Err("a module is written for three.js: add --style three");
+    }
+    if dialect.is_some() && !matches!(to, To::Glsl | To::Js) {
         return Err("this --style applies to GLSL only");
     }
     if dialect.is_some() && args.driver.explicit_float() == Some(FloatMode::Strict) {
         return Err("this --style keeps the author's operations: leave out --float strict");
     }
-    if args.browser && dialect.is_some_and(|dialect| !dialect.calls_main_image()) {
+    let is_run = host(args) == Some(Host::Three);
+    if args.browser && !is_run && dialect.is_some_and(|dialect| !dialect.calls_main_image()) {
         return Err("--browser renders ShaderToy's inputs only: leave it out for this --style");
     }
-    if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
+    if args.browser && !matches!(to, To::Wgsl | To::Glsl | To::Js) {
         return Err("--browser applies to WGSL and GLSL, the languages that browsers run");
     }
     Ok(())

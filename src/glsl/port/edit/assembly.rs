@@ -8,6 +8,7 @@ use super::{Color, FRAG_COLOR, Port};
 use crate::dialect::Version;
 use crate::port::input::declaration;
 use crate::port::names;
+use crate::stage::Stage;
 use crate::tree::{Scalar, Type};
 
 impl Port<'_> {
@@ -147,7 +148,10 @@ impl Port<'_> {
             }
             let main_image = self.name("mainImage");
             lines.push(format!("{main_image}({color}, gl_FragCoord.xy);"));
-            lines.push(format!("{color}.a = 1.0;"));
+            // A buffer keeps the alpha that it writes.
+            if self.checked.stage == Stage::Image {
+                lines.push(format!("{color}.a = 1.0;"));
+            }
             return function("main()", &lines);
         }
         let Color::Global(global, ty) = &self.color else {
