@@ -59,6 +59,11 @@ pub fn insert_in_hosted(text: &str, host: Host, name: &str, status: &ProofStatus
     let head = header_text(name, status);
     match host {
         Host::Three => head + text,
+        // The header of ISF comes first.
+        Host::Isf => match text.split_once("*/\n\n") {
+            Some((json, body)) => format!("{json}*/\n\n{head}{body}"),
+            None => head + text,
+        },
     }
 }
 

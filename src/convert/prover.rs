@@ -8,7 +8,7 @@ use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Files, Overdue, grouped, plural};
 use toyproof_eval::{Fault, Observed};
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
+use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, Stage};
 use toyproof_gpu::browser::{self, Chromium, Text};
 use toyproof_gpu::{self as gpu, ShaderArtifact};
 use toyproof_image::{Frame, Image};
@@ -212,17 +212,18 @@ impl Prover<'_> {
     /// # Errors
     /// Returns why it is not proved.
     pub fn prove(&mut self, source: Source, written: &TargetCode) -> Result<ShaderProof, ProofError> {
-        self.prove_with(source, written, |browser, frames, undefined| {
+        self.prove_with(source, written, std::convert::identity, |browser, frames, undefined| {
             in_browser(browser, source, written, frames, undefined)
         })
     }
 
-    /// Proves a file like [`Self::prove`]; `in_browser` compares it with the original in the browser, if there is one, in
+    /// Proves a file like [`Self::prove`], with frames that `adapt` changes; `in_browser` compares it with the original in the browser, if there is one, in
     /// these frames and except in these pixels.
     pub(super) fn prove_with(
         &mut self,
         source: Source,
         written: &TargetCode,
+        adapt: fn(Frame) -> Frame,
         in_browser: impl FnOnce(&mut Chromium, &[Frame], &[Vec<bool>]) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
     ) -> Result<ShaderProof, ProofError> {
         let validator = validate(written, source.checked.channels)?;
@@ -231,7 +232,7 @@ impl Prover<'_> {
         if let (true, TargetCode::Naga { lowered, .. }) = (is_unread, written) {
             readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
         }
-        let frames = frames(source.checked);
+        let frames: Vec<Frame> = frames(source.checked).into_iter().map(adapt).collect();
         let (run, proof) = self.run(source, readings, &frames)?;
         if is_unread {
             return Ok(ShaderProof::Source(proof));
@@ -356,6 +357,8 @@ pub(super) fn validate(
         TargetCode::Glsl(text, dialect) => {
             let complete = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text, channels),
+                // The reader has declared what the header does.
+                Dialect::Isf => format!("#version 150\n{text}"),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),
@@ -454,7 +457,8 @@ pub(super) fn shown(
 pub(super) fn browser_text(source: Source) -> Result<String, ProofError> {
     let channels = source.checked.channels;
     if source.checked.dialect.calls_main_image() {
-        return Ok(browser::as_shadertoy(source.text(), channels));
+        let is_buffer = source.checked.stage == Stage::Buffer;
+        return Ok(browser::as_shadertoy_pass(source.text(), channels, is_buffer));
     }
     // It has been compiled within the time limit, and is compiled once more.
     let (to, deadline) = (Dialect::ShaderToy, Deadline::default());

@@ -216,6 +216,19 @@ impl Checked {
         })
     }
 
+    /// The names of functions, structures and global variables that the text declares, with the bytes where they are
+    /// declared.
+    pub fn global_names(&self) -> impl Iterator<Item = (&str, u32)> {
+        let tree = &self.tree;
+        tree.items.iter().filter_map(|item| match *item {
+            tree::Item::Variable(id) => Some((&*tree[id].name, tree[id].at?.span.start)),
+            tree::Item::Function(id) | tree::Item::Prototype(id) => {
+                Some((&*tree[id].name, tree[id].at.span.start))
+            }
+            tree::Item::Struct(id) => Some((&*tree[id].name, tree[id].at.span.start)),
+        })
+    }
+
     /// Whether the shader has `discard`.
     pub fn discards(&self) -> bool {
         let mut found = false;
@@ -232,13 +245,27 @@ impl Checked {
         self.calls(tree::BuiltIn::is_derivative)
     }
 
+    /// Whether the shader reads textures otherwise than by `texelFetch`.
+    pub fn samples_textures(&self) -> bool {
+        use tree::BuiltIn::{TexelFetch, TexelFetchOffset, TextureSize};
+        self.calls(|function| {
+            function.is_texture() && !matches!(function, TexelFetch | TexelFetchOffset | TextureSize)
+        })
+    }
+
+    /// Whether an expression names an input.
+    pub fn reads_input(&self, input: tree::Input) -> bool {
+        self.names(|variable| variable.kind == tree::VariableKind::Input(input))
+    }
+
+    fn names(&self, is_one: impl Fn(&tree::Variable) -> bool) -> bool {
+        let mut exprs = self.tree.exprs.iter();
+        exprs.any(|(_, expr)| matches!(expr.kind, tree::ExprKind::Variable(id) if is_one(&self.tree[id])))
+    }
+
     /// Whether an expression names a channel.
     pub fn names_channel(&self, channel: usize) -> bool {
-        let is_channel = |variable: tree::VariableId| {
-            self.tree[variable].kind == tree::VariableKind::Channel(channel as u8)
-        };
-        let mut exprs = self.tree.exprs.iter();
-        exprs.any(|(_, expr)| matches!(expr.kind, tree::ExprKind::Variable(variable) if is_channel(variable)))
+        self.names(|variable| variable.kind == tree::VariableKind::Channel(channel as u8))
     }
 
     /// Whether the shader reads an input.

@@ -86,6 +86,12 @@ pub fn find() -> Option<PathBuf> {
 
 /// Wraps a shader whose channels have these shapes in `ShaderToy`'s prologue and epilogue.
 pub fn as_shadertoy(shader: &str, channels: [SamplerShape; 4]) -> String {
+    as_shadertoy_pass(shader, channels, false)
+}
+
+/// Wraps a pass like [`as_shadertoy`]. Buffers keep their alpha.
+pub fn as_shadertoy_pass(shader: &str, channels: [SamplerShape; 4], keeps_alpha: bool) -> String {
+    let alpha = if keeps_alpha { "color.a" } else { "1.0" };
     let inputs = Input::ALL.map(|input| {
         let length = input.length().map(|length| format!("[{length}]"));
         let (ty, name) = (input.ty().name(), input.name());
@@ -115,7 +121,7 @@ precision highp samplerCube;
 void main() {{
     vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
     mainImage(color, gl_FragCoord.xy);
-    shadertoy_out_color = vec4(color.xyz, 1.0);
+    shadertoy_out_color = vec4(color.xyz, {alpha});
 }}
 "
     )

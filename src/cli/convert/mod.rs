@@ -63,7 +63,7 @@ pub(super) struct Args {
     /// Shaders and projects: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// The output: a file (.wgsl .spv .metal .hlsl .frag .js), a folder, or - for standard output
+    /// The output: a file (.wgsl .spv .metal .hlsl .frag .js .fs), a folder, or - for standard output
     #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
     /// The target language [default: by the extension of the output, else wgsl]

@@ -52,6 +52,8 @@ pub(super) enum StyleName {
     GlslSandbox,
     /// GLSL for three.js or p5.js; with an output .js, an ES module for three.js
     Three,
+    /// ISF, with a header in JSON, and all passes in one file
+    Isf,
     /// GLSL for a page with WebGL that sets ShaderToy's inputs as uniforms
     Webgl,
 }
@@ -102,8 +104,12 @@ impl To {
     }
 
     fn from_extension(path: &Path) -> Option<Self> {
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("js")) {
+        let has_extension = |name| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(name));
+        if has_extension("js") {
             return Some(Self::Js);
+        }
+        if has_extension("fs") {
+            return Some(Self::Glsl);
         }
         let target = Target::from_path(path)?;
         Self::value_variants()
@@ -128,7 +134,11 @@ pub(super) enum OutputKind {
 pub(super) fn host(args: &Args) -> Option<Host> {
     let of_output = args.output.as_deref().and_then(To::from_extension);
     let is_module = args.to.or(of_output) == Some(To::Js);
-    (args.style == StyleName::Three && is_module).then_some(Host::Three)
+    match args.style {
+        StyleName::Three if is_module => Some(Host::Three),
+        StyleName::Isf => Some(Host::Isf),
+        _ => None,
+    }
 }
 
 /// Returns the output that the arguments name, or its default, which several shaders do not have.
@@ -152,7 +162,7 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
         .flatten();
     let of_style = match host(args) {
         Some(Host::Three) => Some(To::Js),
-        None => args.style.dialect().map(|_| To::Glsl),
+        Some(Host::Isf) | None => args.style.dialect().map(|_| To::Glsl),
     };
     let to = match (args.to.or(of_style), of_extension) {
         (Some(to), Some(other)) if !other.may_contain(to) => {
@@ -197,7 +207,7 @@ pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     if dialect.is_none() && args.style != StyleName::Plain && to != To::Wgsl {
         return Err("this --style applies to WGSL only");
     }
-    if to == To::Js && host(args).is_none() {
+    if to == To::Js && host(args) != Some(Host::Three) {
         return Err("a module is written for three.js: add --style three");
     }
     if dialect.is_some() && !matches!(to, To::Glsl | To::Js) {

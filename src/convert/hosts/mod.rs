@@ -1,15 +1,17 @@
-//! Hosts whose file has the whole shader, with all its passes: an ES module for three.js.
+//! Hosts whose file has the whole shader, with all its passes: an ES module for three.js, and ISF.
 //!
 //! A host writes its file from [`Passes`], and reads the passes from the file again for the proof.
 
+mod isf;
 mod literal;
 mod template;
 mod three;
 mod three_browser;
+mod words;
 
 use toyproof_diagnostic::Deadline;
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, Version};
-use toyproof_image::Texture;
+use toyproof_image::{Frame, Input, Texture};
 use toyproof_player::{Graph, Pass, Target};
 use toyproof_project::PassKind;
 
@@ -24,6 +26,8 @@ use crate::{ConvertError, Converter, ProofError, Prover, Source, TargetCode};
 pub enum Host {
     /// three.js: an ES module with materials, and what renders them.
     Three,
+    /// ISF: GLSL with a header in JSON.
+    Isf,
 }
 
 impl Host {
@@ -32,6 +36,15 @@ impl Host {
     pub fn name(self) -> &'static str {
         match self {
             Self::Three => "three",
+            Self::Isf => "isf",
+        }
+    }
+
+    /// What changes the mouse of a frame into one that the host's inputs can describe.
+    fn mouse(self) -> fn(Frame) -> Frame {
+        match self {
+            Self::Three => std::convert::identity,
+            Self::Isf => isf::with_its_mouse,
         }
     }
 
@@ -40,9 +53,13 @@ impl Host {
     pub fn extension(self) -> &'static str {
         match self {
             Self::Three => "js",
+            Self::Isf => "fs",
         }
     }
 }
+
+/// ShaderToy's structures of channels, as they are read.
+const STRUCTURES: [&str; 4] = ["iCh0.", "iCh1.", "iCh2.", "iCh3."];
 
 /// What is converted for a [`Host`].
 #[derive(Debug, Clone, Copy)]
@@ -51,6 +68,16 @@ pub enum HostedSource<'a> {
     Shader(Source<'a>),
     /// A project: its image, and the passes that the image reads.
     Project(ProjectSource<'a>),
+}
+
+impl HostedSource<'_> {
+    /// The name of the shader; empty if it is not known.
+    fn name(&self) -> &str {
+        match self {
+            Self::Shader(source) => source.files.get(source.file()).name(),
+            Self::Project(source) => source.name,
+        }
+    }
 }
 
 /// The file of a shader for a host.
@@ -126,10 +153,13 @@ impl<'a> Passes<'a> {
         })
     }
 
-    /// The channels that a pass names.
+    /// The channels that a pass reads, or of which it reads the sizes.
     fn channels(&self, pass: usize) -> impl Iterator<Item = usize> {
         let checked = self.sources[pass].checked;
-        (0..4).filter(|&channel| checked.names_channel(channel))
+        let reads_sizes = checked.reads_input(Input::ChannelResolution);
+        (0..4).filter(move |&channel| {
+            checked.names_channel(channel) || reads_sizes && self.entries[pass][channel].is_some()
+        })
     }
 
     /// The passes, with their targets.
@@ -148,8 +178,9 @@ impl<'a> Passes<'a> {
         let codes = read.codes.iter();
         let codes: Vec<_> = codes.map(|code| TargetCode::Glsl(code.clone(), read.dialect)).collect();
         if let ([source], [code]) = (&self.sources[..], &codes[..]) {
-            let proof = prover.prove_with(*source, code, |browser, frames, undefined| match host {
+            let proof = prover.prove_with(*source, code, host.mouse(), |browser, frames, undefined| match host {
                 Host::Three => three_browser::shader(self, *source, text, browser, (frames, undefined)).map(Some),
+                Host::Isf => Ok(None),
             });
             return proof.map(ProofStatus::Proved);
         }
@@ -158,8 +189,9 @@ impl<'a> Passes<'a> {
             graph: &self.graph,
             media: &self.media,
         };
-        let proof = prover.prove_passes_with(&passes, &codes, &read.content, |browser, original| match host {
+        let proof = prover.prove_passes_with(&passes, &codes, &read.content, host.mouse(), |browser, original| match host {
             Host::Three => three_browser::passes(self, text, browser, original).map(Some),
+            Host::Isf => Ok(None),
         });
         proof.map(ProofStatus::ProvedPasses)
     }
@@ -183,9 +215,11 @@ impl Converter {
         };
         let text = match host {
             Host::Three => three::write(self, &passes)?,
+            Host::Isf => isf::write(self, &passes, source.name())?,
         };
         let read = match host {
             Host::Three => three::read(&text, &passes),
+            Host::Isf => isf::read(&text, &passes, self.timeout),
         };
         let proof = prover.map(|prover| {
             let read = read.map_err(ProofError::Unreadable)?;
@@ -205,13 +239,20 @@ impl Converter {
         let texts = passes.sources.iter().zip(&passes.kinds).map(|(source, &pass)| {
             let Source { checked, files } = *source;
             let text = glsl::port_in_versions(checked, files, (dialect, versions), &|_, _| None, &deadline);
-            text.map_err(|error| ProjectError::Pass {
+            let text = text.map_err(|error| ProjectError::Pass {
                 pass,
                 error: match error {
                     PortError::Overdue(overdue) => overdue.into(),
                     error => ConvertError::Port(error),
                 },
-            })
+            })?;
+            match STRUCTURES.into_iter().find(|name| text.contains(name)) {
+                Some(name) => {
+                    let why = format!("{pass} reads `{name}…`, which only ShaderToy has");
+                    Err(ProjectError::Unwritable(why))
+                }
+                None => Ok(text),
+            }
         });
         texts.collect()
     }

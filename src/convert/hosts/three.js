@@ -168,7 +168,7 @@ class Buffer {
   /** The texture of the last image that is sampled so. */
   texture(input) {
     const key = samplerKey(input);
-    const at = this.samplers.findIndex((sampler) => samplerKey(sampler) === key);
+    const at = this.samplers.map(samplerKey).indexOf(key);
     return this.sides[this.last][at].texture;
   }
 }
@@ -420,8 +420,10 @@ export class Shader {
     const move = (event) => {
       const { x, y } = this.inputs.iResolution.value;
       const bounds = element.getBoundingClientRect();
-      mouse.x = Math.floor(((event.clientX - bounds.left) / bounds.width) * x);
-      mouse.y = Math.floor(((bounds.bottom - event.clientY) / bounds.height) * y);
+      const across = (event.clientX - bounds.left) / bounds.width;
+      const up = (bounds.bottom - event.clientY) / bounds.height;
+      mouse.x = Math.floor(across * x);
+      mouse.y = Math.floor(up * y);
     };
     listen(element, "pointerdown", (event) => {
       move(event);
@@ -432,9 +434,9 @@ export class Shader {
     listen(window, "pointerup", () => (mouse.z = -Math.abs(mouse.z)));
     // #endif
     // #if keyboard
-    const press = (isDown) => (event) => this.keyboard.set(event.keyCode, isDown);
-    listen(window, "keydown", press(true));
-    listen(window, "keyup", press(false));
+    const { keyboard } = this;
+    listen(window, "keydown", ({ keyCode }) => keyboard.set(keyCode, true));
+    listen(window, "keyup", ({ keyCode }) => keyboard.set(keyCode, false));
     // #endif
     return () => control.abort();
   }

@@ -28,13 +28,16 @@ pub(super) fn shader(
     let keyboard = Texture::from(Image::new(256, 3, vec![[0.0, 0.0, 0.0, 1.0]; 3 * 256]));
     let mut frames = frames.to_vec();
     for (channel, entry) in passes.entries[0].iter().enumerate() {
-        let is_empty = passes.is_project && entry.is_none();
         for frame in &mut frames {
-            match entry {
-                Some(entry) if matches!(entry.source, SourceEntry::Keyboard { .. }) => {
-                    frame.channels[channel] = Some(keyboard.clone());
+            match entry.as_ref().map(|entry| &entry.source) {
+                Some(SourceEntry::Keyboard { .. }) => frame.channels[channel] = Some(keyboard.clone()),
+                // No pass renders it.
+                Some(SourceEntry::Buffer { .. }) => {
+                    let [width, height] = frame.size;
+                    let zeros = Image::new(width, height, vec![[0.0; 4]; (width * height) as usize]);
+                    frame.channels[channel] = Some(zeros.into());
                 }
-                _ if is_empty => frame.channels[channel] = None,
+                None if passes.is_project => frame.channels[channel] = None,
                 _ => {}
             }
         }

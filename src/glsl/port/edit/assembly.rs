@@ -22,7 +22,7 @@ impl Port<'_> {
         if self.becomes_main() && names::words(self.source).contains("HW_PERFORMANCE") {
             head += "#define HW_PERFORMANCE 1\n";
         }
-        if !self.to.calls_main_image() {
+        if !self.to.calls_main_image() && !self.is_for_isf() {
             for (name, value) in std::mem::take(&mut self.inputs.used) {
                 if self.is_rewrapped() && !self.declared.contains(&name) {
                     head += &declaration(name, value);
@@ -31,7 +31,8 @@ impl Port<'_> {
             }
         }
         let color = names::fresh("outColor", &names::words(self.source));
-        let declares_color = self.version != Version::Es100 && !self.to.calls_main_image();
+        let declares_color =
+            self.version != Version::Es100 && !self.to.calls_main_image() && !self.is_for_isf();
         let is_declared = self
             .checked
             .output
@@ -50,6 +51,7 @@ impl Port<'_> {
                 let _ = writeln!(head, "{declaration}");
             }
         }
+        head += &self.texel_functions();
         let color = if declares_color { &color } else { FRAG_COLOR };
         let tail = self.tail(color);
         let mut text = self.version_line();
@@ -62,7 +64,7 @@ impl Port<'_> {
         self.edits.sort_by_key(|(span, _)| span.start);
         let mut body = String::new();
         let mut at = 0;
-        if !head.is_empty() {
+        if !head.is_empty() && !head.ends_with("\n\n") {
             head.push('\n');
         }
         let mut head = Some(head);
@@ -101,7 +103,7 @@ impl Port<'_> {
     }
 
     fn version_line(&self) -> String {
-        if self.to.calls_main_image() {
+        if self.to.calls_main_image() || self.is_for_isf() {
             return String::new();
         }
         let mut line = self.version.directive();
