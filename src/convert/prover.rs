@@ -358,7 +358,7 @@ pub(super) fn validate(
             let complete = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text, channels),
                 // The reader has declared what the header does.
-                Dialect::Isf => format!("#version 150\n{text}"),
+                Dialect::Isf => format!("#version 330\n{text}"),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),

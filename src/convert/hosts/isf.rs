@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 use serde_json::{Value, json};
-use toyproof_diagnostic::{Deadline, File, Files, short};
+use toyproof_diagnostic::{Deadline, File, FileId, Files, short};
 use toyproof_glsl::tree::{Scalar, Type};
 use toyproof_glsl::{self as glsl, Checked, Dialect, Filter, Options, Sampling, Version, Wrap};
 use toyproof_image::{Frame, Input};
@@ -19,7 +19,7 @@ use toyproof_project::{self as project, Declared, PassKind, with_declarations};
 use super::words::{macros, replaced, words};
 use super::{Passes, ReadPasses};
 use crate::Converter;
-use crate::graph::SourceEntry;
+use crate::graph::{SourceEntry, target_name as graph_name};
 use crate::passes::GraphContent;
 use crate::project::ProjectError;
 
@@ -29,7 +29,7 @@ const MOUSE: [&str; 2] = ["mouse", "mouseDown"];
 /// The longest description, in characters.
 const MAX_DESCRIPTION: usize = 200;
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 struct Header {
     description: String,
@@ -77,12 +77,11 @@ pub(super) fn write(converter: &Converter, passes: &Passes, name: &str) -> Resul
         inputs,
         passes: if texts.len() > 1 { rows(passes) } else { Vec::new() },
     };
-    let header = header_text(&header);
     let body = match &texts[..] {
         [text] => text.clone(),
         texts => merged(passes, texts, &header, converter.timeout)?,
     };
-    let text = format!("{header}\n\n{body}");
+    let text = format!("{}\n\n{body}", header_text(&header));
     // Whatever the host's language does not have is found here.
     read(&text, passes, converter.timeout).map_err(ProjectError::Unwritable)?;
     Ok(text)
@@ -107,6 +106,9 @@ fn check_graph(passes: &Passes) -> Result<(), ProjectError> {
                     return refuse(pass, &format!("reads a {kind}"));
                 }
                 SourceEntry::Media { .. } => {}
+                SourceEntry::Buffer { buffer, .. } if !passes.targets().any(|target| graph_name(target) == buffer) => {
+                    return refuse(pass, "reads a buffer that no pass renders");
+                }
                 // A texel is the same whatever the sampler.
                 SourceEntry::Buffer { .. } if fetches_only(checked) => {}
                 SourceEntry::Buffer { .. } if entry.filter == Filter::Mipmap => {
@@ -252,7 +254,17 @@ fn header_text(header: &Header) -> String {
 }
 
 /// One text for all passes: Common, the passes with names of their own, and a function that calls one of them.
-fn merged(passes: &Passes, texts: &[String], header: &str, timeout: Duration) -> Result<String, ProjectError> {
+fn merged(
+    passes: &Passes,
+    texts: &[String],
+    header: &Header,
+    timeout: Duration,
+) -> Result<String, ProjectError> {
+    // Alone, a pass reads the targets as images.
+    let targets = passes.targets().filter(|target| *target != Target::Image);
+    let mut alone = Header { passes: Vec::new(), ..header.clone() };
+    alone.inputs.extend(targets.map(|target| json!({"NAME": target_name(target), "TYPE": "image"})));
+    let alone = header_text(&alone);
     let common = passes.common.map(|common| common.replace("\r\n", "\n").trim().to_owned());
     let common = common.filter(|common| texts.iter().all(|text| text.contains(&**common)));
     let common = common.unwrap_or_default();
@@ -266,7 +278,7 @@ fn merged(passes: &Passes, texts: &[String], header: &str, timeout: Duration) ->
             Target::Image => "Image".to_owned(),
             Target::Buffer(number) => char::from(b'A' + number as u8).to_string(),
         };
-        let own = own_names(&format!("{header}\n{}", texts[at]), &common, timeout);
+        let own = own_names(&format!("{alone}\n{}", texts[at]), &common, timeout);
         let own = own.map_err(ProjectError::Unwritable)?;
         let others = |name: &str| {
             let mut others = body_words.iter().enumerate().filter(|(other, _)| *other != at);
@@ -296,9 +308,7 @@ fn merged(passes: &Passes, texts: &[String], header: &str, timeout: Duration) ->
 /// The functions, structures and global variables that a text declares outside of Common.
 fn own_names(text: &str, common: &str, timeout: Duration) -> Result<Vec<String>, String> {
     let mut files = Files::default();
-    // One pass has the inputs of all.
-    let text = without_passes(text);
-    let file = files.add(File::new("written", text.clone()));
+    let file = files.add(File::new("written", text));
     let mut options = options(timeout);
     let declared = with_declarations(&mut files, file, &mut options).map_err(|errors| errors.to_string())?;
     let Declared::Shader(joined) = declared else {
@@ -314,17 +324,6 @@ fn own_names(text: &str, common: &str, timeout: Duration) -> Result<Vec<String>,
     Ok(own.map(|(name, _)| name.to_owned()).collect())
 }
 
-/// The text of a pass in a header that has no passes, but their targets as images.
-fn without_passes(text: &str) -> String {
-    let targets: String = ('A'..='Z')
-        .map(|letter| format!("buffer{letter}"))
-        .filter(|name| text.contains(&format!("\"TARGET\": \"{name}\"")))
-        .map(|name| format!("{{ \"NAME\": \"{name}\", \"TYPE\": \"image\" }},"))
-        .collect();
-    text.replacen("\"PASSES\"", "\"NO_PASSES\"", 1)
-        .replacen("\"INPUTS\": [", &format!("\"INPUTS\": [{targets}"), 1)
-}
-
 fn options(timeout: Duration) -> Options {
     Options {
         dialect: Some(Dialect::Isf),
@@ -333,7 +332,7 @@ fn options(timeout: Duration) -> Options {
     }
 }
 
-fn check(files: &Files, file: toyproof_diagnostic::FileId, options: &Options) -> Result<Checked, String> {
+fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, String> {
     glsl::check(files, file, options).map_err(|errors| {
         let first = errors.first().map(|error| short(error, files));
         format!("ISF does not compile it: {}", first.unwrap_or_default())
@@ -372,8 +371,9 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
                 at.map(|at| originals[at])
             };
             for (at, (&number, pass)) in rendering.passes.iter().zip(rendering.graph.passes()).enumerate() {
-                let text = files.get(checked.passes[number].checked.tree[checked.passes[number].checked.main_image].at.span.file);
-                let text = text.text().to_owned();
+                let tree = &checked.passes[number].checked.tree;
+                let file = tree[checked.passes[number].checked.main_image].at.span.file;
+                let text = files.get(file).text().to_owned();
                 let declared = text.lines().filter_map(|line| line.strip_prefix("uniform sampler2D ")?.strip_suffix(';'));
                 let declared: Vec<&str> = declared.collect();
                 let mut inputs = [None; 4];
