@@ -140,9 +140,13 @@ impl Prover<'_> {
         written: &[TargetCode],
         graph: &GraphContent,
     ) -> Result<PassesProof, ProofError> {
-        self.prove_passes_with(passes, written, graph, std::convert::identity, |browser, original| {
-            original.compare_in_browser(browser, passes.sources, written)
-        })
+        self.prove_passes_with(
+            passes,
+            written,
+            graph,
+            std::convert::identity,
+            |browser, original| original.compare_in_browser(browser, passes.sources, written),
+        )
     }
 
     /// Proves passes like [`Self::prove_passes`], in frames that `adapt` changes; `in_browser` compares them with the original in the browser, if there

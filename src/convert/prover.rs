@@ -212,9 +212,12 @@ impl Prover<'_> {
     /// # Errors
     /// Returns why it is not proved.
     pub fn prove(&mut self, source: Source, written: &TargetCode) -> Result<ShaderProof, ProofError> {
-        self.prove_with(source, written, std::convert::identity, |browser, frames, undefined| {
-            in_browser(browser, source, written, frames, undefined)
-        })
+        self.prove_with(
+            source,
+            written,
+            std::convert::identity,
+            |browser, frames, undefined| in_browser(browser, source, written, frames, undefined),
+        )
     }
 
     /// Proves a file like [`Self::prove`], with frames that `adapt` changes; `in_browser` compares it with the original in the browser, if there is one, in
@@ -224,7 +227,11 @@ impl Prover<'_> {
         source: Source,
         written: &TargetCode,
         adapt: fn(Frame) -> Frame,
-        in_browser: impl FnOnce(&mut Chromium, &[Frame], &[Vec<bool>]) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
+        in_browser: impl FnOnce(
+            &mut Chromium,
+            &[Frame],
+            &[Vec<bool>],
+        ) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
     ) -> Result<ShaderProof, ProofError> {
         let validator = validate(written, source.checked.channels)?;
         let mut readings = self.readings(source.checked, written)?;

@@ -203,9 +203,8 @@ impl Checked {
     /// host sets.
     pub fn declared_uniforms(&self) -> impl Iterator<Item = (&str, tree::Type, Option<&[f64]>)> {
         let variables = self.tree.variables.iter();
-        let declared = variables.filter(|(_, variable)| {
-            variable.kind == tree::VariableKind::Uniform && variable.at.is_some()
-        });
+        let declared = variables
+            .filter(|(_, variable)| variable.kind == tree::VariableKind::Uniform && variable.at.is_some());
         declared.map(|(id, variable)| {
             let value = match self.bound.get(&id) {
                 Some(Bound::Input(_)) => None,

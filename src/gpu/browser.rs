@@ -194,7 +194,9 @@ impl Chromium {
         self.live = Some(connection);
         let images_base64 = answer["images"].as_array().map_or(&[][..], Vec::as_slice);
         let images = frames.iter().zip(images_base64);
-        let images: Option<Vec<Image>> = images.map(|(frame, image)| decode_image((*frame, image))).collect();
+        let images: Option<Vec<Image>> = images
+            .map(|(frame, image)| decode_image((*frame, image)))
+            .collect();
         images
             .filter(|images| images.len() == frames.len())
             .ok_or_else(|| BrowserFailure::Disconnected("unexpected reply".to_owned()))

@@ -47,6 +47,7 @@ mod generated;
 mod glslang;
 mod grading;
 mod growth;
+mod hosted;
 #[cfg(target_os = "linux")]
 mod hostile;
 mod hostile_class;

@@ -6,7 +6,8 @@ use rayon::ThreadPool;
 use toyproof_convert::header::{self, ProofStatus};
 use toyproof_convert::{
     self as convert, ConvertError, Converter, FRAMES, FallbackReason, Host, HostedConversion, HostedSource,
-    ProjectConversion, ProjectError, ProjectSource, ProofError, Prover, Runner, Source, TargetCode, WgslError,
+    ProjectConversion, ProjectError, ProjectSource, ProofError, Prover, Runner, Source, TargetCode,
+    WgslError,
 };
 use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_glsl::{self as glsl, Checked, PortError};
@@ -207,7 +208,8 @@ impl Settings<'_> {
 
     /// The extension of the files of shaders with one pass.
     pub(super) fn extension(&self) -> &'static str {
-        self.host.map_or_else(|| self.converter.extension(), Host::extension)
+        self.host
+            .map_or_else(|| self.converter.extension(), Host::extension)
     }
 
     /// Converts a project whose image reads other passes.

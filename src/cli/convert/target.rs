@@ -104,7 +104,10 @@ impl To {
     }
 
     fn from_extension(path: &Path) -> Option<Self> {
-        let has_extension = |name| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(name));
+        let has_extension = |name| {
+            path.extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case(name))
+        };
         if has_extension("js") {
             return Some(Self::Js);
         }

@@ -26,6 +26,9 @@ use crate::project::ProjectError;
 /// The inputs of the mouse.
 const MOUSE: [&str; 2] = ["mouse", "mouseDown"];
 
+/// The definition that stands in front of passes that read it.
+const HW_PERFORMANCE: &str = "#define HW_PERFORMANCE 1\n";
+
 /// The longest description, in characters.
 const MAX_DESCRIPTION: usize = 200;
 
@@ -35,9 +38,67 @@ struct Header {
     description: String,
     isfvsn: &'static str,
     categories: [&'static str; 1],
-    inputs: Vec<Value>,
+    inputs: Vec<InputRow>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    passes: Vec<Value>,
+    passes: Vec<PassRow>,
+}
+
+/// An input of a header, with the numbers between which a host's slider runs.
+#[derive(Clone, PartialEq, Serialize)]
+#[serde(rename_all = "UPPERCASE")]
+struct InputRow {
+    name: String,
+    #[serde(rename = "TYPE")]
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    default: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    min: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    max: Option<Value>,
+}
+
+impl InputRow {
+    fn new(name: &str, kind: &'static str) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+            default: None,
+            min: None,
+            max: None,
+        }
+    }
+
+    fn image(name: &str) -> Self {
+        Self::new(name, "image")
+    }
+
+    fn with_default(self, value: Value) -> Self {
+        Self {
+            default: Some(value),
+            ..self
+        }
+    }
+
+    fn between(self, min: Value, max: Value) -> Self {
+        Self {
+            min: Some(min),
+            max: Some(max),
+            ..self
+        }
+    }
+}
+
+/// A pass of a header; of the image, it has no target.
+#[derive(Clone, Serialize)]
+#[serde(rename_all = "UPPERCASE")]
+struct PassRow {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: Option<String>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    persistent: bool,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    float: bool,
 }
 
 /// Writes the file; `name` is that of the shader.
@@ -49,20 +110,24 @@ pub(super) fn write(converter: &Converter, passes: &Passes, name: &str) -> Resul
         .zip(&texts)
         .map(|(pass, text)| replaced(text, &channel_names(passes, pass, &images)))
         .collect();
-    let mut inputs: Vec<Value> = images.iter().map(|(name, _)| json!({"NAME": name, "TYPE": "image"})).collect();
-    let reads_mouse = passes.sources.iter().any(|source| source.checked.reads_input(Input::Mouse));
+    let mut inputs: Vec<_> = images.iter().map(|(name, _)| InputRow::image(name)).collect();
+    let reads_mouse = passes
+        .sources
+        .iter()
+        .any(|source| source.checked.reads_input(Input::Mouse));
     if reads_mouse {
         let [position, button] = MOUSE;
-        inputs.push(json!({
-            "NAME": position, "TYPE": "point2D", "DEFAULT": [0.0, 0.0], "MIN": [0.0, 0.0], "MAX": [1.0, 1.0],
-        }));
-        inputs.push(json!({"NAME": button, "TYPE": "bool", "DEFAULT": false}));
+        let position = InputRow::new(position, "point2D").with_default(json!([0.0, 0.0]));
+        inputs.push(position.between(json!([0.0, 0.0]), json!([1.0, 1.0])));
+        inputs.push(InputRow::new(button, "bool").with_default(json!(false)));
     }
     for source in &passes.sources {
         for (name, ty, value) in source.checked.declared_uniforms() {
             let Some(value) = value else { continue };
             let input = own_input(name, ty, value).ok_or_else(|| {
-                ProjectError::Unwritable(format!("the uniform `{name}` has a type that inputs of ISF do not have"))
+                ProjectError::Unwritable(format!(
+                    "the uniform `{name}` has a type that inputs of ISF do not have"
+                ))
             })?;
             if !inputs.contains(&input) {
                 inputs.push(input);
@@ -99,14 +164,18 @@ fn check_graph(passes: &Passes) -> Result<(), ProjectError> {
             return refuse(pass, "has `discard`, after which a pixel keeps an earlier value");
         }
         for channel in passes.channels(pass) {
-            let Some(entry) = &passes.entries[pass][channel] else { continue };
+            let Some(entry) = &passes.entries[pass][channel] else {
+                continue;
+            };
             match &entry.source {
                 SourceEntry::Keyboard { .. } => return refuse(pass, "reads the keyboard"),
                 SourceEntry::Media { kind, .. } if !matches!(&**kind, "texture" | "video" | "webcam") => {
                     return refuse(pass, &format!("reads a {kind}"));
                 }
                 SourceEntry::Media { .. } => {}
-                SourceEntry::Buffer { buffer, .. } if !passes.targets().any(|target| graph_name(target) == buffer) => {
+                SourceEntry::Buffer { buffer, .. }
+                    if !passes.targets().any(|target| graph_name(target) == buffer) =>
+                {
                     return refuse(pass, "reads a buffer that no pass renders");
                 }
                 // A texel is the same whatever the sampler.
@@ -138,7 +207,10 @@ fn images(passes: &Passes) -> Vec<(String, (usize, usize))> {
     for pass in 0..passes.sources.len() {
         for channel in passes.channels(pass) {
             let entry = &passes.entries[pass][channel];
-            if matches!(entry.as_ref().map(|entry| &entry.source), Some(SourceEntry::Buffer { .. })) {
+            if matches!(
+                entry.as_ref().map(|entry| &entry.source),
+                Some(SourceEntry::Buffer { .. })
+            ) {
                 continue;
             }
             if passes.sources.len() == 1 {
@@ -173,7 +245,10 @@ fn channel_names(
 ) -> HashMap<String, String> {
     let name = |channel: usize| {
         let entry = passes.entries[pass][channel].as_ref();
-        let name = match (passes.graph.passes()[pass].inputs[channel], entry.map(|entry| &entry.source)) {
+        let name = match (
+            passes.graph.passes()[pass].inputs[channel],
+            entry.map(|entry| &entry.source),
+        ) {
             (Some(Read::Buffer(number)), _) => target_name(Target::Buffer(number)),
             (_, source) => {
                 let is_it = |(_, (of_pass, of_channel)): &&(String, (usize, usize))| {
@@ -186,26 +261,29 @@ fn channel_names(
                 }
             }
         };
-        (format!("iChannel{channel}"), name)
+        let channel = format!("iChannel{channel}");
+        let function = [&channel, &name].map(|image| format!("{image}Texel"));
+        [(channel, name), function.into()]
     };
-    passes.channels(pass).map(name).collect()
+    passes.channels(pass).flat_map(name).collect()
 }
 
 /// An input for an author's uniform.
-fn own_input(name: &str, ty: Type, value: &[f64]) -> Option<Value> {
+fn own_input(name: &str, ty: Type, value: &[f64]) -> Option<InputRow> {
     let first = value.first().copied().unwrap_or_default();
     Some(match ty {
         Type::Scalar(Scalar::Float) => {
             let [low, high] = [first.min(0.0), first.max(1.0)];
-            json!({"NAME": name, "TYPE": "float", "DEFAULT": first, "MIN": low, "MAX": high})
+            let input = InputRow::new(name, "float").with_default(json!(first));
+            input.between(json!(low), json!(high))
         }
-        Type::Scalar(Scalar::Int) => json!({"NAME": name, "TYPE": "long", "DEFAULT": first}),
-        Type::Scalar(Scalar::Bool) => json!({"NAME": name, "TYPE": "bool", "DEFAULT": first != 0.0}),
+        Type::Scalar(Scalar::Int) => InputRow::new(name, "long").with_default(json!(first as i32)),
+        Type::Scalar(Scalar::Bool) => InputRow::new(name, "bool").with_default(json!(first != 0.0)),
         Type::Vector(Scalar::Float, size @ (2 | 4)) => {
             let kind = if size == 2 { "point2D" } else { "color" };
             let zeros = vec![0.0; usize::from(size)];
             let value = if value.is_empty() { &zeros } else { value };
-            json!({"NAME": name, "TYPE": kind, "DEFAULT": value})
+            InputRow::new(name, kind).with_default(json!(value))
         }
         _ => return None,
     })
@@ -220,24 +298,30 @@ fn description(passes: &Passes, name: &str) -> String {
     let text = comment.join(" ");
     let text = text.trim();
     let text = if text.is_empty() { name } else { text };
-    text.chars().filter(|c| !c.is_control()).take(MAX_DESCRIPTION).collect()
+    text.chars()
+        .filter(|c| !c.is_control())
+        .take(MAX_DESCRIPTION)
+        .collect()
 }
 
 /// The rows of `PASSES`.
-fn rows(passes: &Passes) -> Vec<Value> {
+fn rows(passes: &Passes) -> Vec<PassRow> {
     let graph = passes.graph.passes();
     let row = |(at, pass): (usize, &Pass)| {
         let Target::Buffer(number) = pass.target else {
-            return json!({});
+            return PassRow {
+                target: None,
+                persistent: false,
+                float: false,
+            };
         };
         // A pass up to its own reads what it rendered in the last frame.
         let reads = |pass: &Pass| pass.inputs.contains(&Some(Read::Buffer(number)));
         let is_persistent = graph[..=at].iter().any(reads);
-        let name = target_name(pass.target);
-        if is_persistent {
-            json!({"TARGET": name, "PERSISTENT": true, "FLOAT": true})
-        } else {
-            json!({"TARGET": name, "FLOAT": true})
+        PassRow {
+            target: Some(target_name(pass.target)),
+            persistent: is_persistent,
+            float: true,
         }
     };
     graph.iter().enumerate().map(row).collect()
@@ -262,16 +346,33 @@ fn merged(
 ) -> Result<String, ProjectError> {
     // Alone, a pass reads the targets as images.
     let targets = passes.targets().filter(|target| *target != Target::Image);
-    let mut alone = Header { passes: Vec::new(), ..header.clone() };
-    alone.inputs.extend(targets.map(|target| json!({"NAME": target_name(target), "TYPE": "image"})));
+    let mut alone = Header {
+        passes: Vec::new(),
+        ..header.clone()
+    };
+    alone
+        .inputs
+        .extend(targets.map(|target| InputRow::image(&target_name(target))));
     let alone = header_text(&alone);
-    let common = passes.common.map(|common| common.replace("\r\n", "\n").trim().to_owned());
+    let common = passes
+        .common
+        .map(|common| common.replace("\r\n", "\n").trim().to_owned());
     let common = common.filter(|common| texts.iter().all(|text| text.contains(&**common)));
     let common = common.unwrap_or_default();
     let bodies: Vec<String> = texts.iter().map(|text| text.replacen(&common, "", 1)).collect();
     let body_words: Vec<HashSet<&str>> = bodies.iter().map(|body| words(body)).collect();
-    let all_words: HashSet<&str> = body_words.iter().flatten().copied().chain(words(&common)).collect();
-    let mut merged = common.clone();
+    let all_words: HashSet<&str> = body_words
+        .iter()
+        .flatten()
+        .copied()
+        .chain(words(&common))
+        .collect();
+    let mut merged = if words(&common).contains("HW_PERFORMANCE") {
+        format!("{HW_PERFORMANCE}{common}")
+    } else {
+        common.clone()
+    };
+    let is_defined = merged.starts_with(HW_PERFORMANCE);
     let mut calls = String::new();
     for (at, (body, target)) in bodies.iter().zip(passes.targets()).enumerate() {
         let suffix = match target {
@@ -286,16 +387,27 @@ fn merged(
         };
         let own = own.into_iter().chain(macros(body).map(str::to_owned));
         let mut names: HashMap<String, String> = HashMap::new();
-        for name in own.filter(|name| others(name) || name == "main") {
-            let mut fresh = if name == "main" { format!("render{suffix}") } else { format!("{name}{suffix}") };
+        let is_kept = |name: &str| is_defined && name == "HW_PERFORMANCE";
+        for name in own.filter(|name| (others(name) || name == "main") && !is_kept(name)) {
+            let mut fresh = if name == "main" {
+                format!("render{suffix}")
+            } else {
+                format!("{name}{suffix}")
+            };
             while all_words.contains(&*fresh) {
                 fresh.push('_');
             }
             names.insert(name, fresh);
         }
         let main = names.get("main").cloned().unwrap_or_default();
-        let body = replaced(body, &names);
-        merged = format!("{}\n\n// {}\n\n{}\n", merged.trim_end(), passes.kinds[at], body.trim());
+        let body = body.replacen(HW_PERFORMANCE, if is_defined { "" } else { HW_PERFORMANCE }, 1);
+        let body = replaced(&body, &names);
+        merged = format!(
+            "{}\n\n// {}\n\n{}\n",
+            merged.trim_end(),
+            passes.kinds[at],
+            body.trim()
+        );
         calls += &match at {
             0 => format!("    if (PASSINDEX == 0) {{\n        {main}();\n    }}"),
             _ if at + 1 == bodies.len() => format!(" else {{\n        {main}();\n    }}\n"),
@@ -345,7 +457,9 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
     let file = files.add(File::new("written", text));
     let mut options = options(timeout);
     let declared = with_declarations(&mut files, file, &mut options).map_err(|errors| errors.to_string())?;
-    options.uniforms.retain(|uniform| !MOUSE.contains(&&*uniform.name));
+    options
+        .uniforms
+        .retain(|uniform| !MOUSE.contains(&&*uniform.name));
     let images = images(passes);
     let mut codes = Vec::new();
     let mut graph = Vec::new();
@@ -355,12 +469,18 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
         Declared::Shader(file) => {
             check(&files, file, &options)?;
             codes.push(files.get(file).text().to_owned());
-            graph.push(Pass { target: Target::Image, inputs: [None; 4] });
+            graph.push(Pass {
+                target: Target::Image,
+                inputs: [None; 4],
+            });
             sampling.push(passes.sources[0].checked.sampling);
         }
         Declared::Project(project) => {
-            let checked = project::check(&project, &mut files, &options).map_err(|errors| errors.to_string())?;
-            let rendering = project.rendering(&[PassKind::Image]).map_err(|error| error.to_string())?;
+            let checked =
+                project::check(&project, &mut files, &options).map_err(|errors| errors.to_string())?;
+            let rendering = project
+                .rendering(&[PassKind::Image])
+                .map_err(|error| error.to_string())?;
             if rendering.passes.len() != originals.len() {
                 return Err("other passes than the shader's".to_owned());
             }
@@ -374,10 +494,15 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
                 let tree = &checked.passes[number].checked.tree;
                 let file = tree[checked.passes[number].checked.main_image].at.span.file;
                 let text = files.get(file).text().to_owned();
-                let declared = text.lines().filter_map(|line| line.strip_prefix("uniform sampler2D ")?.strip_suffix(';'));
+                let declared = text
+                    .lines()
+                    .filter_map(|line| line.strip_prefix("uniform sampler2D ")?.strip_suffix(';'));
                 let declared: Vec<&str> = declared.collect();
                 let mut inputs = [None; 4];
-                let mut samplers = [Sampling { filter: Filter::Linear, wrap: Wrap::Clamp }; 4];
+                let mut samplers = [Sampling {
+                    filter: Filter::Linear,
+                    wrap: Wrap::Clamp,
+                }; 4];
                 for channel in 0..4 {
                     if let Some(Read::Buffer(buffer)) = pass.inputs[channel] {
                         let Some(Target::Buffer(buffer)) = original(Target::Buffer(buffer)) else {
@@ -389,14 +514,18 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
                             samplers[channel].filter = Filter::Nearest;
                         }
                     } else if let Some(name) = declared.get(channel)
-                        && let Some((_, (of_pass, of_channel))) = images.iter().find(|(image, _)| image == name)
+                        && let Some((_, (of_pass, of_channel))) =
+                            images.iter().find(|(image, _)| image == name)
                     {
                         inputs[channel] = passes.graph.passes()[*of_pass].inputs[*of_channel];
                         samplers[channel] = passes.sources[*of_pass].checked.sampling[*of_channel];
                     }
                 }
                 codes.push(text.clone());
-                graph.push(Pass { target: originals[at], inputs });
+                graph.push(Pass {
+                    target: originals[at],
+                    inputs,
+                });
                 sampling.push(samplers);
             }
         }

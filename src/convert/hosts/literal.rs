@@ -10,7 +10,10 @@ const LINE_WIDTH: usize = 80;
 /// An object on one line, or with a line for each entry if it would be too long there. `column` is where it begins, and
 /// `after` the number of characters behind it.
 pub(super) fn object(entries: &[(String, String)], indent: usize, column: usize, after: usize) -> String {
-    let entries: Vec<_> = entries.iter().map(|(key, value)| format!("{key}: {value}")).collect();
+    let entries: Vec<_> = entries
+        .iter()
+        .map(|(key, value)| format!("{key}: {value}"))
+        .collect();
     match &entries[..] {
         [] => "{}".to_owned(),
         entries => enclosed(["{ ", " }", "{", "}"], entries, indent, column, after),
@@ -85,7 +88,9 @@ fn template_text(literal: &str, known: &HashMap<&str, String>) -> Result<(String
             }
             _ => match rest.strip_prefix('{').and_then(|inside| inside.split_once('}')) {
                 Some((name, after)) => {
-                    text += known.get(name).ok_or("a template literal names an unknown constant")?;
+                    text += known
+                        .get(name)
+                        .ok_or("a template literal names an unknown constant")?;
                     rest = after;
                 }
                 None => text.push('$'),
@@ -193,10 +198,18 @@ mod tests {
         let list = array(&["image".to_owned(), string("\"b\"")], 0, 0, 0);
         let short = object(&[pair("a", list), pair("isOn", "true".to_owned())], 0, 0, 0);
         assert_eq!(short, "{ a: [image, \"\\\"b\\\"\"], isOn: true }");
-        let long = object(&[pair("a", string(&"x".repeat(80))), pair("b", "{}".to_owned())], 2, 0, 0);
+        let long = object(
+            &[pair("a", string(&"x".repeat(80))), pair("b", "{}".to_owned())],
+            2,
+            0,
+            0,
+        );
         assert!(long.ends_with(",\n    b: {},\n  }"), "{long}");
         let module = format!("\nconst one = {short};\nconst two = {long};\n");
-        assert_eq!(constant(&module, "one").unwrap(), json!({"a": ["image", "\"b\""], "isOn": true}));
+        assert_eq!(
+            constant(&module, "one").unwrap(),
+            json!({"a": ["image", "\"b\""], "isOn": true})
+        );
         assert_eq!(constant(&module, "two").unwrap()["b"], json!({}));
         for wrong in ["{ a }", "[1 2]", "{ a: }", "{ \"a", "{ a: 1"] {
             assert!(constant(&format!("\nconst x = {wrong}"), "x").is_err(), "{wrong}");

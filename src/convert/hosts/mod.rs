@@ -140,7 +140,11 @@ impl<'a> Passes<'a> {
         let entries = (0..count).map(|pass| std::array::from_fn(|channel| host_graph.entry(pass, channel)));
         let entries = entries.collect();
         let HostGraph { graph, media, .. } = host_graph;
-        let kinds = rendering.passes.iter().map(|&at| project.project.passes[at].kind).collect();
+        let kinds = rendering
+            .passes
+            .iter()
+            .map(|&at| project.project.passes[at].kind)
+            .collect();
         let common = project.project.common.map(|file| files.get(file).text());
         Ok(Self {
             kinds,
@@ -176,12 +180,21 @@ impl<'a> Passes<'a> {
         prover: &mut Prover,
     ) -> Result<ProofStatus, ProofError> {
         let codes = read.codes.iter();
-        let codes: Vec<_> = codes.map(|code| TargetCode::Glsl(code.clone(), read.dialect)).collect();
+        let codes: Vec<_> = codes
+            .map(|code| TargetCode::Glsl(code.clone(), read.dialect))
+            .collect();
         if let ([source], [code]) = (&self.sources[..], &codes[..]) {
-            let proof = prover.prove_with(*source, code, host.mouse(), |browser, frames, undefined| match host {
-                Host::Three => three_browser::shader(self, *source, text, browser, (frames, undefined)).map(Some),
-                Host::Isf => Ok(None),
-            });
+            let proof = prover.prove_with(
+                *source,
+                code,
+                host.mouse(),
+                |browser, frames, undefined| match host {
+                    Host::Three => {
+                        three_browser::shader(self, *source, text, browser, (frames, undefined)).map(Some)
+                    }
+                    Host::Isf => Ok(None),
+                },
+            );
             return proof.map(ProofStatus::Proved);
         }
         let passes = PassSources {
@@ -189,10 +202,16 @@ impl<'a> Passes<'a> {
             graph: &self.graph,
             media: &self.media,
         };
-        let proof = prover.prove_passes_with(&passes, &codes, &read.content, host.mouse(), |browser, original| match host {
-            Host::Three => three_browser::passes(self, text, browser, original).map(Some),
-            Host::Isf => Ok(None),
-        });
+        let proof = prover.prove_passes_with(
+            &passes,
+            &codes,
+            &read.content,
+            host.mouse(),
+            |browser, original| match host {
+                Host::Three => three_browser::passes(self, text, browser, original).map(Some),
+                Host::Isf => Ok(None),
+            },
+        );
         proof.map(ProofStatus::ProvedPasses)
     }
 }

@@ -44,13 +44,22 @@ const RESERVED: [&str; 11] = [
 pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, ProjectError> {
     let codes = converter.port_passes(passes, DIALECT, &[Version::Es300])?;
     let version = Version::Es300.directive();
-    let codes = codes.iter().map(|code| own_names(code.strip_prefix(&*version).unwrap_or(code)));
-    let codes: Vec<String> = codes.map(|code| code.trim_start_matches('\n').to_owned()).collect();
+    let codes = codes
+        .iter()
+        .map(|code| own_names(code.strip_prefix(&*version).unwrap_or(code)));
+    let codes: Vec<String> = codes
+        .map(|code| code.trim_start_matches('\n').to_owned())
+        .collect();
     let media = media(passes);
     let mut rows = Vec::new();
     let mut own_uniforms = Vec::new();
     for (at, (code, target)) in codes.iter().zip(passes.targets()).enumerate() {
-        let checked = read_glsl(&complete(code, target), passes.sources[at].checked, DIALECT, converter.timeout);
+        let checked = read_glsl(
+            &complete(code, target),
+            passes.sources[at].checked,
+            DIALECT,
+            converter.timeout,
+        );
         let checked = checked.map_err(|error| ProjectError::Unwritable(error.to_string()))?;
         let mut uniforms = Vec::new();
         for (name, ty, value) in checked.declared_uniforms() {
@@ -68,8 +77,15 @@ pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, Pr
                 }
             }
         }
-        let reads_sizes = checked.declared_uniforms().any(|(name, ..)| name == Input::ChannelResolution.name());
-        rows.push((js_name(target), uniforms, channels(passes, at, &media), reads_sizes));
+        let reads_sizes = checked
+            .declared_uniforms()
+            .any(|(name, ..)| name == Input::ChannelResolution.name());
+        rows.push((
+            js_name(target),
+            uniforms,
+            channels(passes, at, &media),
+            reads_sizes,
+        ));
     }
     let reads = |input: Input| {
         let name = string(input.name());
@@ -78,7 +94,9 @@ pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, Pr
     let has_entry = |is: fn(&SourceEntry) -> bool| {
         let all = (0..codes.len()).flat_map(|pass| passes.channels(pass).map(move |channel| (pass, channel)));
         all.into_iter().any(|(pass, channel)| {
-            passes.entries[pass][channel].as_ref().is_some_and(|entry| is(&entry.source))
+            passes.entries[pass][channel]
+                .as_ref()
+                .is_some_and(|entry| is(&entry.source))
         })
     };
     let has_channels = rows.iter().any(|(_, _, channels, _)| !channels.is_empty());
@@ -86,7 +104,10 @@ pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, Pr
         || has_entry(|source| matches!(source, SourceEntry::Buffer { .. }));
     let keyboard = has_entry(|source| matches!(source, SourceEntry::Keyboard { .. }));
     let mouse = reads(Input::Mouse);
-    let discards = passes.sources.last().is_some_and(|image| image.checked.discards());
+    let discards = passes
+        .sources
+        .last()
+        .is_some_and(|image| image.checked.discards());
     let text = sections(TEMPLATE, |section| match section {
         "textures" => !media.is_empty(),
         "channels" => has_channels,
@@ -101,7 +122,11 @@ pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, Pr
     });
     let table: Vec<_> = rows.iter().map(|row| pass_row(row, has_channels)).collect();
     let media_rows: Vec<_> = media.iter().map(MediumName::row).collect();
-    let parameters = if media.is_empty() { "renderer" } else { "renderer, textures = {}" };
+    let parameters = if media.is_empty() {
+        "renderer"
+    } else {
+        "renderer, textures = {}"
+    };
     let text = text.replacen("$passes", &array(&table, 0, usize::MAX / 2, 0), 1);
     let text = text.replacen("$media", &object(&media_rows, 0, usize::MAX / 2, 0), 1);
     let text = text.replacen("    ...uniforms,\n", &own_uniforms.concat(), 1);
@@ -113,7 +138,11 @@ pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, Pr
 /// The text without names that three.js would replace.
 fn own_names(text: &str) -> String {
     let mut text = text.to_owned();
-    for reserved in RESERVED.iter().filter(|reserved| text.contains(**reserved)).collect::<Vec<_>>() {
+    for reserved in RESERVED
+        .iter()
+        .filter(|reserved| text.contains(**reserved))
+        .collect::<Vec<_>>()
+    {
         let mut own = reserved.to_lowercase();
         while text.contains(&own) {
             own.insert(0, '_');
@@ -136,15 +165,23 @@ fn js_name(target: Target) -> String {
 
 /// The words of a name as one; `None` if it has no letter at its beginning.
 fn camel_case(name: &str) -> Option<String> {
-    let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let words = name
+        .split(|c: char| !c.is_ascii_alphanumeric())
+        .filter(|word| !word.is_empty());
     let mut joined = String::new();
     for word in words {
         let (first, rest) = word.split_at(1);
-        let first = if joined.is_empty() { first.to_ascii_lowercase() } else { first.to_ascii_uppercase() };
+        let first = if joined.is_empty() {
+            first.to_ascii_lowercase()
+        } else {
+            first.to_ascii_uppercase()
+        };
         joined += &first;
         joined += rest;
     }
-    joined.starts_with(|c: char| c.is_ascii_alphabetic()).then_some(joined)
+    joined
+        .starts_with(|c: char| c.is_ascii_alphabetic())
+        .then_some(joined)
 }
 
 /// A texture that the user passes to the module.
@@ -206,13 +243,32 @@ pub(super) fn media(passes: &Passes) -> Vec<MediumName> {
                 });
                 continue;
             }
-            let Some(entry) = &passes.entries[pass][channel] else { continue };
-            let SourceEntry::Media { kind, name, vflip, .. } = &entry.source else { continue };
-            let sampling = Some((Sampling { filter: entry.filter, wrap: entry.wrap }, *vflip));
-            if media.iter().any(|medium| medium.source.as_ref() == Some(&entry.source) && medium.sampling == sampling) {
+            let Some(entry) = &passes.entries[pass][channel] else {
+                continue;
+            };
+            let SourceEntry::Media {
+                kind, name, vflip, ..
+            } = &entry.source
+            else {
+                continue;
+            };
+            let sampling = Some((
+                Sampling {
+                    filter: entry.filter,
+                    wrap: entry.wrap,
+                },
+                *vflip,
+            ));
+            if media
+                .iter()
+                .any(|medium| medium.source.as_ref() == Some(&entry.source) && medium.sampling == sampling)
+            {
                 continue;
             }
-            let base = name.as_deref().and_then(camel_case).unwrap_or_else(|| kind.clone());
+            let base = name
+                .as_deref()
+                .and_then(camel_case)
+                .unwrap_or_else(|| kind.clone());
             let mut name = base.clone();
             let mut number = 2;
             while media.iter().any(|medium| medium.name == name) {
@@ -240,16 +296,26 @@ fn channels(passes: &Passes, pass: usize, media: &[MediumName]) -> Vec<(String, 
             None => vec![("texture".to_owned(), string(&name))],
             Some((SourceEntry::Buffer { buffer, .. }, entry)) => {
                 let buffer = camel_case(buffer).unwrap_or_default();
-                let sampling = Sampling { filter: entry.filter, wrap: entry.wrap };
+                let sampling = Sampling {
+                    filter: entry.filter,
+                    wrap: entry.wrap,
+                };
                 let mut entries = vec![("buffer".to_owned(), string(&buffer))];
                 entries.extend(sampler_entries(sampling));
                 entries
             }
             Some((SourceEntry::Keyboard { .. }, _)) => vec![("keyboard".to_owned(), "true".to_owned())],
             Some((source @ SourceEntry::Media { vflip, .. }, entry)) => {
-                let sampling = Some((Sampling { filter: entry.filter, wrap: entry.wrap }, *vflip));
+                let sampling = Some((
+                    Sampling {
+                        filter: entry.filter,
+                        wrap: entry.wrap,
+                    },
+                    *vflip,
+                ));
                 let mut known = media.iter();
-                let found = known.find(|medium| medium.source.as_ref() == Some(source) && medium.sampling == sampling);
+                let found = known
+                    .find(|medium| medium.source.as_ref() == Some(source) && medium.sampling == sampling);
                 let name = found.map_or("", |medium| &medium.name);
                 vec![("texture".to_owned(), string(name))]
             }
@@ -265,7 +331,10 @@ fn pass_row(
     (name, uniforms, channels, reads_sizes): &(String, Vec<String>, Vec<(String, String)>, bool),
     has_channels: bool,
 ) -> String {
-    let mut row = format!("{{\n    name: {},\n    fragmentShader: {name}Shader,\n", string(name));
+    let mut row = format!(
+        "{{\n    name: {},\n    fragmentShader: {name}Shader,\n",
+        string(name)
+    );
     let uniforms = array(uniforms, 4, "    uniforms: ".len(), 1);
     let _ = writeln!(row, "    uniforms: {uniforms},");
     if has_channels {
@@ -372,14 +441,22 @@ pub(super) fn read(module: &str, passes: &Passes) -> Result<ReadPasses, String> 
     let mut sampling = Vec::new();
     let mut formats: [BufferFormat; BUFFERS] = Default::default();
     for (at, row) in rows.iter().enumerate() {
-        let target = targets.iter().copied().find(|target| js_name(*target) == row.name);
+        let target = targets
+            .iter()
+            .copied()
+            .find(|target| js_name(*target) == row.name);
         let target = target.ok_or_else(|| format!("the pass `{}` is unknown", row.name))?;
         let code = texts.get(&*row.fragment_shader).ok_or("a pass has no shader")?;
         codes.push(complete(code, target));
-        let mut pass = Pass { target, inputs: [None; 4] };
+        let mut pass = Pass {
+            target,
+            inputs: [None; 4],
+        };
         let mut samplers = passes.sources[at].checked.sampling;
         for (channel, sampler) in samplers.iter_mut().enumerate() {
-            let Some(row) = row.channels.get(&format!("iChannel{channel}")) else { continue };
+            let Some(row) = row.channels.get(&format!("iChannel{channel}")) else {
+                continue;
+            };
             let (filter, wrap) = match &row.texture {
                 Some(texture) => {
                     let medium = media.iter().find(|medium| medium.name == *texture);

@@ -96,10 +96,14 @@ pub(super) fn passes(
             sampling: source.checked.sampling,
         });
     }
-    let images = browser.play(&pass_texts, &played).map_err(ProofError::BrowserOriginal)?;
+    let images = browser
+        .play(&pass_texts, &played)
+        .map_err(ProofError::BrowserOriginal)?;
     let textures = media(passes).into_iter().filter_map(|medium| {
         let (pass, channel) = medium.at;
-        let Some(Read::Medium(number)) = graph[pass].inputs[channel] else { return None };
+        let Some(Read::Medium(number)) = graph[pass].inputs[channel] else {
+            return None;
+        };
         let sampling = passes.sources[pass].checked.sampling[channel];
         Some((medium.name, &passes.media[number], sampling))
     });

@@ -57,9 +57,9 @@ pub(super) fn words(text: &str) -> HashSet<&str> {
 pub(super) fn replaced(text: &str, replacements: &HashMap<String, String>) -> String {
     let is_swizzle = |word: &str| word.len() <= 4 && word.chars().all(|c| "xyzwrgbastpq".contains(c));
     let part = |part: &Part| match *part {
-        Part::Word(word, is_member) if !(is_member && is_swizzle(word)) => {
-            replacements.get(word).map_or_else(|| word.to_owned(), String::clone)
-        }
+        Part::Word(word, is_member) if !(is_member && is_swizzle(word)) => replacements
+            .get(word)
+            .map_or_else(|| word.to_owned(), String::clone),
         Part::Word(text, _) | Part::Other(text) => text.to_owned(),
     };
     parts(text).iter().map(part).collect()
@@ -82,12 +82,17 @@ mod tests {
     #[test]
     fn words_are_replaced_outside_of_comments_and_components() {
         let of = |pairs: &[(&str, &str)]| {
-            let owned = pairs.iter().map(|(from, to)| ((*from).to_owned(), (*to).to_owned()));
+            let owned = pairs
+                .iter()
+                .map(|(from, to)| ((*from).to_owned(), (*to).to_owned()));
             owned.collect::<HashMap<_, _>>()
         };
         let text = "float x = a.x + b . x + 1.0e3; // x\n/* x */ s.size = size(x1);";
         let expected = "float y = a.x + b . x + 1.0e3; // x\n/* x */ s.area = area(x1);";
-        assert_eq!(replaced(text, &of(&[("x", "y"), ("size", "area"), ("e3", "z")])), expected);
+        assert_eq!(
+            replaced(text, &of(&[("x", "y"), ("size", "area"), ("e3", "z")])),
+            expected
+        );
         assert!(words(text).contains("x1") && !words("// x").contains("x"));
         let defined: Vec<_> = macros("#define A(x) x\n  # define B 1\n#undef C\n#define D").collect();
         assert_eq!(defined, ["A", "B", "D"]);

@@ -104,7 +104,8 @@ impl InputValue {
 }
 
 use InputValue::{
-    Constant, First, Float, Mouse, MouseDown, Quad, QuadInSpace, Surface, SurfaceSize, Texture, TextureSize, Whole,
+    Constant, First, Float, Mouse, MouseDown, Quad, QuadInSpace, Surface, SurfaceSize, Texture, TextureSize,
+    Whole,
 };
 
 const TIME: &[InputValue] = &[Whole(Input::Time)];

@@ -68,8 +68,9 @@ impl ThreeLibrary {
         ancestors.find_map(|folder| Self::read(&folder.join("node_modules/three")))
     }
 
-    /// Reads the package in a folder.
-    fn read(package: &Path) -> Option<Self> {
+    /// Reads the package in a folder; `None` if it is not there.
+    #[must_use]
+    pub fn read(package: &Path) -> Option<Self> {
         let text = |name: &str| fs::read_to_string(package.join(name)).ok();
         let description: Value = serde_json::from_str(&text("package.json")?).ok()?;
         Some(Self {
@@ -154,7 +155,10 @@ impl Chromium {
         let mut names = serde_json::Map::new();
         for (name, texture, sampling) in &module.textures {
             let number = textures.number_of(texture);
-            names.insert(name.clone(), json!({"number": number, "sampling": sampling_json(*sampling)}));
+            names.insert(
+                name.clone(),
+                json!({"number": number, "sampling": sampling_json(*sampling)}),
+            );
         }
         let job = json!({
             "language": "three", "text": module.text, "library": library, "names": names,

@@ -119,7 +119,9 @@ impl Port<'_> {
         };
         match self.known.get(name).map(|(_, known)| known.clone()) {
             // The header of ISF declares its inputs.
-            Some(Known::Value(..) | Known::Unset) if self.is_for_isf() && storage == "uniform" => Some(Vec::new()),
+            Some(Known::Value(..) | Known::Unset) if self.is_for_isf() && storage == "uniform" => {
+                Some(Vec::new())
+            }
             Some(Known::Input(value)) => {
                 let mut lines = Vec::new();
                 if matches!(self.writings.get(name), Some(Writing::Global)) {

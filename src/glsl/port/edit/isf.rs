@@ -58,7 +58,9 @@ impl Port<'_> {
             if self.is_lookup(index) {
                 self.lookup(index)?;
             } else if self.channel(index).is_some()
-                && !(index > 1 && self.source.is(index - 1, Punctuator::LeftParen) && self.is_lookup(index - 2))
+                && !(index > 1
+                    && self.source.is(index - 1, Punctuator::LeftParen)
+                    && self.is_lookup(index - 2))
                 && !self.is_declared_at(index)
             {
                 let name = self.source.token_text(index);
@@ -95,7 +97,9 @@ impl Port<'_> {
         let source = self.source;
         let name = source.token_text(index);
         let Some(channel) = self.channel(index + 2) else {
-            return Err(self.without_equivalent(&format!("`{name}` of a texture that a parameter names"), index));
+            return Err(
+                self.without_equivalent(&format!("`{name}` of a texture that a parameter names"), index)
+            );
         };
         let Some(close) = source.partner(index + 1) else {
             return Err(self.without_equivalent(&format!("`{name}` with so many words"), index));
@@ -105,7 +109,9 @@ impl Port<'_> {
         let level = self.literal(last + 1, close);
         let is_largest = match (name, commas.len()) {
             ("texture" | "texture2D", 1) => true,
-            ("texture" | "texture2D", 2) => level.is_some_and(|bias| bias == 0.0 || bias <= LARGEST_LEVEL_BIAS),
+            ("texture" | "texture2D", 2) => {
+                level.is_some_and(|bias| bias == 0.0 || bias <= LARGEST_LEVEL_BIAS)
+            }
             ("textureLod" | "texture2DLod" | "texture2DLodEXT" | "texelFetch", 2) | ("textureSize", 1) => {
                 level == Some(0.0)
             }
@@ -124,12 +130,17 @@ impl Port<'_> {
         let (text, next) = match name {
             "texelFetch" => {
                 self.fetched_channel(channel);
-                let image = Span::new(end.file, source.span(index + 2).start, source.span(index + 4).start);
+                let image = Span::new(
+                    end.file,
+                    source.span(index + 2).start,
+                    source.span(index + 4).start,
+                );
                 self.edits.push((image, String::new()));
                 (format!("iChannel{channel}Texel"), index + 4)
             }
             "textureSize" => {
-                self.edits.push((Span::new(end.file, end.end, end.end), ")".to_owned()));
+                self.edits
+                    .push((Span::new(end.file, end.end, end.end), ")".to_owned()));
                 ("ivec2(IMG_SIZE".to_owned(), index + 1)
             }
             _ => ("IMG_NORM_PIXEL".to_owned(), index + 1),
@@ -166,7 +177,9 @@ impl Port<'_> {
 
     /// The value of an argument that is a number.
     fn literal(&self, first: usize, close: usize) -> Option<f64> {
-        let text: String = (first..close).map(|index| self.source.token_text(index)).collect();
+        let text: String = (first..close)
+            .map(|index| self.source.token_text(index))
+            .collect();
         text.trim_end_matches(['f', 'F']).parse().ok()
     }
 
@@ -174,7 +187,7 @@ impl Port<'_> {
     pub(super) fn texel_functions(&self) -> String {
         let function = |channel: &u8| {
             format!(
-                "// A texel of iChannel{channel}, which is zero outside of the image.\n\
+                "// A texel, which is zero outside of the image.\n\
                  vec4 iChannel{channel}Texel(ivec2 at) {{\n    \
                  vec2 center = vec2(at) + 0.5;\n    \
                  bool isInside = center == clamp(center, vec2(0.0), IMG_SIZE(iChannel{channel}));\n    \
