@@ -34,7 +34,14 @@ fn convert(folder: &Path, shader: &str, style: &str, extension: &str, more: &[&s
         name => root().join("tests/passes").join(name).join("project.json"),
     };
     let output = format!("out.{extension}");
-    let arguments = ["convert", input.to_str().unwrap(), "-o", &output, "--style", style];
+    let arguments = [
+        "convert",
+        input.to_str().unwrap(),
+        "-o",
+        &output,
+        "--style",
+        style,
+    ];
     let run = toyproof(folder, &[&arguments, more].concat());
     let text = fs::read_to_string(folder.join(&output)).unwrap_or_default();
     (run, text)
@@ -61,7 +68,15 @@ fn a_module_has_what_its_shader_needs() {
             "constructor(renderer) {",
         ],
     );
-    for absent in ["#if", "#endif", "$", "WebGLRenderTarget", "listen", "media", "#version"] {
+    for absent in [
+        "#if",
+        "#endif",
+        "$",
+        "WebGLRenderTarget",
+        "listen",
+        "media",
+        "#version",
+    ] {
         assert!(!text.contains(absent), "{absent}:\n{text}");
     }
     let (run, text) = convert(folder.path(), CHANNEL, "three", "js", &[]);
@@ -133,7 +148,10 @@ fn modules_run_in_chromium_like_the_original() {
     ] {
         let (run, text) = convert(folder.path(), shader, "three", "js", &["--verify", "--browser"]);
         assert_eq!(run.code, 0, "{shader}: {run:?}");
-        assert!(run.stdout.contains("displayed pixels differs"), "{shader}: {run:?}");
+        assert!(
+            run.stdout.contains("displayed pixels differs"),
+            "{shader}: {run:?}"
+        );
         assert!(text.contains(" with three.js "), "{text}");
     }
 }
@@ -163,9 +181,17 @@ fn planted_faults_in_modules_are_seen() {
     let folder = tempfile::tempdir().unwrap();
     for (project, from, to) in [
         ("counter", "buffer.last = 1 - buffer.last;", ""),
-        ("mipmap-feedback", "generateMipmaps: filter === \"mipmap\"", "generateMipmaps: false"),
+        (
+            "mipmap-feedback",
+            "generateMipmaps: filter === \"mipmap\"",
+            "generateMipmaps: false",
+        ),
         ("discard-two-frames-back", "renderer.autoClear = false;", ""),
-        ("counter", "iFrame: this.frame,\n      ...given", "...given,\n      iFrame: 0"),
+        (
+            "counter",
+            "iFrame: this.frame,\n      ...given",
+            "...given,\n      iFrame: 0",
+        ),
     ] {
         let (_, text) = convert(folder.path(), project, "three", "js", &[]);
         assert!(text.contains(from), "{from} is missing:\n{text}");
@@ -195,7 +221,10 @@ fn isf_is_proved() {
         assert_eq!(run.code, 0, "{shader}: {run:?}");
         assert!(run.stdout.contains("equal, bit for bit"), "{shader}: {run:?}");
         assert!(text.starts_with("/*{\n    \"DESCRIPTION\": "), "{text}");
-        assert!(text.contains("}*/\n\n// ") && text.contains("// Proved: this file"), "{text}");
+        assert!(
+            text.contains("}*/\n\n// ") && text.contains("// Proved: this file"),
+            "{text}"
+        );
     }
 }
 
@@ -243,14 +272,23 @@ fn what_isf_does_not_have_is_refused_with_its_place() {
              void mainImage(out vec4 c, in vec2 p) {{\n    c = {lookup};\n}}\n"
         );
         fs::write(folder.path().join("lookup.glsl"), text).unwrap();
-        let run = toyproof(folder.path(), &["convert", "lookup.glsl", "-o", "x.fs", "--style", "isf"]);
+        let run = toyproof(
+            folder.path(),
+            &["convert", "lookup.glsl", "-o", "x.fs", "--style", "isf"],
+        );
         assert_eq!(run.code, 2, "{run:?}");
         assert!(run.stderr.contains(message), "{run:?}");
         assert!(run.stderr.contains("lookup.glsl:3:"), "{run:?}");
     }
     for (project, message) in [
-        ("keyboard-idle", "Image reads the keyboard, which ISF does not have"),
-        ("mipmap-feedback", "reads mipmaps of a buffer, which ISF does not have"),
+        (
+            "keyboard-idle",
+            "Image reads the keyboard, which ISF does not have",
+        ),
+        (
+            "mipmap-feedback",
+            "reads mipmaps of a buffer, which ISF does not have",
+        ),
         ("discard-checkerboard", "Buffer A has `discard`"),
     ] {
         let (run, _) = convert(folder.path(), project, "isf", "fs", &[]);

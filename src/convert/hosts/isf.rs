@@ -5,6 +5,7 @@
 //! filter all images linearly, up to their edges.
 
 use std::collections::{HashMap, HashSet};
+use std::fmt::Write as _;
 use std::time::Duration;
 
 use serde::Serialize;
@@ -172,7 +173,6 @@ fn check_graph(passes: &Passes) -> Result<(), ProjectError> {
                 SourceEntry::Media { kind, .. } if !matches!(&**kind, "texture" | "video" | "webcam") => {
                     return refuse(pass, &format!("reads a {kind}"));
                 }
-                SourceEntry::Media { .. } => {}
                 SourceEntry::Buffer { buffer, .. }
                     if !passes.targets().any(|target| graph_name(target) == buffer) =>
                 {
@@ -189,7 +189,7 @@ fn check_graph(passes: &Passes) -> Result<(), ProjectError> {
                 SourceEntry::Buffer { .. } if entry.wrap == Wrap::Repeat => {
                     return refuse(pass, "reads a buffer that repeats");
                 }
-                SourceEntry::Buffer { .. } => {}
+                SourceEntry::Media { .. } | SourceEntry::Buffer { .. } => {}
             }
         }
     }
@@ -261,11 +261,14 @@ fn channel_names(
                 }
             }
         };
-        let channel = format!("iChannel{channel}");
-        let function = [&channel, &name].map(|image| format!("{image}Texel"));
-        [(channel, name), function.into()]
+        (format!("iChannel{channel}"), name)
     };
-    passes.channels(pass).flat_map(name).collect()
+    let names: HashMap<String, String> = passes.channels(pass).map(name).collect();
+    // Each channel has a function of its own.
+    let is_single = |image: &String| names.values().filter(|name| *name == image).count() == 1;
+    let functions = names.iter().filter(|(_, image)| is_single(image));
+    let functions = functions.map(|(channel, image)| (format!("{channel}Texel"), format!("{image}Texel")));
+    functions.chain(names.clone()).collect()
 }
 
 /// An input for an author's uniform.
@@ -344,16 +347,6 @@ fn merged(
     header: &Header,
     timeout: Duration,
 ) -> Result<String, ProjectError> {
-    // Alone, a pass reads the targets as images.
-    let targets = passes.targets().filter(|target| *target != Target::Image);
-    let mut alone = Header {
-        passes: Vec::new(),
-        ..header.clone()
-    };
-    alone
-        .inputs
-        .extend(targets.map(|target| InputRow::image(&target_name(target))));
-    let alone = header_text(&alone);
     let common = passes
         .common
         .map(|common| common.replace("\r\n", "\n").trim().to_owned());
@@ -379,7 +372,7 @@ fn merged(
             Target::Image => "Image".to_owned(),
             Target::Buffer(number) => char::from(b'A' + number as u8).to_string(),
         };
-        let own = own_names(&format!("{alone}\n{}", texts[at]), &common, timeout);
+        let own = own_names(&alone(passes, header, &texts[at]), &common, timeout);
         let own = own.map_err(ProjectError::Unwritable)?;
         let others = |name: &str| {
             let mut others = body_words.iter().enumerate().filter(|(other, _)| *other != at);
@@ -408,13 +401,28 @@ fn merged(
             passes.kinds[at],
             body.trim()
         );
-        calls += &match at {
-            0 => format!("    if (PASSINDEX == 0) {{\n        {main}();\n    }}"),
-            _ if at + 1 == bodies.len() => format!(" else {{\n        {main}();\n    }}\n"),
-            _ => format!(" else if (PASSINDEX == {at}) {{\n        {main}();\n    }}"),
+        let condition = match at {
+            0 => "    if (PASSINDEX == 0)".to_owned(),
+            _ if at + 1 == bodies.len() => " else".to_owned(),
+            _ => format!(" else if (PASSINDEX == {at})"),
         };
+        let _ = write!(calls, "{condition} {{\n        {main}();\n    }}");
     }
-    Ok(format!("{}\nvoid main() {{\n{calls}}}\n", merged.trim_start()))
+    Ok(format!("{}\nvoid main() {{\n{calls}\n}}\n", merged.trim_start()))
+}
+
+/// The text of a pass as a shader of its own, which reads targets as images.
+fn alone(passes: &Passes, header: &Header, text: &str) -> String {
+    let targets = passes.targets().filter(|target| *target != Target::Image);
+    let targets = targets.map(|target| InputRow::image(&target_name(target)));
+    let words = words(text);
+    let inputs = header.inputs.iter().cloned().chain(targets);
+    let alone = Header {
+        passes: Vec::new(),
+        inputs: inputs.filter(|input| words.contains(&*input.name)).collect(),
+        ..header.clone()
+    };
+    format!("{}\n{text}", header_text(&alone))
 }
 
 /// The functions, structures and global variables that a text declares outside of Common.

@@ -159,10 +159,14 @@ impl<'a> Passes<'a> {
 
     /// The channels that a pass reads, or of which it reads the sizes.
     fn channels(&self, pass: usize) -> impl Iterator<Item = usize> {
-        let checked = self.sources[pass].checked;
-        let reads_sizes = checked.reads_input(Input::ChannelResolution);
+        let source = &self.sources[pass];
+        let reads_sizes = source.checked.reads_input(Input::ChannelResolution);
+        // A macro that is not used may name a channel, too.
+        let words = words::words(source.text());
         (0..4).filter(move |&channel| {
-            checked.names_channel(channel) || reads_sizes && self.entries[pass][channel].is_some()
+            source.checked.names_channel(channel)
+                || words.contains(&*format!("iChannel{channel}"))
+                || reads_sizes && self.entries[pass][channel].is_some()
         })
     }
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use toyproof_glsl::tree::Type;
+use toyproof_glsl::tree::{SamplerShape, Type};
 use toyproof_glsl::{Dialect, Filter, Sampling, Version, Wrap};
 use toyproof_image::Input;
 use toyproof_player::{BUFFERS, BufferFormat, Graph, Pass, Source as Read, Target};
@@ -40,8 +40,23 @@ const RESERVED: [&str; 11] = [
     "UNION_CLIPPING_PLANE",
 ];
 
+/// A row of the table of passes.
+struct ModulePass {
+    name: String,
+    /// ShaderToy's inputs and the author's uniforms, as strings.
+    uniforms: Vec<String>,
+    /// Lines with the author's uniforms and their values.
+    own_uniforms: Vec<String>,
+    channels: Vec<(String, String)>,
+    reads_sizes: bool,
+}
+
+/// A column behind which nothing fits on a line.
+const NO_ROOM: usize = 1000;
+
 /// Writes the module.
 pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, ProjectError> {
+    refuse_shapes(passes)?;
     let codes = converter.port_passes(passes, DIALECT, &[Version::Es300])?;
     let version = Version::Es300.directive();
     let codes = codes
@@ -51,88 +66,138 @@ pub(super) fn write(converter: &Converter, passes: &Passes) -> Result<String, Pr
         .map(|code| code.trim_start_matches('\n').to_owned())
         .collect();
     let media = media(passes);
-    let mut rows = Vec::new();
-    let mut own_uniforms = Vec::new();
-    for (at, (code, target)) in codes.iter().zip(passes.targets()).enumerate() {
-        let checked = read_glsl(
-            &complete(code, target),
-            passes.sources[at].checked,
-            DIALECT,
-            converter.timeout,
-        );
-        let checked = checked.map_err(|error| ProjectError::Unwritable(error.to_string()))?;
-        let mut uniforms = Vec::new();
-        for (name, ty, value) in checked.declared_uniforms() {
-            if matches!(ty, Type::Sampler(_)) || name == Input::ChannelResolution.name() {
-                continue;
-            }
-            uniforms.push(string(name));
-            if let Some(value) = value {
-                let value = own_uniform(ty, value).ok_or_else(|| {
-                    ProjectError::Unwritable(format!("the uniform `{name}` is an array or a structure"))
-                })?;
-                let line = format!("    {name}: {{ value: {value} }},\n");
-                if !own_uniforms.contains(&line) {
-                    own_uniforms.push(line);
-                }
-            }
-        }
-        let reads_sizes = checked
-            .declared_uniforms()
-            .any(|(name, ..)| name == Input::ChannelResolution.name());
-        rows.push((
-            js_name(target),
-            uniforms,
-            channels(passes, at, &media),
-            reads_sizes,
-        ));
-    }
-    let reads = |input: Input| {
-        let name = string(input.name());
-        rows.iter().any(|(_, uniforms, ..)| uniforms.contains(&name))
-    };
-    let has_entry = |is: fn(&SourceEntry) -> bool| {
-        let all = (0..codes.len()).flat_map(|pass| passes.channels(pass).map(move |channel| (pass, channel)));
-        all.into_iter().any(|(pass, channel)| {
-            passes.entries[pass][channel]
-                .as_ref()
-                .is_some_and(|entry| is(&entry.source))
-        })
-    };
-    let has_channels = rows.iter().any(|(_, _, channels, _)| !channels.is_empty());
-    let buffers = passes.targets().any(|target| target != Target::Image)
-        || has_entry(|source| matches!(source, SourceEntry::Buffer { .. }));
-    let keyboard = has_entry(|source| matches!(source, SourceEntry::Keyboard { .. }));
-    let mouse = reads(Input::Mouse);
-    let discards = passes
-        .sources
-        .last()
-        .is_some_and(|image| image.checked.discards());
-    let text = sections(TEMPLATE, |section| match section {
-        "textures" => !media.is_empty(),
-        "channels" => has_channels,
-        "buffers" => buffers,
-        "keyboard" => keyboard,
-        "mouse" => mouse,
-        "listens" => mouse || keyboard,
-        "discards" => discards,
-        "copies" => buffers || discards,
-        "sampling" => buffers || discards || !media.is_empty(),
-        _ => false,
-    });
-    let table: Vec<_> = rows.iter().map(|row| pass_row(row, has_channels)).collect();
+    let rows = codes
+        .iter()
+        .enumerate()
+        .map(|(at, code)| ModulePass::new(converter, passes, at, code, &media));
+    let rows: Vec<ModulePass> = rows.collect::<Result<_, _>>()?;
+    let text = sections(TEMPLATE, |section| has_section(passes, &rows, &media, section));
+    let has_channels = rows.iter().any(|row| !row.channels.is_empty());
+    let table: Vec<_> = rows.iter().map(|row| row.text(has_channels)).collect();
     let media_rows: Vec<_> = media.iter().map(MediumName::row).collect();
+    let mut own_uniforms: Vec<&str> = Vec::new();
+    for line in rows.iter().flat_map(|row| &row.own_uniforms) {
+        if !own_uniforms.contains(&&**line) {
+            own_uniforms.push(line);
+        }
+    }
     let parameters = if media.is_empty() {
         "renderer"
     } else {
         "renderer, textures = {}"
     };
-    let text = text.replacen("$passes", &array(&table, 0, usize::MAX / 2, 0), 1);
-    let text = text.replacen("$media", &object(&media_rows, 0, usize::MAX / 2, 0), 1);
+    let text = text.replacen("$passes", &array(&table, 0, NO_ROOM, 0), 1);
+    let text = text.replacen("$media", &object(&media_rows, 0, NO_ROOM, 0), 1);
     let text = text.replacen("    ...uniforms,\n", &own_uniforms.concat(), 1);
     let text = text.replacen("$constructor", parameters, 1);
     // The author's texts come last, since they may contain anything.
     Ok(text.replacen("// $shaders\n", &shaders(passes, &codes), 1))
+}
+
+/// Refuses cube maps and volumes.
+fn refuse_shapes(passes: &Passes) -> Result<(), ProjectError> {
+    for (pass, source) in passes.sources.iter().enumerate() {
+        let mut channels = passes.channels(pass);
+        let shapes = source.checked.channels;
+        if let Some(channel) = channels.find(|channel| shapes[*channel] != SamplerShape::D2) {
+            let kind = passes.kinds[pass];
+            let why = format!(
+                "{kind} reads a cube map or a volume in iChannel{channel}, which is not converted yet"
+            );
+            return Err(ProjectError::Unwritable(why));
+        }
+    }
+    Ok(())
+}
+
+/// Whether the module has a section of the template.
+fn has_section(passes: &Passes, rows: &[ModulePass], media: &[MediumName], section: &str) -> bool {
+    let has = |section| has_section(passes, rows, media, section);
+    let reads = |is: fn(&SourceEntry) -> bool| {
+        (0..rows.len()).any(|pass| {
+            let mut entries = passes
+                .channels(pass)
+                .map(|channel| &passes.entries[pass][channel]);
+            entries.any(|entry| entry.as_ref().is_some_and(|entry| is(&entry.source)))
+        })
+    };
+    match section {
+        "textures" => !media.is_empty(),
+        "channels" => rows.iter().any(|row| !row.channels.is_empty()),
+        "buffers" => {
+            passes.targets().any(|target| target != Target::Image)
+                || reads(|source| matches!(source, SourceEntry::Buffer { .. }))
+        }
+        "keyboard" => reads(|source| matches!(source, SourceEntry::Keyboard { .. })),
+        "mouse" => {
+            let name = string(Input::Mouse.name());
+            rows.iter().any(|row| row.uniforms.contains(&name))
+        }
+        "discards" => {
+            let image = passes.sources.last();
+            image.is_some_and(|image| image.checked.discards())
+        }
+        "listens" => has("mouse") || has("keyboard"),
+        "copies" => has("buffers") || has("discards"),
+        "sampling" => has("copies") || has("textures"),
+        _ => false,
+    }
+}
+
+impl ModulePass {
+    fn new(
+        converter: &Converter,
+        passes: &Passes,
+        at: usize,
+        code: &str,
+        media: &[MediumName],
+    ) -> Result<Self, ProjectError> {
+        let target = passes.graph.passes()[at].target;
+        let original = passes.sources[at].checked;
+        let checked = read_glsl(&complete(code, target), original, DIALECT, converter.timeout);
+        let checked = checked.map_err(|error| ProjectError::Unwritable(error.to_string()))?;
+        let sizes = Input::ChannelResolution.name();
+        let mut row = Self {
+            name: js_name(target),
+            uniforms: Vec::new(),
+            own_uniforms: Vec::new(),
+            channels: channels(passes, at, media),
+            reads_sizes: false,
+        };
+        for (name, ty, value) in checked.declared_uniforms() {
+            row.reads_sizes |= name == sizes;
+            if matches!(ty, Type::Sampler(_)) || name == sizes {
+                continue;
+            }
+            row.uniforms.push(string(name));
+            if let Some(value) = value {
+                let value = own_uniform(ty, value).ok_or_else(|| {
+                    ProjectError::Unwritable(format!("the uniform `{name}` is an array or a structure"))
+                })?;
+                row.own_uniforms
+                    .push(format!("    {name}: {{ value: {value} }},\n"));
+            }
+        }
+        Ok(row)
+    }
+
+    fn text(&self, has_channels: bool) -> String {
+        let name = &self.name;
+        let mut row = format!(
+            "{{\n    name: {},\n    fragmentShader: {name}Shader,\n",
+            string(name)
+        );
+        let uniforms = array(&self.uniforms, 4, "    uniforms: ".len(), 1);
+        let _ = writeln!(row, "    uniforms: {uniforms},");
+        if has_channels {
+            // One channel a line is easier to read.
+            let _ = writeln!(row, "    channels: {},", object(&self.channels, 4, NO_ROOM, 1));
+        }
+        if self.reads_sizes {
+            row += "    readsChannelResolution: true,\n";
+        }
+        row + "  }"
+    }
 }
 
 /// The text without names that three.js would replace.
@@ -324,28 +389,6 @@ fn channels(passes: &Passes, pass: usize, media: &[MediumName]) -> Vec<(String, 
         (name, object(&entries, 6, column, 1))
     };
     passes.channels(pass).map(row).collect()
-}
-
-/// The row of a pass: its name, its uniforms, its channels, and whether it reads their sizes.
-fn pass_row(
-    (name, uniforms, channels, reads_sizes): &(String, Vec<String>, Vec<(String, String)>, bool),
-    has_channels: bool,
-) -> String {
-    let mut row = format!(
-        "{{\n    name: {},\n    fragmentShader: {name}Shader,\n",
-        string(name)
-    );
-    let uniforms = array(uniforms, 4, "    uniforms: ".len(), 1);
-    let _ = writeln!(row, "    uniforms: {uniforms},");
-    if has_channels {
-        // One channel a line is easier to read.
-        let column = if channels.is_empty() { 0 } else { usize::MAX / 2 };
-        let _ = writeln!(row, "    channels: {},", object(channels, 4, column, 1));
-    }
-    if *reads_sizes {
-        row += "    readsChannelResolution: true,\n";
-    }
-    row + "  }"
 }
 
 /// The value of an author's uniform: a number, or an array of components. Without a value it is zero.

@@ -19,8 +19,8 @@ fn parts(text: &str) -> Vec<Part<'_>> {
         let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let length = if rest.starts_with("//") {
             rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest[2..].find("*/").map_or(rest.len(), |end| end + 4)
+        } else if let Some(comment) = rest.strip_prefix("/*") {
+            comment.find("*/").map_or(rest.len(), |end| end + 4)
         } else if first.is_ascii_digit() {
             rest.find(|c: char| !is_part(c) && c != '.').unwrap_or(rest.len())
         } else if is_part(first) {

@@ -298,6 +298,8 @@ impl<'a> Port<'a> {
                 .inputs
                 .missing(&format!("`{name}`, which is not a 2D texture,"), at));
         }
+        // The mouse of ISF is a long expression.
+        let is_long = self.is_for_isf() && value == InputValue::Whole(Input::Mouse);
         // The elements of `iChannelResolution` may be inputs of their own.
         let spelling = match self.inputs.spell(value) {
             None if value == InputValue::Whole(Input::ChannelResolution) => Spelling::Vector {
@@ -311,10 +313,7 @@ impl<'a> Port<'a> {
         };
         let writing = match spelling {
             Spelling::Name(other) => Writing::Renamed(other.to_owned()),
-            // The mouse of ISF is a long expression.
-            spelling if !is_shadowed && !(self.is_for_isf() && value == InputValue::Whole(Input::Mouse)) => {
-                Writing::Spelled(spelling)
-            }
+            spelling if !is_shadowed && !is_long => Writing::Spelled(spelling),
             spelling => {
                 let Some(whole) = spelling.whole() else {
                     return Err(self.inputs.missing(&format!("`{name}`"), at));
