@@ -364,8 +364,8 @@ pub(super) fn validate(
         TargetCode::Glsl(text, dialect) => {
             let complete = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text, channels),
-                // The reader has declared what the header does.
-                Dialect::Isf => format!("#version 330\n{text}"),
+                // The reader has declared what the header does. Drivers join continued lines in older versions, too.
+                Dialect::Isf => format!("#version 330\n{}", text.replace("\\\n", "")),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),

@@ -30,7 +30,7 @@ fn convert(folder: &Path, shader: &str, style: &str, extension: &str, more: &[&s
             fs::write(folder.join("channel.glsl"), shader).unwrap();
             folder.join("channel.glsl")
         }
-        name if name.ends_with(".glsl") => root().join(name),
+        name if name.starts_with("glsl/") => root().join(name),
         name => root().join("tests/passes").join(name).join("project.json"),
     };
     let output = format!("out.{extension}");

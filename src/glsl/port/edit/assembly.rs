@@ -51,7 +51,11 @@ impl Port<'_> {
                 let _ = writeln!(head, "{declaration}");
             }
         }
-        head += &self.texel_functions();
+        let functions = self.texel_functions();
+        if !head.is_empty() && !functions.is_empty() {
+            head.push('\n');
+        }
+        head += &functions;
         let color = if declares_color { &color } else { FRAG_COLOR };
         let tail = self.tail(color);
         let mut text = self.version_line();
