@@ -137,7 +137,22 @@ install_programs() {
     [ -z "$missing" ] || install "what tests use" "${missing# }"
 }
 
+# What pages for three.js are tested with; tests that need it are skipped without it.
+install_three() {
+    [ -e target/npm/node_modules/three/package.json ] && return 0
+    if ! has npm; then
+        log "npm is missing, so modules for three.js are not run in tests"
+        return 0
+    fi
+    mkdir -p target/npm
+    npm install --prefix target/npm --no-save --no-audit --no-fund three@0.187.0 >&2 ||
+        log "three could not be installed by npm, so modules for it are not run in tests"
+}
+
 case "${1:-}" in
---tests) install_programs || ready=no ;;
+--tests)
+    install_programs || ready=no
+    install_three
+    ;;
 esac
 [ "$ready" = yes ] || { log "install what is missing, then run ./setup.sh again"; exit 1; }

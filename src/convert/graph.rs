@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use toyproof_glsl::tree::{SamplerShape, StatementKind, walk};
+use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{Checked, Filter, Sampling, Wrap};
 use toyproof_image::{BLOCK_BYTES, Texture};
 use toyproof_player::{self as player, BUFFERS, Graph, Target};
@@ -261,15 +261,8 @@ impl<'a> HostGraph<'a> {
     /// What a pass needs that wgpu-shadertoy 0.2 does not have.
     pub(crate) fn missing_in_wgpu_shadertoy(&self, pass: usize) -> Option<String> {
         let kind = self.project.passes[self.rendering.passes[pass]].kind;
-        let checked = self.checked[pass];
-        let mut discards = false;
-        for (_, function) in checked.tree.functions.iter() {
-            walk::each(function.body.as_deref().unwrap_or_default(), &mut |statement| {
-                discards |= matches!(statement.kind, StatementKind::Discard);
-            });
-        }
         // The package clears the target of every pass.
-        if discards {
+        if self.checked[pass].discards() {
             return Some(format!(
                 "{kind} has `discard`, after which a pixel keeps an earlier value"
             ));

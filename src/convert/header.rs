@@ -7,7 +7,7 @@ use toyproof_translate::NAGA_VERSION as NAGA;
 use toyproof_translate::backend::{Target, spirv};
 
 use crate::{
-    FRAMES, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, ProofReference, Rgb8Comparison, ShaderProof,
+    FRAMES, Host, PASS_FRAMES, PASS_SIZES, PassesProof, Proof, ProofReference, Rgb8Comparison, ShaderProof,
 };
 
 /// The status of a conversion's proof.
@@ -49,6 +49,20 @@ pub fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofSta
     };
     let head = header_text(name, status);
     bytes.splice(at..at, head.into_bytes());
+}
+
+/// The text of a host's file with the comment.
+#[must_use]
+pub fn insert_in_hosted(text: &str, host: Host, name: &str, status: &ProofStatus) -> String {
+    let head = header_text(name, status);
+    match host {
+        Host::Three => head + text,
+        // The header of ISF comes first.
+        Host::Isf => match text.split_once("*/\n\n") {
+            Some((json, body)) => format!("{json}*/\n\n{head}{body}"),
+            None => head + text,
+        },
+    }
 }
 
 fn header_text(name: &str, status: &ProofStatus) -> String {

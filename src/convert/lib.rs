@@ -12,6 +12,7 @@
 
 mod graph;
 pub mod header;
+mod hosts;
 mod original;
 mod passes;
 mod project;
@@ -26,6 +27,7 @@ mod tests;
 use std::time::Duration;
 
 pub use graph::GRAPH_FILE;
+pub use hosts::{Host, HostedConversion, HostedSource};
 pub use passes::{
     GraphContent, PASS_FRAMES, PASS_SIZES, PassComparison, PassSources, PassesProof, PixelDifference,
 };
@@ -40,7 +42,7 @@ use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, UniformMode};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::{self, Host};
+use toyproof_translate::c_family::{self, HlslHost};
 use toyproof_translate::wgsl::{self, Style};
 use toyproof_translate::{FloatMode, Lowered, Unprintable, WriteFailure};
 
@@ -79,7 +81,7 @@ pub struct Converter {
     /// The kind of host that WGSL is written for.
     pub style: Style,
     /// The host that HLSL is written for.
-    pub host: Host,
+    pub hlsl_host: HlslHost,
     /// The host that GLSL is written for, in the author's words; `None` for GLSL by naga.
     pub dialect: Option<Dialect>,
     /// Whether functions such as `sin` are expanded.
@@ -111,7 +113,7 @@ pub enum TargetCode {
     /// GLSL for a host.
     Glsl(String, Dialect),
     /// Code of a language with the syntax of C, for a host.
-    CFamily(String, Host),
+    CFamily(String, HlslHost),
     /// A file of naga's in a language other than WGSL.
     Naga {
         /// The language.
@@ -286,7 +288,7 @@ impl Converter {
     pub fn extension(&self) -> &'static str {
         match (self.dialect, self.target) {
             (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
-            (None, Some(Target::Hlsl)) => self.host.extension(),
+            (None, Some(Target::Hlsl)) => self.hlsl_host.extension(),
             (_, Some(target)) => target.extension(),
             (_, None) => LOWERED_EXTENSION,
         }
@@ -301,7 +303,7 @@ impl Converter {
     fn may_fall_back(&self) -> bool {
         let is_plain = match self.target {
             Some(Target::Wgsl) => self.style == Style::Plain,
-            _ => self.host == Host::Hlsl,
+            _ => self.hlsl_host == HlslHost::Hlsl,
         };
         self.prints() && is_plain
     }
@@ -350,12 +352,12 @@ impl Converter {
     /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
     fn write_c(&self, source: Source, name: &str) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = c_family::write(source.checked, source.files, self.host, name, &deadline);
+        let text = c_family::write(source.checked, source.files, self.hlsl_host, name, &deadline);
         match text {
-            Ok(text) => Ok(TargetCode::CFamily(text, self.host)),
+            Ok(text) => Ok(TargetCode::CFamily(text, self.hlsl_host)),
             Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),
             Err(WriteFailure::Unprintable(why)) => Err(ConvertError::Unwritable(WriterError::Unprintable {
-                style: self.host.name(),
+                style: self.hlsl_host.name(),
                 why,
             })),
         }

@@ -43,10 +43,11 @@ pub(super) struct PlayedFrame {
 }
 
 impl Original {
-    /// Renders the original strictly, with the driver's filters, and finds its undefined pixels.
+    /// Renders the original strictly in frames that `adapt` changes, with the driver's filters, and finds its undefined pixels.
     pub(super) fn play(
         passes: &PassSources,
         worker: &mut Worker,
+        adapt: fn(Frame) -> Frame,
         timeout: Duration,
         pool: Option<&ThreadPool>,
     ) -> Result<Self, ProofError> {
@@ -66,7 +67,7 @@ impl Original {
             playback
                 .restore(&start(passes.graph, size))
                 .map_err(Failure::Gpu)?;
-            for inputs in inputs(size) {
+            for inputs in inputs(size).map(adapt) {
                 playback.render(&inputs, &[]).map_err(Failure::Gpu)?;
                 let state = playback.state(&inputs).map_err(Failure::Gpu)?;
                 frames.push(PlayedFrame {
@@ -83,6 +84,14 @@ impl Original {
             device,
             drawn,
             undefined_by,
+        })
+    }
+
+    /// The frames, and the pixels of the image that depend on undefined behavior in each.
+    pub(super) fn images(&self) -> impl Iterator<Item = (&Frame, &[bool])> {
+        self.frames.iter().map(|frame| {
+            let undefined = frame.undefined.last();
+            (&frame.inputs, undefined.map_or(&[][..], Vec::as_slice))
         })
     }
 

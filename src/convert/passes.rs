@@ -6,7 +6,8 @@ use std::fmt;
 
 use toyproof_glsl::Sampling;
 use toyproof_gpu::ShaderArtifact;
-use toyproof_image::{Image, Texture};
+use toyproof_gpu::browser::Chromium;
+use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Graph, Target};
 
 use super::original::{Original, PlayedFrame};
@@ -139,6 +140,25 @@ impl Prover<'_> {
         written: &[TargetCode],
         graph: &GraphContent,
     ) -> Result<PassesProof, ProofError> {
+        self.prove_passes_with(
+            passes,
+            written,
+            graph,
+            std::convert::identity,
+            |browser, original| original.compare_in_browser(browser, passes.sources, written),
+        )
+    }
+
+    /// Proves passes like [`Self::prove_passes`], in frames that `adapt` changes; `in_browser` compares them with the original in the browser, if there
+    /// is one.
+    pub(super) fn prove_passes_with(
+        &mut self,
+        passes: &PassSources,
+        written: &[TargetCode],
+        graph: &GraphContent,
+        adapt: fn(Frame) -> Frame,
+        in_browser: impl FnOnce(&mut Chromium, &Original) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
+    ) -> Result<PassesProof, ProofError> {
         let mut validator = None;
         let mut readings: Vec<(Reader, Vec<ShaderArtifact>)> = Vec::new();
         let mut is_read = true;
@@ -159,7 +179,7 @@ impl Prover<'_> {
         let Runner::Driver(worker) = &mut self.runner else {
             return Err(ProofError::PassesWithoutDriver);
         };
-        let original = Original::play(passes, worker, self.timeout, self.pool)?;
+        let original = Original::play(passes, worker, adapt, self.timeout, self.pool)?;
         let mut proofs = Vec::new();
         let mut readers = Vec::new();
         for (reader, artifacts) in readings {
@@ -171,7 +191,7 @@ impl Prover<'_> {
             readers.push(reader);
         }
         let browser = match &mut self.browser {
-            Some(browser) => original.compare_in_browser(browser, passes.sources, written)?,
+            Some(browser) => in_browser(browser, &original)?,
             None => None,
         };
         let proof = PassesProof {

@@ -5,9 +5,9 @@ use toyproof_diagnostic::Files;
 use toyproof_glsl::Dialect;
 use toyproof_gpu::Worker;
 use toyproof_player::BufferFormat;
-use toyproof_project::{Buffer, CompiledProject, PassKind, UnsupportedPass};
+use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, UnsupportedPass};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::Host;
+use toyproof_translate::c_family::HlslHost;
 use toyproof_translate::wgsl::Style;
 
 use crate::graph::{GRAPH_FILE, HostGraph, target_name};
@@ -24,6 +24,33 @@ pub struct ProjectSource<'a> {
     pub project: &'a CompiledProject,
     /// The files that it was read from.
     pub files: &'a Files,
+}
+
+impl ProjectSource<'_> {
+    /// The passes that the image needs.
+    ///
+    /// # Errors
+    /// A pass is needed that is not converted.
+    pub(crate) fn rendering(&self) -> Result<Rendering, ProjectError> {
+        let project = self.project;
+        let rendering = project.rendering(PassKind::Image)?;
+        let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
+        if rendering.passes.iter().any(is_cube) {
+            return Err(ProjectError::CubeA);
+        }
+        for pass in rendering.passes.iter().map(|&at| &project.project.passes[at]) {
+            match pass.kind {
+                PassKind::Buffer(buffer) if !Buffer::OF_SITE.contains(&buffer) => {
+                    return Err(ProjectError::ManyBuffers);
+                }
+                kind if pass.format != BufferFormat::default() => {
+                    return Err(ProjectError::BufferFormat(kind));
+                }
+                _ => {}
+            }
+        }
+        Ok(rendering)
+    }
 }
 
 /// A converted project.
@@ -71,7 +98,7 @@ pub enum ProjectError {
     Style(Style),
     /// Hosts of this kind render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
-    Host(Host),
+    Host(HlslHost),
     /// GLSL is written for hosts that render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
     Dialect(Dialect),
@@ -93,6 +120,9 @@ pub enum ProjectError {
     /// The file of the graph is not read as it was written.
     #[error("{GRAPH_FILE}: {0}")]
     Graph(String),
+    /// The host's file cannot hold something of the shader.
+    #[error("{0}")]
+    Unwritable(String),
     /// A pass cannot be converted.
     #[error("{pass}: {error}")]
     Pass {
@@ -118,29 +148,14 @@ impl Converter {
         if matches!(self.style, Style::ComputeToys | Style::Bevy) {
             return Err(ProjectError::Style(self.style));
         }
-        if self.target == Some(Target::Hlsl) && !self.host.has_passes() {
-            return Err(ProjectError::Host(self.host));
+        if self.target == Some(Target::Hlsl) && !self.hlsl_host.has_passes() {
+            return Err(ProjectError::Host(self.hlsl_host));
         }
         if let Some(dialect) = self.dialect {
             return Err(ProjectError::Dialect(dialect));
         }
         let ProjectSource { project, files, name } = source;
-        let rendering = project.rendering(PassKind::Image)?;
-        let is_cube = |&at: &usize| project.project.passes[at].kind == PassKind::CubeA;
-        if rendering.passes.iter().any(is_cube) {
-            return Err(ProjectError::CubeA);
-        }
-        for pass in rendering.passes.iter().map(|&at| &project.project.passes[at]) {
-            match pass.kind {
-                PassKind::Buffer(buffer) if !Buffer::OF_SITE.contains(&buffer) => {
-                    return Err(ProjectError::ManyBuffers);
-                }
-                kind if pass.format != BufferFormat::default() => {
-                    return Err(ProjectError::BufferFormat(kind));
-                }
-                _ => {}
-            }
-        }
+        let rendering = source.rendering()?;
         let checked: Vec<_> = project.checked_of(&rendering).collect();
         let host_graph = HostGraph::new(&project.project, &rendering, &checked);
         let extension = self.extension();

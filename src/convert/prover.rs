@@ -8,13 +8,13 @@ use thiserror::Error;
 use toyproof_diagnostic::{Deadline, Files, Overdue, grouped, plural};
 use toyproof_eval::{Fault, Observed};
 use toyproof_glsl::tree::SamplerShape;
-use toyproof_glsl::{self as glsl, Checked, Dialect, PortError};
+use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, Stage};
 use toyproof_gpu::browser::{self, Chromium, Text};
 use toyproof_gpu::{self as gpu, ShaderArtifact};
 use toyproof_image::{Frame, Image};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
-use toyproof_translate::c_family::Host;
+use toyproof_translate::c_family::HlslHost;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 use toyproof_verify::Failure;
@@ -105,6 +105,9 @@ pub enum ProofError {
     /// Our own front end rejects the file with this message.
     #[error("toyproof's GLSL front end rejects the output: {0}")]
     FrontEnd(String),
+    /// The file of a host is not read as it was written.
+    #[error("the output is not read again: {0}")]
+    Unreadable(String),
     /// The evaluator does not run SPIR-V.
     #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
     Binary,
@@ -213,19 +216,40 @@ impl Prover<'_> {
     /// # Errors
     /// Returns why it is not proved.
     pub fn prove(&mut self, source: Source, written: &TargetCode) -> Result<ShaderProof, ProofError> {
+        self.prove_with(
+            source,
+            written,
+            std::convert::identity,
+            |browser, frames, undefined| in_browser(browser, source, written, frames, undefined),
+        )
+    }
+
+    /// Proves a file like [`Self::prove`], with frames that `adapt` changes; `in_browser` compares it with the original in the browser, if there is one, in
+    /// these frames and except in these pixels.
+    pub(super) fn prove_with(
+        &mut self,
+        source: Source,
+        written: &TargetCode,
+        adapt: fn(Frame) -> Frame,
+        in_browser: impl FnOnce(
+            &mut Chromium,
+            &[Frame],
+            &[Vec<bool>],
+        ) -> Result<Option<(String, Rgb8Comparison)>, ProofError>,
+    ) -> Result<ShaderProof, ProofError> {
         let validator = validate(written, source.checked.channels)?;
         let mut readings = self.readings(source.checked, written)?;
         let is_unread = readings.is_empty();
         if let (true, TargetCode::Naga { lowered, .. }) = (is_unread, written) {
             readings.push((Reader::Naga, ShaderArtifact::Lowered(lowered.clone())));
         }
-        let frames = frames(source.checked);
+        let frames: Vec<Frame> = frames(source.checked).into_iter().map(adapt).collect();
         let (run, proof) = self.run(source, readings, &frames)?;
         if is_unread {
             return Ok(ShaderProof::Source(proof));
         }
         let browser = match &mut self.browser {
-            Some(browser) => in_browser(browser, source, written, &frames, &proof.undefined_at)?,
+            Some(browser) => in_browser(browser, &frames, &proof.undefined_at)?,
             None => None,
         };
         Ok(ShaderProof::File(
@@ -296,7 +320,7 @@ impl Prover<'_> {
         &self,
         checked: &Checked,
         text: &str,
-        host: Host,
+        host: HlslHost,
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
         let hosted = host.hosted(text, checked.stage);
         let Runner::Driver(_) = self.runner else {
@@ -375,6 +399,8 @@ pub(super) fn validate(
         TargetCode::Glsl(text, dialect) => {
             let complete = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text, channels),
+                // The reader has declared what the header does. Drivers join continued lines in older versions, too.
+                Dialect::Isf => format!("#version 330\n{}", text.replace("\\\n", "")),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.
                 _ if text.starts_with("#version") => text.clone(),
@@ -413,18 +439,8 @@ pub(super) fn in_browser(
     frames: &[Frame],
     undefined: &[Vec<bool>],
 ) -> Result<Option<(String, Rgb8Comparison)>, ProofError> {
-    let ported;
-    let original = if source.checked.dialect.calls_main_image() {
-        source.text()
-    } else {
-        // It has been compiled within the time limit, and is compiled once more.
-        let (to, deadline) = (Dialect::ShaderToy, Deadline::default());
-        let text = glsl::port(source.checked, source.files, to, &|_, _| None, &deadline);
-        ported = text.map_err(ProofError::BrowserHost)?;
-        &ported
-    };
     let channels = source.checked.channels;
-    let original = browser::as_shadertoy(original, channels);
+    let original = browser_text(source)?;
     let sampling = source.checked.sampling;
     let render_original = |browser: &mut Chromium| {
         let images = browser.render(Text::Glsl(&original), sampling, frames);
@@ -462,10 +478,35 @@ pub(super) fn in_browser(
             return Ok(None);
         }
     };
-    let shown = Rgb8Comparison::new(&original, &converted, undefined);
+    shown(&original, &converted, undefined).map(|shown| {
+        let name = browser.name().unwrap_or("Chromium").to_owned();
+        Some((name, shown))
+    })
+}
+
+/// Compares what a browser shows of a conversion and of its original, except in undefined pixels.
+pub(super) fn shown(
+    original: &[Image],
+    converted: &[Image],
+    undefined: &[Vec<bool>],
+) -> Result<Rgb8Comparison, ProofError> {
+    let shown = Rgb8Comparison::new(original, converted, undefined);
     if shown.differing > 0 {
         return Err(ProofError::BrowserDiffers(shown));
     }
-    let name = browser.name().unwrap_or("Chromium").to_owned();
-    Ok(Some((name, shown)))
+    Ok(shown)
+}
+
+/// The original as a complete shader for WebGL 2.
+pub(super) fn browser_text(source: Source) -> Result<String, ProofError> {
+    let channels = source.checked.channels;
+    if source.checked.dialect.calls_main_image() {
+        let is_buffer = source.checked.stage == Stage::Buffer;
+        return Ok(browser::as_shadertoy_pass(source.text(), channels, is_buffer));
+    }
+    // It has been compiled within the time limit, and is compiled once more.
+    let (to, deadline) = (Dialect::ShaderToy, Deadline::default());
+    let text = glsl::port(source.checked, source.files, to, &|_, _| None, &deadline);
+    let ported = text.map_err(ProofError::BrowserHost)?;
+    Ok(browser::as_shadertoy(&ported, channels))
 }

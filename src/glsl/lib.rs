@@ -92,7 +92,7 @@ pub mod tree;
 use std::collections::{HashMap, HashSet};
 
 pub use dialect::{Dialect, Version};
-pub use port::{PortError, Refusal, port};
+pub use port::{PortError, Refusal, port, port_in_versions};
 pub use preprocess::{ControlComment, Expansions, ReadInclude};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use single_edit::{single_edit, with_single_edit};
@@ -226,18 +226,72 @@ impl Checked {
         self.bound.contains_key(&variable)
     }
 
+    /// The uniforms that the text declares, with the components of their values; `None` for inputs, which the
+    /// host sets.
+    pub fn declared_uniforms(&self) -> impl Iterator<Item = (&str, tree::Type, Option<&[f64]>)> {
+        let variables = self.tree.variables.iter();
+        let declared = variables
+            .filter(|(_, variable)| variable.kind == tree::VariableKind::Uniform && variable.at.is_some());
+        declared.map(|(id, variable)| {
+            let value = match self.bound.get(&id) {
+                Some(Bound::Input(_)) => None,
+                Some(Bound::Value(_, components)) => Some(&components[..]),
+                None => Some(&[][..]),
+            };
+            (&*variable.name, variable.ty, value)
+        })
+    }
+
+    /// The names of functions, structures and global variables that the text declares, with the bytes where they are
+    /// declared.
+    pub fn global_names(&self) -> impl Iterator<Item = (&str, u32)> {
+        let tree = &self.tree;
+        tree.items.iter().filter_map(|item| match *item {
+            tree::Item::Variable(id) => Some((&*tree[id].name, tree[id].at?.span.start)),
+            tree::Item::Function(id) | tree::Item::Prototype(id) => {
+                Some((&*tree[id].name, tree[id].at.span.start))
+            }
+            tree::Item::Struct(id) => Some((&*tree[id].name, tree[id].at.span.start)),
+        })
+    }
+
+    /// Whether the shader has `discard`.
+    pub fn discards(&self) -> bool {
+        let mut found = false;
+        for (_, function) in self.tree.functions.iter() {
+            tree::walk::each(function.body.as_deref().unwrap_or_default(), &mut |statement| {
+                found |= matches!(statement.kind, tree::StatementKind::Discard);
+            });
+        }
+        found
+    }
+
     /// Whether the shader calls `dFdx`, `dFdy` or `fwidth`.
     pub fn takes_derivatives(&self) -> bool {
         self.calls(tree::BuiltIn::is_derivative)
     }
 
+    /// Whether the shader reads textures otherwise than by `texelFetch`.
+    pub fn samples_textures(&self) -> bool {
+        use tree::BuiltIn::{TexelFetch, TexelFetchOffset, TextureSize};
+        self.calls(|function| {
+            function.is_texture() && !matches!(function, TexelFetch | TexelFetchOffset | TextureSize)
+        })
+    }
+
+    /// Whether an expression names an input.
+    pub fn reads_input(&self, input: tree::Input) -> bool {
+        self.names(|variable| variable.kind == tree::VariableKind::Input(input))
+    }
+
+    fn names(&self, is_one: impl Fn(&tree::Variable) -> bool) -> bool {
+        let mut exprs = self.tree.exprs.iter();
+        exprs.any(|(_, expr)| matches!(expr.kind, tree::ExprKind::Variable(id) if is_one(&self.tree[id])))
+    }
+
     /// Whether an expression names a channel.
     pub fn names_channel(&self, channel: usize) -> bool {
-        let is_channel = |variable: tree::VariableId| {
-            self.tree[variable].kind == tree::VariableKind::Channel(channel as u8)
-        };
-        let mut exprs = self.tree.exprs.iter();
-        exprs.any(|(_, expr)| matches!(expr.kind, tree::ExprKind::Variable(variable) if is_channel(variable)))
+        self.names(|variable| variable.kind == tree::VariableKind::Channel(channel as u8))
     }
 
     /// Whether the shader reads an input.
@@ -365,11 +419,12 @@ fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, Prep
         (wrapping, text)
     };
     if options.stage != Stage::Image {
-        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares.
-        let isf = options
-            .dialect
-            .filter(|&dialect| dialect == Dialect::Isf && options.stage == Stage::Buffer);
-        return read(isf.unwrap_or_default());
+        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares, and those that were
+        // written for another host.
+        let other = options.dialect.filter(|&dialect| {
+            matches!(dialect, Dialect::Isf | Dialect::WebGl) && options.stage == Stage::Buffer
+        });
+        return read(other.unwrap_or_default());
     }
     if let Some(dialect) = options.dialect {
         return read(dialect);

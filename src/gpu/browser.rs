@@ -4,6 +4,8 @@
 //! port, and exits when its end of the pipe is closed, even if this process crashes. It has its own
 //! implementation of the built-in functions, whose last bits differ.
 
+mod played;
+
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -14,6 +16,7 @@ use std::{fs, thread};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+pub use played::{BrowserPass, BrowserRead, THREE_VARIABLE, ThreeLibrary, ThreeModule};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use thiserror::Error;
@@ -33,6 +36,9 @@ pub enum BrowserFailure {
         MAX_CALL_BYTES >> 20
     )]
     TooLarge,
+    /// A module needs three.js.
+    #[error("three.js is not installed: run `npm install three`, or name its folder in {THREE_VARIABLE}")]
+    NoThree,
     /// Chromium did not respond in time.
     #[error("Chromium did not answer within {:.1} s", .0.as_secs_f64())]
     Timeout(Duration),
@@ -56,6 +62,7 @@ pub struct Chromium {
     program: PathBuf,
     timeout: Duration,
     live: Option<BrowserConnection>,
+    three: Option<ThreeLibrary>,
 }
 
 /// Time limit for the start of the browser, in addition to that of a shader.
@@ -79,6 +86,12 @@ pub fn find() -> Option<PathBuf> {
 
 /// Wraps a shader whose channels have these shapes in `ShaderToy`'s prologue and epilogue.
 pub fn as_shadertoy(shader: &str, channels: [SamplerShape; 4]) -> String {
+    as_shadertoy_pass(shader, channels, false)
+}
+
+/// Wraps a pass like [`as_shadertoy`]. Buffers keep their alpha.
+pub fn as_shadertoy_pass(shader: &str, channels: [SamplerShape; 4], keeps_alpha: bool) -> String {
+    let alpha = if keeps_alpha { "color.a" } else { "1.0" };
     let inputs = Input::ALL.map(|input| {
         let length = input.length().map(|length| format!("[{length}]"));
         let (ty, name) = (input.ty().name(), input.name());
@@ -108,7 +121,7 @@ precision highp samplerCube;
 void main() {{
     vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
     mainImage(color, gl_FragCoord.xy);
-    shadertoy_out_color = vec4(color.xyz, 1.0);
+    shadertoy_out_color = vec4(color.xyz, {alpha});
 }}
 "
     )
@@ -121,6 +134,7 @@ impl Chromium {
             program,
             timeout,
             live: None,
+            three: None,
         }
     }
 
@@ -139,35 +153,29 @@ impl Chromium {
             Text::Glsl(text) => ("glsl", text),
             Text::Wgsl(text) => ("wgsl", text),
         };
+        let black = black();
+        let mut textures = TextureTable::default();
+        let frames_json = frames.iter().map(|frame| {
+            let channels = frame.channels.each_ref();
+            let number_of = |texture: Option<_>| textures.number_of(texture.unwrap_or(&black));
+            frame_json(frame, channels.map(Option::as_ref).map(number_of))
+        });
+        let frames_json: Vec<Value> = frames_json.collect();
+        let sampling = sampling.map(sampling_json);
+        let inputs = Input::ALL.map(input_json);
+        let job = json!({
+            "language": language, "text": text, "inputs": inputs, "sampling": sampling,
+            "textures": textures.json(), "frames": frames_json,
+        });
+        self.call_page(&job, &frames.iter().collect::<Vec<_>>())
+    }
+
+    /// Calls the page with a job, whose images are those of the frames.
+    fn call_page(&mut self, job: &Value, frames: &[&Frame]) -> Result<Vec<Image>, BrowserFailure> {
         let mut connection = match self.live.take() {
             Some(connection) => connection,
             None => BrowserConnection::launch(&self.program, PAGE_HTML, Instant::now() + START_TIMEOUT)?,
         };
-        let black = Texture::from(Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]));
-        // Frames share textures, which are large.
-        let mut textures: Vec<&Texture> = Vec::new();
-        let mut number_of = |texture| {
-            let known = textures.iter().position(|known| share_texels(known, texture));
-            known.unwrap_or_else(|| {
-                textures.push(texture);
-                textures.len() - 1
-            })
-        };
-        let frames_json = frames.iter().map(|frame| {
-            let channels = frame.channels.each_ref();
-            frame_json(
-                frame,
-                channels.map(|texture| number_of(texture.as_ref().unwrap_or(&black))),
-            )
-        });
-        let frames_json: Vec<Value> = frames_json.collect();
-        let textures: Vec<Value> = textures.into_iter().map(texture_json).collect();
-        let sampling = sampling.map(sampling_json);
-        let inputs = Input::ALL.map(input_json);
-        let job = json!({
-            "language": language, "text": text, "inputs": inputs, "sampling": sampling, "textures": textures,
-            "frames": frames_json,
-        });
         let call = format!("toyproof({job})");
         if call.len() > MAX_CALL_BYTES {
             self.live = Some(connection);
@@ -185,7 +193,10 @@ impl Chromium {
         }
         self.live = Some(connection);
         let images_base64 = answer["images"].as_array().map_or(&[][..], Vec::as_slice);
-        let images: Option<Vec<Image>> = frames.iter().zip(images_base64).map(decode_image).collect();
+        let images = frames.iter().zip(images_base64);
+        let images: Option<Vec<Image>> = images
+            .map(|(frame, image)| decode_image((*frame, image)))
+            .collect();
         images
             .filter(|images| images.len() == frames.len())
             .ok_or_else(|| BrowserFailure::Disconnected("unexpected reply".to_owned()))
@@ -194,6 +205,29 @@ impl Chromium {
     /// Returns the browser's name and version after it has rendered.
     pub fn name(&self) -> Option<&str> {
         self.live.as_ref().map(BrowserConnection::product)
+    }
+}
+
+/// What a channel without a texture reads.
+fn black() -> Texture {
+    Texture::from(Image::new(1, 1, vec![[0.0, 0.0, 0.0, 1.0]]))
+}
+
+/// The textures of a job, which share what is the same, since they are large.
+#[derive(Default)]
+struct TextureTable<'a>(Vec<&'a Texture>);
+
+impl<'a> TextureTable<'a> {
+    fn number_of(&mut self, texture: &'a Texture) -> usize {
+        let known = self.0.iter().position(|known| share_texels(known, texture));
+        known.unwrap_or_else(|| {
+            self.0.push(texture);
+            self.0.len() - 1
+        })
+    }
+
+    fn json(&self) -> Vec<Value> {
+        self.0.iter().map(|texture| texture_json(texture)).collect()
     }
 }
 

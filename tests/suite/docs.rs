@@ -33,7 +33,7 @@ fn pages(folder: &str) -> Vec<PathBuf> {
 }
 
 fn book() -> Vec<PathBuf> {
-    ["docs", "docs/guide", "docs/evidence"]
+    ["docs", "docs/guide", "docs/guide/hosts", "docs/evidence"]
         .into_iter()
         .flat_map(pages)
         .collect()
@@ -290,7 +290,7 @@ fn every_command_of_the_readme_works() {
 
 #[test]
 fn every_command_of_the_guide_works() {
-    let pages = [pages("docs"), pages("docs/guide")].concat();
+    let pages = [pages("docs"), pages("docs/guide"), pages("docs/guide/hosts")].concat();
     let mut failures = Vec::new();
     let run: usize = pages.iter().map(|page| run_commands(page, &mut failures)).sum();
     assert!(run >= 40, "{run}");

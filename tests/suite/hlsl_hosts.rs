@@ -7,7 +7,7 @@ use std::time::Duration;
 use toyproof_convert::{ProofError, Prover, Runner, ShaderProof, Source, TargetCode};
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::check;
-use toyproof_translate::c_family::{Host, write};
+use toyproof_translate::c_family::{HlslHost, write};
 
 use crate::program::toyproof;
 use crate::requirements::{require_driver, require_program, require_worker};
@@ -23,7 +23,7 @@ void mainImage(out vec4 color, in vec2 p) {
 }";
 
 /// Proves the file for a host after one edit.
-fn prove(host: Host, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
+fn prove(host: HlslHost, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
     if !require_program("glslangValidator") {
         return None;
     }
@@ -48,7 +48,7 @@ fn prove(host: Host, shader: &str, from: &str, to: &str) -> Option<Result<Shader
 
 #[test]
 fn files_for_hosts_are_proved() {
-    for host in Host::ALL {
+    for host in HlslHost::ALL {
         let Some(proved) = prove(host, INPUTS, "", "") else {
             return;
         };
@@ -60,17 +60,21 @@ fn files_for_hosts_are_proved() {
 #[test]
 fn faults_in_a_hosts_code_are_found() {
     for (host, from, to) in [
-        (Host::Hlsl, "position.xy);", "position.yx);"),
-        (Host::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
-        (Host::Unity, "-ddy(", "ddy("),
-        (Host::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
-        (Host::WindowsTerminal, "Resolution.y - position.y", "position.y"),
+        (HlslHost::Hlsl, "position.xy);", "position.yx);"),
+        (HlslHost::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
+        (HlslHost::Unity, "-ddy(", "ddy("),
+        (HlslHost::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
         (
-            Host::WindowsTerminal,
+            HlslHost::WindowsTerminal,
+            "Resolution.y - position.y",
+            "position.y",
+        ),
+        (
+            HlslHost::WindowsTerminal,
             "#define iMouse float4(0.0",
             "#define iMouse float4(1.0",
         ),
-        (Host::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
+        (HlslHost::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
     ] {
         let Some(proved) = prove(host, INPUTS, from, to) else {
             return;

@@ -49,6 +49,7 @@ mod grading;
 mod growth;
 #[cfg(target_os = "linux")]
 mod hlsl_hosts;
+mod hosted;
 mod hostile;
 mod hostile_class;
 mod interpreted;

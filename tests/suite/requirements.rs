@@ -90,6 +90,20 @@ pub(crate) fn require_program(name: &str) -> bool {
     is_installed
 }
 
+/// The folder of the npm package `three`: that which `TOYPROOF_THREE` names, or which `setup.sh --tests` has installed.
+#[track_caller]
+pub(crate) fn require_three() -> Option<PathBuf> {
+    let named = env::var_os("TOYPROOF_THREE").map(PathBuf::from);
+    let installed = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/npm/node_modules/three");
+    let folder = named.unwrap_or(installed);
+    let is_package = folder.join("package.json").exists();
+    if !is_package {
+        // It comes from a registry, not with the system.
+        report("no npm package three");
+    }
+    is_package.then_some(folder)
+}
+
 /// Returns whether ffmpeg and ffprobe are installed.
 ///
 /// # Panics

@@ -210,7 +210,10 @@ impl<'a> Batch<'a> {
             |index, (shader, mut converted)| {
                 bar.inc(1);
                 // The file is written at once; its messages are printed in the order of the inputs.
-                let written = self.write(&jobs[index].path(shader.has_passes), &mut converted);
+                let written = self.write(
+                    &jobs[index].path(shader.has_passes && settings.host.is_none()),
+                    &mut converted,
+                );
                 let result = JobResult {
                     shader,
                     converted,

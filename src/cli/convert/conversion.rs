@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use rayon::ThreadPool;
 use toyproof_convert::header::{self, ProofStatus};
 use toyproof_convert::{
-    self as convert, ConvertError, Converter, FRAMES, FallbackReason, ProjectConversion, ProjectError,
-    ProjectSource, ProofError, Prover, Runner, Source, TargetCode, WriterError,
+    self as convert, ConvertError, Converter, FRAMES, FallbackReason, Host, HostedConversion, HostedSource,
+    ProjectConversion, ProjectError, ProjectSource, ProofError, Prover, Runner, Source, TargetCode,
+    WriterError,
 };
 use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_glsl::{self as glsl, Checked, PortError};
-use toyproof_gpu::browser::Chromium;
+use toyproof_gpu::browser::{Chromium, ThreeLibrary};
 use toyproof_gpu::{Failure, Worker};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_project::{CompiledProject, PassKind};
@@ -25,9 +26,13 @@ use super::To;
 pub(super) struct Settings<'a> {
     pub(super) to: To,
     pub(super) converter: Converter,
+    /// The host whose file has all passes of a shader, if there is one.
+    pub(super) host: Option<Host>,
     pub(super) verify: bool,
     /// The path of Chromium; `None` without `--browser`.
     pub(super) browser: Option<PathBuf>,
+    /// three.js, for modules that run in the browser.
+    pub(super) three: Option<ThreeLibrary>,
     pub(super) language: &'a LanguageArgs,
     pub(super) driver: &'a DriverArgs,
 }
@@ -97,10 +102,13 @@ impl Settings<'_> {
             translator,
             runner: self.driver.worker_for(images)?.map(Worker::with_plain_code),
             pool: self.verify.then(|| pool::thread_pool(threads)).flatten(),
-            browser: self
-                .browser
-                .as_ref()
-                .map(|program| Chromium::new(program.clone(), self.driver.timeout() * images)),
+            browser: self.browser.as_ref().map(|program| {
+                let browser = Chromium::new(program.clone(), self.driver.timeout() * images);
+                match &self.three {
+                    Some(three) => browser.with_three(three.clone()),
+                    None => browser,
+                }
+            }),
         })
     }
 
@@ -119,6 +127,9 @@ impl Settings<'_> {
         })?;
         let context = context.as_mut();
         let context = context.map_err(|error| Refusal::Message(error.clone(), Exit::Error))?;
+        if let Some(host) = self.host {
+            return self.convert_hosted(context, shader, image, host);
+        }
         match shader.project() {
             Some(project) if shader.has_passes => self.convert_project(context, shader, project),
             _ => self.convert_shader(context, shader, image),
@@ -161,6 +172,45 @@ impl Settings<'_> {
             status,
             fallback,
         })
+    }
+
+    /// Converts a shader or a project into the one file of a host.
+    fn convert_hosted(
+        &self,
+        context: &mut WorkerContext,
+        shader: &Shader,
+        checked: &Checked,
+        host: Host,
+    ) -> Result<Conversion, Refusal> {
+        let (_, mut prover) = self.parts(context);
+        let files = &shader.files;
+        let source = match shader.project() {
+            Some(project) => HostedSource::Project(ProjectSource {
+                name: &shader.name,
+                project,
+                files,
+            }),
+            None => HostedSource::Shader(Source { checked, files }),
+        };
+        let converted = self.converter.convert_hosted(host, source, prover.as_mut());
+        let HostedConversion { text, proof } = converted.map_err(|error| match error {
+            ProjectError::Pass { pass, error } if shader.has_passes => refusal(error).in_pass(pass),
+            ProjectError::Pass { error, .. } => refusal(error),
+            error => Refusal::Message(error.to_string(), Exit::Error),
+        })?;
+        let status = self.status(proof);
+        let bytes = header::insert_in_hosted(&text, host, &shader.name, &status).into_bytes();
+        Ok(Conversion {
+            files: vec![OutputFile { name: None, bytes }],
+            status,
+            fallback: None,
+        })
+    }
+
+    /// The extension of the files of shaders with one pass.
+    pub(super) fn extension(&self) -> &'static str {
+        self.host
+            .map_or_else(|| self.converter.extension(), Host::extension)
     }
 
     /// Converts a project whose image reads other passes.

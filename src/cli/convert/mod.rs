@@ -4,18 +4,18 @@ mod batch;
 mod conversion;
 mod target;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use toyproof_convert::Converter;
+use toyproof_convert::{Converter, Host};
 use toyproof_diagnostic::Deadline;
-use toyproof_gpu::browser;
+use toyproof_gpu::browser::{self, THREE_VARIABLE, ThreeLibrary};
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
-use toyproof_translate::c_family::Host;
+use toyproof_translate::c_family::HlslHost;
 
 use self::batch::{Batch, Job};
 use self::conversion::Settings;
-use self::target::{OutputKind, StyleName, To, check_target, output, target_language};
+use self::target::{OutputKind, StyleName, To, check_target, host, output, target_language};
 use super::inputs::{DriverArgs, Format, LanguageArgs, check_output};
 use super::shader::{Shader, find};
 use super::{CliError, Exit, Terminal};
@@ -39,6 +39,7 @@ Examples:
   toyproof convert shaders -o converted --to spv
   toyproof convert waves -o converted --verify
   toyproof convert mine.glsl -o mine.frag --style book-of-shaders
+  toyproof convert waves -o waves.js --style three
   toyproof convert waves.frag -o waves.glsl --style shadertoy
 
 Interface of the result: entry point `main`, color at location 0. Group 0, binding 0 is a uniform block of {} bytes \
@@ -63,7 +64,7 @@ pub(super) struct Args {
     /// Shaders and projects: files, folders, or - for standard input
     #[arg(required = true)]
     shaders: Vec<PathBuf>,
-    /// The output: a file (.wgsl .spv .metal .hlsl .frag), a folder, or - for standard output
+    /// The output: a file (.wgsl .spv .metal .hlsl .frag .js .fs), a folder, or - for standard output
     #[arg(short, long, value_name = "FILE|DIR")]
     output: Option<PathBuf>,
     /// The target language [default: by the extension of the output, else wgsl]
@@ -107,9 +108,10 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         }
         _ => None,
     };
+    let host = host(args);
     let kind = match &loaded {
         _ if several => OutputKind::Shaders,
-        Some(shader) if shader.has_passes => OutputKind::Passes,
+        Some(shader) if shader.has_passes && host.is_none() => OutputKind::Passes,
         _ => OutputKind::File,
     };
     let output = output(args, kind)?;
@@ -120,6 +122,17 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         let error = CliError::new("--browser needs Chromium, which is not installed");
         return Err(error.with_help("on Debian: apt-get install chromium"));
     }
+    let three = (args.browser && host == Some(Host::Three)).then(|| {
+        let folder = output.parent().map(Path::to_path_buf).unwrap_or_default();
+        let folders = [folder, PathBuf::new()].map(|folder| std::path::absolute(&folder).unwrap_or(folder));
+        ThreeLibrary::find(&folders)
+    });
+    if let Some(None) = three {
+        let error = CliError::new("--browser needs the npm package three, which was not found");
+        return Err(error.with_help(format_args!(
+            "run `npm install three` beside the output, or name the folder of the package in {THREE_VARIABLE}"
+        )));
+    }
     // People read converted shaders: by default they keep the author's functions.
     let float = args.driver.explicit_float().unwrap_or(FloatMode::Fast);
     args.driver.translator().and_then(|_| args.driver.worker())?;
@@ -128,17 +141,19 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         converter: Converter {
             target: to.target(),
             style: args.style.wgsl().unwrap_or_default(),
-            host: args.style.c_family().unwrap_or(Host::Hlsl),
+            hlsl_host: args.style.c_family().unwrap_or(HlslHost::Hlsl),
             dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),
         },
+        host,
         verify: args.verify,
         browser,
+        three: three.flatten(),
         language: &args.language,
         driver: &args.driver,
     };
-    let jobs = Job::for_inputs(inputs, kind, &output, settings.converter.extension());
+    let jobs = Job::for_inputs(inputs, kind, &output, settings.extension());
     let originals = jobs
         .iter()
         .filter_map(|job| job.input.as_ref().ok()?.path())

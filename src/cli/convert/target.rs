@@ -4,11 +4,12 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use toyproof_convert::Host;
 use toyproof_diagnostic::path_name;
 use toyproof_glsl::Dialect;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::Host;
+use toyproof_translate::c_family::HlslHost;
 use toyproof_translate::wgsl::Style;
 
 use super::Args;
@@ -25,6 +26,8 @@ pub(super) enum To {
     Metal,
     Hlsl,
     Glsl,
+    /// An ES module for three.js, with --style three
+    Js,
     /// The GLSL 450 that naga reads
     Lowered,
 }
@@ -54,8 +57,10 @@ pub(super) enum StyleName {
     BookOfShaders,
     /// GLSL for GLSL Sandbox
     GlslSandbox,
-    /// GLSL for three.js or p5.js
+    /// GLSL for three.js or p5.js; with an output .js, an ES module for three.js
     Three,
+    /// ISF, with a header in JSON, and all passes in one file
+    Isf,
     /// GLSL for a page with WebGL that sets ShaderToy's inputs as uniforms
     Webgl,
 }
@@ -73,11 +78,11 @@ impl StyleName {
     }
 
     /// The host of HLSL, ShaderLab and Slang; `None` for the plain one.
-    pub(super) fn c_family(self) -> Option<Host> {
+    pub(super) fn c_family(self) -> Option<HlslHost> {
         match self {
-            Self::Unity => Some(Host::Unity),
-            Self::WindowsTerminal => Some(Host::WindowsTerminal),
-            Self::Slang => Some(Host::Slang),
+            Self::Unity => Some(HlslHost::Unity),
+            Self::WindowsTerminal => Some(HlslHost::WindowsTerminal),
+            Self::Slang => Some(HlslHost::Slang),
             _ => None,
         }
     }
@@ -106,14 +111,17 @@ impl To {
             Self::Spv => Some(Target::Spirv),
             Self::Metal => Some(Target::Msl),
             Self::Hlsl => Some(Target::Hlsl),
-            Self::Glsl => Some(Target::Glsl),
+            Self::Glsl | Self::Js => Some(Target::Glsl),
             Self::Lowered => None,
         }
     }
 
     /// The name on the command line.
     pub(super) fn name(self) -> &'static str {
-        self.target().map_or("lowered", Target::name)
+        match self {
+            Self::Js => "js",
+            _ => self.target().map_or("lowered", Target::name),
+        }
     }
 
     /// Returns whether a file with the extension of this language may contain `written`: lowered output is
@@ -123,6 +131,16 @@ impl To {
     }
 
     fn from_extension(path: &Path) -> Option<Self> {
+        let has_extension = |name| {
+            path.extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case(name))
+        };
+        if has_extension("js") {
+            return Some(Self::Js);
+        }
+        if has_extension("fs") {
+            return Some(Self::Glsl);
+        }
         let target = Target::from_path(path)?;
         Self::value_variants()
             .iter()
@@ -140,6 +158,17 @@ pub(super) enum OutputKind {
     Passes,
     /// Several shaders or projects.
     Shaders,
+}
+
+/// The host whose file has all passes of a shader, if the arguments name one.
+pub(super) fn host(args: &Args) -> Option<Host> {
+    let of_output = args.output.as_deref().and_then(To::from_extension);
+    let is_module = args.to.or(of_output) == Some(To::Js);
+    match args.style {
+        StyleName::Three if is_module => Some(Host::Three),
+        StyleName::Isf => Some(Host::Isf),
+        _ => None,
+    }
 }
 
 /// Returns the output that the arguments name, or its default, which several shaders do not have.
@@ -161,7 +190,10 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
     let of_extension = (!is_standard_output && !output.is_dir())
         .then(|| To::from_extension(output))
         .flatten();
-    let of_style = args.style.language();
+    let of_style = match host(args) {
+        Some(Host::Three) => Some(To::Js),
+        Some(Host::Isf) | None => args.style.language(),
+    };
     let to = match (args.to.or(of_style), of_extension) {
         (Some(to), Some(other)) if !other.may_contain(to) => {
             let error = CliError::new(format_args!(
@@ -204,9 +236,14 @@ pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     let dialect = args.style.dialect();
     match args.style.language() {
         Some(To::Hlsl) if to != To::Hlsl => return Err("this --style applies to HLSL only"),
-        Some(To::Glsl) if to != To::Glsl => return Err("this --style applies to GLSL only"),
+        Some(To::Glsl) if !matches!(to, To::Glsl | To::Js) => {
+            return Err("this --style applies to GLSL only");
+        }
         Some(language) if to != language => return Err("this --style applies to WGSL only"),
         _ => {}
+    }
+    if to == To::Js && host(args) != Some(Host::Three) {
+        return Err("a module is written for three.js: add --style three");
     }
     if args.style.c_family().is_some() && args.driver.explicit_float() == Some(FloatMode::Strict) {
         return Err("this --style keeps the author's functions: leave out --float strict");
@@ -214,10 +251,11 @@ pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
     if dialect.is_some() && args.driver.explicit_float() == Some(FloatMode::Strict) {
         return Err("this --style keeps the author's operations: leave out --float strict");
     }
-    if args.browser && dialect.is_some_and(|dialect| !dialect.calls_main_image()) {
+    let is_run = host(args) == Some(Host::Three);
+    if args.browser && !is_run && dialect.is_some_and(|dialect| !dialect.calls_main_image()) {
         return Err("--browser renders ShaderToy's inputs only: leave it out for this --style");
     }
-    if args.browser && !matches!(to, To::Wgsl | To::Glsl) {
+    if args.browser && !matches!(to, To::Wgsl | To::Glsl | To::Js) {
         return Err("--browser applies to WGSL and GLSL, the languages that browsers run");
     }
     Ok(())

@@ -260,6 +260,12 @@ impl Checker<'_> {
                 let mouse = self.host_input(InputValue::First(Input::Mouse, 2), at);
                 self.over_resolution(mouse, at)
             }
+            InputValue::MouseDown => {
+                let mouse = self.input(VariableKind::Input(Input::Mouse), at);
+                let click = self.components(mouse, &[2], at);
+                let zero = self.number(0.0, at);
+                self.operation(BinaryOp::Greater, click, zero, Type::BOOL, at)
+            }
             InputValue::Quad => {
                 let position = self.input(VariableKind::BuiltIn(BuiltInVariable::FragCoord), at);
                 let position = self.first(position, 2, at);

@@ -55,6 +55,8 @@ pub(crate) enum InputValue {
     Float(Input),
     /// `iMouse.xy / iResolution.xy`, from 0 to 1.
     Mouse,
+    /// `iMouse.z > 0.0`: whether the button is down.
+    MouseDown,
     /// `gl_FragCoord.xy / iResolution.xy`: the coordinates of a full-screen quad, from 0 to 1.
     Quad,
     /// [`Self::Quad`], with a z of 0.
@@ -92,6 +94,7 @@ impl InputValue {
             Self::Whole(input) => vector(input.ty().components()),
             Self::First(_, size) => vector(usize::from(size)),
             Self::Float(_) => Type::FLOAT,
+            Self::MouseDown => Type::BOOL,
             Self::Mouse | Self::Quad | Self::Surface | Self::SurfaceSize | Self::TextureSize(_) => vector(2),
             Self::QuadInSpace => vector(3),
             Self::Texture(_) => Type::Sampler(Sampler::float(SamplerShape::D2)),
@@ -101,7 +104,8 @@ impl InputValue {
 }
 
 use InputValue::{
-    Constant, First, Float, Mouse, Quad, QuadInSpace, Surface, SurfaceSize, Texture, TextureSize, Whole,
+    Constant, First, Float, Mouse, MouseDown, Quad, QuadInSpace, Surface, SurfaceSize, Texture, TextureSize,
+    Whole,
 };
 
 const TIME: &[InputValue] = &[Whole(Input::Time)];
@@ -275,6 +279,8 @@ const HOSTS: &[Host] = &[
             ("DATE", DATE),
             ("FRAMEINDEX", FRAME),
             ("RENDERSIZE", RESOLUTION),
+            // Written shaders have these inputs, in whose headers they have values.
+            ("mouseDown", &[MouseDown]),
             ("isf_FragNormCoord", QUAD),
             ("vv_FragNormCoord", QUAD),
         ],

@@ -8,6 +8,19 @@ use crate::tree::{Input, InputType, Place};
 /// The components of a vector by each set of letters.
 const COMPONENTS: [&str; 3] = ["xyzw", "rgba", "stpq"];
 
+/// What ISF sets by these names, of which the header of a shader declares the first ones.
+const ISF: [(&str, InputValue); 9] = [
+    ("mouse", InputValue::Mouse),
+    ("iChannel0", InputValue::Texture(0)),
+    ("iChannel1", InputValue::Texture(1)),
+    ("iChannel2", InputValue::Texture(2)),
+    ("iChannel3", InputValue::Texture(3)),
+    ("IMG_SIZE(iChannel0)", InputValue::TextureSize(0)),
+    ("IMG_SIZE(iChannel1)", InputValue::TextureSize(1)),
+    ("IMG_SIZE(iChannel2)", InputValue::TextureSize(2)),
+    ("IMG_SIZE(iChannel3)", InputValue::TextureSize(3)),
+];
+
 /// The text that reads an input of the other host.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Spelling {
@@ -79,7 +92,9 @@ impl Inputs {
 
     /// The host's input with a value.
     fn find(&mut self, is_wanted: impl Fn(InputValue) -> bool) -> Option<(&'static str, InputValue)> {
-        let found = self.to.sets(is_wanted)?;
+        let of_isf = ISF.into_iter().filter(|_| self.to == Dialect::Isf);
+        let found = self.to.sets(&is_wanted);
+        let found = found.or_else(|| of_isf.into_iter().find(|(_, value)| is_wanted(*value)))?;
         if !self.used.contains(&found) {
             self.used.push(found);
         }
@@ -104,6 +119,17 @@ impl Inputs {
     /// The text of a value; `None` if the host does not set it.
     pub(super) fn spell(&mut self, value: InputValue) -> Option<Spelling> {
         Some(match value {
+            // Nothing says where the mouse was clicked.
+            InputValue::Whole(Input::Mouse) if self.to == Dialect::Isf => Spelling::Value(
+                "vec4(mouse * RENDERSIZE, (mouseDown ? 1.0 : -1.0) * mouse * RENDERSIZE)".to_owned(),
+            ),
+            InputValue::First(Input::Mouse, 2) if self.to == Dialect::Isf => {
+                Spelling::Value("(mouse * RENDERSIZE)".to_owned())
+            }
+            InputValue::MouseDown => {
+                let mouse = self.spell(InputValue::Whole(Input::Mouse))?;
+                Spelling::Value(format!("({} > 0.0)", mouse.components("z")?))
+            }
             InputValue::Whole(input) => match self.find_input(input) {
                 Some((name, InputValue::First(_, size))) => {
                     let size = usize::from(size);

@@ -64,9 +64,22 @@ pub fn port(
     refusal: &Refusal,
     deadline: &Deadline,
 ) -> Result<String, PortError> {
+    port_in_versions(checked, files, (to, to.written_versions()), refusal, deadline)
+}
+
+/// Writes a shader for another host like [`port`], in the first of these versions that has what the shader uses.
+///
+/// # Errors
+/// Like [`port`].
+pub fn port_in_versions(
+    checked: &Checked,
+    files: &Files,
+    (to, versions): (Dialect, &[Version]),
+    refusal: &Refusal,
+    deadline: &Deadline,
+) -> Result<String, PortError> {
     let file = checked.tree[checked.main_image].at.span.file;
     let source = Source::new(files, file);
-    let versions = to.written_versions();
     // A shader keeps its version if the host compiles it.
     let own = versions.iter().filter(|&&version| version == checked.version);
     let is_rewrapped = checked.dialect.calls_main_image() != to.calls_main_image();
@@ -79,6 +92,10 @@ pub fn port(
         deadline.check()?;
         let port = Port::new(checked, &source, to, version).map_err(PortError::Host)?;
         let text = port.text();
+        // The header is not a part of the text: whoever writes it checks both.
+        if to == Dialect::Isf {
+            return Ok(text);
+        }
         match check_written(text, checked, (to, version), refusal, deadline) {
             Ok(text) => return Ok(text),
             Err(problem) => error = problem,

@@ -135,6 +135,67 @@ fn what_the_host_does_not_set_is_an_error() {
     );
 }
 
+#[test]
+fn lookups_of_isf_name_their_image() {
+    let isf = |color: &str| {
+        let text = format!(
+            "#define at (p / iResolution.xy)\n// p\nvoid mainImage(out vec4 c, in vec2 p) {{ c = {color}; }}"
+        );
+        let mut files = Files::default();
+        let file = files.add(File::new("lookup", text));
+        let checked = check(&files, file, &Options::default()).unwrap();
+        let versions: &[Version] = &[Version::Desktop(150)];
+        port_in_versions(
+            &checked,
+            &files,
+            (Dialect::Isf, versions),
+            &|_, _| None,
+            &Deadline::default(),
+        )
+        .map_err(|error| error.to_string())
+    };
+    for (lookup, written) in [
+        ("texture(iChannel1, at)", "IMG_NORM_PIXEL(iChannel1, at)"),
+        (
+            "textureLod(iChannel1, (at), 0.)",
+            "IMG_NORM_PIXEL(iChannel1, (at))",
+        ),
+        ("texture(iChannel0, at, -100.0)", "IMG_NORM_PIXEL(iChannel0, at)"),
+        (
+            "texture(iChannel0, texelFetch(iChannel1, ivec2(p), 0).xy)",
+            "IMG_NORM_PIXEL(iChannel0, iChannel1Texel(ivec2(p)).xy)",
+        ),
+        (
+            "vec4(textureSize(iChannel0, 0), 1, 1)",
+            "vec4(ivec2(IMG_SIZE(iChannel0)), 1, 1)",
+        ),
+        (
+            "vec4(iChannelResolution[2].xyz, iTime)",
+            "vec4(vec3(IMG_SIZE(iChannel2), 1.0).xyz, TIME)",
+        ),
+    ] {
+        let text = isf(lookup).unwrap();
+        assert!(text.contains(&format!("c = {written};")), "{text}");
+        assert!(
+            text.contains("(p / RENDERSIZE)") && !text.contains("uniform"),
+            "{text}"
+        );
+    }
+    let text = isf("iMouse").unwrap();
+    assert!(
+        text.contains("vec4 iMouse;") && text.contains("    iMouse = vec4(mouse * RENDERSIZE, "),
+        "{text}"
+    );
+    for lookup in [
+        "textureLod(iChannel0, at, 1.0)",
+        "textureGrad(iChannel0, at, p, p)",
+        "texelFetch(iChannel0, ivec2(p), 1)",
+    ] {
+        let error = isf(lookup).unwrap_err();
+        assert!(error.ends_with("has no equivalent in ISF"), "{error}");
+    }
+}
+
 const PULSE: &str = "\
 #ifdef GL_ES
 precision mediump float;

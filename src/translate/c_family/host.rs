@@ -22,7 +22,7 @@ use crate::template::{around_shader, channel_number, fill};
 
 /// A host of a language with the syntax of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Host {
+pub enum HlslHost {
     /// HLSL with our own bindings; row 0 of the target is the bottom.
     Hlsl,
     /// A module of Slang with our own bindings.
@@ -53,7 +53,7 @@ struct Row {
     is_upside_down: bool,
 }
 
-impl Host {
+impl HlslHost {
     /// Every host.
     pub const ALL: [Self; 4] = [Self::Hlsl, Self::Slang, Self::Unity, Self::WindowsTerminal];
 

@@ -149,6 +149,7 @@ impl Writer<'_> {
         let order = Order {
             items: vec![Item::Function(first)],
             inputs: Vec::new(),
+            reads_uniform_block: false,
         };
         let mut names = Names::new(&cx, &order, &Words::new(self.host));
         names.functions.insert(first, self.function(id).to_owned());

@@ -2,7 +2,7 @@
 
 use toyproof_glsl::tree::{Scalar, Type};
 
-use super::host::Host;
+use super::host::HlslHost;
 use crate::print::Vocabulary;
 use crate::print::keyword::lists;
 
@@ -39,11 +39,11 @@ const FUNCTIONS: &str = "\
 
 /// The names that are not free.
 pub(super) struct Words {
-    host: Host,
+    host: HlslHost,
 }
 
 impl Words {
-    pub(super) fn new(host: Host) -> Self {
+    pub(super) fn new(host: HlslHost) -> Self {
         Self { host }
     }
 }

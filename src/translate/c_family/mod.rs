@@ -3,7 +3,7 @@
 //!
 //! The tree is printed after the few lowering passes that these languages require too. Shaders that the
 //! writer does not support ([`Unprintable`]) are left to naga's writers. A host is a row of the table in
-//! [`host`](Host) and a template in `hosts/`.
+//! [`host`](HlslHost) and a template in `hosts/`.
 
 mod builtin;
 mod construct;
@@ -17,16 +17,14 @@ mod statement;
 mod tests;
 mod writer;
 
-pub use host::{Host, HostedText};
+pub use host::{HlslHost, HostedText};
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 
 use self::language::Words;
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{
-    Pass, Passes, branch_for_effects, fold_by_precision, fold_except, name_array_values,
-};
+use crate::lower::{Pass, Passes, branch_for_effects, fold_by_precision, fold_except, name_array_values};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -38,7 +36,7 @@ pub use crate::unprintable::{Unprintable, WriteFailure};
 pub fn write(
     checked: &Checked,
     files: &Files,
-    host: Host,
+    host: HlslHost,
     name: &str,
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {

@@ -121,7 +121,9 @@ impl Writer<'_> {
         if let Some(array) = large {
             let index = self.free("index");
             let zero = match array.element {
-                Type::Array(_) => return Err(Unprintable::Construct("a large array of arrays without values")),
+                Type::Array(_) => {
+                    return Err(Unprintable::Construct("a large array of arrays without values"));
+                }
                 element => self.zero(element)?,
             };
             let size = array.size;

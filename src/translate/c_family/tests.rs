@@ -1,11 +1,11 @@
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{self as glsl, Options, Stage};
 
-use super::host::Host;
+use super::host::HlslHost;
 use super::{Unprintable, WriteFailure, write};
 
 /// Converts a shader for a host.
-fn converted(host: Host, text: &str) -> Result<String, WriteFailure> {
+fn converted(host: HlslHost, text: &str) -> Result<String, WriteFailure> {
     let mut files = Files::default();
     let file = files.add(File::new("shader", text));
     let checked =
@@ -21,7 +21,7 @@ fn body(statements: &str) -> String {
 fn with_items(items: &str, statements: &str) -> String {
     let text =
         format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\ncolor = vec4(0);\n{statements}\n}}");
-    let written = converted(Host::Hlsl, &text).unwrap();
+    let written = converted(HlslHost::Hlsl, &text).unwrap();
     let start = written
         .find("    color = ")
         .unwrap_or_else(|| panic!("{written}"));
@@ -47,7 +47,7 @@ fn names_comments_macros_and_loops_stay() {
         struct Ray { vec3 origin; float t; }; \n// Height\nfloat height(vec3 p) { return p.y - SCALE; }\n\
         void mainImage(out vec4 color, in vec2 at) {\n    Ray ray = Ray(vec3(at, 1), 0.);\n    // March\n    \
         for (int i = 0; i < STEPS; i++) ray.t += height(ray.origin); // on\n    color = vec4(ray.t);\n}";
-    let written = converted(Host::Hlsl, text).unwrap();
+    let written = converted(HlslHost::Hlsl, text).unwrap();
     for expected in [
         "// Waves\n\nstatic const float SCALE = 0.5;\nstatic const int STEPS = 8;\n\nstruct Ray {",
         "// Height\nfloat height(float3 p) {\n    return p.y - SCALE;\n}\n",
@@ -172,7 +172,10 @@ fn both_sides_of_a_condition_may_have_effects() {
 #[test]
 fn conditions_with_effects_move_to_the_body() {
     let items = "float count = 0.; float next() { return ++count; }";
-    let written = with_items(items, "while (at.x > 1. && next() < 3.) at.x -= 1.;\nif (at.y > 2.) at.y = 0.; else if (at.x > 0. || next() > 1.) color.x = 1.;");
+    let written = with_items(
+        items,
+        "while (at.x > 1. && next() < 3.) at.x -= 1.;\nif (at.y > 2.) at.y = 0.; else if (at.x > 0. || next() > 1.) color.x = 1.;",
+    );
     assert_lines(
         &written,
         &[
@@ -207,7 +210,9 @@ fn conditions_with_effects_move_to_the_body() {
 
 #[test]
 fn arrays_have_names() {
-    let written = body("color.x = float[2](at.x, 1.)[int(at.y)];\nfloat large[99];\nlarge[int(at.x)] = 1.;\ncolor.y = large[3];");
+    let written = body(
+        "color.x = float[2](at.x, 1.)[int(at.y)];\nfloat large[99];\nlarge[int(at.x)] = 1.;\ncolor.y = large[3];",
+    );
     assert_lines(
         &written,
         &[
@@ -275,7 +280,7 @@ fn cases_are_blocks_if_they_declare_variables() {
         "{written}"
     );
     let shared = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); switch (int(p.x)) { case 0: float a = 1.; c.x = a; break; default: a = 2.; c.x = a; } }";
-    let refused = converted(Host::Hlsl, shared);
+    let refused = converted(HlslHost::Hlsl, shared);
     assert!(matches!(
         refused,
         Err(WriteFailure::Unprintable(
@@ -287,7 +292,7 @@ fn cases_are_blocks_if_they_declare_variables() {
 #[test]
 fn hosts_refuse_inputs_that_they_lack() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p) * iDate; }";
-    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(Host::WindowsTerminal, text)
+    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(HlslHost::WindowsTerminal, text)
     else {
         panic!("it is not refused");
     };
@@ -295,7 +300,7 @@ fn hosts_refuse_inputs_that_they_lack() {
         error.message.contains("in the style `windows-terminal`"),
         "{error:?}"
     );
-    assert!(converted(Host::Unity, text).is_ok());
+    assert!(converted(HlslHost::Unity, text).is_ok());
 }
 
 #[test]
@@ -303,11 +308,11 @@ fn hosts_code_is_complete() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy) + iMouse + dFdy(p.y); }";
     for (host, expected) in [
         (
-            Host::Slang,
+            HlslHost::Slang,
             "[[vk::binding(1, 0)]] Texture2D iChannel0 : register(t1);",
         ),
         (
-            Host::Unity,
+            HlslHost::Unity,
             "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + -ddy(p.y);",
         ),
     ] {
@@ -321,13 +326,13 @@ fn hosts_code_is_complete() {
             "{}",
             hosted.text
         );
-        assert_eq!(hosted.upside_down, host == Host::Unity);
+        assert_eq!(hosted.upside_down, host == HlslHost::Unity);
     }
 }
 
 #[test]
 fn adaptations_are_of_the_templates() {
-    for host in Host::ALL {
+    for host in HlslHost::ALL {
         for (code, _) in host.adaptations() {
             assert!(
                 host.template().replace("$texture", "Texture2D").contains(code),

@@ -6,7 +6,7 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
 
 use super::Unprintable;
-use super::host::Host;
+use super::host::HlslHost;
 use super::language::{Words, numeric_type};
 use crate::author::{Comments, SourceText};
 use crate::lower::context::LoweringContext;
@@ -18,7 +18,7 @@ pub(super) type PrintResult<T = ()> = Result<T, Unprintable>;
 pub(super) struct Writer<'a> {
     pub(super) cx: &'a LoweringContext,
     pub(super) names: &'a Names,
-    pub(super) host: Host,
+    pub(super) host: HlslHost,
     pub(super) comments: Comments<'a>,
     pub(super) source: SourceText<'a>,
     pub(super) deadline: &'a Deadline,
@@ -42,7 +42,7 @@ impl<'a> Writer<'a> {
     pub(super) fn new(
         cx: &'a LoweringContext,
         names: &'a Names,
-        host: Host,
+        host: HlslHost,
         files: &'a Files,
         deadline: &'a Deadline,
     ) -> Self {

@@ -33,7 +33,10 @@ pub(crate) fn name_array_values(cx: &mut LoweringContext) {
 
 /// The initial values of variables, and the elements and members that they list.
 fn values_of_declarations(tree: &Tree) -> HashSet<ExprId> {
-    let initializers = tree.variables.iter().filter_map(|(_, variable)| variable.initializer);
+    let initializers = tree
+        .variables
+        .iter()
+        .filter_map(|(_, variable)| variable.initializer);
     let mut pending: Vec<ExprId> = initializers.collect();
     let mut values = HashSet::new();
     while let Some(id) = pending.pop() {

@@ -2,7 +2,8 @@
 //! as HLSL does before 2021. Such languages select no structures, arrays or matrices either.
 
 use toyproof_glsl::tree::{
-    Arm, Block, Condition, ExprId, ExprKind, Place, Statement, StatementKind, Tree, Type, UnaryOp, Value, walk,
+    Arm, Block, Condition, ExprId, ExprKind, Place, Statement, StatementKind, Tree, Type, UnaryOp, Value,
+    walk,
 };
 
 use crate::lower::context::LoweringContext;

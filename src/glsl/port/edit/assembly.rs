@@ -8,6 +8,7 @@ use super::{Color, FRAG_COLOR, Port};
 use crate::dialect::Version;
 use crate::port::input::declaration;
 use crate::port::names;
+use crate::stage::Stage;
 use crate::tree::{Scalar, Type};
 
 impl Port<'_> {
@@ -21,7 +22,7 @@ impl Port<'_> {
         if self.becomes_main() && names::words(self.source).contains("HW_PERFORMANCE") {
             head += "#define HW_PERFORMANCE 1\n";
         }
-        if !self.to.calls_main_image() {
+        if !self.to.calls_main_image() && !self.is_for_isf() {
             for (name, value) in std::mem::take(&mut self.inputs.used) {
                 if self.is_rewrapped() && !self.declared.contains(&name) {
                     head += &declaration(name, value);
@@ -30,7 +31,8 @@ impl Port<'_> {
             }
         }
         let color = names::fresh("outColor", &names::words(self.source));
-        let declares_color = self.version != Version::Es100 && !self.to.calls_main_image();
+        let declares_color =
+            self.version != Version::Es100 && !self.to.calls_main_image() && !self.is_for_isf();
         let is_declared = self
             .checked
             .output
@@ -49,6 +51,11 @@ impl Port<'_> {
                 let _ = writeln!(head, "{declaration}");
             }
         }
+        let functions = self.texel_functions();
+        if !head.is_empty() && !functions.is_empty() {
+            head.push('\n');
+        }
+        head += &functions;
         let color = if declares_color { &color } else { FRAG_COLOR };
         let tail = self.tail(color);
         let mut text = self.version_line();
@@ -61,7 +68,7 @@ impl Port<'_> {
         self.edits.sort_by_key(|(span, _)| span.start);
         let mut body = String::new();
         let mut at = 0;
-        if !head.is_empty() {
+        if !head.is_empty() && !head.ends_with("\n\n") {
             head.push('\n');
         }
         let mut head = Some(head);
@@ -100,7 +107,7 @@ impl Port<'_> {
     }
 
     fn version_line(&self) -> String {
-        if self.to.calls_main_image() {
+        if self.to.calls_main_image() || self.is_for_isf() {
             return String::new();
         }
         let mut line = self.version.directive();
@@ -147,7 +154,10 @@ impl Port<'_> {
             }
             let main_image = self.name("mainImage");
             lines.push(format!("{main_image}({color}, gl_FragCoord.xy);"));
-            lines.push(format!("{color}.a = 1.0;"));
+            // A buffer keeps the alpha that it writes.
+            if self.checked.stage == Stage::Image {
+                lines.push(format!("{color}.a = 1.0;"));
+            }
             return function("main()", &lines);
         }
         let Color::Global(global, ty) = &self.color else {

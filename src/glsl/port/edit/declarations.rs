@@ -26,7 +26,7 @@ impl Port<'_> {
             end += 1;
         }
         if source.token_text(start) == "precision" {
-            if !self.to.calls_main_image() {
+            if !self.to.calls_main_image() && !self.is_for_isf() {
                 return None;
             }
             self.remove_line(source.span(start).to(source.span(end)));
@@ -104,7 +104,7 @@ impl Port<'_> {
     ) -> Option<Vec<String>> {
         let output = self.checked.output.map(|output| &*self.checked.tree[output].name);
         if output == Some(name) {
-            let keeps = !self.becomes_main_image() && self.version != Version::Es100;
+            let keeps = !self.becomes_main_image() && self.version != Version::Es100 && !self.is_for_isf();
             return match &self.color {
                 Color::Global(name, of) => {
                     Some(vec![format!("{};", self.checked.tree.declaration(name, *of))])
@@ -118,13 +118,17 @@ impl Port<'_> {
             Some(vec![format!("{ty} {without_value};")])
         };
         match self.known.get(name).map(|(_, known)| known.clone()) {
+            // The header of ISF declares its inputs.
+            Some(Known::Value(..) | Known::Unset) if self.is_for_isf() && storage == "uniform" => {
+                Some(Vec::new())
+            }
             Some(Known::Input(value)) => {
                 let mut lines = Vec::new();
                 if matches!(self.writings.get(name), Some(Writing::Global)) {
                     let ty = self.checked.tree.type_name(value.ty());
                     lines.push(format!("{ty} {name};"));
                 }
-                if !self.to.calls_main_image() && self.writings.contains_key(name) {
+                if !self.to.calls_main_image() && !self.is_for_isf() && self.writings.contains_key(name) {
                     let declared = self.declare_inputs_of(value).into_iter();
                     lines.extend(declared.map(|line| match precision {
                         Some(precision) => line.replacen("uniform", &format!("uniform {precision}"), 1),

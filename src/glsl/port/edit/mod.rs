@@ -2,12 +2,14 @@
 
 mod assembly;
 mod declarations;
+mod isf;
 mod words;
 
 use std::collections::{HashMap, HashSet};
 
 use toyproof_diagnostic::{Diagnostic, Span};
 
+use self::isf::{ISF_NAMES, Lookups};
 use super::input::{Inputs, Spelling};
 use super::names::{self, Known};
 use crate::Checked;
@@ -68,6 +70,8 @@ pub(super) struct Port<'a> {
     /// Where the author's functions are named: other uses of such a name are those of a built-in function.
     own_calls: HashSet<u32>,
     edits: Vec<(Span, String)>,
+    /// The lookups of textures, if the other host is ISF.
+    lookups: Lookups,
 }
 
 impl<'a> Port<'a> {
@@ -100,6 +104,7 @@ impl<'a> Port<'a> {
             built_in_names: names::built_in_names(checked, version),
             own_calls: names::own_calls(checked),
             edits: Vec::new(),
+            lookups: Lookups::default(),
         };
         port.find_body();
         port.place_color(&words);
@@ -109,6 +114,9 @@ impl<'a> Port<'a> {
                 return Err(error);
             }
             port.spell_inputs(true)?;
+        }
+        if port.is_for_isf() {
+            port.find_lookups()?;
         }
         port.rename(&words);
         Ok(port)
@@ -189,7 +197,8 @@ impl<'a> Port<'a> {
         };
         if !self.becomes_main_image() {
             // GLSL ES 1.00 has its color by name, later versions declare it.
-            if self.version == Version::Es100 && name != FRAG_COLOR && name != FRAG_DATA {
+            let has_frag_color = self.version == Version::Es100 || self.is_for_isf();
+            if has_frag_color && name != FRAG_COLOR && name != FRAG_DATA {
                 let color = if is_array { FRAG_DATA } else { FRAG_COLOR };
                 self.writings.insert(name, Writing::Renamed(color.to_owned()));
             } else if self.version != Version::Es100 && name == FRAG_COLOR && self.version.is_es() {
@@ -289,6 +298,8 @@ impl<'a> Port<'a> {
                 .inputs
                 .missing(&format!("`{name}`, which is not a 2D texture,"), at));
         }
+        // The mouse of ISF is a long expression.
+        let is_long = self.is_for_isf() && value == InputValue::Whole(Input::Mouse);
         // The elements of `iChannelResolution` may be inputs of their own.
         let spelling = match self.inputs.spell(value) {
             None if value == InputValue::Whole(Input::ChannelResolution) => Spelling::Vector {
@@ -302,7 +313,7 @@ impl<'a> Port<'a> {
         };
         let writing = match spelling {
             Spelling::Name(other) => Writing::Renamed(other.to_owned()),
-            spelling if !is_shadowed => Writing::Spelled(spelling),
+            spelling if !is_shadowed && !is_long => Writing::Spelled(spelling),
             spelling => {
                 let Some(whole) = spelling.whole() else {
                     return Err(self.inputs.missing(&format!("`{name}`"), at));
@@ -326,6 +337,9 @@ impl<'a> Port<'a> {
             "main"
         });
         let language = names::language(self.version);
+        if self.is_for_isf() {
+            taken.extend(ISF_NAMES);
+        }
         let declared = names::declared(self.checked);
         // A local variable hides the function that replaces one of another name.
         let textures: HashSet<&str> = words

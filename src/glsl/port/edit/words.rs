@@ -130,6 +130,9 @@ impl Port<'_> {
         if source.symbol(index).is_none() {
             return index + 1;
         }
+        if let Some(next) = self.edit_lookup(index) {
+            return next;
+        }
         let name = source.token_text(index);
         let span = source.span(index);
         if self.is_member(index) {
