@@ -43,7 +43,7 @@ pub(super) enum StyleName {
     ComputeToys,
     /// A fragment shader for a Material2d of Bevy
     Bevy,
-    /// A shader in ShaderLab for Unity
+    /// A shader for Unity
     Unity,
     /// A pixel shader for Windows Terminal
     WindowsTerminal,
@@ -77,7 +77,7 @@ impl StyleName {
         }
     }
 
-    /// The host of HLSL, ShaderLab and Slang; `None` for the plain one.
+    /// The host of HLSL and languages like it; `None` for the plain one.
     pub(super) fn c_family(self) -> Option<HlslHost> {
         match self {
             Self::Unity => Some(HlslHost::Unity),

@@ -27,7 +27,7 @@ pub enum HlslHost {
     Hlsl,
     /// A module of Slang with our own bindings.
     Slang,
-    /// A shader of Unity in ShaderLab, for the built-in pipeline and URP.
+    /// A shader of Unity in `ShaderLab`, for the built-in pipeline and URP.
     Unity,
     /// A pixel shader of Windows Terminal.
     WindowsTerminal,

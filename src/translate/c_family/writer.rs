@@ -1,6 +1,7 @@
 //! The state of printing: lines, names and types.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::fmt::Write as _;
 
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
@@ -126,7 +127,7 @@ impl<'a> Writer<'a> {
         let mut element = ty;
         while let Type::Array(id) = element {
             let array = self.cx.tree.array(id);
-            sizes += &format!("[{}]", array.size);
+            let _ = write!(sizes, "[{}]", array.size);
             element = array.element;
         }
         Ok(format!("{} {name}{sizes}", self.type_name(element)?))
