@@ -52,8 +52,12 @@ impl Report<'_> {
         out.push_str("## Shader\n\n");
         paragraph(
             &mut out,
-            "This is GLSL ES 3.00 as shadertoy.com runs it: `mainImage` is called for each pixel with the \
-             coordinates of its center, and sets its color. It was reduced automatically from a larger shader.",
+            if self.shader.contains("mainImage") {
+                "This is GLSL ES 3.00 as shadertoy.com runs it: `mainImage` is called for each pixel with the \
+                 coordinates of its center, and sets its color. It was reduced automatically from a larger shader."
+            } else {
+                "This is a complete fragment shader. It was reduced automatically from a larger one."
+            },
         );
         listing(&mut out, "glsl", self.shader);
         if let Some(lowered) = self

@@ -1,6 +1,7 @@
 //! Tries candidates on several threads, and keeps what succeeds. The result does not depend on the number of
 //! threads: candidates are ordered, and the first one that shows the fault counts.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::collections::hash_map::DefaultHasher;
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::hash::{Hash, Hasher};
@@ -36,7 +37,9 @@ pub(crate) fn run<T: Tester>(
                 loop {
                     let job = inbox.lock().unwrap_or_else(PoisonError::into_inner).recv();
                     let Ok((job, text)) = job else { break };
-                    if outbox.send((job, tester.shows_fault(&text))).is_err() {
+                    // A panic must not leave the search waiting for a result.
+                    let shows = catch_unwind(AssertUnwindSafe(|| tester.shows_fault(&text)));
+                    if outbox.send((job, shows.unwrap_or(false))).is_err() {
                         break;
                     }
                 }

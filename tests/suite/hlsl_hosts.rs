@@ -62,7 +62,8 @@ fn faults_in_a_hosts_code_are_found() {
     for (host, from, to) in [
         (HlslHost::Hlsl, "position.xy);", "position.yx);"),
         (HlslHost::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
-        (HlslHost::Unity, "-ddy(", "ddy("),
+        (HlslHost::Unity, "? -1.0 : 1.0", "? 1.0 : -1.0"),
+        (HlslHost::WindowsTerminal, "upward = -1.0", "upward = 1.0"),
         (HlslHost::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
         (
             HlslHost::WindowsTerminal,

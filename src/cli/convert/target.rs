@@ -239,7 +239,7 @@ pub(super) fn check_target(args: &Args, to: To) -> Result<(), &'static str> {
         Some(To::Glsl) if !matches!(to, To::Glsl | To::Js) => {
             return Err("this --style applies to GLSL only");
         }
-        Some(language) if to != language => return Err("this --style applies to WGSL only"),
+        Some(To::Wgsl) if to != To::Wgsl => return Err("this --style applies to WGSL only"),
         _ => {}
     }
     if to == To::Js && host(args) != Some(Host::Three) {

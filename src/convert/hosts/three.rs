@@ -401,6 +401,10 @@ fn own_uniform(ty: Type, value: &[f64]) -> Option<String> {
     };
     let zeros = vec![0.0; size];
     let value = if value.is_empty() { &zeros } else { value };
+    // JavaScript has other words for infinity and NaN, and GLSL has none.
+    if !value.iter().all(|number| number.is_finite()) {
+        return None;
+    }
     let numbers: Vec<_> = value.iter().map(f64::to_string).collect();
     Some(match (&numbers[..], ty) {
         ([number], Type::Scalar(_)) => number.clone(),

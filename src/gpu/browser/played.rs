@@ -1,11 +1,10 @@
 //! The passes of a shader over frames in Chromium: the original with WebGL 2, and modules for three.js.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use toyproof_glsl::Sampling;
-use toyproof_image::{Frame, Image, Input, Texture};
+use toyproof_image::{Frame, Image, Input, Texture, input};
 use toyproof_player::Target;
 
 use super::{BrowserFailure, Chromium, TextureTable, black, frame_json, input_json, sampling_json};
@@ -71,7 +70,7 @@ impl ThreeLibrary {
     /// Reads the package in a folder; `None` if it is not there.
     #[must_use]
     pub fn read(package: &Path) -> Option<Self> {
-        let text = |name: &str| fs::read_to_string(package.join(name)).ok();
+        let text = |name: &str| String::from_utf8(input::read(&package.join(name)).ok()?).ok();
         let description: Value = serde_json::from_str(&text("package.json")?).ok()?;
         Some(Self {
             main: text("build/three.module.js")?,

@@ -129,7 +129,7 @@ fn is_block_comment(text: &str) -> bool {
     rest.is_empty() && !text.is_empty()
 }
 
-/// Converts a line of a comment to a WGSL comment; `None` if it only has the delimiters of a block.
+/// Converts a line of a comment to a `//` comment; `None` if it only has the delimiters of a block.
 fn line_comment(line: &str) -> Option<String> {
     // WGSL's line breaks (§3.1) would end the comment.
     let line = line.replace(
@@ -137,13 +137,19 @@ fn line_comment(line: &str) -> Option<String> {
         " ",
     );
     if line.starts_with("//") {
-        return Some(line);
+        return Some(without_continuation(&line).to_owned());
     }
     let line = line.as_str();
     let line = line.strip_prefix("/*").unwrap_or(line);
     let line = line.strip_suffix("*/").unwrap_or(line);
     let line = line.trim_matches(|c: char| c == '*' || c.is_whitespace());
+    let line = without_continuation(line);
     (!line.is_empty()).then(|| format!("// {line}"))
+}
+
+/// The line without backslashes at its end: preprocessors of C join it with the next line, which is code.
+fn without_continuation(line: &str) -> &str {
+    line.trim_end_matches(|c: char| c == '\\' || c.is_whitespace())
 }
 
 #[cfg(test)]

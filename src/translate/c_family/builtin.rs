@@ -38,9 +38,10 @@ impl Writer<'_> {
                 return Ok((parts, level::POSTFIX));
             }
             B::DFdy if self.host.is_upside_down(self.cx.stage) => {
-                let mut parts = vec![Part::token("-")];
+                self.takes_derivatives = true;
+                let mut parts = vec![Part::token("upward * ")];
                 parts.extend(Self::call("ddy", arguments));
-                return Ok((parts, level::UNARY));
+                return Ok((parts, BinaryOp::Multiply.precedence() + level::BINARY));
             }
             B::MatrixCompMult => return Ok(Self::infix(arguments[0], BinaryOp::Multiply, arguments[1])),
             B::Atan if arguments.len() == 2 => "atan2".to_owned(),
@@ -65,7 +66,7 @@ impl Writer<'_> {
                 "return x - y * floor(x / y);",
             )?,
             B::Asinh => {
-                self.helper_function("asinh", &types, ty, "", "return log(x + sqrt(x * x + 1.0));")?
+                self.helper_function("asinh", &types, ty, "", "return sign(x) * log(abs(x) + sqrt(x * x + 1.0));")?
             }
             B::Acosh => {
                 self.helper_function("acosh", &types, ty, "", "return log(x + sqrt(x * x - 1.0));")?

@@ -87,7 +87,7 @@ impl Writer<'_> {
                     level::UNARY,
                 ),
             },
-            &ExprKind::Binary { op, left, right } => self.binary(op, left, right),
+            &ExprKind::Binary { op, left, right } => self.binary(op, left, right)?,
             &ExprKind::Assign { op, target, value } => self.assignment(op, target, value)?,
             &ExprKind::Step { op, postfix, target } => {
                 let symbol = Part::token(op.symbol());
@@ -195,11 +195,16 @@ impl Writer<'_> {
         (parts, level)
     }
 
-    fn binary(&self, op: BinaryOp, left: ExprId, right: ExprId) -> Parts {
+    fn binary(&self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
-        match op {
+        Ok(match op {
             BinaryOp::Multiply if is_product(left_type, right_type) => {
+                let has_effect = |side| walk::has_side_effects(&self.cx.tree, side);
+                if has_effect(left) || has_effect(right) {
+                    // The arguments would be evaluated in the other order.
+                    return Err(Unprintable::Construct("a product of matrices with a side effect"));
+                }
                 // Matrices are stored with columns as rows.
                 (Self::call("mul", &[right, left]), level::POSTFIX)
             }
@@ -213,17 +218,15 @@ impl Writer<'_> {
             }
             BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
             _ => Self::infix(left, op, right),
-        }
+        })
     }
 
     fn assignment(&self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
         if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
-            if walk::has_side_effects(tree, target) {
-                return Err(Unprintable::Construct(
-                    "a product that is assigned to an index with a side effect",
-                ));
+            if walk::has_side_effects(tree, target) || walk::has_side_effects(tree, value) {
+                return Err(Unprintable::Construct("a product of matrices with a side effect"));
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));

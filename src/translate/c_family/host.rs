@@ -110,7 +110,11 @@ impl HlslHost {
                     ("float4 iChannel3_TexelSize;", ""),
                 ],
                 declared: "vertex fragment Varyings appdata_base appdata_tan appdata_full appdata_img v2f_img \
-                    v2f_vertex_lit",
+                    v2f_vertex_lit Luminance LinearRgbToLuminance GammaToLinearSpace \
+                    GammaToLinearSpaceExact LinearToGammaSpace LinearToGammaSpaceExact LinearEyeDepth Linear01Depth \
+                    EncodeFloatRGBA DecodeFloatRGBA EncodeFloatRG DecodeFloatRG DecodeHDR DecodeLightmap \
+                    UnpackNormal ParallaxOffset Shade4PointLights ShadeSH9 SampleSH fixed fixed2 fixed3 fixed4 \
+                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward",
                 is_upside_down: true,
             },
             Self::WindowsTerminal => Row {
@@ -132,7 +136,7 @@ impl HlslHost {
                     ("    float4 text = shaderTexture.Sample(samplerState, uv);\n", ""),
                     ("lerp(color.xyz, text.xyz, text.w)", "color.xyz"),
                 ],
-                declared: "shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
+                declared: "upward shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
                 is_upside_down: true,
             },
         }
@@ -311,6 +315,7 @@ impl Writer<'_> {
             "inputs" => !inputs.is_empty(),
             "channels" => !channels.is_empty(),
             "position" => self.reads_position,
+            "derivatives" => self.takes_derivatives,
             "image" => self.cx.stage == Stage::Image,
             "buffer" => self.cx.stage != Stage::Image,
             "inout" => brings_color,

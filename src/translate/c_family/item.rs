@@ -36,7 +36,8 @@ impl Writer<'_> {
                 writer.comment(member.at);
                 writer.line(&format!("{declared};"));
                 writer.trailing_comment(member.at);
-            });
+                Ok(())
+            })?;
         }
         self.line("};");
         Ok(())
@@ -59,7 +60,8 @@ impl Writer<'_> {
                 writer.line(&format!("{result}.{member} = {member};"));
             }
             writer.line(&format!("return {result};"));
-        });
+            Ok(())
+        })?;
         self.line("}");
         Ok(())
     }
@@ -99,11 +101,11 @@ impl Writer<'_> {
     }
 
     /// The number of elements of an array of arrays; 1 for other types.
-    fn element_count(&self, ty: Type) -> u64 {
+    pub(super) fn element_count(&self, ty: Type) -> u64 {
         match ty {
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
-                u64::from(array.size) * self.element_count(array.element)
+                u64::from(array.size).saturating_mul(self.element_count(array.element))
             }
             _ => 1,
         }
@@ -156,6 +158,7 @@ impl Writer<'_> {
         let mut writer = Writer::new(&cx, &names, self.host, &files, self.deadline);
         writer.definition(first)?;
         self.helpers.append(&mut writer.helpers);
+        self.takes_derivatives |= writer.takes_derivatives;
         self.out.push_str(&writer.out);
         Ok(())
     }

@@ -50,7 +50,8 @@ impl Words {
 
 impl Vocabulary for Words {
     fn is_reserved(&self, word: &str) -> bool {
-        lists(RESERVED, word) || is_numbered_type(word) || word.starts_with("__")
+        let is_unitys = self.host == HlslHost::Unity && word.to_ascii_lowercase().starts_with("unity_");
+        lists(RESERVED, word) || is_numbered_type(word) || is_unitys || word.starts_with("__")
     }
 
     fn is_function(&self, word: &str) -> bool {

@@ -1,7 +1,9 @@
 //! Prints statements, one per line.
 
+use std::collections::HashMap;
+
 use toyproof_glsl::tree::{
-    Arm, Block, Case, Condition, ExprId, Label, Scalar, Statement, StatementKind, Type, VariableId,
+    Arm, Block, Case, Condition, ExprId, ExprKind, Label, Scalar, Statement, StatementKind, Type, VariableId,
     VariableKind, walk,
 };
 
@@ -110,12 +112,13 @@ impl Writer<'_> {
     /// Declares a local variable. The elements of a large array are set to zero by a loop.
     fn declare(&mut self, id: VariableId, needs_value: bool) -> PrintResult {
         /// Maximum number of elements in a list of zeros.
-        const MAX_ZEROS: u32 = 16;
+        const MAX_ZEROS: u64 = 16;
         let large = match self.cx.tree[id].ty {
             Type::Array(array) if needs_value => Some(self.cx.tree.array(array)),
             _ => None,
         };
-        let large = large.filter(|array| array.size > MAX_ZEROS);
+        let ty = self.cx.tree[id].ty;
+        let large = large.filter(|_| self.element_count(ty) > MAX_ZEROS);
         let code = self.declaration(id, needs_value && large.is_none())?;
         self.line(&format!("{code};"));
         if let Some(array) = large {
@@ -129,7 +132,10 @@ impl Writer<'_> {
             let size = array.size;
             self.line(&format!("for (int {index} = 0; {index} < {size}; {index}++) {{"));
             let name = self.variable(id);
-            self.indented(|writer| writer.line(&format!("{name}[{index}] = {zero};")));
+            self.indented(|writer| {
+                writer.line(&format!("{name}[{index}] = {zero};"));
+                Ok(())
+            })?;
             self.line("}");
         }
         Ok(())
@@ -159,6 +165,9 @@ impl Writer<'_> {
         let mut parts = Vec::new();
         for statement in init {
             let part = match statement.kind {
+                StatementKind::Declare(variable) if matches!(self.cx.tree[variable].ty, Type::Array(_)) => {
+                    return Err(Unprintable::Construct("an array in a loop's head"));
+                }
                 StatementKind::Declare(variable) if parts.is_empty() => self.declaration(variable, true)?,
                 StatementKind::Declare(variable) => {
                     let declared = self.declaration(variable, true)?;
@@ -191,6 +200,7 @@ impl Writer<'_> {
     fn switch(&mut self, selector: ExprId, cases: &[Case]) -> PrintResult {
         let is_unsigned = self.cx.tree[selector].ty.scalar() == Some(Scalar::Uint);
         let selector = self.expression(selector)?;
+        self.check_scopes(cases)?;
         self.line(&format!("switch ({selector}) {{"));
         self.indent += 1;
         for case in cases {
@@ -208,7 +218,6 @@ impl Writer<'_> {
                 .iter()
                 .any(|statement| walk::declared(statement).is_some());
             if declares {
-                self.check_scopes(case, cases)?;
                 self.out.pop();
                 self.out += " {\n";
                 self.indented(|writer| writer.statements(&case.body))?;
@@ -222,15 +231,26 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Checks that no other case uses a variable that a case declares.
-    fn check_scopes(&self, case: &Case, cases: &[Case]) -> PrintResult {
+    /// Checks that no case uses a variable that another case declares.
+    fn check_scopes(&self, cases: &[Case]) -> PrintResult {
         let tree = &self.cx.tree;
-        let others = cases.iter().filter(|other| other.at != case.at);
-        let used: Vec<ExprId> = others.flat_map(|other| walk::roots(tree, &other.body)).collect();
-        let declared = case.body.iter().filter_map(walk::declared);
-        let is_used = |variable| used.iter().any(|&root| walk::mentions(tree, root, variable));
-        if declared.into_iter().any(is_used) {
-            return Err(Unprintable::Construct("a variable that several cases share"));
+        let declared = cases.iter().enumerate().flat_map(|(number, case)| {
+            let variables = case.body.iter().filter_map(walk::declared);
+            variables.map(move |variable| (variable, number))
+        });
+        let declared: HashMap<VariableId, usize> = declared.collect();
+        if declared.is_empty() {
+            return Ok(());
+        }
+        for (number, case) in cases.iter().enumerate() {
+            let roots = walk::roots(tree, &case.body).into_iter();
+            for id in roots.flat_map(|root| tree.postorder(root)) {
+                if let ExprKind::Variable(variable) = tree[id].kind
+                    && declared.get(&variable).is_some_and(|&other| other != number)
+                {
+                    return Err(Unprintable::Construct("a variable that several cases share"));
+                }
+            }
         }
         Ok(())
     }

@@ -307,7 +307,7 @@ fn hosts_code_is_complete() {
         ),
         (
             HlslHost::Unity,
-            "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + -ddy(p.y);",
+            "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + upward * ddy(p.y);",
         ),
     ] {
         let written = converted(host, text).unwrap();

@@ -37,6 +37,8 @@ pub(super) struct Writer<'a> {
     pub(super) failed_at: Option<Place>,
     /// Whether `gl_FragCoord` is read other than by `mainImage`'s caller.
     pub(super) reads_position: bool,
+    /// Whether derivatives along y are taken, whose sign depends on the host.
+    pub(super) takes_derivatives: bool,
 }
 
 impl<'a> Writer<'a> {
@@ -64,6 +66,7 @@ impl<'a> Writer<'a> {
             taken: all.map(String::as_str).collect(),
             failed_at: None,
             reads_position: false,
+            takes_derivatives: false,
         }
     }
 
@@ -85,7 +88,12 @@ impl<'a> Writer<'a> {
     }
 
     /// Prints lines indented by one more level.
-    pub(super) fn indented<T>(&mut self, inside: impl FnOnce(&mut Self) -> T) -> T {
+    pub(super) fn indented<T>(&mut self, inside: impl FnOnce(&mut Self) -> PrintResult<T>) -> PrintResult<T> {
+        /// Maximum number of levels: each indents its lines further.
+        const MAX_LEVELS: usize = 128;
+        if self.indent >= MAX_LEVELS {
+            return Err(Unprintable::Construct("statements that are nested this deeply"));
+        }
         self.indent += 1;
         let value = inside(self);
         self.indent -= 1;
@@ -153,7 +161,7 @@ impl<'a> Writer<'a> {
     /// A name that nothing else has.
     pub(super) fn free(&self, stem: &str) -> String {
         let mut name = stem.to_owned();
-        while self.taken.contains(name.as_str()) {
+        while self.taken.contains(name.as_str()) || self.macros.contains_key(&name) {
             name.push('_');
         }
         name

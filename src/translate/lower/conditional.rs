@@ -71,7 +71,12 @@ fn move_condition(cx: &mut LoweringContext, statement: &mut Statement) {
         }
         StatementKind::If { arms, otherwise } => {
             let moved = |arm: &Arm| branches(&cx.tree, arm.condition);
-            while let Some(first) = arms.iter().skip(1).rposition(moved) {
+            /// Maximum number of blocks that one statement becomes: they nest.
+            const MAX_SPLITS: usize = 64;
+            for _ in 0..MAX_SPLITS {
+                let Some(first) = arms.iter().skip(1).rposition(moved) else {
+                    break;
+                };
                 let arms = arms.split_off(first + 1);
                 let rest = StatementKind::If {
                     arms,

@@ -49,6 +49,7 @@ pub(crate) fn fold_except(cx: &mut LoweringContext, is_kept: impl Fn(BuiltIn) ->
 /// Folds operations on constants whose value depends on the precision in which a compiler computes them: most
 /// compute in double precision, and the evaluator rounds each operation. All others stay as they are written.
 pub(crate) fn fold_by_precision(cx: &mut LoweringContext) {
+    let mut values = Float32Values::default();
     cx.each_expression_postorder(|cx, id| {
         let is_operation = matches!(
             cx.tree[id].kind,
@@ -57,8 +58,7 @@ pub(crate) fn fold_by_precision(cx: &mut LoweringContext) {
         if !is_operation || !cx.tree[id].constant || cx.tree[id].ty.scalar() != Some(Scalar::Float) {
             return;
         }
-        // Expressions may be rewritten, so values are not kept from one to the next.
-        let rounded = Float32Values::default().value(&cx.tree, id);
+        let rounded = values.value(&cx.tree, id);
         let (Some(rounded), Some(exact)) = (rounded.as_ref().and_then(floats), cx.tree.value(id)) else {
             return;
         };

@@ -109,7 +109,11 @@ impl Names {
                 } else {
                     &tree[id].name
                 };
-                let is_taken = |name: &str| vocabulary.is_reserved(name) || taken.contains(name);
+                let is_taken = |name: &str| {
+                    vocabulary.is_reserved(name)
+                        || vocabulary.has_scopes_of_c() && vocabulary.is_function(name)
+                        || taken.contains(name)
+                };
                 let name = numbering.free(&vocabulary.with_free_stem(name), is_taken);
                 types.insert(name.clone());
                 taken.insert(name.clone());
@@ -152,7 +156,12 @@ impl Names {
     }
 
     fn name_members(&mut self, cx: &LoweringContext, id: StructId, vocabulary: &impl Vocabulary) {
-        let mut taken = HashSet::new();
+        // Macros of the code around the shader replace members, too.
+        let mut taken: HashSet<String> = if vocabulary.has_scopes_of_c() {
+            vocabulary.declared().into_iter().collect()
+        } else {
+            HashSet::new()
+        };
         for (at, member) in cx.tree[id].members.iter().enumerate() {
             let name = vocabulary.free(&member.name, |name| {
                 vocabulary.is_reserved(name) || taken.contains(name)
@@ -245,6 +254,7 @@ impl Names {
         }
         let clashes = |name: &str| {
             vocabulary.is_reserved(name)
+                || vocabulary.has_scopes_of_c() && vocabulary.is_function(name)
                 || types.contains(name)
                 || globals.contains(name)
                 || surroundings.contains(name)

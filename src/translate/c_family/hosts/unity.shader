@@ -46,6 +46,8 @@ Shader "ShaderToy/$name" {
             #define iChannel3_sampler sampleriChannel3 //? channel3
             float4 iChannel3_TexelSize; //? channel3&iChannelResolution
             static float4 gl_FragCoord; //? position
+            // The direction of y in the target, which depends on the graphics API. //? derivatives
+            static float upward; //? derivatives
 
             $shader
 
@@ -64,6 +66,7 @@ Shader "ShaderToy/$name" {
             float4 fragment(Varyings input) : SV_Target {
                 float2 fragCoord = input.uv * iResolution.xy;
                 gl_FragCoord = float4(fragCoord, input.position.zw); //? position
+                upward = ddy(fragCoord.y) < 0.0 ? -1.0 : 1.0; //? derivatives
                 for (int i = 0; i < 4; i++) { //? iChannelTime
                     iChannelTime[i] = _Time.yyyy; //? iChannelTime
                 } //? iChannelTime

@@ -16,6 +16,7 @@ cbuffer PixelShaderSettings : register(b0) {
 #define iMouse float4(0.0, 0.0, 0.0, 0.0) //? iMouse
 #define iSampleRate 44100.0 //? iSampleRate
 static float4 gl_FragCoord; //? position
+static const float upward = -1.0; //? derivatives
 
 $shader
 
