@@ -297,7 +297,15 @@ export class Shader {
       iFrame: this.frame,
       ...given,
     };
-    for (const name in values) this.inputs[name].value = values[name];
+    for (const name in values) {
+      const input = this.inputs[name];
+      // Vectors stay the objects that listeners write to.
+      if (input.value?.copy && values[name]?.isVector4) {
+        input.value.copy(values[name]);
+      } else {
+        input.value = values[name];
+      }
+    }
     this.frame += 1;
   }
 
@@ -334,6 +342,7 @@ export class Shader {
     const resolution = this.inputs.iResolution.value;
     if (resolution.x === width && resolution.y === height) return;
     resolution.set(width, height, 1);
+    const before = this.renderer.getRenderTarget();
     // #if copies
     const copy = (from, to) => this.copy(from, to);
     // #endif
@@ -349,6 +358,7 @@ export class Shader {
     if (old) copy(old.texture, this.image);
     old?.dispose();
     // #endif
+    this.renderer.setRenderTarget(before);
   }
   // #if channels
 

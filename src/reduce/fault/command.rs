@@ -41,6 +41,9 @@ pub enum CommandError {
     /// It names no file.
     #[error("the command has no `{{}}`, in place of which it gets the name of a file")]
     NoFile,
+    /// The name is passed as one argument whatever it contains, and quotes would make it another.
+    #[error("`{{}}` in the command needs no quotes")]
+    Quoted,
     /// It does not start, or its file cannot be written.
     #[error("cannot run the command: {0}")]
     NotRun(#[from] io::Error),
@@ -50,10 +53,13 @@ impl CommandLine {
     /// A command that gets a file of a name, whose extension may matter to the command.
     ///
     /// # Errors
-    /// If the command has no `{}`.
+    /// If the command has no `{}`, or has it in quotes.
     pub fn new(text: &str, file_name: &str) -> Result<Self, CommandError> {
         if !text.contains(FILE) {
             return Err(CommandError::NoFile);
+        }
+        if text.contains("'{}'") || text.contains("\"{}\"") {
+            return Err(CommandError::Quoted);
         }
         Ok(Self {
             text: text.to_owned(),

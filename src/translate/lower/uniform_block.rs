@@ -84,6 +84,10 @@ pub(super) fn run(cx: &mut LoweringContext, checked: &Checked) -> Result<(), Vec
     Ok(())
 }
 
+/// Maximum number of elements of an array: more than the 1,024 vectors that OpenGL promises for all uniforms
+/// (`MAX_FRAGMENT_UNIFORM_VECTORS` on desktops) cannot be set, and each use of the whole array lists them.
+const MAX_ELEMENTS: u32 = 1024;
+
 /// The type as which a block holds a uniform; `None` if it cannot.
 fn stored_type(cx: &mut LoweringContext, ty: Type) -> Option<Type> {
     let numeric = |scalar| match scalar {
@@ -98,6 +102,9 @@ fn stored_type(cx: &mut LoweringContext, ty: Type) -> Option<Type> {
         Type::Array(id) => {
             let array = cx.tree.array(id);
             let size = array.size;
+            if size > MAX_ELEMENTS {
+                return None;
+            }
             let element = match array.element {
                 Type::Scalar(scalar) | Type::Vector(scalar, 2) => Type::Vector(numeric(scalar), 4),
                 Type::Vector(scalar, components) => Type::Vector(numeric(scalar), components),
