@@ -26,9 +26,10 @@ pub fn with_declarations(
     options: &mut Options,
 ) -> Result<Declared, Diagnostics> {
     let text = files.get(file).text();
-    // A shader of ShaderToy may have taken the header along.
+    // A shader of ShaderToy may have taken the header along; one of ISF may have kept its `mainImage`, which its
+    // `main` calls.
     let may_be_isf = match options.dialect {
-        None => !text.contains("mainImage"),
+        None => !text.contains("mainImage") || text.contains("void main("),
         Some(dialect) => dialect == Dialect::Isf,
     };
     let declared = match isf::header(text).filter(|_| may_be_isf) {

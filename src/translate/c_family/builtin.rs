@@ -106,6 +106,17 @@ impl Writer<'_> {
         Ok((Self::call(name, arguments), level::POSTFIX))
     }
 
+    /// Adds the function that divides a matrix by a number, column by column, and returns its name: some
+    /// compilers multiply by the reciprocal.
+    pub(super) fn division(&mut self, matrix: Type) -> PrintResult<String> {
+        let Type::Matrix { columns, .. } = matrix else {
+            return Err(Unprintable::Construct("this division"));
+        };
+        let columns: Vec<_> = (0..columns).map(|column| format!("x[{column}] / y")).collect();
+        let body = format!("return {}({});", self.type_name(matrix)?, columns.join(", "));
+        self.helper_function("divide", &[matrix, Type::FLOAT], matrix, "", &body)
+    }
+
     /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and returns
     /// its name.
     pub(super) fn helper_function(

@@ -195,7 +195,7 @@ impl Writer<'_> {
         (parts, level)
     }
 
-    fn binary(&self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+    fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
@@ -207,6 +207,10 @@ impl Writer<'_> {
                 }
                 // Matrices are stored with columns as rows.
                 (Self::call("mul", &[right, left]), level::POSTFIX)
+            }
+            BinaryOp::Divide if is_matrix_by_scalar(left_type, right_type) => {
+                let function = self.division(left_type)?;
+                (Self::call(function, &[left, right]), level::POSTFIX)
             }
             BinaryOp::Equal | BinaryOp::NotEqual if !is_number(left_type) => {
                 let (all, _) = Self::infix(left, op, right);
@@ -221,7 +225,7 @@ impl Writer<'_> {
         })
     }
 
-    fn assignment(&self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
+    fn assignment(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
         if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
@@ -230,6 +234,13 @@ impl Writer<'_> {
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));
+        } else if op == Some(BinaryOp::Divide) && is_matrix_by_scalar(tree[target].ty, tree[value].ty) {
+            if walk::has_side_effects(tree, target) {
+                return Err(Unprintable::Construct("a matrix with a side effect that is divided"));
+            }
+            let function = self.division(tree[target].ty)?;
+            parts.push(Part::token(" = "));
+            parts.extend(Self::call(function, &[target, value]));
         } else {
             let symbol = op.map_or("", BinaryOp::symbol);
             parts.extend([
@@ -310,6 +321,11 @@ fn zero_of(ty: Type) -> Value {
         Type::UINT => Value::Uint(0),
         _ => Value::Float(0.0),
     }
+}
+
+/// Whether `/` divides a matrix by a number.
+fn is_matrix_by_scalar(left: Type, right: Type) -> bool {
+    matches!((left, right), (Type::Matrix { .. }, Type::Scalar(_)))
 }
 
 /// Whether `*` is a product of linear algebra (§5.9).

@@ -336,3 +336,66 @@ fn adaptations_are_of_the_templates() {
         assert!(host.template().lines().all(|line| line.len() <= 130));
     }
 }
+
+#[test]
+fn names_of_functions_and_macros_are_free() {
+    let items = "struct S { float iTime; };";
+    let written = with_items(items, "vec2 frac = fract(at);\nfloat mul = 2.;\nS s = S(mul);\ncolor.xy = frac * mul * s.iTime;");
+    assert_lines(
+        &written,
+        &[
+            "float2 frac_1 = frac(at);",
+            "float mul_1 = 2.0;",
+            "S s = { mul_1 };",
+            "color.xy = frac_1 * mul_1 * s.iTime_1;",
+        ],
+    );
+}
+
+#[test]
+fn comments_do_not_continue() {
+    let written = body("/* ascii\n \\o/ \\\n*/\ncolor.x = 1.; // C:\\ \ncolor.y = 2.;");
+    assert!(written.lines().all(|line| !line.ends_with('\\')), "{written}");
+    assert!(written.contains("color.x = 1.0; // C:\n"), "{written}");
+}
+
+#[test]
+fn sides_of_products_are_evaluated_in_their_order() {
+    let text = "float n = 0.; mat2 m() { n += 1.; return mat2(n); } vec2 v() { n *= 5.; return vec2(n); }\n\
+        void mainImage(out vec4 c, in vec2 p) { c = vec4(m() * v(), p); }";
+    assert!(converted(HlslHost::Hlsl, text).is_err());
+}
+
+#[test]
+fn matrices_are_divided_column_by_column() {
+    let written = body("mat2 m = mat2(at, at) / at.x;\nm /= at.y;\ncolor.xy = m[0];");
+    assert_lines(
+        &written,
+        &[
+            "float2x2 m = divide(float2x2(at, at), at.x);",
+            "m = divide(m, at.y);",
+            "color.xy = m[0];",
+        ],
+    );
+}
+
+/// The deadline is checked, and no step takes time beyond proportion: 20,000 terms of a constant.
+#[test]
+fn long_constants_are_folded_in_one_pass() {
+    let text = format!(
+        "void mainImage(out vec4 c, in vec2 p) {{ c = vec4({}); }}",
+        vec!["1.0"; 20_000].join(" + ")
+    );
+    let written = converted(HlslHost::Hlsl, &text).unwrap();
+    assert!(written.contains("1.0 + 1.0 + 1.0"), "{}", written.len());
+}
+
+#[test]
+fn deep_statements_are_refused() {
+    let arms = "else if (p.x > 3. && f() > 3.) c.x = 2.;\n".repeat(300);
+    let text = format!(
+        "float n = 0.; float f() {{ return ++n; }}\n\
+         void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0); if (p.x > 9.) c.x = 1.;\n{arms} }}"
+    );
+    assert!(converted(HlslHost::Hlsl, &text).is_err());
+}
