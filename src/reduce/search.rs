@@ -1,11 +1,11 @@
 //! Tries candidates on several threads, and keeps what succeeds. The result does not depend on the number of
 //! threads: candidates are ordered, and the first one that shows the fault counts.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::collections::hash_map::DefaultHasher;
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::hash::{Hash, Hasher};
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
 use std::{iter, thread};

@@ -299,7 +299,7 @@ export class Shader {
     };
     for (const name in values) {
       const input = this.inputs[name];
-      // Vectors stay the objects that listeners write to.
+      // Vectors stay the same objects, which handlers of events write to.
       if (input.value?.copy && values[name]?.isVector4) {
         input.value.copy(values[name]);
       } else {

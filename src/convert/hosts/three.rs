@@ -412,10 +412,28 @@ fn own_uniform(ty: Type, value: &[f64]) -> Option<String> {
     })
 }
 
+/// A text from its first line of code on.
+fn after_comments(text: &str) -> &str {
+    let mut rest = text.trim_start();
+    loop {
+        let end = match rest {
+            _ if rest.starts_with("//") => rest.find('\n').map(|end| end + 1),
+            _ if rest.starts_with("/*") => rest.find("*/").map(|end| end + 2),
+            _ => return rest,
+        };
+        rest = end.map_or("", |end| rest[end..].trim_start());
+    }
+}
+
 /// The constants with the shaders. Common is one of its own if several passes have it as it is.
 fn shaders(passes: &Passes, codes: &[String]) -> String {
-    let common = passes.common.map(|common| common.replace("\r\n", "\n"));
-    let common = common.filter(|common| codes.len() > 1 && codes.iter().all(|code| code.contains(common)));
+    // The declarations of inputs stand between the comment at its beginning and its code.
+    let common = passes
+        .common
+        .map(|common| after_comments(&common.replace("\r\n", "\n")).to_owned());
+    let common = common.filter(|common| {
+        !common.is_empty() && codes.len() > 1 && codes.iter().all(|code| code.contains(common))
+    });
     let mut text = String::new();
     if let Some(common) = &common {
         let _ = writeln!(text, "const common = /* glsl */ {};\n", literal::template(common));

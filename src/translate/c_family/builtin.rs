@@ -65,9 +65,13 @@ impl Writer<'_> {
                 "// `mod` of GLSL: `fmod` rounds towards zero.\n",
                 "return x - y * floor(x / y);",
             )?,
-            B::Asinh => {
-                self.helper_function("asinh", &types, ty, "", "return sign(x) * log(abs(x) + sqrt(x * x + 1.0));")?
-            }
+            B::Asinh => self.helper_function(
+                "asinh",
+                &types,
+                ty,
+                "",
+                "return sign(x) * log(abs(x) + sqrt(x * x + 1.0));",
+            )?,
             B::Acosh => {
                 self.helper_function("acosh", &types, ty, "", "return log(x + sqrt(x * x - 1.0));")?
             }

@@ -7,6 +7,7 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
+use super::effect::is_pure;
 use super::writer::{PrintResult, Writer};
 use crate::author::{float, is_hexadecimal};
 
@@ -200,8 +201,7 @@ impl Writer<'_> {
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
             BinaryOp::Multiply if is_product(left_type, right_type) => {
-                let has_effect = |side| walk::has_side_effects(&self.cx.tree, side);
-                if has_effect(left) || has_effect(right) {
+                if !self.is_pure(left) || !self.is_pure(right) {
                     // The arguments would be evaluated in the other order.
                     return Err(Unprintable::Construct("a product of matrices with a side effect"));
                 }
@@ -225,18 +225,24 @@ impl Writer<'_> {
         })
     }
 
+    fn is_pure(&self, id: ExprId) -> bool {
+        is_pure(&self.cx.tree, &self.impure, id)
+    }
+
     fn assignment(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
         if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
-            if walk::has_side_effects(tree, target) || walk::has_side_effects(tree, value) {
+            if !self.is_pure(target) || !self.is_pure(value) {
                 return Err(Unprintable::Construct("a product of matrices with a side effect"));
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));
         } else if op == Some(BinaryOp::Divide) && is_matrix_by_scalar(tree[target].ty, tree[value].ty) {
-            if walk::has_side_effects(tree, target) {
-                return Err(Unprintable::Construct("a matrix with a side effect that is divided"));
+            if !self.is_pure(target) {
+                return Err(Unprintable::Construct(
+                    "a matrix with a side effect that is divided",
+                ));
             }
             let function = self.division(tree[target].ty)?;
             parts.push(Part::token(" = "));

@@ -7,6 +7,7 @@
 
 mod builtin;
 mod construct;
+mod effect;
 mod expression;
 mod host;
 mod item;

@@ -340,7 +340,10 @@ fn adaptations_are_of_the_templates() {
 #[test]
 fn names_of_functions_and_macros_are_free() {
     let items = "struct S { float iTime; };";
-    let written = with_items(items, "vec2 frac = fract(at);\nfloat mul = 2.;\nS s = S(mul);\ncolor.xy = frac * mul * s.iTime;");
+    let written = with_items(
+        items,
+        "vec2 frac = fract(at);\nfloat mul = 2.;\nS s = S(mul);\ncolor.xy = frac * mul * s.iTime;",
+    );
     assert_lines(
         &written,
         &[

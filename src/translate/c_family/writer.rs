@@ -7,6 +7,7 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
 
 use super::Unprintable;
+use super::effect::impure_functions;
 use super::host::HlslHost;
 use super::language::{Words, numeric_type};
 use crate::author::{Comments, SourceText};
@@ -31,6 +32,8 @@ pub(super) struct Writer<'a> {
     pub(super) helpers: BTreeMap<(String, String), String>,
     /// The structures that need a function that makes them: these languages list values in declarations only.
     pub(super) made: BTreeSet<StructId>,
+    /// The functions with side effects.
+    pub(super) impure: HashSet<FunctionId>,
     /// All names in use.
     pub(super) taken: HashSet<&'a str>,
     /// The innermost expression that could not be printed.
@@ -63,6 +66,7 @@ impl<'a> Writer<'a> {
             macros: BTreeMap::new(),
             helpers: BTreeMap::new(),
             made: BTreeSet::new(),
+            impure: impure_functions(&cx.tree),
             taken: all.map(String::as_str).collect(),
             failed_at: None,
             reads_position: false,

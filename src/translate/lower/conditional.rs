@@ -48,6 +48,9 @@ fn branches(tree: &Tree, root: ExprId) -> bool {
     all.any(|id| matches!(tree[id].kind, ExprKind::Conditional { yes, no, .. } if has_effect(tree, yes, no)))
 }
 
+/// Maximum number of blocks that one `if` becomes: they nest.
+const MAX_SPLITS: usize = 64;
+
 /// Moves the condition of a loop into its body, and those after `else` into a block.
 fn move_condition(cx: &mut LoweringContext, statement: &mut Statement) {
     let at = statement.at;
@@ -71,8 +74,6 @@ fn move_condition(cx: &mut LoweringContext, statement: &mut Statement) {
         }
         StatementKind::If { arms, otherwise } => {
             let moved = |arm: &Arm| branches(&cx.tree, arm.condition);
-            /// Maximum number of blocks that one statement becomes: they nest.
-            const MAX_SPLITS: usize = 64;
             for _ in 0..MAX_SPLITS {
                 let Some(first) = arms.iter().skip(1).rposition(moved) else {
                     break;
