@@ -1,213 +1,76 @@
 // glsl/02-sphere.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-struct ToyproofFrame {
-    float3 iResolution;
-    float iTime;
-    float iTimeDelta;
-    int iFrame;
-    float iFrameRate;
-    int _pad5_0;
-    float4 iChannelTime[4];
-    float3 iChannelResolution[4];
-    int _pad7_0;
-    float4 iMouse;
-    float4 iDate;
-    float iSampleRate;
-    int _end_pad_0;
-    int _end_pad_1;
-    int _end_pad_2;
-};
+// One sphere, shaded by the cosine between the ray and the normal.
 
-struct Ray {
-    float3 origin;
-    int _pad1_0;
-    float3 direction;
-    int _end_pad_0;
-};
-
-struct Sphere {
-    float3 center_;
-    float radius;
-    float3 color;
-    int _end_pad_0;
-};
-
-struct FragmentOutput {
-    float4 toyproof_color : SV_Target0;
+cbuffer Inputs : register(b0) {
+    float3 iResolution : packoffset(c0);
 };
 
 static const float SCREEN_DEPTH = -2.0;
-static const float NO_HIT = 1000000.0;
+static const float NO_HIT = 1.0e6;
 
-static float4 toyproof_color = (float4)0;
-cbuffer global : register(b0) { ToyproofFrame global; }
-static float4 gl_FragCoord_1 = (float4)0;
-
-struct FragmentInput_main {
-    float4 gl_FragCoord_2 : SV_Position;
+struct Ray {
+    float3 origin;
+    float3 direction;
 };
 
-float intersectSphere(Ray ray, Sphere sphere)
-{
-    Ray ray_1 = (Ray)0;
-    Sphere sphere_1 = (Sphere)0;
-    float3 f = (float3)0;
-    float b = (float)0;
-    float c = (float)0;
-    float disc = (float)0;
-    float root = (float)0;
-    float t = (float)0;
+Ray make_Ray(float3 origin, float3 direction) {
+    Ray result;
+    result.origin = origin;
+    result.direction = direction;
+    return result;
+}
 
-    ray_1 = ray;
-    sphere_1 = sphere;
-    Ray _e5 = ray_1;
-    Sphere _e7 = sphere_1;
-    f = (_e5.origin - _e7.center_);
-    float3 _e11 = f;
-    Ray _e12 = ray_1;
-    b = dot(_e11, _e12.direction);
-    float3 _e16 = f;
-    float3 _e17 = f;
-    Sphere _e19 = sphere_1;
-    Sphere _e21 = sphere_1;
-    c = (dot(_e16, _e17) - (_e19.radius * _e21.radius));
-    float _e26 = b;
-    float _e27 = b;
-    float _e29 = c;
-    disc = ((_e26 * _e27) - _e29);
-    float _e32 = disc;
-    if ((_e32 > 0.0)) {
-        {
-            float _e35 = disc;
-            root = sqrt(_e35);
-            float _e38 = b;
-            float _e40 = root;
-            t = (-(_e38) - _e40);
-            float _e43 = t;
-            if ((_e43 > 1e-5)) {
-                {
-                    float _e46 = t;
-                    return _e46;
-                }
-            }
-            float _e47 = b;
-            float _e49 = root;
-            t = (-(_e47) + _e49);
-            float _e51 = t;
-            if ((_e51 > 1e-5)) {
-                {
-                    float _e54 = t;
-                    return _e54;
-                }
-            }
+struct Sphere {
+    float3 center;
+    float radius;
+    float3 color;
+};
+
+// The ray o + t d intersects |x - center|^2 = r^2 where t^2 + 2 b t + c = 0, for d of length 1.
+float intersectSphere(Ray ray, Sphere sphere) {
+    float3 f = ray.origin - sphere.center;
+    float b = dot(f, ray.direction);
+    float c = dot(f, f) - sphere.radius * sphere.radius;
+    float disc = b * b - c;
+    if (disc > 0.0) {
+        float root = sqrt(disc);
+        float t = -b - root;
+        if (t > 0.00001) {
+            return t;
+        }
+        t = -b + root;
+        if (t > 0.00001) {
+            return t;
         }
     }
     return NO_HIT;
 }
 
-Ray ConstructRay(float3 arg0, float3 arg1) {
-    Ray ret = (Ray)0;
-    ret.origin = arg0;
-    ret.direction = arg1;
-    return ret;
+Ray cameraRay(float2 fragCoord) {
+    float aspect = iResolution.x / iResolution.y;
+    float x = fragCoord.x / iResolution.x * 2.0 - 1.0;
+    float y = (fragCoord.y / iResolution.y * 2.0 - 1.0) / aspect;
+    return make_Ray(float3(0.0, 0.0, 0.0), normalize(float3(x, y, SCREEN_DEPTH)));
 }
 
-Ray cameraRay(float2 fragCoord)
-{
-    float2 fragCoord_1 = (float2)0;
-    float aspect = (float)0;
-    float x = (float)0;
-    float y = (float)0;
+void mainImage(out float4 fragColor, float2 fragCoord) {
+    fragColor = float4(0.0, 0.0, 0.0, 0.0);
+    Sphere sphere = { float3(0.0, 0.0, -6.0), 1.5, float3(1.0, 1.0, 0.0) };
+    Ray ray = cameraRay(fragCoord);
+    float3 color = float3(0.0, 0.0, 0.0);
 
-    fragCoord_1 = fragCoord;
-    float3 _e5 = global.iResolution;
-    float3 _e7 = global.iResolution;
-    aspect = (_e5.x / _e7.y);
-    float2 _e11 = fragCoord_1;
-    float3 _e13 = global.iResolution;
-    x = (((_e11.x / _e13.x) * 2.0) - 1.0);
-    float2 _e21 = fragCoord_1;
-    float3 _e23 = global.iResolution;
-    float _e30 = aspect;
-    y = ((((_e21.y / _e23.y) * 2.0) - 1.0) / _e30);
-    float _e35 = x;
-    float _e36 = y;
-    const Ray ray_3 = ConstructRay((0.0).xxx, normalize(float3(_e35, _e36, SCREEN_DEPTH)));
-    return ray_3;
-}
-
-Sphere ConstructSphere(float3 arg0, float arg1, float3 arg2) {
-    Sphere ret = (Sphere)0;
-    ret.center_ = arg0;
-    ret.radius = arg1;
-    ret.color = arg2;
-    return ret;
-}
-
-void mainImage(inout float4 fragColor, float2 fragCoord_2)
-{
-    float2 fragCoord_3 = (float2)0;
-    Sphere sphere_2 = ConstructSphere(float3(0.0, 0.0, -6.0), 1.5, float3(1.0, 1.0, 0.0));
-    Ray ray_2 = (Ray)0;
-    float3 color = (0.0).xxx;
-    float t_1 = (float)0;
-    float3 hitPoint = (float3)0;
-    float3 normal = (float3)0;
-
-    fragCoord_3 = fragCoord_2;
-    fragColor = (0.0).xxxx;
-    float2 _e17 = fragCoord_3;
-    const Ray _e18 = cameraRay(_e17);
-    ray_2 = _e18;
-    Ray _e23 = ray_2;
-    Sphere _e24 = sphere_2;
-    const float _e25 = intersectSphere(_e23, _e24);
-    t_1 = _e25;
-    float _e27 = t_1;
-    if ((_e27 < NO_HIT)) {
-        {
-            Ray _e29 = ray_2;
-            float _e31 = t_1;
-            Ray _e32 = ray_2;
-            hitPoint = (_e29.origin + (_e31 * _e32.direction));
-            float3 _e37 = hitPoint;
-            Sphere _e38 = sphere_2;
-            normal = normalize((_e37 - _e38.center_));
-            Sphere _e43 = sphere_2;
-            Ray _e45 = ray_2;
-            float3 _e47 = normal;
-            color = (_e43.color * abs(dot(_e45.direction, _e47)));
-        }
+    float t = intersectSphere(ray, sphere);
+    if (t < NO_HIT) {
+        float3 hitPoint = ray.origin + t * ray.direction;
+        float3 normal = normalize(hitPoint - sphere.center);
+        color = sphere.color * abs(dot(ray.direction, normal));
     }
-    float3 _e51 = color;
-    fragColor = float4(_e51.x, _e51.y, _e51.z, 1.0);
-    return;
+    fragColor = float4(color, 1.0);
 }
 
-void main_1()
-{
-    float4 toyproof_image_color = float4(0.0, 0.0, 0.0, 1.0);
-
-    float4 _e8 = gl_FragCoord_1;
-    mainImage(toyproof_image_color, _e8.xy);
-    float4 _e10 = toyproof_image_color;
-    float3 _e11 = _e10.xyz;
-    toyproof_color = float4(_e11.x, _e11.y, _e11.z, 1.0);
-    return;
-}
-
-FragmentOutput ConstructFragmentOutput(float4 arg0) {
-    FragmentOutput ret = (FragmentOutput)0;
-    ret.toyproof_color = arg0;
-    return ret;
-}
-
-FragmentOutput main(FragmentInput_main fragmentinput_main)
-{
-    float4 gl_FragCoord = fragmentinput_main.gl_FragCoord_2;
-    gl_FragCoord_1 = gl_FragCoord;
-    main_1();
-    float4 _e3 = toyproof_color;
-    const FragmentOutput fragmentoutput = ConstructFragmentOutput(_e3);
-    return fragmentoutput;
+float4 main(float4 position : SV_Position) : SV_Target0 {
+    float4 color;
+    mainImage(color, position.xy);
+    return float4(color.xyz, 1.0);
 }
