@@ -106,7 +106,8 @@ fn the_course_is_written_for_every_host() {
         let shaders = [
             "glsl/06-reflections.glsl",
             "glsl/13-importance-sampling.glsl",
-            "glsl/2d",
+            "glsl/2d/03-noise.glsl",
+            "glsl/2d/05-matrices.glsl",
         ];
         let options = ["--to", "hlsl", "--style", style, "-o", to, "--verify"];
         let run = toyproof(folder, &[&["convert"][..], &shaders, &options].concat());

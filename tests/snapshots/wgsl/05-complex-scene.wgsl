@@ -32,7 +32,7 @@ struct Intersection {
     sphere: Sphere,
 }
 
-// `a % b` of GLSL as Mesa and SwiftShader round it, down: WGSL's rounds towards zero.
+// `a % b` of GLSL as Mesa and SwiftShader round it, down: other languages round towards zero.
 fn remainder(a: i32, b: i32) -> i32 {
     let r = a % b;
     return select(r, r + b, r != 0 && (r ^ b) < 0);
