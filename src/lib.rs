@@ -63,7 +63,8 @@
 //! }
 //! ```
 //!
-//! `examples/` has programs that parse, evaluate, convert and verify a shader, and that compile one for wgpu. A program that renders on a GPU must be
+//! `examples/` has programs that parse, evaluate, convert and verify a shader, and that compile one for wgpu.
+//! A program that renders on a GPU must be
 //! able to start itself as the worker process: see `toyproof_gpu`.
 
 /// The examples of the guide are tests.

@@ -43,7 +43,8 @@ pub(super) struct PlayedFrame {
 }
 
 impl Original {
-    /// Renders the original strictly in frames that `adapt` changes, with the driver's filters, and finds its undefined pixels.
+    /// Renders the original strictly in frames that `adapt` changes, with the driver's filters, and finds its
+    /// undefined pixels.
     pub(super) fn play(
         passes: &PassSources,
         worker: &mut Worker,

@@ -149,7 +149,8 @@ impl Prover<'_> {
         )
     }
 
-    /// Proves passes like [`Self::prove_passes`], in frames that `adapt` changes; `in_browser` compares them with the original in the browser, if there
+    /// Proves passes like [`Self::prove_passes`], in frames that `adapt` changes; `in_browser` compares them
+    /// with the original in the browser, if there
     /// is one.
     pub(super) fn prove_passes_with(
         &mut self,

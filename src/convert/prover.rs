@@ -224,7 +224,8 @@ impl Prover<'_> {
         )
     }
 
-    /// Proves a file like [`Self::prove`], with frames that `adapt` changes; `in_browser` compares it with the original in the browser, if there is one, in
+    /// Proves a file like [`Self::prove`], with frames that `adapt` changes; `in_browser` compares it with
+    /// the original in the browser, if there is one, in
     /// these frames and except in these pixels.
     pub(super) fn prove_with(
         &mut self,
@@ -399,7 +400,8 @@ pub(super) fn validate(
         TargetCode::Glsl(text, dialect) => {
             let complete = match dialect {
                 _ if dialect.calls_main_image() => browser::as_shadertoy(text, channels),
-                // The reader has declared what the header does. Drivers join continued lines in older versions, too.
+                // The reader has declared what the header does. Drivers join continued lines in older
+                // versions, too.
                 Dialect::Isf => format!("#version 330\n{}", text.replace("\\\n", "")),
                 // Without a version, a host with WebGL compiles GLSL ES 1.00. Browsers join lines in it, too,
                 // which end with a backslash.

@@ -220,7 +220,8 @@ impl Checked {
         }
     }
 
-    /// Whether a uniform or varying that the shader declares has the value of an input, of a texture or of the
+    /// Whether a uniform or varying that the shader declares has the value of an input, of a texture or of
+    /// the
     /// options: no expression reads the variable itself.
     pub fn is_bound(&self, variable: tree::VariableId) -> bool {
         self.bound.contains_key(&variable)
@@ -242,7 +243,8 @@ impl Checked {
         })
     }
 
-    /// The names of functions, structures and global variables that the text declares, with the bytes where they are
+    /// The names of functions, structures and global variables that the text declares, with the bytes where
+    /// they are
     /// declared.
     pub fn global_names(&self) -> impl Iterator<Item = (&str, u32)> {
         let tree = &self.tree;
@@ -419,7 +421,8 @@ fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, Prep
         (wrapping, text)
     };
     if options.stage != Stage::Image {
-        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares, and those that were
+        // The buffers of a project are ShaderToy's, but for those that a header of ISF declares, and those
+        // that were
         // written for another host.
         let other = options.dialect.filter(|&dialect| {
             matches!(dialect, Dialect::Isf | Dialect::WebGl) && options.stage == Stage::Buffer

@@ -40,7 +40,8 @@ impl Rewrite {
     }
 }
 
-/// The text after some rewrites. Of a range inside of another one that is replaced, nothing is left; `None` if
+/// The text after some rewrites. Of a range inside of another one that is replaced, nothing is left; `None`
+/// if
 /// ranges overlap in part.
 ///
 /// Tokens that get neighbors are separated by a blank where they would otherwise become one.

@@ -110,7 +110,8 @@ impl std::error::Error for GlslError {}
 /// # Interface
 ///
 /// The module has one entry point, the fragment shader `main`, whose color is at location 0. Its position is
-/// that of the builtin `position`, and y is not flipped: what GLSL calls the bottom is row 0 of wgpu's target.
+/// that of the builtin `position`, and y is not flipped: what GLSL calls the bottom is row 0 of wgpu's
+/// target.
 /// All bindings are in group 0. A module declares only those that it reads, which
 /// [`Module::global_variables`] lists with their names; the members of a block have the author's names.
 ///
@@ -122,12 +123,15 @@ impl std::error::Error for GlslError {}
 /// | 9 | a block with the author's uniforms, in the order of their declarations, by the rules of std140 |
 ///
 /// **Inputs of the host.** ShaderToy's are not declared. Other shaders declare inputs that are recognized by
-/// their names and types, such as `u_time`, and a `varying vec2` is the position from 0 to 1; both are computed
-/// from the block at binding 0. With [`ModuleOptions::own_uniforms`], all uniforms but textures are members of
+/// their names and types, such as `u_time`, and a `varying vec2` is the position from 0 to 1; both are
+/// computed
+/// from the block at binding 0. With [`ModuleOptions::own_uniforms`], all uniforms but textures are members
+/// of
 /// the block at binding 9 instead.
 ///
 /// **The author's uniforms.** The block has all that are declared, read or not, so that its layout depends on
-/// the declarations alone. A `bool` is a `uint` that is not 0, and the elements of an array are 16 bytes apart, as
+/// the declarations alone. A `bool` is a `uint` that is not 0, and the elements of an array are 16 bytes
+/// apart, as
 /// std140 requires. A value in the text (`uniform float speed = 2.0;`) is ignored, since the block always has
 /// one. A uniform with a value in [`uniforms`](toyproof_glsl::Options::uniforms) is a constant.
 ///
@@ -146,7 +150,8 @@ impl std::error::Error for GlslError {}
 /// - `#include`: [`toyproof_glsl::with_includes`] makes one text of several files, for [`checked_to_module`].
 ///
 /// # Errors
-/// The shader's, or that it reads what is not supported. If naga refuses the translated shader, the error says
+/// The shader's, or that it reads what is not supported. If naga refuses the translated shader, the error
+/// says
 /// so ([`Code::NagaParse`], [`Code::NagaValidation`]).
 ///
 /// # Panics
@@ -172,7 +177,8 @@ pub fn glsl_to_module(text: &str, options: &ModuleOptions) -> Result<Module, Gls
 }
 
 /// Translates a checked shader to a naga module, like [`glsl_to_module`]. It should be checked with
-/// [`UniformMode::Kept`] or [`UniformMode::Own`]; of the options of the language, only the deadline has an effect.
+/// [`UniformMode::Kept`] or [`UniformMode::Own`]; of the options of the language, only the deadline has an
+/// effect.
 ///
 /// # Errors
 /// As for [`glsl_to_module`], apart from the shader's own; without positions when displayed.

@@ -1,5 +1,6 @@
 //! Templates of the code around a shader, in the language of its host with two additions: `$name` is replaced
-//! by a value, and a line that ends in `//? a b` is only printed if condition `a` or `b` holds; `a&b` holds if both do.
+//! by a value, and a line that ends in `//? a b` is only printed if condition `a` or `b` holds; `a&b` holds
+//! if both do.
 
 /// The parts of a template before and after the shader.
 pub(crate) fn around_shader(template: &str) -> [&str; 2] {

@@ -53,7 +53,8 @@ fn in_browser(browser: &mut Chromium, text: Text) -> Result<Pixels, BrowserFailu
     Ok(images.iter().flat_map(|image| image.pixels().to_vec()).collect())
 }
 
-/// A texture that all frames share is sent once; one above the largest message that Chromium reads is refused.
+/// A texture that all frames share is sent once; one above the largest message that Chromium reads is
+/// refused.
 #[test]
 fn textures_are_sent_once_and_have_a_limit() {
     let Some(program) = require_chromium() else { return };

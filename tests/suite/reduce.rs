@@ -1,4 +1,5 @@
-//! `toyproof reduce`: each kind of fault on a shader of some length; what is left is small, and still shows the
+//! `toyproof reduce`: each kind of fault on a shader of some length; what is left is small, and still shows
+//! the
 //! fault.
 
 use std::fs;
@@ -59,7 +60,8 @@ fn reduced(folder: &Path, text: &str, arguments: &[&str]) -> (Run, String) {
     (run, small)
 }
 
-/// Asserts that a shader is reduced to at most that many tokens (names count twice), the same with one and with
+/// Asserts that a shader is reduced to at most that many tokens (names count twice), the same with one and
+/// with
 /// two threads, and that reducing the result changes nothing.
 fn is_reduced_to(text: &str, weight: usize, arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();

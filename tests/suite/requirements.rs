@@ -90,7 +90,8 @@ pub(crate) fn require_program(name: &str) -> bool {
     is_installed
 }
 
-/// The folder of the npm package `three`: that which `TOYPROOF_THREE` names, or which `setup.sh --tests` has installed.
+/// The folder of the npm package `three`: that which `TOYPROOF_THREE` names, or which `setup.sh --tests` has
+/// installed.
 #[track_caller]
 pub(crate) fn require_three() -> Option<PathBuf> {
     let named = env::var_os("TOYPROOF_THREE").map(PathBuf::from);

@@ -1,4 +1,5 @@
-//! Modules of `glsl_to_module` in wgpu: it accepts them, and what a host writes into the block of uniforms is what
+//! Modules of `glsl_to_module` in wgpu: it accepts them, and what a host writes into the block of uniforms is
+//! what
 //! the shader reads.
 
 use std::borrow::Cow;
@@ -134,7 +135,8 @@ async fn render(module: Module, uniforms: &[u8]) -> Result<Vec<f32>, Box<dyn Err
         .collect())
 }
 
-/// Numbers of a uniform, and the parts into which std140 divides it: each begins a multiple of 16 bytes after the
+/// Numbers of a uniform, and the parts into which std140 divides it: each begins a multiple of 16 bytes after
+/// the
 /// first.
 struct Given {
     name: &'static str,
@@ -240,7 +242,8 @@ fn uniforms_are_what_the_host_writes_into_the_block() {
     };
     let evaluated = Program::new(&checked).unwrap();
     let evaluated = evaluated.render(&frame, &Settings::<f32>::default()).unwrap();
-    // Sums and products of small integers and halves are exact, whatever the driver does with them. The evaluator
+    // Sums and products of small integers and halves are exact, whatever the driver does with them. The
+    // evaluator
     // shows alpha as 1.
     let expected = evaluated.framebuffer.image();
     for (x, pixel) in rendered.chunks_exact(4).enumerate() {

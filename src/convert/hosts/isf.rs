@@ -1,7 +1,9 @@
 //! ISF: one text for all passes behind a header in JSON, <https://docs.isf.video/ref_json.html>.
 //!
-//! Hosts render the `PASSES` in their order, each with the whole text and its number in `PASSINDEX`. A target that is
-//! `PERSISTENT` keeps its content, so that a pass that reads it before it is rendered gets that of the last frame. Hosts
+//! Hosts render the `PASSES` in their order, each with the whole text and its number in `PASSINDEX`. A target
+//! that is
+//! `PERSISTENT` keeps its content, so that a pass that reads it before it is rendered gets that of the last
+//! frame. Hosts
 //! filter all images linearly, up to their edges.
 
 use std::collections::{HashMap, HashSet};
@@ -340,7 +342,8 @@ fn header_text(header: &Header) -> String {
     format!("/*{}*/", String::from_utf8_lossy(&bytes).replace("*/", "*\\/"))
 }
 
-/// One text for all passes: Common, the passes with names of their own, and a function that calls one of them.
+/// One text for all passes: Common, the passes with names of their own, and a function that calls one of
+/// them.
 fn merged(
     passes: &Passes,
     texts: &[String],
@@ -549,7 +552,8 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
     })
 }
 
-/// A frame with a mouse that the inputs of the header can describe to the bit: at an eighth of the image, and where it
+/// A frame with a mouse that the inputs of the header can describe to the bit: at an eighth of the image, and
+/// where it
 /// was clicked is where it is.
 pub(super) fn with_its_mouse(frame: Frame) -> Frame {
     let [width, height] = frame.size.map(|side| side as f32);

@@ -7,7 +7,8 @@ use serde_json::{Map, Value};
 /// The longest line that prettier leaves as it is, in characters.
 const LINE_WIDTH: usize = 80;
 
-/// An object on one line, or with a line for each entry if it would be too long there. `column` is where it begins, and
+/// An object on one line, or with a line for each entry if it would be too long there. `column` is where it
+/// begins, and
 /// `after` the number of characters behind it.
 pub(super) fn object(entries: &[(String, String)], indent: usize, column: usize, after: usize) -> String {
     let entries: Vec<_> = entries
@@ -55,7 +56,8 @@ pub(super) fn template(text: &str) -> String {
     format!("`{}`", escaped.replace("${", "\\${").replace('\r', "\\r"))
 }
 
-/// The template literals that constants of a module hold, by the constants' names; `${…}` names an earlier one.
+/// The template literals that constants of a module hold, by the constants' names; `${…}` names an earlier
+/// one.
 pub(super) fn templates(module: &str) -> Result<HashMap<&str, String>, String> {
     let mut found = HashMap::new();
     let mut rest = module;

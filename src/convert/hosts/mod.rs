@@ -93,7 +93,8 @@ pub struct HostedConversion {
 struct Passes<'a> {
     sources: Vec<Source<'a>>,
     kinds: Vec<PassKind>,
-    /// The order of the passes, and what they read. Of a shader that is no project, channels read noise in proofs only.
+    /// The order of the passes, and what they read. Of a shader that is no project, channels read noise in
+    /// proofs only.
     graph: Graph,
     media: Vec<Texture>,
     /// What the channels of each pass read, if that is known.
@@ -221,7 +222,8 @@ impl<'a> Passes<'a> {
 }
 
 impl Converter {
-    /// Converts a shader or a project for a host whose file has all passes. With a prover, the file is read again, and
+    /// Converts a shader or a project for a host whose file has all passes. With a prover, the file is read
+    /// again, and
     /// the conversion is proved.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Templates: text with sections `// #if NAME` … `// #endif`, which a file has only if its shader needs them.
 
-/// The sections of a template whose names (or, with `!`, whose absence) hold; lines with conditions are left out.
+/// The sections of a template whose names (or, with `!`, whose absence) hold; lines with conditions are left
+/// out.
 ///
 /// # Panics
 /// If the conditions of the template are not balanced.

@@ -1,4 +1,5 @@
-//! An ES module for three.js: the template `three.js` with the shaders as template literals, and a table of passes.
+//! An ES module for three.js: the template `three.js` with the shaders as template literals, and a table of
+//! passes.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -15,7 +15,8 @@ use crate::{ProofError, Source};
 /// The browser with its library, and the comparison.
 type Shown = (String, Rgb8Comparison);
 
-/// Renders a shader with one pass and its module in these frames, and compares them except in undefined pixels.
+/// Renders a shader with one pass and its module in these frames, and compares them except in undefined
+/// pixels.
 pub(super) fn shader(
     passes: &Passes,
     source: Source,
@@ -58,7 +59,8 @@ pub(super) fn shader(
     compare(browser, &original, &module, &played, undefined)
 }
 
-/// Plays the passes of a shader and its module in the frames of the original, and compares the images except in
+/// Plays the passes of a shader and its module in the frames of the original, and compares the images except
+/// in
 /// undefined pixels.
 pub(super) fn passes(
     passes: &Passes,

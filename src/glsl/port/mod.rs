@@ -67,7 +67,8 @@ pub fn port(
     port_in_versions(checked, files, (to, to.written_versions()), refusal, deadline)
 }
 
-/// Writes a shader for another host like [`port`], in the first of these versions that has what the shader uses.
+/// Writes a shader for another host like [`port`], in the first of these versions that has what the shader
+/// uses.
 ///
 /// # Errors
 /// Like [`port`].

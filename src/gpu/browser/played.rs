@@ -57,7 +57,8 @@ pub struct ThreeLibrary {
 pub const THREE_VARIABLE: &str = "TOYPROOF_THREE";
 
 impl ThreeLibrary {
-    /// Finds the package: in the folder that `TOYPROOF_THREE` names, else in `node_modules/three` in one of these
+    /// Finds the package: in the folder that `TOYPROOF_THREE` names, else in `node_modules/three` in one of
+    /// these
     /// folders, or in one that contains it.
     pub fn find(folders: &[PathBuf]) -> Option<Self> {
         if let Some(named) = std::env::var_os(THREE_VARIABLE) {
@@ -110,7 +111,8 @@ impl Chromium {
         self.three.as_ref()
     }
 
-    /// Plays passes with WebGL 2; returns the images of all frames. Frames start from the beginning where it is said.
+    /// Plays passes with WebGL 2; returns the images of all frames. Frames start from the beginning where it
+    /// is said.
     ///
     /// # Errors
     /// Why there are no images.

@@ -1,6 +1,7 @@
 //! Faults that a shader may show, how they are found, and when two are the same.
 //!
-//! A candidate must show the same fault, not just any: reducers slip from one fault to a simpler one otherwise.
+//! A candidate must show the same fault, not just any: reducers slip from one fault to a simpler one
+//! otherwise.
 //! So a fault has what distinguishes it: naga's message up to names and numbers, how the driver died, whether
 //! differing pixels are numbers, which pixels are wrong.
 

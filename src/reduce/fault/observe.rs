@@ -353,7 +353,8 @@ impl<'a> Session<'a> {
         Some(Finding::of_diagnostic(found, Vec::new()))
     }
 
-    /// The warnings about a shader; those about its runs only where a warning with the code may be among them.
+    /// The warnings about a shader; those about its runs only where a warning with the code may be among
+    /// them.
     fn warnings(&self, compiled: &Compiled, code: Option<Code>) -> Vec<Diagnostic> {
         let timeout = self.subject.timeout;
         let lints = lint(&compiled.files, &compiled.checked, &Deadline::after(timeout));

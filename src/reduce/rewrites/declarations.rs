@@ -112,7 +112,8 @@ impl<'a> Macro<'a> {
         })
     }
 
-    /// The deletion of the macro with the replacement of its uses outside of directives; `None` if an argument
+    /// The deletion of the macro with the replacement of its uses outside of directives; `None` if an
+    /// argument
     /// uses it, too.
     fn expanded(&self, outline: &Outline) -> Option<Rewrite> {
         let mut rewrite = Rewrite::delete(self.directive.clone());

@@ -9,7 +9,8 @@ use super::functions::plain;
 use super::{Source, constant};
 use crate::rewrite::Rewrite;
 
-/// The expressions at a depth below those of statements, whose values may be replaced; `None` if nothing is so
+/// The expressions at a depth below those of statements, whose values may be replaced; `None` if nothing is
+/// so
 /// deep.
 fn values_at(tree: &Tree, depth: usize) -> Option<Vec<ExprId>> {
     let mut level: Vec<ExprId> = tree

@@ -1,4 +1,5 @@
-//! Deletes tokens that no other rewrite reaches, such as qualifiers, declarators and parentheses. Texts that do
+//! Deletes tokens that no other rewrite reaches, such as qualifiers, declarators and parentheses. Texts that
+//! do
 //! not compile are reduced by this.
 
 use std::ops::Range;
@@ -45,7 +46,8 @@ pub(super) fn deleted(source: &Source) -> Vec<Rewrite> {
     rewrites
 }
 
-/// The tokens of each declaration without the `;` that keeps it apart from the next one; all tokens if the text
+/// The tokens of each declaration without the `;` that keeps it apart from the next one; all tokens if the
+/// text
 /// has no declarations.
 fn top_level(outline: &Outline) -> Vec<Range<usize>> {
     let whole = outline.items.is_empty().then_some(0..outline.tokens.len());

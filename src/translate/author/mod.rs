@@ -1,4 +1,5 @@
-//! The author's text, where a writer of readable code needs more than the tree: comments, blank lines, numbers,
+//! The author's text, where a writer of readable code needs more than the tree: comments, blank lines,
+//! numbers,
 //! and the macros that become constants.
 
 mod comment;

@@ -121,7 +121,8 @@ impl Writer<'_> {
         self.helper_function("divide", &[matrix, Type::FLOAT], matrix, "", &body)
     }
 
-    /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and returns
+    /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and
+    /// returns
     /// its name.
     pub(super) fn helper_function(
         &mut self,
@@ -149,7 +150,8 @@ impl Writer<'_> {
     }
 }
 
-/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways before
+/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways
+/// before
 /// and since its version of 2021.
 fn mix_of_bool(ty: &str, size: u8) -> String {
     if size == 1 {

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 
 use toyproof_glsl::tree::{Direction, ExprId, ExprKind, FunctionId, StatementKind, Tree, VariableKind, walk};
 
-/// The functions that write a global variable or a parameter of their caller, or discard the pixel, themselves
+/// The functions that write a global variable or a parameter of their caller, or discard the pixel,
+/// themselves
 /// or by a function that they call.
 pub(super) fn impure_functions(tree: &Tree) -> HashSet<FunctionId> {
     let mut impure = HashSet::new();

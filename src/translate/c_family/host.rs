@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
@@ -326,14 +327,16 @@ impl Writer<'_> {
                 None => channel_number(condition).is_some_and(|channel| channels.contains_key(&channel)),
             },
         };
-        let mut values = vec![
-            ("$main_image", self.function(main_image).to_owned()),
-            ("$name", name.replace(['"', '\\', '\n'], "_")),
-        ];
+        let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
             values.push((value, texture_type(shape).to_owned()));
         }
+        // The last, since a name may contain those of other values.
+        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+        let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
+        let stem: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        values.push(("$name", stem));
         let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);

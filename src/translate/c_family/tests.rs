@@ -402,3 +402,17 @@ fn deep_statements_are_refused() {
     );
     assert!(converted(HlslHost::Hlsl, &text).is_err());
 }
+
+#[test]
+fn a_file_is_named_after_its_shader() {
+    let mut files = Files::default();
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }";
+    let file = files.add(File::new("shader", text));
+    let checked = glsl::check(&files, file, &Options::default()).unwrap();
+    let name = "class/a \"$texture0\".glsl";
+    let written = write(&checked, &files, HlslHost::Unity, name, &Deadline::default()).unwrap();
+    assert!(
+        written.starts_with("Shader \"ShaderToy/a _$texture0_\" {\n"),
+        "{written}"
+    );
+}

@@ -1,4 +1,5 @@
-//! Conditionals whose sides have side effects become branches, for languages that evaluate both sides of `?:`,
+//! Conditionals whose sides have side effects become branches, for languages that evaluate both sides of
+//! `?:`,
 //! as HLSL does before 2021. Such languages select no structures, arrays or matrices either.
 
 use toyproof_glsl::tree::{

@@ -1,4 +1,5 @@
-//! Lookups of textures for ISF, whose hosts replace `IMG_NORM_PIXEL(image, at)` and the like in the text: the image is
+//! Lookups of textures for ISF, whose hosts replace `IMG_NORM_PIXEL(image, at)` and the like in the text: the
+//! image is
 //! named in the lookup itself, and has neither mipmaps nor texels that are fetched.
 
 use std::collections::{BTreeSet, HashMap};
@@ -102,7 +103,7 @@ impl Port<'_> {
             );
         };
         let Some(close) = source.partner(index + 1) else {
-            return Err(self.without_equivalent(&format!("`{name}` with so many words"), index));
+            return Err(self.without_equivalent(&format!("`{name}` with these arguments"), index));
         };
         let commas = self.commas(index + 2, close);
         let last = commas.last().copied().unwrap_or(close);
