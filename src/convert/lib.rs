@@ -42,7 +42,7 @@ use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, UniformMode};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::{self, HlslHost};
+use toyproof_translate::c_family::{self, CHost};
 use toyproof_translate::wgsl::{self, Style};
 use toyproof_translate::{FloatMode, Lowered, Unprintable, WriteFailure};
 
@@ -81,7 +81,7 @@ pub struct Converter {
     /// The kind of host that WGSL is written for.
     pub style: Style,
     /// The host that HLSL is written for.
-    pub hlsl_host: HlslHost,
+    pub c_host: CHost,
     /// The host that GLSL is written for, in the author's words; `None` for GLSL by naga.
     pub dialect: Option<Dialect>,
     /// Whether functions such as `sin` are expanded.
@@ -113,7 +113,7 @@ pub enum TargetCode {
     /// GLSL for a host.
     Glsl(String, Dialect),
     /// Code of a language with the syntax of C, for a host.
-    CFamily(String, HlslHost),
+    CFamily(String, CHost),
     /// A file of naga's in a language other than WGSL.
     Naga {
         /// The language.
@@ -288,7 +288,7 @@ impl Converter {
     pub fn extension(&self) -> &'static str {
         match (self.dialect, self.target) {
             (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
-            (None, Some(Target::Hlsl)) => self.hlsl_host.extension(),
+            (None, Some(Target::Hlsl)) => self.c_host.extension(),
             (_, Some(target)) => target.extension(),
             (_, None) => LOWERED_EXTENSION,
         }
@@ -303,7 +303,7 @@ impl Converter {
     fn may_fall_back(&self) -> bool {
         let is_plain = match self.target {
             Some(Target::Wgsl) => self.style == Style::Plain,
-            _ => self.hlsl_host == HlslHost::Hlsl,
+            _ => self.c_host == CHost::Hlsl,
         };
         self.prints() && is_plain
     }
@@ -352,12 +352,12 @@ impl Converter {
     /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
     fn write_c(&self, source: Source, name: &str) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = c_family::write(source.checked, source.files, self.hlsl_host, name, &deadline);
+        let text = c_family::write(source.checked, source.files, self.c_host, name, &deadline);
         match text {
-            Ok(text) => Ok(TargetCode::CFamily(text, self.hlsl_host)),
+            Ok(text) => Ok(TargetCode::CFamily(text, self.c_host)),
             Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),
             Err(WriteFailure::Unprintable(why)) => Err(ConvertError::Unwritable(WriterError::Unprintable {
-                style: self.hlsl_host.name(),
+                style: self.c_host.name(),
                 why,
             })),
         }

@@ -7,7 +7,7 @@ use toyproof_gpu::Worker;
 use toyproof_player::BufferFormat;
 use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, UnsupportedPass};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::CHost;
 use toyproof_translate::wgsl::Style;
 
 use crate::graph::{GRAPH_FILE, HostGraph, target_name};
@@ -98,7 +98,7 @@ pub enum ProjectError {
     Style(Style),
     /// Hosts of this kind render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
-    Host(HlslHost),
+    Host(CHost),
     /// GLSL is written for hosts that render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
     Dialect(Dialect),
@@ -148,8 +148,8 @@ impl Converter {
         if matches!(self.style, Style::ComputeToys | Style::Bevy) {
             return Err(ProjectError::Style(self.style));
         }
-        if self.target == Some(Target::Hlsl) && !self.hlsl_host.has_passes() {
-            return Err(ProjectError::Host(self.hlsl_host));
+        if self.target == Some(Target::Hlsl) && !self.c_host.has_passes() {
+            return Err(ProjectError::Host(self.c_host));
         }
         if let Some(dialect) = self.dialect {
             return Err(ProjectError::Dialect(dialect));

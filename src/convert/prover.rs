@@ -14,7 +14,7 @@ use toyproof_gpu::{self as gpu, ShaderArtifact};
 use toyproof_image::{Frame, Image};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::CHost;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 use toyproof_verify::Failure;
@@ -321,7 +321,7 @@ impl Prover<'_> {
         &self,
         checked: &Checked,
         text: &str,
-        host: HlslHost,
+        host: CHost,
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
         let hosted = host.hosted(text, checked.stage);
         let Runner::Driver(_) = self.runner else {

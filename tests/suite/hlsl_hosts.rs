@@ -7,7 +7,7 @@ use std::time::Duration;
 use toyproof_convert::{ProofError, Prover, Runner, ShaderProof, Source, TargetCode};
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::check;
-use toyproof_translate::c_family::{HlslHost, write};
+use toyproof_translate::c_family::{CHost, write};
 
 use crate::program::toyproof;
 use crate::requirements::{require_driver, require_program, require_worker};
@@ -23,7 +23,7 @@ void mainImage(out vec4 color, in vec2 p) {
 }";
 
 /// Proves the file for a host after one edit.
-fn prove(host: HlslHost, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
+fn prove(host: CHost, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
     if !require_program("glslangValidator") {
         return None;
     }
@@ -48,7 +48,7 @@ fn prove(host: HlslHost, shader: &str, from: &str, to: &str) -> Option<Result<Sh
 
 #[test]
 fn files_for_hosts_are_proved() {
-    for host in HlslHost::ALL {
+    for host in CHost::ALL {
         let Some(proved) = prove(host, INPUTS, "", "") else {
             return;
         };
@@ -60,22 +60,22 @@ fn files_for_hosts_are_proved() {
 #[test]
 fn faults_in_a_hosts_code_are_found() {
     for (host, from, to) in [
-        (HlslHost::Hlsl, "position.xy);", "position.yx);"),
-        (HlslHost::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
-        (HlslHost::Unity, "? -1.0 : 1.0", "? 1.0 : -1.0"),
-        (HlslHost::WindowsTerminal, "upward = -1.0", "upward = 1.0"),
-        (HlslHost::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
+        (CHost::Hlsl, "position.xy);", "position.yx);"),
+        (CHost::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
+        (CHost::Unity, "? -1.0 : 1.0", "? 1.0 : -1.0"),
+        (CHost::WindowsTerminal, "upward = -1.0", "upward = 1.0"),
+        (CHost::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
         (
-            HlslHost::WindowsTerminal,
+            CHost::WindowsTerminal,
             "Resolution.y - position.y",
             "position.y",
         ),
         (
-            HlslHost::WindowsTerminal,
+            CHost::WindowsTerminal,
             "#define iMouse float4(0.0",
             "#define iMouse float4(1.0",
         ),
-        (HlslHost::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
+        (CHost::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
     ] {
         let Some(proved) = prove(host, INPUTS, from, to) else {
             return;

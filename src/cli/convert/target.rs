@@ -9,7 +9,7 @@ use toyproof_diagnostic::path_name;
 use toyproof_glsl::Dialect;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::CHost;
 use toyproof_translate::wgsl::Style;
 
 use super::Args;
@@ -78,11 +78,11 @@ impl StyleName {
     }
 
     /// The host of HLSL and languages like it; `None` for the plain one.
-    pub(super) fn c_family(self) -> Option<HlslHost> {
+    pub(super) fn c_family(self) -> Option<CHost> {
         match self {
-            Self::Unity => Some(HlslHost::Unity),
-            Self::WindowsTerminal => Some(HlslHost::WindowsTerminal),
-            Self::Slang => Some(HlslHost::Slang),
+            Self::Unity => Some(CHost::Unity),
+            Self::WindowsTerminal => Some(CHost::WindowsTerminal),
+            Self::Slang => Some(CHost::Slang),
             _ => None,
         }
     }

@@ -16,6 +16,7 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
+use super::language::Language;
 use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
 use crate::print::Order;
@@ -23,7 +24,7 @@ use crate::template::{around_shader, channel_number, fill};
 
 /// A host of a language with the syntax of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum HlslHost {
+pub enum CHost {
     /// HLSL with our own bindings; row 0 of the target is the bottom.
     Hlsl,
     /// A module of Slang with our own bindings.
@@ -40,6 +41,7 @@ struct Row {
     name: &'static str,
     /// The name for people.
     title: &'static str,
+    language: Language,
     /// The extension of its files, without the dot.
     extension: &'static str,
     /// The code around a shader.
@@ -54,7 +56,7 @@ struct Row {
     is_upside_down: bool,
 }
 
-impl HlslHost {
+impl CHost {
     /// Every host.
     pub const ALL: [Self; 4] = [Self::Hlsl, Self::Slang, Self::Unity, Self::WindowsTerminal];
 
@@ -63,6 +65,7 @@ impl HlslHost {
             Self::Hlsl => Row {
                 name: "plain",
                 title: "HLSL",
+                language: Language::Hlsl,
                 extension: "hlsl",
                 template: include_str!("hosts/plain.hlsl"),
                 substitute: "",
@@ -73,6 +76,7 @@ impl HlslHost {
             Self::Slang => Row {
                 name: "slang",
                 title: "Slang",
+                language: Language::Hlsl,
                 extension: "slang",
                 template: include_str!("hosts/plain.slang"),
                 substitute: "$shader\n",
@@ -89,6 +93,7 @@ impl HlslHost {
             Self::Unity => Row {
                 name: "unity",
                 title: "Unity",
+                language: Language::Hlsl,
                 extension: "shader",
                 template: include_str!("hosts/unity.shader"),
                 substitute: include_str!("hosts/unity_substitute.hlsl"),
@@ -121,6 +126,7 @@ impl HlslHost {
             Self::WindowsTerminal => Row {
                 name: "windows-terminal",
                 title: "Windows Terminal",
+                language: Language::Hlsl,
                 extension: "hlsl",
                 template: include_str!("hosts/windows_terminal.hlsl"),
                 substitute: "$block\n$shader\n",
@@ -153,6 +159,10 @@ impl HlslHost {
     #[must_use]
     pub fn title(self) -> &'static str {
         self.row().title
+    }
+
+    pub(super) fn language(self) -> Language {
+        self.row().language
     }
 
     /// The extension of its files, without the dot.

@@ -124,12 +124,11 @@ impl Writer<'_> {
         let parameters = function.parameters.iter().map(|&parameter| {
             let variable = &self.cx.tree[parameter];
             let direction = match variable.kind {
-                VariableKind::Parameter(Direction::Out) => "out ",
-                VariableKind::Parameter(Direction::InOut) => "inout ",
-                _ => "",
+                VariableKind::Parameter(direction) => direction,
+                _ => Direction::In,
             };
             let declared = self.declarator(variable.ty, self.variable(parameter))?;
-            Ok(format!("{direction}{declared}"))
+            Ok(self.language().parameter(direction, &declared))
         });
         let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
         let returned = self.type_name(function.return_type)?;

@@ -3,7 +3,7 @@
 //!
 //! The tree is printed after the few lowering passes that these languages require too. Shaders that the
 //! writer does not support ([`Unprintable`]) are left to naga's writers. A host is a row of the table in
-//! [`host`](HlslHost) and a template in `hosts/`.
+//! [`host`](CHost) and a template in `hosts/`.
 
 mod builtin;
 mod construct;
@@ -18,14 +18,14 @@ mod statement;
 mod tests;
 mod writer;
 
-pub use host::{HlslHost, HostedText};
+pub use host::{CHost, HostedText};
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 
 use self::language::Words;
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{Pass, Passes, branch_for_effects, fold_by_precision, fold_except, name_array_values};
+use crate::lower::{branch_for_effects, fold_by_precision, fold_except, name_array_values};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -37,14 +37,14 @@ pub use crate::unprintable::{Unprintable, WriteFailure};
 pub fn write(
     checked: &Checked,
     files: &Files,
-    host: HlslHost,
+    host: CHost,
     name: &str,
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
     fold_except(&mut cx, |_| false);
     fold_by_precision(&mut cx);
-    let (early, late) = passes();
+    let (early, late) = host.language().passes();
     early.run(&mut cx, deadline)?;
     branch_for_effects(&mut cx);
     name_array_values(&mut cx);
@@ -59,33 +59,4 @@ pub fn write(
     // An expired deadline also makes the writer fail.
     deadline.check()?;
     Ok(written?)
-}
-
-/// The lowering passes for constructs that these languages lack too: those before `&&`, `||` and `?:` with
-/// side effects are lowered, and those after.
-fn passes() -> (Passes, Passes) {
-    let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
-    let not_needed = [
-        Pass::Folding,
-        Pass::Matrices,
-        Pass::Booleans,
-        Pass::Swizzles,
-        Pass::Indices,
-        Pass::Negations,
-        Pass::OutArguments,
-        Pass::Inequality,
-        Pass::Members,
-        Pass::Constants,
-        Pass::Globals,
-        Pass::Steps,
-        Pass::DoWhile,
-        Pass::DeadCode,
-        Pass::Nesting,
-    ];
-    let late = early
-        .into_iter()
-        .chain(not_needed)
-        .fold(Passes::required(), Passes::without);
-    let early = early.into_iter().fold(Passes::none(), Passes::with);
-    (early, late)
 }

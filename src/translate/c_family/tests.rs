@@ -1,11 +1,11 @@
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{self as glsl, Options, Stage};
 
-use super::host::HlslHost;
+use super::host::CHost;
 use super::{Unprintable, WriteFailure, write};
 
 /// Converts a shader for a host.
-fn converted(host: HlslHost, text: &str) -> Result<String, WriteFailure> {
+fn converted(host: CHost, text: &str) -> Result<String, WriteFailure> {
     let mut files = Files::default();
     let file = files.add(File::new("shader", text));
     let checked =
@@ -21,7 +21,7 @@ fn body(statements: &str) -> String {
 fn with_items(items: &str, statements: &str) -> String {
     let text =
         format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\ncolor = vec4(0);\n{statements}\n}}");
-    let written = converted(HlslHost::Hlsl, &text).unwrap();
+    let written = converted(CHost::Hlsl, &text).unwrap();
     let start = written
         .find("    color = ")
         .unwrap_or_else(|| panic!("{written}"));
@@ -47,7 +47,7 @@ fn names_comments_macros_and_loops_stay() {
         struct Ray { vec3 origin; float t; }; \n// Height\nfloat height(vec3 p) { return p.y - SCALE; }\n\
         void mainImage(out vec4 color, in vec2 at) {\n    Ray ray = Ray(vec3(at, 1), 0.);\n    // March\n    \
         for (int i = 0; i < STEPS; i++) ray.t += height(ray.origin); // on\n    color = vec4(ray.t);\n}";
-    let written = converted(HlslHost::Hlsl, text).unwrap();
+    let written = converted(CHost::Hlsl, text).unwrap();
     for expected in [
         "// Waves\n\nstatic const float SCALE = 0.5;\nstatic const int STEPS = 8;\n\nstruct Ray {",
         "// Height\nfloat height(float3 p) {\n    return p.y - SCALE;\n}\n",
@@ -274,7 +274,7 @@ fn cases_are_blocks_if_they_declare_variables() {
         "{written}"
     );
     let shared = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); switch (int(p.x)) { case 0: float a = 1.; c.x = a; break; default: a = 2.; c.x = a; } }";
-    let refused = converted(HlslHost::Hlsl, shared);
+    let refused = converted(CHost::Hlsl, shared);
     assert!(matches!(
         refused,
         Err(WriteFailure::Unprintable(
@@ -286,7 +286,7 @@ fn cases_are_blocks_if_they_declare_variables() {
 #[test]
 fn hosts_refuse_inputs_that_they_lack() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p) * iDate; }";
-    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(HlslHost::WindowsTerminal, text)
+    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(CHost::WindowsTerminal, text)
     else {
         panic!("it is not refused");
     };
@@ -294,7 +294,7 @@ fn hosts_refuse_inputs_that_they_lack() {
         error.message.contains("in the style `windows-terminal`"),
         "{error:?}"
     );
-    assert!(converted(HlslHost::Unity, text).is_ok());
+    assert!(converted(CHost::Unity, text).is_ok());
 }
 
 #[test]
@@ -302,11 +302,11 @@ fn hosts_code_is_complete() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy) + iMouse + dFdy(p.y); }";
     for (host, expected) in [
         (
-            HlslHost::Slang,
+            CHost::Slang,
             "[[vk::binding(1, 0)]] Texture2D iChannel0 : register(t1);",
         ),
         (
-            HlslHost::Unity,
+            CHost::Unity,
             "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + upward * ddy(p.y);",
         ),
     ] {
@@ -320,13 +320,13 @@ fn hosts_code_is_complete() {
             "{}",
             hosted.text
         );
-        assert_eq!(hosted.upside_down, host == HlslHost::Unity);
+        assert_eq!(hosted.upside_down, host == CHost::Unity);
     }
 }
 
 #[test]
 fn adaptations_are_of_the_templates() {
-    for host in HlslHost::ALL {
+    for host in CHost::ALL {
         for (code, _) in host.adaptations() {
             assert!(
                 host.template().replace("$texture", "Texture2D").contains(code),
@@ -366,7 +366,7 @@ fn comments_do_not_continue() {
 fn sides_of_products_are_evaluated_in_their_order() {
     let text = "float n = 0.; mat2 m() { n += 1.; return mat2(n); } vec2 v() { n *= 5.; return vec2(n); }\n\
         void mainImage(out vec4 c, in vec2 p) { c = vec4(m() * v(), p); }";
-    assert!(converted(HlslHost::Hlsl, text).is_err());
+    assert!(converted(CHost::Hlsl, text).is_err());
 }
 
 #[test]
@@ -389,7 +389,7 @@ fn long_constants_are_folded_in_one_pass() {
         "void mainImage(out vec4 c, in vec2 p) {{ c = vec4({}); }}",
         vec!["1.0"; 20_000].join(" + ")
     );
-    let written = converted(HlslHost::Hlsl, &text).unwrap();
+    let written = converted(CHost::Hlsl, &text).unwrap();
     assert!(written.contains("1.0 + 1.0 + 1.0"), "{}", written.len());
 }
 
@@ -400,7 +400,7 @@ fn deep_statements_are_refused() {
         "float n = 0.; float f() {{ return ++n; }}\n\
          void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0); if (p.x > 9.) c.x = 1.;\n{arms} }}"
     );
-    assert!(converted(HlslHost::Hlsl, &text).is_err());
+    assert!(converted(CHost::Hlsl, &text).is_err());
 }
 
 #[test]
@@ -410,7 +410,7 @@ fn a_file_is_named_after_its_shader() {
     let file = files.add(File::new("shader", text));
     let checked = glsl::check(&files, file, &Options::default()).unwrap();
     let name = "class/a \"$texture0\".glsl";
-    let written = write(&checked, &files, HlslHost::Unity, name, &Deadline::default()).unwrap();
+    let written = write(&checked, &files, CHost::Unity, name, &Deadline::default()).unwrap();
     assert!(
         written.starts_with("Shader \"ShaderToy/a _$texture0_\" {\n"),
         "{written}"

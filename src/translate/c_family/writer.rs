@@ -8,8 +8,8 @@ use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
 
 use super::Unprintable;
 use super::effect::impure_functions;
-use super::host::HlslHost;
-use super::language::{Words, numeric_type};
+use super::host::CHost;
+use super::language::{Language, Words};
 use crate::author::{Comments, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::print::{Names, Order, Vocabulary};
@@ -20,7 +20,7 @@ pub(super) type PrintResult<T = ()> = Result<T, Unprintable>;
 pub(super) struct Writer<'a> {
     pub(super) cx: &'a LoweringContext,
     pub(super) names: &'a Names,
-    pub(super) host: HlslHost,
+    pub(super) host: CHost,
     pub(super) comments: Comments<'a>,
     pub(super) source: SourceText<'a>,
     pub(super) deadline: &'a Deadline,
@@ -48,7 +48,7 @@ impl<'a> Writer<'a> {
     pub(super) fn new(
         cx: &'a LoweringContext,
         names: &'a Names,
-        host: HlslHost,
+        host: CHost,
         files: &'a Files,
         deadline: &'a Deadline,
     ) -> Self {
@@ -72,6 +72,10 @@ impl<'a> Writer<'a> {
             reads_position: false,
             takes_derivatives: false,
         }
+    }
+
+    pub(super) fn language(&self) -> Language {
+        self.host.language()
     }
 
     /// Fails if the deadline has passed; [`super::write`] then reports that instead.
@@ -150,7 +154,7 @@ impl<'a> Writer<'a> {
         match ty {
             Type::Struct(id) => Ok(self.structure_name(id).to_owned()),
             Type::Void => Ok("void".to_owned()),
-            _ => numeric_type(ty).ok_or(Unprintable::Construct("this type")),
+            _ => self.language().numeric_type(ty).ok_or(Unprintable::Construct("this type")),
         }
     }
 

@@ -1,0 +1,65 @@
+//! Built-in functions: each language has its own names for some of them, and lacks a few.
+
+mod hlsl;
+
+use toyproof_glsl::tree::{BuiltIn, ExprId, Type};
+
+use super::Unprintable;
+use super::expression::Parts;
+use super::language::Language;
+use super::writer::{PrintResult, Writer};
+
+impl Writer<'_> {
+    pub(super) fn built_in(
+        &mut self,
+        function: BuiltIn,
+        arguments: &[ExprId],
+        ty: Type,
+    ) -> PrintResult<Parts> {
+        if function.is_texture() {
+            return self.lookup(function, arguments);
+        }
+        match self.language() {
+            Language::Hlsl => self.built_in_of_hlsl(function, arguments, ty),
+        }
+    }
+
+    /// Adds the function that divides a matrix by a number, column by column, and returns its name: some
+    /// compilers multiply by the reciprocal.
+    pub(super) fn division(&mut self, matrix: Type) -> PrintResult<String> {
+        let Type::Matrix { columns, .. } = matrix else {
+            return Err(Unprintable::Construct("this division"));
+        };
+        let columns: Vec<_> = (0..columns).map(|column| format!("x[{column}] / y")).collect();
+        let body = format!("return {}({});", self.type_name(matrix)?, columns.join(", "));
+        self.helper_function("divide", &[matrix, Type::FLOAT], matrix, "", &body)
+    }
+
+    /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and
+    /// returns its
+    /// name.
+    pub(super) fn helper_function(
+        &mut self,
+        name: &str,
+        types: &[Type],
+        returned: Type,
+        comment: &str,
+        body: &str,
+    ) -> PrintResult<String> {
+        if self.indent == 0 {
+            return Err(Unprintable::Construct(
+                "this built-in function in a global constant",
+            ));
+        }
+        let function = self.free(name);
+        let parameters = types
+            .iter()
+            .zip(["x", "y", "a"])
+            .map(|(&ty, name)| self.declarator(ty, name));
+        let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
+        let returned = self.type_name(returned)?;
+        let text = format!("{comment}{returned} {function}({parameters}) {{\n    {body}\n}}\n");
+        self.helpers.insert((function.clone(), parameters), text);
+        Ok(function)
+    }
+}

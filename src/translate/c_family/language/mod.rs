@@ -1,0 +1,125 @@
+//! What differs between the languages: types, words and passes. Their built-in functions are in
+//! [`super::builtin`].
+
+mod hlsl;
+
+use toyproof_glsl::tree::{Direction, Scalar, Type};
+
+use super::host::CHost;
+use crate::lower::{Pass, Passes};
+use crate::print::Vocabulary;
+
+/// A language with the syntax of C.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Language {
+    /// HLSL, and Slang as far as it is HLSL.
+    Hlsl,
+}
+
+impl Language {
+    /// The lowering passes for constructs that the language lacks too: those before `&&`, `||` and `?:` with
+    /// side effects are lowered, and those after.
+    pub(super) fn passes(self) -> (Passes, Passes) {
+        let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
+        let not_needed = match self {
+            Self::Hlsl => [
+                Pass::Folding,
+                Pass::Matrices,
+                Pass::Booleans,
+                Pass::Swizzles,
+                Pass::Indices,
+                Pass::Negations,
+                Pass::OutArguments,
+                Pass::Inequality,
+                Pass::Members,
+                Pass::Constants,
+                Pass::Globals,
+                Pass::Steps,
+                Pass::DoWhile,
+                Pass::DeadCode,
+                Pass::Nesting,
+            ],
+        };
+        let late = early
+            .into_iter()
+            .chain(not_needed)
+            .fold(Passes::required(), Passes::without);
+        let early = early.into_iter().fold(Passes::none(), Passes::with);
+        (early, late)
+    }
+
+    /// The name of a scalar, vector or matrix type.
+    pub(super) fn numeric_type(self, ty: Type) -> Option<String> {
+        Some(match ty {
+            Type::Scalar(scalar) => scalar_name(scalar).to_owned(),
+            Type::Vector(scalar, size) => format!("{}{size}", scalar_name(scalar)),
+            // A matrix of GLSL is stored with its columns as rows in HLSL, so that an index selects what it
+            // selects in GLSL; products exchange their sides.
+            Type::Matrix { columns, rows } => format!("float{columns}x{rows}"),
+            _ => return None,
+        })
+    }
+
+    /// The declaration of a parameter, of which `declared` states type and name.
+    pub(super) fn parameter(self, direction: Direction, declared: &str) -> String {
+        let word = match direction {
+            Direction::Out => "out ",
+            Direction::InOut => "inout ",
+            Direction::In | Direction::ConstIn => "",
+        };
+        format!("{word}{declared}")
+    }
+}
+
+fn scalar_name(scalar: Scalar) -> &'static str {
+    match scalar {
+        Scalar::Bool => "bool",
+        Scalar::Int => "int",
+        Scalar::Uint => "uint",
+        Scalar::Float => "float",
+    }
+}
+
+/// The names that are not free in the files of a host.
+pub(super) struct Words {
+    host: CHost,
+}
+
+impl Words {
+    pub(super) fn new(host: CHost) -> Self {
+        Self { host }
+    }
+}
+
+impl Vocabulary for Words {
+    fn is_reserved(&self, word: &str) -> bool {
+        let is_unitys = self.host == CHost::Unity && word.to_ascii_lowercase().starts_with("unity_");
+        let is_word = match self.host.language() {
+            Language::Hlsl => hlsl::is_reserved(word),
+        };
+        is_word || is_unitys
+    }
+
+    fn is_function(&self, word: &str) -> bool {
+        match self.host.language() {
+            Language::Hlsl => hlsl::is_function(word),
+        }
+    }
+
+    fn declared(&self) -> Vec<String> {
+        let declared = self.host.declared_words();
+        declared.into_iter().map(str::to_owned).collect()
+    }
+
+    fn has_scopes_of_c(&self) -> bool {
+        true
+    }
+
+    fn with_free_stem(&self, word: &str) -> String {
+        match word.trim_start_matches('_') {
+            _ if !word.starts_with("__") => word.to_owned(),
+            "" => "unused".to_owned(),
+            stem => stem.to_owned(),
+        }
+    }
+}
