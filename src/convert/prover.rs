@@ -327,7 +327,7 @@ impl Prover<'_> {
         let Runner::Driver(_) = self.runner else {
             return Err(ProofError::Binary);
         };
-        let compiled = tool::compile(Target::Hlsl, hosted.text.as_bytes())?;
+        let compiled = tool::compile_hosted(host.target(), &hosted.text)?;
         let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
         let artifact = ShaderArtifact::Words {
             words,

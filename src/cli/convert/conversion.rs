@@ -243,13 +243,13 @@ impl Settings<'_> {
             let name = format!("{}, {}", shader.name, pass.kind);
             self.output_file(Some(pass.name), pass.code, &name, &status)
         });
-        // It is complete when the host's file is there: its passes precede it.
-        let host = OutputFile {
-            name: Some(host.name.to_owned()),
-            bytes: host.text.into_bytes(),
-        };
+        // It is complete when the host's files are there: its passes precede them.
+        let host = host.into_iter().map(|file| OutputFile {
+            name: Some(file.name.to_owned()),
+            bytes: file.text.into_bytes(),
+        });
         Ok(Conversion {
-            files: passes.chain([host]).collect(),
+            files: passes.chain(host).collect(),
             status,
             fallback,
         })

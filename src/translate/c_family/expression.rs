@@ -8,6 +8,7 @@ use toyproof_glsl::tree::{
 
 use super::Unprintable;
 use super::effect::is_pure;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::author::{float, is_hexadecimal};
 
@@ -82,6 +83,10 @@ impl Writer<'_> {
             &ExprKind::Variable(variable) => (vec![Token(self.variable_code(variable)?)], level::POSTFIX),
             &ExprKind::Unary { op, operand } => match op {
                 UnaryOp::Plus => (vec![Print(operand, level::UNARY)], level::UNARY),
+                UnaryOp::Minus if self.language() == Language::Godot && is_matrix(tree[operand].ty) => {
+                    let level = BinaryOp::Multiply.precedence() + level::BINARY;
+                    (vec![Part::token("-1.0 * "), Print(operand, level + 1)], level)
+                }
                 // `- -x` without the space is another operator.
                 _ => (
                     vec![Part::token(op.symbol()), Print(operand, level::POSTFIX)],
@@ -200,6 +205,8 @@ impl Writer<'_> {
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
+            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
+            _ if self.language() == Language::Godot => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
                 if !self.is_pure(left) || !self.is_pure(right) {
                     // The arguments would be evaluated in the other order.
@@ -220,7 +227,6 @@ impl Writer<'_> {
                 parts.push(Part::token(")"));
                 (parts, level::POSTFIX)
             }
-            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
             _ => Self::infix(left, op, right),
         })
     }
@@ -232,13 +238,17 @@ impl Writer<'_> {
     fn assignment(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
-        if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
+        let is_hlsl = self.language() == Language::Hlsl;
+        if is_hlsl && op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
             if !self.is_pure(target) || !self.is_pure(value) {
                 return Err(Unprintable::Construct("a product of matrices with a side effect"));
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));
-        } else if op == Some(BinaryOp::Divide) && is_matrix_by_scalar(tree[target].ty, tree[value].ty) {
+        } else if is_hlsl
+            && op == Some(BinaryOp::Divide)
+            && is_matrix_by_scalar(tree[target].ty, tree[value].ty)
+        {
             if !self.is_pure(target) {
                 return Err(Unprintable::Construct(
                     "a matrix with a side effect that is divided",
@@ -267,13 +277,13 @@ impl Writer<'_> {
         Ok(self.variable(id).to_owned())
     }
 
-    /// The value of a declaration: lists in braces for structures and arrays.
+    /// The value of a declaration: lists in braces for arrays, and for structures in HLSL.
     pub(super) fn initializer(&mut self, id: ExprId) -> PrintResult<String> {
         match &self.cx.tree[id].kind {
             ExprKind::Construct {
                 constructor: Constructor::Struct | Constructor::Array,
                 arguments,
-            } => {
+            } if self.language() == Language::Hlsl || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
                 let arguments = arguments.clone();
                 let values = arguments.into_iter().map(|argument| self.initializer(argument));
                 let values = values.collect::<PrintResult<Vec<_>>>()?;
@@ -285,6 +295,9 @@ impl Writer<'_> {
 
     /// The value of a declaration whose every component is zero.
     pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
+        if self.language() == Language::Godot {
+            return self.zero_of_godot(ty);
+        }
         Ok(match ty {
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
@@ -294,6 +307,28 @@ impl Writer<'_> {
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
             Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
             _ => format!("({})0", self.type_name(ty)?),
+        })
+    }
+
+    fn zero_of_godot(&self, ty: Type) -> PrintResult<String> {
+        let list = |zeros: Vec<String>| zeros.join(", ");
+        Ok(match ty {
+            Type::Array(id) => {
+                let array = self.cx.tree.array(id);
+                let zeros = vec![self.zero(array.element)?; array.size as usize];
+                format!("{{ {} }}", list(zeros))
+            }
+            Type::Struct(id) => {
+                let members = self.cx.tree[id].members.iter().map(|member| self.zero(member.ty));
+                let zeros = members.collect::<PrintResult<Vec<_>>>()?;
+                format!("{}({})", self.structure_name(id), list(zeros))
+            }
+            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            _ => {
+                let scalar = ty.scalar().map_or(Type::FLOAT, Type::Scalar);
+                let zero = number(&Literal::from(zero_of(scalar)));
+                format!("{}({zero})", self.type_name(ty)?)
+            }
         })
     }
 
@@ -309,7 +344,8 @@ impl Writer<'_> {
             Value::Uint(_) => "uint",
             Value::Bool(_) => "bool",
         };
-        let declaration = format!("static const {ty} {name} = {code};");
+        let word = self.language().constant();
+        let declaration = format!("{word} {ty} {name} = {code};");
         let known = self.macros.entry(name.to_owned());
         // A macro may be redefined; its first definition keeps the name.
         if *known.or_insert_with(|| declaration.clone()) == declaration {
@@ -334,9 +370,12 @@ fn is_matrix_by_scalar(left: Type, right: Type) -> bool {
     matches!((left, right), (Type::Matrix { .. }, Type::Scalar(_)))
 }
 
+fn is_matrix(ty: Type) -> bool {
+    matches!(ty, Type::Matrix { .. })
+}
+
 /// Whether `*` is a product of linear algebra (§5.9).
 fn is_product(left: Type, right: Type) -> bool {
-    let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
     let is_operand = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
     (is_matrix(left) || is_matrix(right)) && is_operand(left) && is_operand(right)
 }

@@ -10,15 +10,17 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
-use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
-    Direction, ExprKind, Input, InputType, Place, SamplerShape, Type, VariableId, VariableKind,
+    Direction, ExprKind, Input, InputType, Place, SamplerShape, Scalar, Type, VariableId, VariableKind,
 };
+use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
 use super::Unprintable;
 use super::language::Language;
 use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
+use crate::backend::Target;
+use crate::lower::UPWARD;
 use crate::print::Order;
 use crate::template::{around_shader, channel_number, fill};
 
@@ -33,6 +35,8 @@ pub enum CHost {
     Unity,
     /// A pixel shader of Windows Terminal.
     WindowsTerminal,
+    /// A shader of Godot 4 for a `CanvasItem`.
+    Godot,
 }
 
 /// A row of the table.
@@ -58,7 +62,13 @@ struct Row {
 
 impl CHost {
     /// Every host.
-    pub const ALL: [Self; 4] = [Self::Hlsl, Self::Slang, Self::Unity, Self::WindowsTerminal];
+    pub const ALL: [Self; 5] = [
+        Self::Hlsl,
+        Self::Slang,
+        Self::Unity,
+        Self::WindowsTerminal,
+        Self::Godot,
+    ];
 
     fn row(self) -> Row {
         match self {
@@ -146,6 +156,17 @@ impl CHost {
                 declared: "upward shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
                 is_upside_down: true,
             },
+            Self::Godot => Row {
+                name: "godot",
+                title: "Godot",
+                language: Language::Godot,
+                extension: "gdshader",
+                template: include_str!("hosts/godot.gdshader"),
+                substitute: include_str!("hosts/godot_substitute.glsl"),
+                adaptations: &[],
+                declared: "",
+                is_upside_down: true,
+            },
         }
     }
 
@@ -165,6 +186,21 @@ impl CHost {
         self.row().language
     }
 
+    /// The language that compilers other than the host's read a file as ([`Self::hosted`]).
+    #[must_use]
+    pub fn target(self) -> Target {
+        match self.language() {
+            Language::Hlsl => Target::Hlsl,
+            Language::Godot => Target::Glsl,
+        }
+    }
+
+    /// Whether it has the bindings of the other languages, so that naga can write what our own writer cannot.
+    #[must_use]
+    pub fn is_plain(self) -> bool {
+        self == Self::Hlsl
+    }
+
     /// The extension of its files, without the dot.
     #[must_use]
     pub fn extension(self) -> &'static str {
@@ -174,7 +210,7 @@ impl CHost {
     /// Whether its passes are described by a graph, as those of our own bindings are.
     #[must_use]
     pub fn has_passes(self) -> bool {
-        matches!(self, Self::Hlsl | Self::Slang)
+        matches!(self, Self::Hlsl | Self::Slang | Self::Godot)
     }
 
     /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.
@@ -194,7 +230,11 @@ impl CHost {
             "iChannel2_sampler",
             "iChannel3_sampler",
         ];
-        let inputs = Input::ALL.iter().map(|input| input.name());
+        // What is passed to functions is declared by them.
+        let is_global = |input: &&Input| {
+            !self.language().passes_globals() || !matches!(input, Input::Resolution | Input::ChannelResolution)
+        };
+        let inputs = Input::ALL.iter().filter(is_global).map(|input| input.name());
         let own = self.row().declared.split(' ');
         own.chain(inputs).chain(CHANNELS).collect()
     }
@@ -219,6 +259,24 @@ impl CHost {
             || self.template().contains(&format!("#define {condition} "))
     }
 
+    /// A line of a file in the substitute for its host; `None` for lines that only the host reads.
+    fn line_in_substitute(self, line: &str) -> Option<String> {
+        let trimmed = line.trim();
+        match self.language() {
+            Language::Hlsl => {
+                let is_for_host = trimmed.starts_with("#pragma") || trimmed.starts_with("#include");
+                (!is_for_host).then(|| line.to_owned())
+            }
+            Language::Godot => {
+                let is_for_host = ["shader_type ", "render_mode ", "uniform "];
+                godots_channel(line).or_else(|| {
+                    let is_for_host = is_for_host.iter().any(|word| line.starts_with(word));
+                    (!is_for_host).then(|| line.to_owned())
+                })
+            }
+        }
+    }
+
     /// Embeds a written file in a substitute for its host, which reads our uniform block.
     #[must_use]
     pub fn hosted(self, text: &str, stage: Stage) -> HostedText {
@@ -232,23 +290,35 @@ impl CHost {
             (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
             _ => text,
         };
-        let is_for_host =
-            |line: &&str| !line.trim().starts_with("#pragma") && !line.trim().starts_with("#include");
-        let lines = program.lines().filter(is_for_host);
-        let program: String = lines.flat_map(|line| [line, "\n"]).collect();
+        let lines = program.lines().filter_map(|line| self.line_in_substitute(line));
+        let program: String = lines.flat_map(|line| [line, "\n".to_owned()]).collect();
         let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
         let program = self.adaptations().iter().fold(program, replace);
         let holds = |condition: &str| match channel_number(condition) {
             Some(channel) => program.contains(&format!("iChannel{channel}")),
             None => program.contains(condition),
         };
-        let values = [("$block", block())];
+        let values = [("$block", block(self.language()))];
         let [before, after] = around_shader(row.substitute).map(|part| fill(part, holds, &values));
         HostedText {
             text: format!("{before}{program}{after}"),
             upside_down,
         }
     }
+}
+
+/// The declaration of a channel in Godot's language, `uniform sampler2D iChannel0 : hints;`, for Vulkan: a
+/// texture and a sampler with our bindings. `None` for other lines.
+fn godots_channel(line: &str) -> Option<String> {
+    let (ty, rest) = line.strip_prefix("uniform sampler")?.split_once(' ')?;
+    let (name, _) = rest.split_once(" : ")?;
+    let channel: u32 = name.strip_prefix("iChannel")?.parse().ok()?;
+    let [texture, sampler] = [2 * channel + 1, 2 * channel + 2];
+    Some(format!(
+        "layout(set = 0, binding = {texture}) uniform texture{ty} toyproof_texture{channel};\n\
+         layout(set = 0, binding = {sampler}) uniform sampler toyproof_sampler{channel};\n\
+         #define {name} sampler{ty}(toyproof_texture{channel}, toyproof_sampler{channel})"
+    ))
 }
 
 /// What Windows Terminal declares.
@@ -264,25 +334,29 @@ cbuffer PixelShaderSettings : register(b0) {
 ";
 
 /// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
-fn block() -> String {
-    let mut text = "cbuffer ToyproofFrame : register(b0) {\n".to_owned();
+fn block(language: Language) -> String {
+    let mut text = match language {
+        Language::Hlsl => "cbuffer ToyproofFrame : register(b0) {\n",
+        Language::Godot => "layout(std140, set = 0, binding = 0) uniform ToyproofFrame {\n",
+    }
+    .to_owned();
     for input in Input::ALL {
+        // In a block, each element of an array has 16 bytes.
         let ty = match (input.ty(), input.length()) {
-            (InputType::Float, None) => "float",
-            (InputType::Int, _) => "int",
-            (InputType::Vec3, _) => "float3",
-            (InputType::Float, Some(_)) | (InputType::Vec4, _) => "float4",
+            (InputType::Float, Some(_)) | (InputType::Vec4, _) => Type::Vector(Scalar::Float, 4),
+            (InputType::Float, None) => Type::FLOAT,
+            (InputType::Int, _) => Type::INT,
+            (InputType::Vec3, _) => Type::Vector(Scalar::Float, 3),
         };
-        let length = input
-            .length()
-            .map_or_else(String::new, |length| format!("[{length}]"));
+        let length = input.length();
+        let length = length.map_or_else(String::new, |length| format!("[{length}]"));
+        let ty = language.numeric_type(ty).unwrap_or_default();
         let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
-        let _ = writeln!(
-            text,
-            "    {ty} toyproof_{}{length} : packoffset(c{}{component});",
-            input.name(),
-            input.offset() / 16
-        );
+        let place = match language {
+            Language::Hlsl => format!(" : packoffset(c{}{component})", input.offset() / 16),
+            Language::Godot => String::new(),
+        };
+        let _ = writeln!(text, "    {ty} toyproof_{}{length}{place};", input.name());
     }
     text + "};\n"
 }
@@ -302,7 +376,9 @@ impl Writer<'_> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
         let mut channels = BTreeMap::new();
-        for &id in &order.inputs {
+        let is_unread = |&id: &VariableId| !order.inputs.contains(&id);
+        let passed = self.passed.iter().copied().filter(is_unread);
+        for id in order.inputs.iter().copied().chain(passed) {
             match (tree[id].kind, tree[id].ty) {
                 (VariableKind::Channel(channel), Type::Sampler(sampler)) => {
                     if !self.host.knows(&format!("channel{channel}")) {
@@ -325,8 +401,8 @@ impl Writer<'_> {
         let holds = |condition: &str| match condition {
             "inputs" => !inputs.is_empty(),
             "channels" => !channels.is_empty(),
-            "position" => self.reads_position,
-            "derivatives" => self.takes_derivatives,
+            "position" => self.reads_position || self.passes("position"),
+            "derivatives" => self.takes_derivatives || self.passes(UPWARD),
             "image" => self.cx.stage == Stage::Image,
             "buffer" => self.cx.stage != Stage::Image,
             "inout" => brings_color,
@@ -340,8 +416,13 @@ impl Writer<'_> {
         let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
-            values.push((value, texture_type(shape).to_owned()));
+            values.push((value, texture_type(self.language(), shape).to_owned()));
         }
+        for (sampling, value) in self.cx.sampling.into_iter().zip(["$sampling0", "$sampling1", "$sampling2", "$sampling3"]) {
+            values.push((value, hints(sampling)));
+        }
+        let passed = self.passed.iter().map(|&id| format!(", {}", self.cx.tree[id].name));
+        values.push(("$passed", passed.collect()));
         // The last, since a name may contain those of other values.
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
@@ -360,6 +441,11 @@ impl Writer<'_> {
             text
         });
         Ok(format!("{first}{before}{text}{after}"))
+    }
+
+    /// Whether `mainImage` gets this from the host's entry point.
+    fn passes(&self, name: &str) -> bool {
+        self.passed.iter().any(|&id| self.cx.tree[id].name == name)
     }
 
     /// The first place where a variable is used.
@@ -382,4 +468,18 @@ impl Writer<'_> {
             diagnostic.help("use `--style plain`, which has every input and channel"),
         ))
     }
+}
+
+/// How Godot samples a texture.
+fn hints(sampling: Sampling) -> String {
+    let filter = match sampling.filter {
+        Filter::Nearest => "filter_nearest",
+        Filter::Linear => "filter_linear",
+        Filter::Mipmap => "filter_linear_mipmap",
+    };
+    let wrap = match sampling.wrap {
+        Wrap::Clamp => "repeat_disable",
+        Wrap::Repeat => "repeat_enable",
+    };
+    format!("{filter}, {wrap}")
 }

@@ -9,6 +9,7 @@ mod builtin;
 mod construct;
 mod effect;
 mod expression;
+mod globals;
 mod host;
 mod item;
 mod language;
@@ -49,12 +50,14 @@ pub fn write(
     branch_for_effects(&mut cx);
     name_array_values(&mut cx);
     late.run(&mut cx, deadline)?;
+    let passed = globals::pass(&mut cx, host)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);
     deadline.check()?;
     let names = Names::new(&cx, &order, &Words::new(host));
     deadline.check()?;
-    let writer = Writer::new(&cx, &names, host, files, deadline);
+    let mut writer = Writer::new(&cx, &names, host, files, deadline);
+    writer.passed = &passed;
     let written = writer.write(&order, name);
     // An expired deadline also makes the writer fail.
     deadline.check()?;

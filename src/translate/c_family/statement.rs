@@ -8,6 +8,7 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::lower::is_written_first;
 
@@ -118,7 +119,10 @@ impl Writer<'_> {
             _ => None,
         };
         let ty = self.cx.tree[id].ty;
-        let large = large.filter(|_| self.element_count(ty) > MAX_ZEROS);
+        // Only HLSL has a short form of a zero structure.
+        let is_long = |element| self.language() != Language::Hlsl && matches!(element, Type::Struct(_));
+        let large =
+            large.filter(|array| self.element_count(ty) > MAX_ZEROS || is_long(array.element));
         let code = self.declaration(id, needs_value && large.is_none())?;
         self.line(&format!("{code};"));
         if let Some(array) = large {
@@ -148,10 +152,11 @@ impl Writer<'_> {
         let is_constant = variable.kind == VariableKind::Const;
         let word = match variable.ty {
             // Arrays of constants are not copied to the stack in each call.
-            Type::Array(_) if is_constant && variable.value.is_some() => "static const ",
-            _ if is_constant => "const ",
+            Type::Array(_) if is_constant && variable.value.is_some() => self.language().constant(),
+            _ if is_constant => "const",
             _ => "",
         };
+        let word = if word.is_empty() { String::new() } else { format!("{word} ") };
         let value = match variable.initializer {
             Some(value) => self.initializer(value)?,
             None if needs_value => self.zero(variable.ty)?,

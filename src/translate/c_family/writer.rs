@@ -42,6 +42,8 @@ pub(super) struct Writer<'a> {
     pub(super) reads_position: bool,
     /// Whether derivatives along y are taken, whose sign depends on the host.
     pub(super) takes_derivatives: bool,
+    /// What `mainImage` gets from the host's entry point besides its color and coordinates.
+    pub(super) passed: &'a [VariableId],
 }
 
 impl<'a> Writer<'a> {
@@ -71,6 +73,7 @@ impl<'a> Writer<'a> {
             failed_at: None,
             reads_position: false,
             takes_derivatives: false,
+            passed: &[],
         }
     }
 
@@ -145,6 +148,9 @@ impl<'a> Writer<'a> {
             let array = self.cx.tree.array(id);
             let _ = write!(sizes, "[{}]", array.size);
             element = array.element;
+            if self.language() == Language::Godot && matches!(element, Type::Array(_)) {
+                return Err(Unprintable::Construct("an array of arrays"));
+            }
         }
         Ok(format!("{} {name}{sizes}", self.type_name(element)?))
     }
@@ -154,7 +160,10 @@ impl<'a> Writer<'a> {
         match ty {
             Type::Struct(id) => Ok(self.structure_name(id).to_owned()),
             Type::Void => Ok("void".to_owned()),
-            _ => self.language().numeric_type(ty).ok_or(Unprintable::Construct("this type")),
+            _ => {
+                let name = self.language().numeric_type(ty);
+                name.ok_or(Unprintable::Construct("this type"))
+            }
         }
     }
 

@@ -1,9 +1,10 @@
 //! What differs between the languages: types, words and passes. Their built-in functions are in
 //! [`super::builtin`].
 
+mod godot;
 mod hlsl;
 
-use toyproof_glsl::tree::{Direction, Scalar, Type};
+use toyproof_glsl::tree::{Direction, Type};
 
 use super::host::CHost;
 use crate::lower::{Pass, Passes};
@@ -14,6 +15,8 @@ use crate::print::Vocabulary;
 pub(super) enum Language {
     /// HLSL, and Slang as far as it is HLSL.
     Hlsl,
+    /// The shading language of Godot 4: GLSL with fewer constructs, and without global variables.
+    Godot,
 }
 
 impl Language {
@@ -21,8 +24,8 @@ impl Language {
     /// side effects are lowered, and those after.
     pub(super) fn passes(self) -> (Passes, Passes) {
         let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
-        let not_needed = match self {
-            Self::Hlsl => [
+        let not_needed: &[Pass] = match self {
+            Self::Hlsl => &[
                 Pass::Folding,
                 Pass::Matrices,
                 Pass::Booleans,
@@ -39,10 +42,23 @@ impl Language {
                 Pass::DeadCode,
                 Pass::Nesting,
             ],
+            Self::Godot => &[
+                Pass::Folding,
+                Pass::MissingBuiltIns,
+                Pass::Booleans,
+                Pass::Inequality,
+                Pass::Members,
+                Pass::Constants,
+                Pass::Globals,
+                Pass::Steps,
+                Pass::DoWhile,
+                Pass::DeadCode,
+                Pass::Nesting,
+            ],
         };
         let late = early
             .into_iter()
-            .chain(not_needed)
+            .chain(not_needed.iter().copied())
             .fold(Passes::required(), Passes::without);
         let early = early.into_iter().fold(Passes::none(), Passes::with);
         (early, late)
@@ -50,14 +66,30 @@ impl Language {
 
     /// The name of a scalar, vector or matrix type.
     pub(super) fn numeric_type(self, ty: Type) -> Option<String> {
+        if self == Self::Godot {
+            return godot::numeric_type(ty);
+        }
         Some(match ty {
-            Type::Scalar(scalar) => scalar_name(scalar).to_owned(),
-            Type::Vector(scalar, size) => format!("{}{size}", scalar_name(scalar)),
+            Type::Scalar(scalar) => scalar.name().to_owned(),
+            Type::Vector(scalar, size) => format!("{}{size}", scalar.name()),
             // A matrix of GLSL is stored with its columns as rows in HLSL, so that an index selects what it
             // selects in GLSL; products exchange their sides.
             Type::Matrix { columns, rows } => format!("float{columns}x{rows}"),
             _ => return None,
         })
+    }
+
+    /// Whether functions see no variables at global scope, other than constants and inputs.
+    pub(super) fn passes_globals(self) -> bool {
+        self == Self::Godot
+    }
+
+    /// The words that declare a constant at global scope.
+    pub(super) fn constant(self) -> &'static str {
+        match self {
+            Self::Hlsl => "static const",
+            Self::Godot => "const",
+        }
     }
 
     /// The declaration of a parameter, of which `declared` states type and name.
@@ -68,15 +100,6 @@ impl Language {
             Direction::In | Direction::ConstIn => "",
         };
         format!("{word}{declared}")
-    }
-}
-
-fn scalar_name(scalar: Scalar) -> &'static str {
-    match scalar {
-        Scalar::Bool => "bool",
-        Scalar::Int => "int",
-        Scalar::Uint => "uint",
-        Scalar::Float => "float",
     }
 }
 
@@ -96,6 +119,7 @@ impl Vocabulary for Words {
         let is_unitys = self.host == CHost::Unity && word.to_ascii_lowercase().starts_with("unity_");
         let is_word = match self.host.language() {
             Language::Hlsl => hlsl::is_reserved(word),
+            Language::Godot => godot::is_reserved(word),
         };
         is_word || is_unitys
     }
@@ -103,6 +127,7 @@ impl Vocabulary for Words {
     fn is_function(&self, word: &str) -> bool {
         match self.host.language() {
             Language::Hlsl => hlsl::is_function(word),
+            Language::Godot => godot::is_function(word),
         }
     }
 
