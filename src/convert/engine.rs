@@ -17,6 +17,8 @@ struct Player {
     before: &'static str,
     /// What follows it.
     after: &'static str,
+    /// How quotation marks are written in the graph.
+    quote: &'static str,
 }
 
 fn player(host: CHost) -> Option<Player> {
@@ -27,6 +29,14 @@ fn player(host: CHost) -> Option<Player> {
             others: &[("main.tscn", include_str!("engines/godot.tscn"))],
             before: "const GRAPH := ",
             after: "\n\n## The key codes",
+            quote: "\"",
+        }),
+        CHost::Unity => Some(Player {
+            script: ("ShaderToyPlayer.cs", include_str!("engines/unity.cs")),
+            others: &[],
+            before: "const string GraphText = @\"",
+            after: "\";\n\n    [Serializable]",
+            quote: "\"\"",
         }),
         _ => None,
     }
@@ -35,8 +45,14 @@ fn player(host: CHost) -> Option<Player> {
 /// The files that play a graph in an engine; the script is last. `None` for hosts that read the graph's own
 /// file.
 pub(crate) fn files(host: CHost, graph: &GraphFile) -> Option<Vec<HostFile>> {
-    let Player { script, others, .. } = player(host)?;
-    let script = (script.0, script.1.replace("$graph", graph.to_json().trim_end()));
+    let Player {
+        script,
+        others,
+        quote,
+        ..
+    } = player(host)?;
+    let graph = graph.to_json().replace('"', quote);
+    let script = (script.0, script.1.replace("$graph", graph.trim_end()));
     let others = others.iter().map(|&(name, text)| (name, text.to_owned()));
     let files = others.chain([script]).map(|(name, text)| HostFile { name, text });
     Some(files.collect())
@@ -48,7 +64,9 @@ pub(crate) fn files(host: CHost, graph: &GraphFile) -> Option<Vec<HostFile>> {
 /// What is wrong with it.
 pub(crate) fn read(host: CHost, host_graph: &HostGraph, script: &str) -> Result<GraphContent, String> {
     let player = player(host).ok_or("no script")?;
-    let graph = script.split_once(player.before).and_then(|(_, rest)| rest.split_once(player.after));
+    let graph = script
+        .split_once(player.before)
+        .and_then(|(_, rest)| rest.split_once(player.after));
     let (graph, _) = graph.ok_or("the script has no graph")?;
-    host_graph.read(graph)
+    host_graph.read(&graph.replace(player.quote, "\""))
 }

@@ -43,7 +43,7 @@ use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, UniformMode};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::{self, CHost};
+use toyproof_translate::c_family::{self, CHost, Title};
 use toyproof_translate::wgsl::{self, Style};
 use toyproof_translate::{FloatMode, Lowered, Unprintable, WriteFailure};
 
@@ -227,14 +227,13 @@ impl Conversion {
 
 impl Converter {
     /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL and
-    /// HLSL that our own writer cannot write, or that is not proved, is naga's. `name` is the shader's.
-    ///
+    /// HLSL that our own writer cannot write, or that is not proved, is naga's.     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.
     pub fn convert(
         &self,
         source: Source,
-        name: &str,
+        title: Title,
         translator: &mut Worker,
         mut prover: Option<&mut Prover>,
     ) -> Result<Conversion, ConvertError> {
@@ -251,7 +250,7 @@ impl Converter {
             return Conversion::new(source, written, prover);
         }
         let own = match self.c_host {
-            Some(host) => self.write_c(source, host, name),
+            Some(host) => self.write_c(source, host, title),
             None => self.write_wgsl(source, translator),
         };
         let own = own.and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
@@ -348,9 +347,9 @@ impl Converter {
     }
 
     /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
-    fn write_c(&self, source: Source, host: CHost, name: &str) -> Result<TargetCode, ConvertError> {
+    fn write_c(&self, source: Source, host: CHost, title: Title) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = c_family::write(source.checked, source.files, host, name, &deadline);
+        let text = c_family::write(source.checked, source.files, host, title, &deadline);
         match text {
             Ok(text) => Ok(TargetCode::CFamily(text, host)),
             Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),

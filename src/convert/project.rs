@@ -7,7 +7,7 @@ use toyproof_gpu::Worker;
 use toyproof_player::BufferFormat;
 use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, UnsupportedPass};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::CHost;
+use toyproof_translate::c_family::{CHost, Title};
 use toyproof_translate::wgsl::Style;
 
 use crate::engine;
@@ -175,7 +175,12 @@ impl Converter {
         let mut codes = Vec::new();
         let mut fallback = None;
         for (pass, &source) in sources.iter().enumerate() {
-            let converted = self.convert(source, name, translator, None);
+            let pass_name = target_name(host_graph.graph.passes()[pass].target);
+            let title = Title {
+                name,
+                pass: Some(pass_name),
+            };
+            let converted = self.convert(source, title, translator, None);
             let converted = converted.map_err(|error| ProjectError::Pass {
                 pass: kind(pass),
                 error,
@@ -233,9 +238,12 @@ impl Converter {
             return Ok((vec![host], host_graph.content()));
         }
         let language = self.target.map_or("lowered", Target::name);
-        // Metal reserves `main`.
-        let is_metal = self.target == Some(Target::Msl);
-        let entry_point = if is_metal { "main_" } else { "main" };
+        let entry_point = match (self.c_host, self.target) {
+            (Some(CHost::Godot | CHost::Unity), _) => "fragment",
+            // Metal reserves `main`.
+            (_, Some(Target::Msl)) => "main_",
+            _ => "main",
+        };
         let file = host_graph.file(name, language, entry_point, names);
         if let Some(host) = self.c_host
             && let Some(files) = engine::files(host, &file)

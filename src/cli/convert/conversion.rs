@@ -16,6 +16,7 @@ use toyproof_gpu::{Failure, Worker};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_project::{CompiledProject, PassKind};
 use toyproof_translate::Unprintable;
+use toyproof_translate::c_family::Title;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable};
@@ -160,7 +161,9 @@ impl Settings<'_> {
             files: &shader.files,
         };
         let name = shader.name.as_str();
-        let converted = self.converter.convert(source, name, translator, prover.as_mut());
+        let converted = self
+            .converter
+            .convert(source, Title::of_shader(name), translator, prover.as_mut());
         let convert::Conversion {
             code,
             proof,

@@ -119,7 +119,8 @@ impl Writer<'_> {
             if position > 0 {
                 parts.push(Part::token(", "));
             }
-            let converts = self.language() == Language::Godot && self.cx.tree[argument].ty.scalar() != Some(scalar);
+            let converts =
+                self.language() == Language::Godot && self.cx.tree[argument].ty.scalar() != Some(scalar);
             if count > room {
                 parts.extend([Part::Print(argument, level::POSTFIX), Part::token(first(room))]);
             } else if converts && arguments.len() > 1 {

@@ -15,13 +15,15 @@ pub(super) fn pass(cx: &mut LoweringContext, host: CHost) -> PrintResult<Vec<Var
     if !host.language().passes_globals() {
         return Ok(Vec::new());
     }
-    if host.is_upside_down(cx.stage) {
+    if host.orients_derivatives(cx.stage) {
         orient_derivatives(cx);
     }
     for id in cx.tree.variables.ids() {
         let variable = &mut cx.tree[id];
         // Names that begin with `gl_` are reserved.
-        if variable.kind == VariableKind::BuiltIn(BuiltInVariable::FragCoord) && variable.name.starts_with("gl_") {
+        if variable.kind == VariableKind::BuiltIn(BuiltInVariable::FragCoord)
+            && variable.name.starts_with("gl_")
+        {
             "position".clone_into(&mut variable.name);
         }
     }

@@ -15,10 +15,10 @@ use toyproof_glsl::tree::{
 };
 use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
-use super::Unprintable;
 use super::language::Language;
 use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
+use super::{Title, Unprintable};
 use crate::backend::Target;
 use crate::lower::UPWARD;
 use crate::print::Order;
@@ -116,10 +116,15 @@ impl CHost {
                     (" iChannel1;", " iChannel1 : register(t3);"),
                     (" iChannel2;", " iChannel2 : register(t5);"),
                     (" iChannel3;", " iChannel3 : register(t7);"),
+                    ("iChannel0_state;", "iChannel0_state : register(s2);"),
+                    ("iChannel1_state;", "iChannel1_state : register(s4);"),
+                    ("iChannel2_state;", "iChannel2_state : register(s6);"),
+                    ("iChannel3_state;", "iChannel3_state : register(s8);"),
                     (" sampleriChannel0;", " sampleriChannel0 : register(s2);"),
                     (" sampleriChannel1;", " sampleriChannel1 : register(s4);"),
                     (" sampleriChannel2;", " sampleriChannel2 : register(s6);"),
                     (" sampleriChannel3;", " sampleriChannel3 : register(s8);"),
+                    ("float4 outputSize;", ""),
                     ("float4 iChannel0_TexelSize;", ""),
                     ("float4 iChannel1_TexelSize;", ""),
                     ("float4 iChannel2_TexelSize;", ""),
@@ -130,7 +135,7 @@ impl CHost {
                     GammaToLinearSpaceExact LinearToGammaSpace LinearToGammaSpaceExact LinearEyeDepth Linear01Depth \
                     EncodeFloatRGBA DecodeFloatRGBA EncodeFloatRG DecodeFloatRG DecodeHDR DecodeLightmap \
                     UnpackNormal ParallaxOffset Shade4PointLights ShadeSH9 SampleSH fixed fixed2 fixed3 fixed4 \
-                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward",
+                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward outputSize",
                 is_upside_down: true,
             },
             Self::WindowsTerminal => Row {
@@ -210,12 +215,18 @@ impl CHost {
     /// Whether its passes are described by a graph, as those of our own bindings are.
     #[must_use]
     pub fn has_passes(self) -> bool {
-        matches!(self, Self::Hlsl | Self::Slang | Self::Godot)
+        self != Self::WindowsTerminal
     }
 
     /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.
     pub(super) fn is_upside_down(self, stage: Stage) -> bool {
         self.row().is_upside_down && stage == Stage::Image
+    }
+
+    /// Whether derivatives along y must be multiplied by the direction of y in the target. What Unity renders
+    /// to a texture is upside down in some graphics APIs.
+    pub(super) fn orients_derivatives(self, stage: Stage) -> bool {
+        self.is_upside_down(stage) || self == Self::Unity
     }
 
     /// The names that the code around a shader declares.
@@ -232,7 +243,8 @@ impl CHost {
         ];
         // What is passed to functions is declared by them.
         let is_global = |input: &&Input| {
-            !self.language().passes_globals() || !matches!(input, Input::Resolution | Input::ChannelResolution)
+            !self.language().passes_globals()
+                || !matches!(input, Input::Resolution | Input::ChannelResolution)
         };
         let inputs = Input::ALL.iter().filter(is_global).map(|input| input.name());
         let own = self.row().declared.split(' ');
@@ -295,6 +307,8 @@ impl CHost {
         let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
         let program = self.adaptations().iter().fold(program, replace);
         let holds = |condition: &str| match channel_number(condition) {
+            _ if condition == "image" => stage == Stage::Image,
+            _ if condition == "buffer" => stage != Stage::Image,
             Some(channel) => program.contains(&format!("iChannel{channel}")),
             None => program.contains(condition),
         };
@@ -372,7 +386,7 @@ pub struct HostedText {
 
 impl Writer<'_> {
     /// The whole file: the author's first comment, and the text in the host's code.
-    pub(super) fn embed(&self, order: &Order, first: &str, text: &str, name: &str) -> PrintResult<String> {
+    pub(super) fn embed(&self, order: &Order, first: &str, text: &str, title: Title) -> PrintResult<String> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
         let mut channels = BTreeMap::new();
@@ -405,6 +419,8 @@ impl Writer<'_> {
             "derivatives" => self.takes_derivatives || self.passes(UPWARD),
             "image" => self.cx.stage == Stage::Image,
             "buffer" => self.cx.stage != Stage::Image,
+            "single" => title.pass.is_none(),
+            "pass" => title.pass.is_some(),
             "inout" => brings_color,
             "out" => !brings_color,
             "no_channels" => channels.is_empty(),
@@ -418,16 +434,30 @@ impl Writer<'_> {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
             values.push((value, texture_type(self.language(), shape).to_owned()));
         }
-        for (sampling, value) in self.cx.sampling.into_iter().zip(["$sampling0", "$sampling1", "$sampling2", "$sampling3"]) {
-            values.push((value, hints(sampling)));
+        let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
+        for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
+            let sampling = match self.language() {
+                Language::Godot => hints(sampling),
+                Language::Hlsl => inline_sampler(sampling).to_owned(),
+            };
+            values.push((value, sampling));
         }
-        let passed = self.passed.iter().map(|&id| format!(", {}", self.cx.tree[id].name));
+        let passed = self
+            .passed
+            .iter()
+            .map(|&id| format!(", {}", self.cx.tree[id].name));
         values.push(("$passed", passed.collect()));
         // The last, since a name may contain those of other values.
-        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
-        let stem: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        values.push(("$name", stem));
+        let name = match title.pass {
+            Some(pass) => format!("{}/{pass}", title.name),
+            None => {
+                let stem = Path::new(title.name).file_stem().unwrap_or_default();
+                stem.to_string_lossy().into_owned()
+            }
+        };
+        let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        values.push(("$name", name));
         let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);
@@ -467,6 +497,18 @@ impl Writer<'_> {
         Unprintable::Host(Box::new(
             diagnostic.help("use `--style plain`, which has every input and channel"),
         ))
+    }
+}
+
+/// The name of a sampler of Unity, whose words say how it samples (“Using sampler states” in its manual).
+fn inline_sampler(sampling: Sampling) -> &'static str {
+    match (sampling.filter, sampling.wrap) {
+        (Filter::Nearest, Wrap::Clamp) => "point_clamp_",
+        (Filter::Nearest, Wrap::Repeat) => "point_repeat_",
+        (Filter::Linear, Wrap::Clamp) => "linear_clamp_",
+        (Filter::Linear, Wrap::Repeat) => "linear_repeat_",
+        (Filter::Mipmap, Wrap::Clamp) => "trilinear_clamp_",
+        (Filter::Mipmap, Wrap::Repeat) => "trilinear_repeat_",
     }
 }
 

@@ -85,7 +85,11 @@ impl Writer<'_> {
         }
         let is_constant = variable.kind == VariableKind::Const
             || variable.kind == VariableKind::Uniform && variable.initializer.is_some();
-        let word = if is_constant { self.language().constant() } else { "static" };
+        let word = if is_constant {
+            self.language().constant()
+        } else {
+            "static"
+        };
         let declared = self.declarator(variable.ty, self.variable(id))?;
         let value = match variable.initializer {
             Some(value) => format!(" = {}", self.initializer(value)?),

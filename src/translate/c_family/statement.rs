@@ -121,8 +121,7 @@ impl Writer<'_> {
         let ty = self.cx.tree[id].ty;
         // Only HLSL has a short form of a zero structure.
         let is_long = |element| self.language() != Language::Hlsl && matches!(element, Type::Struct(_));
-        let large =
-            large.filter(|array| self.element_count(ty) > MAX_ZEROS || is_long(array.element));
+        let large = large.filter(|array| self.element_count(ty) > MAX_ZEROS || is_long(array.element));
         let code = self.declaration(id, needs_value && large.is_none())?;
         self.line(&format!("{code};"));
         if let Some(array) = large {
@@ -156,7 +155,11 @@ impl Writer<'_> {
             _ if is_constant => "const",
             _ => "",
         };
-        let word = if word.is_empty() { String::new() } else { format!("{word} ") };
+        let word = if word.is_empty() {
+            String::new()
+        } else {
+            format!("{word} ")
+        };
         let value = match variable.initializer {
             Some(value) => self.initializer(value)?,
             None if needs_value => self.zero(variable.ty)?,

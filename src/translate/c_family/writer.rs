@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
 
-use super::Unprintable;
 use super::effect::impure_functions;
 use super::host::CHost;
 use super::language::{Language, Words};
+use super::{Title, Unprintable};
 use crate::author::{Comments, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::print::{Names, Order, Vocabulary};
@@ -201,7 +201,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Prints the whole text: the author's first comment, and the items in the host's code.
-    pub(super) fn write(mut self, order: &Order, name: &str) -> PrintResult<String> {
+    pub(super) fn write(mut self, order: &Order, title: Title) -> PrintResult<String> {
         let entry = self.cx.tree[self.cx.main_image].at;
         let mut first = self.comments.first(entry).join("\n");
         if !first.is_empty() {
@@ -238,7 +238,7 @@ impl<'a> Writer<'a> {
             }
         }
         text += shader.trim_start_matches('\n');
-        self.embed(order, &first, &text, name)
+        self.embed(order, &first, &text, title)
     }
 }
 

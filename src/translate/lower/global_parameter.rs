@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltIn, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Input, Item, 
-    Statement, StatementKind, Tree, Type, Variable, VariableId, VariableKind, walk,
+    BinaryOp, BuiltIn, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Input, Item, Statement,
+    StatementKind, Tree, Type, Variable, VariableId, VariableKind, walk,
 };
 
 use crate::lower::context::LoweringContext;
@@ -199,7 +199,9 @@ fn check(tree: &Tree, uses: &BTreeMap<FunctionId, Uses>, main: FunctionId) -> Re
         let Some(used) = uses.get(&function) else { continue };
         let mut is_aliased = false;
         tree.each_write(id, |target, _| {
-            is_aliased |= tree.root_variable(target).is_some_and(|root| used.contains_key(&root));
+            is_aliased |= tree
+                .root_variable(target)
+                .is_some_and(|root| used.contains_key(&root));
         });
         if is_aliased {
             return Err(GlobalConflict::Aliased);
@@ -268,7 +270,10 @@ pub(crate) fn orient_derivatives(cx: &mut LoweringContext) {
         return;
     }
     let kind = VariableKind::BuiltIn(BuiltInVariable::FragCoord);
-    let upward = cx.tree.variables.push(Variable::new(UPWARD, Type::FLOAT, kind, None));
+    let upward = cx
+        .tree
+        .variables
+        .push(Variable::new(UPWARD, Type::FLOAT, kind, None));
     cx.each_expression(|cx, id| {
         if is_derivative(&cx.tree[id].kind) {
             let mut build = cx.build_at(id);

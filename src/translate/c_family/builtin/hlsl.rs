@@ -34,7 +34,7 @@ impl Writer<'_> {
                 parts.push(Part::token(")"));
                 return Ok((parts, level::POSTFIX));
             }
-            B::DFdy if self.host.is_upside_down(self.cx.stage) => {
+            B::DFdy if self.host.orients_derivatives(self.cx.stage) => {
                 self.takes_derivatives = true;
                 let mut parts = vec![Part::token("upward * ")];
                 parts.extend(Self::call("ddy", arguments));
