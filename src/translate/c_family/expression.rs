@@ -117,6 +117,9 @@ impl Writer<'_> {
                 ];
                 (parts, level::CONDITIONAL)
             }
+            ExprKind::Sequence { .. } if self.language() == Language::Godot => {
+                return Err(Unprintable::Construct("`a, b` here"));
+            }
             &ExprKind::Sequence { first, second } => {
                 let parts = vec![
                     Print(first, level::SEQUENCE),
@@ -206,6 +209,18 @@ impl Writer<'_> {
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
             BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
+            BinaryOp::ShiftLeft | BinaryOp::ShiftRight if self.language() == Language::Godot => {
+                let (mut parts, level) = Self::infix(left, op, right);
+                let ty = match right_type {
+                    Type::Vector(_, size) => left_type.scalar().map(|scalar| Type::Vector(scalar, size)),
+                    _ => left_type.scalar().map(Type::Scalar),
+                };
+                if let Some(ty) = ty.filter(|&ty| ty != right_type) {
+                    parts.pop();
+                    parts.extend(Self::call(self.type_name(ty)?, &[right]));
+                }
+                (parts, level)
+            }
             _ if self.language() == Language::Godot => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
                 if !self.is_pure(left) || !self.is_pure(right) {

@@ -4,14 +4,14 @@
 //! A host whose files only its engine completes has a second template: a substitute for the engine, so that
 //! other compilers read the written code.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::tree::{
-    Direction, ExprKind, Input, InputType, Place, SamplerShape, Scalar, Type, VariableId, VariableKind,
+    Direction, ExprKind, Input, InputType, Item, Place, SamplerShape, Scalar, Type, VariableId, VariableKind,
 };
 use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
@@ -335,6 +335,15 @@ fn godots_channel(line: &str) -> Option<String> {
     ))
 }
 
+/// The names of the variables of an entry point, as templates name them.
+const LOCALS: [(&str, &str); 5] = [
+    ("$size", "size"),
+    ("$coordinates", "fragCoord"),
+    ("$position", "position"),
+    ("$upward", UPWARD),
+    ("$color", "color"),
+];
+
 /// What Windows Terminal declares.
 const TERMINALS_BLOCK: &str = "\
 Texture2D shaderTexture : register(t0);
@@ -442,10 +451,22 @@ impl Writer<'_> {
             };
             values.push((value, sampling));
         }
+        // Names in the entry point that nothing at global scope has.
+        let taken = self.global_names(order);
+        let local = |stem: &str| {
+            let mut name = stem.to_owned();
+            while taken.contains(name.as_str()) {
+                name.push('_');
+            }
+            name
+        };
+        for (value, name) in LOCALS {
+            values.push((value, local(name)));
+        }
         let passed = self
             .passed
             .iter()
-            .map(|&id| format!(", {}", self.cx.tree[id].name));
+            .map(|&id| format!(", {}", local(&self.cx.tree[id].name)));
         values.push(("$passed", passed.collect()));
         // The last, since a name may contain those of other values.
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
@@ -471,6 +492,17 @@ impl Writer<'_> {
             text
         });
         Ok(format!("{first}{before}{text}{after}"))
+    }
+
+    /// The names of the shader's functions, structures and constants.
+    fn global_names(&self, order: &Order) -> HashSet<&str> {
+        let items = order.items.iter().filter_map(|&item| match item {
+            Item::Variable(id) => Some(self.variable(id)),
+            Item::Function(id) => Some(self.function(id)),
+            Item::Struct(id) => Some(self.structure_name(id)),
+            Item::Prototype(_) => None,
+        });
+        items.chain(self.macros.keys().map(String::as_str)).collect()
     }
 
     /// Whether `mainImage` gets this from the host's entry point.

@@ -83,8 +83,8 @@ impl Writer<'_> {
         if let Some(at) = variable.at {
             self.comment(at);
         }
-        let is_constant = variable.kind == VariableKind::Const
-            || variable.kind == VariableKind::Uniform && variable.initializer.is_some();
+        // A uniform that nothing sets is zero.
+        let is_constant = matches!(variable.kind, VariableKind::Const | VariableKind::Uniform);
         let word = if is_constant {
             self.language().constant()
         } else {

@@ -23,10 +23,10 @@ pub use host::{CHost, HostedText};
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 
-use self::language::Words;
+use self::language::{Language, Words};
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{branch_for_effects, fold_by_precision, fold_except, name_array_values};
+use crate::lower::{branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -66,6 +66,9 @@ pub fn write(
     branch_for_effects(&mut cx);
     name_array_values(&mut cx);
     late.run(&mut cx, deadline)?;
+    if host.language() == Language::Godot {
+        chain_switches(&mut cx);
+    }
     let passed = globals::pass(&mut cx, host)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);

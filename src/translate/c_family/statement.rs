@@ -77,7 +77,17 @@ impl Writer<'_> {
                 step,
                 body,
             } => {
-                let init = self.init(init)?;
+                let init = match &init[..] {
+                    // Godot's loops declare a variable or begin with nothing.
+                    [first, ..]
+                        if self.language() == Language::Godot
+                            && matches!(first.kind, StatementKind::Expression(_)) =>
+                    {
+                        self.statements(init)?;
+                        String::new()
+                    }
+                    _ => self.init(init)?,
+                };
                 let condition = match condition {
                     Some(condition) => format!(" {}", self.condition(*condition)?),
                     None => String::new(),
