@@ -2,7 +2,7 @@
 //! of any length off the call stack.
 
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value,
+    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Scalar, Type, UnaryOp, Value,
     VariableId, VariableKind, walk,
 };
 
@@ -209,17 +209,14 @@ impl Writer<'_> {
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
             BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
-            BinaryOp::ShiftLeft | BinaryOp::ShiftRight if self.language() == Language::Godot => {
-                let (mut parts, level) = Self::infix(left, op, right);
-                let ty = match right_type {
-                    Type::Vector(_, size) => left_type.scalar().map(|scalar| Type::Vector(scalar, size)),
-                    _ => left_type.scalar().map(Type::Scalar),
-                };
-                if let Some(ty) = ty.filter(|&ty| ty != right_type) {
-                    parts.pop();
-                    parts.extend(Self::call(self.type_name(ty)?, &[right]));
-                }
-                (parts, level)
+            BinaryOp::ShiftLeft
+            | BinaryOp::ShiftRight
+            | BinaryOp::BitAnd
+            | BinaryOp::BitXor
+            | BinaryOp::BitOr
+                if self.language() == Language::Godot =>
+            {
+                self.bitwise_in_godot(op, left, right)?
             }
             _ if self.language() == Language::Godot => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
@@ -244,6 +241,33 @@ impl Writer<'_> {
             }
             _ => Self::infix(left, op, right),
         })
+    }
+
+    /// `a & ivec3(b)`: the operands of Godot's bitwise operators are of one type, except of shifts of vectors by
+    /// a number.
+    fn bitwise_in_godot(&self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+        let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
+        let is_shift = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
+        let is_vector = |ty| matches!(ty, Type::Vector(..));
+        let scalar = left_type.scalar().unwrap_or(Scalar::Int);
+        let wanted = match (left_type, right_type) {
+            (_, Type::Scalar(_)) if is_shift => Type::Scalar(scalar),
+            (_, Type::Vector(_, size)) | (Type::Vector(_, size), _) => Type::Vector(scalar, size),
+            _ => Type::Scalar(scalar),
+        };
+        let level = op.precedence() + level::BINARY;
+        let side = |side, ty, at_least| {
+            let converts = ty != wanted && !(is_shift && is_vector(ty) && side == left);
+            Ok(if converts {
+                Self::call(self.type_name(wanted)?, &[side])
+            } else {
+                vec![Part::Print(side, at_least)]
+            })
+        };
+        let mut parts = side(left, left_type, level)?;
+        parts.push(Part::Token(format!(" {} ", op.symbol())));
+        parts.extend(side(right, right_type, level + 1)?);
+        Ok((parts, level))
     }
 
     fn is_pure(&self, id: ExprId) -> bool {

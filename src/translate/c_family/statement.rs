@@ -89,7 +89,7 @@ impl Writer<'_> {
                     _ => self.init(init)?,
                 };
                 let condition = match condition {
-                    Some(condition) => format!(" {}", self.condition(*condition)?),
+                    Some(condition) => format!(" {}", self.loop_condition(*condition)?),
                     None => String::new(),
                 };
                 let step = match step {
@@ -111,6 +111,14 @@ impl Writer<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The condition of a `for`. Godot takes a type at its beginning for a declaration.
+    fn loop_condition(&mut self, condition: Condition) -> PrintResult<String> {
+        let code = self.condition(condition)?;
+        let first = code.split('(').next().unwrap_or_default();
+        let is_type = self.language() == Language::Godot && !first.is_empty() && self.is_reserved(first);
+        Ok(if is_type { format!("({code})") } else { code })
     }
 
     fn condition(&mut self, condition: Condition) -> PrintResult<String> {

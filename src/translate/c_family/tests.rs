@@ -463,7 +463,7 @@ fn global_variables_are_parameters_in_godot() {
 #[test]
 fn a_global_variable_shadows_nothing_in_godot() {
     let written = for_godot(
-        "float x = 1.0;\nfloat f() { { float x = 2.0; return x; } return x++; }",
+        "float x = 1.0;\nfloat f() { { float x = 2.0; if (x > 3.0) return x; } return x++; }",
         "float y = f() + x;\nfloat x = y;\ncolor = vec4(x);",
     );
     // The parameter `x` of the function and the variable of its block are two; so are those of the image.
@@ -525,7 +525,8 @@ fn godot_lacks_some_constructs_of_glsl() {
         "mat2 m = mat2(1, 2, 3, 4);\nmat2 n = -m;\nRay rays[2];\nvec3 b = vec3(at.x > 1.0, 1, at.y > 2.0);\n\
          float f[2] = float[2](1.0, 2.0);\nbool c = at.x > 1.0 ^^ at.y > 1.0;\nfloat s = mix(at.x, at.y, c);\n\
          int i = 0;\nswitch (i) { case 0: i = 3; default: i += 1; }\n\
-         color = vec4(b, rays[0].t + f[i] + s + n[0].x + texelFetch(iChannel0, ivec2(at), 0).x);",
+         ivec3 k = ivec3(at.x);\nk = (k & 1) >> 2u;\nfor (i = 1; float(i) < at.x; i++) s += 1.0;\n\
+         color = vec4(b, float(k.x) + rays[0].t + f[i] + s + n[0].x + texelFetch(iChannel0, ivec2(at), 0).x);",
     );
     for expected in [
         "mat2 m = mat2(vec2(1.0, 2.0), vec2(3.0, 4.0));",
@@ -535,6 +536,8 @@ fn godot_lacks_some_constructs_of_glsl() {
         "float f[2] = { 1.0, 2.0 };",
         "bool c = at.x > 1.0 != at.y > 1.0;",
         "float s = mixBool(at.x, at.y, c);",
+        "k = (k & ivec3(1)) >> int(2u);",
+        "    i = 1;\n    for (; (float(i) < at.x); i++) {\n",
         "uniform sampler2D iChannel0 : filter_linear, repeat_enable;",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");

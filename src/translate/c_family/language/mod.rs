@@ -52,7 +52,6 @@ impl Language {
                 Pass::Globals,
                 Pass::Steps,
                 Pass::DoWhile,
-                Pass::DeadCode,
                 Pass::Nesting,
             ],
         };
