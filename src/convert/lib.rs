@@ -225,8 +225,8 @@ impl Conversion {
 }
 
 impl Converter {
-    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL and
-    /// HLSL that our own writer cannot write, or that is not proved, is naga's. `name` is the shader's.
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL,
+    /// HLSL and Metal that our own writer cannot write, or that is not proved, is naga's. `name` is the shader's.
     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.
@@ -277,7 +277,9 @@ impl Converter {
                     ..
                 }),
                 Ok(other),
-            ) if other.is_proved() => Ok(with_reason(FallbackReason::Unproved(unproved))(other)),
+            ) if other.is_proved() || matches!(unproved, ProofError::AppleOnly(_)) => {
+                Ok(with_reason(FallbackReason::Unproved(unproved))(other))
+            }
             // Neither is proved: the readable one is better.
             (Ok(own), _) => Ok(own),
         }
@@ -288,7 +290,7 @@ impl Converter {
     pub fn extension(&self) -> &'static str {
         match (self.dialect, self.target) {
             (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
-            (None, Some(Target::Hlsl)) => self.c_host.extension(),
+            (None, Some(Target::Hlsl)) => self.c_host().extension(),
             (_, Some(target)) => target.extension(),
             (_, None) => LOWERED_EXTENSION,
         }
@@ -296,14 +298,22 @@ impl Converter {
 
     /// Whether our own writer prints the files.
     fn prints(&self) -> bool {
-        matches!(self.target, Some(Target::Wgsl | Target::Hlsl)) && self.float == FloatMode::Fast
+        matches!(self.target, Some(Target::Wgsl | Target::Hlsl | Target::Msl)) && self.float == FloatMode::Fast
+    }
+
+    /// The host of a language with the syntax of C. Metal has one only.
+    fn c_host(&self) -> CHost {
+        match self.target {
+            Some(Target::Msl) => CHost::Metal,
+            _ => self.c_host,
+        }
     }
 
     /// Whether naga can write what our own writer cannot.
     fn may_fall_back(&self) -> bool {
         let is_plain = match self.target {
             Some(Target::Wgsl) => self.style == Style::Plain,
-            _ => self.c_host == CHost::Hlsl,
+            _ => matches!(self.c_host(), CHost::Hlsl | CHost::Metal),
         };
         self.prints() && is_plain
     }
@@ -352,12 +362,12 @@ impl Converter {
     /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
     fn write_c(&self, source: Source, name: &str) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = c_family::write(source.checked, source.files, self.c_host, name, &deadline);
+        let text = c_family::write(source.checked, source.files, self.c_host(), name, &deadline);
         match text {
-            Ok(text) => Ok(TargetCode::CFamily(text, self.c_host)),
+            Ok(text) => Ok(TargetCode::CFamily(text, self.c_host())),
             Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),
             Err(WriteFailure::Unprintable(why)) => Err(ConvertError::Unwritable(WriterError::Unprintable {
-                style: self.c_host.name(),
+                style: self.c_host().name(),
                 why,
             })),
         }

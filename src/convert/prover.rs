@@ -114,6 +114,9 @@ pub enum ProofError {
     /// No compiler that reads the file is installed.
     #[error("no compiler that reads it for {0} is installed; on Debian: apt-get install glslang-tools")]
     NoReader(&'static str),
+    /// No compiler that runs here reads the language.
+    #[error("only Apple's compiler reads {0}, so the readable text cannot be proved")]
+    AppleOnly(&'static str),
     /// The evaluator does not play converted passes.
     #[error("several passes can be verified only with a Vulkan driver")]
     PassesWithoutDriver,
@@ -323,6 +326,9 @@ impl Prover<'_> {
         text: &str,
         host: CHost,
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
+        if !host.is_hlsl() {
+            return Err(ProofError::AppleOnly(host.title()));
+        }
         let hosted = host.hosted(text, checked.stage);
         let Runner::Driver(_) = self.runner else {
             return Err(ProofError::Binary);

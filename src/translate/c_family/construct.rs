@@ -5,6 +5,7 @@ use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type};
 
 use super::Unprintable;
 use super::expression::{Part, Parts, level};
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 
 impl Writer<'_> {
@@ -14,6 +15,9 @@ impl Writer<'_> {
         arguments: &[ExprId],
         ty: Type,
     ) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.construct_in_metal(constructor, arguments, ty);
+        }
         let only = arguments.first().copied();
         let only = only.ok_or(Unprintable::Construct("a constructor without arguments"))?;
         let from = self.cx.tree[only].ty;
@@ -59,7 +63,7 @@ impl Writer<'_> {
         )
     }
 
-    fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+    pub(super) fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
         let part = match from {
             Type::Vector(..) => ".x",
             Type::Matrix { .. } => "[0].x",

@@ -2,12 +2,13 @@
 //! of any length off the call stack.
 
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value,
+    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Scalar, Type, UnaryOp, Value,
     VariableId, VariableKind, walk,
 };
 
 use super::Unprintable;
 use super::effect::is_pure;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::author::{float, is_hexadecimal};
 
@@ -80,6 +81,12 @@ impl Writer<'_> {
                 (vec![Token(code)], level)
             }
             &ExprKind::Variable(variable) => (vec![Token(self.variable_code(variable)?)], level::POSTFIX),
+            &ExprKind::Unary {
+                op: UnaryOp::Minus,
+                operand,
+            } if self.language() == Language::Msl && matches!(tree[id].ty, Type::Matrix { .. }) => {
+                Self::negated_in_metal(operand)
+            }
             &ExprKind::Unary { op, operand } => match op {
                 UnaryOp::Plus => (vec![Print(operand, level::UNARY)], level::UNARY),
                 // `- -x` without the space is another operator.
@@ -92,7 +99,9 @@ impl Writer<'_> {
             &ExprKind::Assign { op, target, value } => self.assignment(op, target, value)?,
             &ExprKind::Step { op, postfix, target } => {
                 let symbol = Part::token(op.symbol());
-                if postfix {
+                if self.language() == Language::Msl {
+                    self.step_in_metal(op.symbol(), postfix, target)?
+                } else if postfix {
                     (vec![Print(target, level::POSTFIX), symbol], level::POSTFIX)
                 } else {
                     (vec![symbol, Print(target, level::UNARY)], level::UNARY)
@@ -100,7 +109,7 @@ impl Writer<'_> {
             }
             &ExprKind::Conditional { condition, yes, no } => {
                 let has_effect = |side| walk::has_side_effects(tree, side);
-                if has_effect(yes) || has_effect(no) {
+                if self.language().evaluates_both_sides() && (has_effect(yes) || has_effect(no)) {
                     return Err(Unprintable::Construct("`?:` or `&&` with a side effect here"));
                 }
                 let parts = vec![
@@ -197,6 +206,9 @@ impl Writer<'_> {
     }
 
     fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.binary_in_metal(op, left, right);
+        }
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
@@ -225,11 +237,14 @@ impl Writer<'_> {
         })
     }
 
-    fn is_pure(&self, id: ExprId) -> bool {
+    pub(super) fn is_pure(&self, id: ExprId) -> bool {
         is_pure(&self.cx.tree, &self.impure, id)
     }
 
     fn assignment(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.assignment_in_metal(op, target, value);
+        }
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
         if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
@@ -275,7 +290,12 @@ impl Writer<'_> {
                 arguments,
             } => {
                 let arguments = arguments.clone();
-                let values = arguments.into_iter().map(|argument| self.initializer(argument));
+                let is_nested = self.language().has_array_values();
+                let values = arguments.into_iter().map(|argument| match is_nested {
+                    // Inner lists state their types.
+                    true => self.operand(argument, level::ASSIGN),
+                    false => self.initializer(argument),
+                });
                 let values = values.collect::<PrintResult<Vec<_>>>()?;
                 Ok(format!("{{ {} }}", values.join(", ")))
             }
@@ -286,20 +306,28 @@ impl Writer<'_> {
     /// The value of a declaration whose every component is zero.
     pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
         Ok(match ty {
+            Type::Array(_) | Type::Struct(_) if self.language() == Language::Msl => "{}".to_owned(),
+            Type::Vector(..) | Type::Matrix { .. } if self.language() == Language::Msl => {
+                format!("{}({})", self.type_name(ty)?, number(&Literal::from(zero_of(ty.scalar()))))
+            }
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
                 let zeros = vec![self.zero(array.element)?; array.size as usize];
                 format!("{{ {} }}", zeros.join(", "))
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
-            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
             _ => format!("({})0", self.type_name(ty)?),
         })
     }
 
     /// Prints a literal, or the constant of the macro that it comes from.
     fn literal(&mut self, literal: &Literal, at: Place) -> String {
-        let code = number(literal);
+        let is_infinite = matches!(literal.value, Value::Float(value) if (value as f32).is_infinite());
+        let code = match self.language() {
+            Language::Msl if is_infinite => "INFINITY".to_owned(),
+            _ => number(literal),
+        };
         let Some(name) = self.source.macro_name(at).filter(|name| self.is_free(name)) else {
             return code;
         };
@@ -309,7 +337,8 @@ impl Writer<'_> {
             Value::Uint(_) => "uint",
             Value::Bool(_) => "bool",
         };
-        let declaration = format!("static const {ty} {name} = {code};");
+        let word = self.language().global_constant();
+        let declaration = format!("{word} {ty} {name} = {code};");
         let known = self.macros.entry(name.to_owned());
         // A macro may be redefined; its first definition keeps the name.
         if *known.or_insert_with(|| declaration.clone()) == declaration {
@@ -320,11 +349,11 @@ impl Writer<'_> {
     }
 }
 
-fn zero_of(ty: Type) -> Value {
-    match ty {
-        Type::BOOL => Value::Bool(false),
-        Type::INT => Value::Int(0),
-        Type::UINT => Value::Uint(0),
+fn zero_of(scalar: Option<Scalar>) -> Value {
+    match scalar {
+        Some(Scalar::Bool) => Value::Bool(false),
+        Some(Scalar::Int) => Value::Int(0),
+        Some(Scalar::Uint) => Value::Uint(0),
         _ => Value::Float(0.0),
     }
 }

@@ -17,7 +17,6 @@ use toyproof_glsl::tree::{
 
 use super::Unprintable;
 use super::language::Language;
-use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
 use crate::print::Order;
 use crate::template::{around_shader, channel_number, fill};
@@ -33,6 +32,8 @@ pub enum CHost {
     Unity,
     /// A pixel shader of Windows Terminal.
     WindowsTerminal,
+    /// Metal with our own bindings; row 0 of the target is the bottom.
+    Metal,
 }
 
 /// A row of the table.
@@ -58,7 +59,13 @@ struct Row {
 
 impl CHost {
     /// Every host.
-    pub const ALL: [Self; 4] = [Self::Hlsl, Self::Slang, Self::Unity, Self::WindowsTerminal];
+    pub const ALL: [Self; 5] = [
+        Self::Hlsl,
+        Self::Slang,
+        Self::Unity,
+        Self::WindowsTerminal,
+        Self::Metal,
+    ];
 
     fn row(self) -> Row {
         match self {
@@ -146,6 +153,17 @@ impl CHost {
                 declared: "upward shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
                 is_upside_down: true,
             },
+            Self::Metal => Row {
+                name: "plain",
+                title: "Metal",
+                language: Language::Msl,
+                extension: "metal",
+                template: include_str!("hosts/plain.metal"),
+                substitute: "",
+                adaptations: &[],
+                declared: "Inputs Shader main_ gl_FragCoord",
+                is_upside_down: false,
+            },
         }
     }
 
@@ -174,7 +192,13 @@ impl CHost {
     /// Whether its passes are described by a graph, as those of our own bindings are.
     #[must_use]
     pub fn has_passes(self) -> bool {
-        matches!(self, Self::Hlsl | Self::Slang)
+        matches!(self, Self::Hlsl | Self::Slang | Self::Metal)
+    }
+
+    /// Whether compilers of HLSL read its files. Only Apple's compiler reads Metal.
+    #[must_use]
+    pub fn is_hlsl(self) -> bool {
+        self.language() == Language::Hlsl
     }
 
     /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.
@@ -297,8 +321,16 @@ pub struct HostedText {
 }
 
 impl Writer<'_> {
-    /// The whole file: the author's first comment, and the text in the host's code.
-    pub(super) fn embed(&self, order: &Order, first: &str, text: &str, name: &str) -> PrintResult<String> {
+    /// The whole file: the author's first comment, and the text in the host's code. `outside` stands before
+    /// the structure that contains the text, in languages that need one.
+    pub(super) fn embed(
+        &self,
+        order: &Order,
+        first: &str,
+        outside: &str,
+        text: &str,
+        name: &str,
+    ) -> PrintResult<String> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
         let mut channels = BTreeMap::new();
@@ -325,6 +357,8 @@ impl Writer<'_> {
         let holds = |condition: &str| match condition {
             "inputs" => !inputs.is_empty(),
             "channels" => !channels.is_empty(),
+            "outside" => !outside.is_empty(),
+            "stateless" => inputs.is_empty() && channels.is_empty() && !self.reads_position,
             "position" => self.reads_position,
             "derivatives" => self.takes_derivatives,
             "image" => self.cx.stage == Stage::Image,
@@ -340,13 +374,14 @@ impl Writer<'_> {
         let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
-            values.push((value, texture_type(shape).to_owned()));
+            values.push((value, self.language().texture_type(shape).to_owned()));
         }
-        // The last, since a name may contain those of other values.
+        // The last, since names and comments may contain those of other values.
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
         let stem: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
         values.push(("$name", stem));
+        values.push(("$outside", outside.trim_end().to_owned()));
         let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);

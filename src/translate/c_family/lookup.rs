@@ -4,6 +4,7 @@ use toyproof_glsl::tree::{BuiltIn, ExprId, ExprKind, SamplerShape, Type, Variabl
 
 use super::Unprintable;
 use super::expression::{Part, Parts, level};
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 
 impl Writer<'_> {
@@ -24,6 +25,9 @@ impl Writer<'_> {
             _ => return Err(ARGUMENT),
         };
         let name = self.variable(id);
+        if self.language() == Language::Msl {
+            return self.lookup_in_metal(function, name, shape, rest);
+        }
         let method = match (function, rest.len()) {
             (B::Texture, 1) => "Sample",
             (B::Texture, 2) => "SampleBias",
@@ -55,7 +59,7 @@ impl Writer<'_> {
     /// Adds the function that returns the size of a level of a texture, and returns its name.
     fn size_function(&mut self, shape: SamplerShape) -> String {
         let function = self.free("textureSize");
-        let ty = texture_type(shape);
+        let ty = Language::Hlsl.texture_type(shape);
         let (returned, depth, size) = match shape {
             SamplerShape::D3 => ("int3", ", depth", "int3(width, height, depth)"),
             _ => ("int2", "", "int2(width, height)"),
@@ -66,15 +70,5 @@ impl Writer<'_> {
         );
         self.helpers.insert((function.clone(), ty.to_owned()), text);
         function
-    }
-}
-
-/// The type of a texture of a shape.
-pub(super) fn texture_type(shape: SamplerShape) -> &'static str {
-    match shape {
-        SamplerShape::D3 => "Texture3D",
-        SamplerShape::Cube => "TextureCube",
-        SamplerShape::D2 => "Texture2D",
-        SamplerShape::D2Array => "Texture2DArray",
     }
 }

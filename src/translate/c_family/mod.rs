@@ -13,6 +13,7 @@ mod host;
 mod item;
 mod language;
 mod lookup;
+mod metal;
 mod statement;
 #[cfg(test)]
 mod tests;
@@ -44,10 +45,16 @@ pub fn write(
     let mut cx = LoweringContext::new(checked);
     fold_except(&mut cx, |_| false);
     fold_by_precision(&mut cx);
-    let (early, late) = host.language().passes();
+    let language = host.language();
+    let (early, late) = language.passes();
+    cx.has_references = language.has_references();
     early.run(&mut cx, deadline)?;
-    branch_for_effects(&mut cx);
-    name_array_values(&mut cx);
+    if language.evaluates_both_sides() {
+        branch_for_effects(&mut cx);
+    }
+    if !language.has_array_values() {
+        name_array_values(&mut cx);
+    }
     late.run(&mut cx, deadline)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);

@@ -8,6 +8,7 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::lower::is_written_first;
 
@@ -53,6 +54,7 @@ impl Writer<'_> {
             }
             StatementKind::Break => self.line("break;"),
             StatementKind::Continue => self.line("continue;"),
+            StatementKind::Discard if self.language() == Language::Msl => self.discard_in_metal()?,
             StatementKind::Discard => self.line("discard;"),
             StatementKind::Return(None) => self.line("return;"),
             StatementKind::Return(Some(value)) => {
@@ -114,7 +116,7 @@ impl Writer<'_> {
         /// Maximum number of elements in a list of zeros.
         const MAX_ZEROS: u64 = 16;
         let large = match self.cx.tree[id].ty {
-            Type::Array(array) if needs_value => Some(self.cx.tree.array(array)),
+            Type::Array(array) if needs_value && !self.language().has_array_values() => Some(self.cx.tree.array(array)),
             _ => None,
         };
         let ty = self.cx.tree[id].ty;
@@ -148,7 +150,9 @@ impl Writer<'_> {
         let is_constant = variable.kind == VariableKind::Const;
         let word = match variable.ty {
             // Arrays of constants are not copied to the stack in each call.
-            Type::Array(_) if is_constant && variable.value.is_some() => "static const ",
+            Type::Array(_) if is_constant && variable.value.is_some() && self.language() == Language::Hlsl => {
+                "static const "
+            }
             _ if is_constant => "const ",
             _ => "",
         };

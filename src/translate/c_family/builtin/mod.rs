@@ -1,6 +1,7 @@
 //! Built-in functions: each language has its own names for some of them, and lacks a few.
 
 mod hlsl;
+mod msl;
 
 use toyproof_glsl::tree::{BuiltIn, ExprId, Type};
 
@@ -21,6 +22,7 @@ impl Writer<'_> {
         }
         match self.language() {
             Language::Hlsl => self.built_in_of_hlsl(function, arguments, ty),
+            Language::Msl => self.built_in_of_metal(function, arguments, ty),
         }
     }
 

@@ -1,0 +1,7 @@
+//! Metal Shading Language, where it differs from HLSL: the structure that contains what reads inputs and
+//! global variables, constructors, operators of matrices, and lookups.
+
+mod construct;
+mod lookup;
+mod operator;
+mod state;
