@@ -3,19 +3,6 @@ using namespace metal;
 
 $outside //? outside
 //? outside
-struct Inputs { //? inputs
-    packed_float3 iResolution; //? inputs
-    float iTime; //? inputs
-    float iTimeDelta; //? inputs
-    int iFrame; //? inputs
-    float iFrameRate; //? inputs
-    float4 iChannelTime[4]; //? inputs
-    float3 iChannelResolution[4]; //? inputs
-    float4 iMouse; //? inputs
-    float4 iDate; //? inputs
-    float iSampleRate; //? inputs
-}; //? inputs
-//? inputs
 struct Shader {
     float3 iResolution; //? iResolution
     float iTime; //? iTime
@@ -40,6 +27,19 @@ struct Shader {
     $shader
 };
 
+struct Inputs { //? inputs
+    packed_float3 iResolution; //? inputs
+    float iTime; //? inputs
+    float iTimeDelta; //? inputs
+    int iFrame; //? inputs
+    float iFrameRate; //? inputs
+    float4 iChannelTime[4]; //? inputs
+    float3 iChannelResolution[4]; //? inputs
+    float4 iMouse; //? inputs
+    float4 iDate; //? inputs
+    float iSampleRate; //? inputs
+}; //? inputs
+//? inputs
 fragment float4 main_(
     constant Inputs& inputs [[buffer(0)]], //? inputs
     $texture0 iChannel0 [[texture(1)]], //? channel0
@@ -66,6 +66,9 @@ fragment float4 main_(
             inputs.iChannelResolution[0], inputs.iChannelResolution[1], //? iChannelResolution
             inputs.iChannelResolution[2], inputs.iChannelResolution[3], //? iChannelResolution
         }, //? iChannelResolution
+        inputs.iMouse, //? iMouse
+        inputs.iDate, //? iDate
+        inputs.iSampleRate, //? iSampleRate
         iChannel0, iChannel0_sampler, //? channel0
         iChannel1, iChannel1_sampler, //? channel1
         iChannel2, iChannel2_sampler, //? channel2

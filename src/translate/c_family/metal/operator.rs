@@ -24,6 +24,9 @@ impl Writer<'_> {
             }
             return Ok((parts, level::POSTFIX));
         }
+        if let Some(wrapped) = self.wrapped(op, left, right)? {
+            return Ok(wrapped);
+        }
         Ok(match op {
             BinaryOp::Equal | BinaryOp::NotEqual if matches!(left_type, Type::Vector(..)) => {
                 let (compared, _) = Self::infix(left, op, right);
@@ -105,10 +108,14 @@ impl Writer<'_> {
         let mut parts = vec![Part::Print(target, level::UNARY)];
         let [target_type, value_type] = [target, value].map(|side| tree[side].ty);
         let has_matrix = [target_type, value_type].iter().any(|ty| matches!(ty, Type::Matrix { .. }));
+        let wraps = match op {
+            Some(op) => self.wrapped(op, target, value)?.is_some(),
+            None => false,
+        };
         match op {
-            Some(op) if has_matrix => {
+            Some(op) if has_matrix || wraps => {
                 if !self.is_pure(target) {
-                    return Err(Unprintable::Construct("a matrix with a side effect that is changed"));
+                    return Err(Unprintable::Construct("an assignment to a place with a side effect"));
                 }
                 parts.push(Part::token(" = "));
                 parts.extend(self.binary_in_metal(op, target, value)?.0);
