@@ -226,8 +226,9 @@ impl Conversion {
 }
 
 impl Converter {
-    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL and
-    /// HLSL that our own writer cannot write, or that is not proved, is naga's.     ///
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL,
+    /// HLSL and Metal that our own writer cannot write, or that is not proved, is naga's.
+    ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.
     pub fn convert(
@@ -277,7 +278,9 @@ impl Converter {
                     ..
                 }),
                 Ok(other),
-            ) if other.is_proved() => Ok(with_reason(FallbackReason::Unproved(unproved))(other)),
+            ) if other.is_proved() || matches!(unproved, ProofError::AppleOnly(_)) => {
+                Ok(with_reason(FallbackReason::Unproved(unproved))(other))
+            }
             // Neither is proved: the readable one is better.
             (Ok(own), _) => Ok(own),
         }

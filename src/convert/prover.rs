@@ -114,6 +114,9 @@ pub enum ProofError {
     /// No compiler that reads the file is installed.
     #[error("no compiler that reads it for {0} is installed; on Debian: apt-get install glslang-tools")]
     NoReader(&'static str),
+    /// No compiler that runs here reads the language.
+    #[error("only Apple's compiler reads {0}, so the readable text cannot be proved")]
+    AppleOnly(&'static str),
     /// The evaluator does not play converted passes.
     #[error("several passes can be verified only with a Vulkan driver")]
     PassesWithoutDriver,
@@ -323,11 +326,12 @@ impl Prover<'_> {
         text: &str,
         host: CHost,
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
+        let target = host.read_as().ok_or(ProofError::AppleOnly(host.title()))?;
         let hosted = host.hosted(text, checked.stage);
         let Runner::Driver(_) = self.runner else {
             return Err(ProofError::Binary);
         };
-        let compiled = tool::compile_hosted(host.target(), &hosted.text)?;
+        let compiled = tool::compile_hosted(target, &hosted.text)?;
         let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
         let artifact = ShaderArtifact::Words {
             words,

@@ -15,7 +15,7 @@ use crate::requirements::{require_driver, require_program, require_worker};
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Reads what differs between hosts: inputs, a texture, derivatives and the position.
-const INPUTS: &str = "
+pub(crate) const INPUTS: &str = "
 float shade(vec2 p) { return p.y * 0.01 + dFdy(p.y * p.y) * 0.02 + gl_FragCoord.y * 0.001; }
 void mainImage(out vec4 color, in vec2 p) {
     vec2 uv = p / iResolution.xy;
@@ -55,7 +55,7 @@ fn prove(host: CHost, shader: &str, from: &str, to: &str) -> Option<Result<Shade
 
 #[test]
 fn files_for_hosts_are_proved() {
-    for host in CHost::ALL {
+    for host in CHost::ALL.into_iter().filter(|host| host.is_hlsl()) {
         let Some(proved) = prove(host, INPUTS, "", "") else {
             return;
         };

@@ -63,6 +63,7 @@ mod machine_code;
 mod marches;
 mod math;
 mod media;
+mod metal;
 mod miscompiles;
 mod nesting;
 mod page;

@@ -141,7 +141,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         converter: Converter {
             target: to.target(),
             style: args.style.wgsl().unwrap_or_default(),
-            c_host: args.style.c_family().or((to == To::Hlsl).then_some(CHost::Hlsl)),
+            c_host: args.style.c_family().or(match to {
+                To::Hlsl => Some(CHost::Hlsl),
+                To::Metal => Some(CHost::Metal),
+                _ => None,
+            }),
             dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),

@@ -15,6 +15,9 @@ impl Writer<'_> {
         arguments: &[ExprId],
         ty: Type,
     ) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.construct_in_metal(constructor, arguments, ty);
+        }
         let only = arguments.first().copied();
         let only = only.ok_or(Unprintable::Construct("a constructor without arguments"))?;
         let from = self.cx.tree[only].ty;
@@ -106,7 +109,7 @@ impl Writer<'_> {
         (is_float && !is_macro && exact).then(|| vec![Part::Token(format!("{number}.0"))])
     }
 
-    fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+    pub(super) fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
         let part = match from {
             Type::Vector(..) => ".x",
             Type::Matrix { .. } => "[0].x",

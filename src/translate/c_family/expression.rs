@@ -81,6 +81,12 @@ impl Writer<'_> {
                 (vec![Token(code)], level)
             }
             &ExprKind::Variable(variable) => (vec![Token(self.variable_code(variable)?)], level::POSTFIX),
+            &ExprKind::Unary {
+                op: UnaryOp::Minus,
+                operand,
+            } if self.language() == Language::Msl && matches!(tree[id].ty, Type::Matrix { .. }) => {
+                Self::negated_in_metal(operand)
+            }
             &ExprKind::Unary { op, operand } => match op {
                 UnaryOp::Plus => (vec![Print(operand, level::UNARY)], level::UNARY),
                 UnaryOp::Minus if self.language() == Language::Godot && is_matrix(tree[operand].ty) => {
@@ -97,7 +103,9 @@ impl Writer<'_> {
             &ExprKind::Assign { op, target, value } => self.assignment(op, target, value)?,
             &ExprKind::Step { op, postfix, target } => {
                 let symbol = Part::token(op.symbol());
-                if postfix {
+                if self.language() == Language::Msl {
+                    self.step_in_metal(op.symbol(), postfix, target)?
+                } else if postfix {
                     (vec![Print(target, level::POSTFIX), symbol], level::POSTFIX)
                 } else {
                     (vec![symbol, Print(target, level::UNARY)], level::UNARY)
@@ -105,7 +113,7 @@ impl Writer<'_> {
             }
             &ExprKind::Conditional { condition, yes, no } => {
                 let has_effect = |side| walk::has_side_effects(tree, side);
-                if has_effect(yes) || has_effect(no) {
+                if self.language().branches_for_effects() && (has_effect(yes) || has_effect(no)) {
                     return Err(Unprintable::Construct("`?:` or `&&` with a side effect here"));
                 }
                 let parts = vec![
@@ -205,6 +213,9 @@ impl Writer<'_> {
     }
 
     fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.binary_in_metal(op, left, right);
+        }
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
@@ -270,11 +281,14 @@ impl Writer<'_> {
         Ok((parts, level))
     }
 
-    fn is_pure(&self, id: ExprId) -> bool {
+    pub(super) fn is_pure(&self, id: ExprId) -> bool {
         is_pure(&self.cx.tree, &self.impure, id)
     }
 
     fn assignment(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.assignment_in_metal(op, target, value);
+        }
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
         let is_hlsl = self.language() == Language::Hlsl;
@@ -324,7 +338,12 @@ impl Writer<'_> {
                 arguments,
             } if self.language() == Language::Hlsl || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
                 let arguments = arguments.clone();
-                let values = arguments.into_iter().map(|argument| self.initializer(argument));
+                let is_nested = self.language().has_array_values();
+                let values = arguments.into_iter().map(|argument| match is_nested {
+                    // Inner lists state their types.
+                    true => self.operand(argument, level::ASSIGN),
+                    false => self.initializer(argument),
+                });
                 let values = values.collect::<PrintResult<Vec<_>>>()?;
                 Ok(format!("{{ {} }}", values.join(", ")))
             }
@@ -338,13 +357,21 @@ impl Writer<'_> {
             return self.zero_of_godot(ty);
         }
         Ok(match ty {
+            Type::Array(_) | Type::Struct(_) if self.language() == Language::Msl => "{}".to_owned(),
+            Type::Vector(..) | Type::Matrix { .. } if self.language() == Language::Msl => {
+                format!(
+                    "{}({})",
+                    self.type_name(ty)?,
+                    number(&Literal::from(zero_of(ty.scalar())))
+                )
+            }
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
                 let zeros = vec![self.zero(array.element)?; array.size as usize];
                 format!("{{ {} }}", zeros.join(", "))
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
-            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
             _ => format!("({})0", self.type_name(ty)?),
         })
     }
@@ -362,10 +389,9 @@ impl Writer<'_> {
                 let zeros = members.collect::<PrintResult<Vec<_>>>()?;
                 format!("{}({})", self.structure_name(id), list(zeros))
             }
-            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
             _ => {
-                let scalar = ty.scalar().map_or(Type::FLOAT, Type::Scalar);
-                let zero = number(&Literal::from(zero_of(scalar)));
+                let zero = number(&Literal::from(zero_of(ty.scalar())));
                 format!("{}({zero})", self.type_name(ty)?)
             }
         })
@@ -373,7 +399,11 @@ impl Writer<'_> {
 
     /// Prints a literal, or the constant of the macro that it comes from.
     fn literal(&mut self, literal: &Literal, at: Place) -> String {
-        let code = number(literal);
+        let is_infinite = matches!(literal.value, Value::Float(value) if (value as f32).is_infinite());
+        let code = match self.language() {
+            Language::Msl if is_infinite => "INFINITY".to_owned(),
+            _ => number(literal),
+        };
         let Some(name) = self.source.macro_name(at).filter(|name| self.is_free(name)) else {
             return code;
         };
@@ -395,11 +425,11 @@ impl Writer<'_> {
     }
 }
 
-fn zero_of(ty: Type) -> Value {
-    match ty {
-        Type::BOOL => Value::Bool(false),
-        Type::INT => Value::Int(0),
-        Type::UINT => Value::Uint(0),
+fn zero_of(scalar: Option<Scalar>) -> Value {
+    match scalar {
+        Some(Scalar::Bool) => Value::Bool(false),
+        Some(Scalar::Int) => Value::Int(0),
+        Some(Scalar::Uint) => Value::Uint(0),
         _ => Value::Float(0.0),
     }
 }

@@ -11,12 +11,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::tree::{
-    Direction, ExprKind, Input, InputType, Item, Place, SamplerShape, Scalar, Type, VariableId, VariableKind,
+    Direction, ExprKind, Input, Item, Place, SamplerShape, Type, VariableId, VariableKind,
 };
 use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
 use super::language::Language;
-use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
 use super::{Title, Unprintable};
 use crate::backend::Target;
@@ -37,6 +36,8 @@ pub enum CHost {
     WindowsTerminal,
     /// A shader of Godot 4 for a `CanvasItem`.
     Godot,
+    /// Metal with our own bindings; row 0 of the target is the bottom.
+    Metal,
 }
 
 /// A row of the table.
@@ -62,12 +63,13 @@ struct Row {
 
 impl CHost {
     /// Every host.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Hlsl,
         Self::Slang,
         Self::Unity,
         Self::WindowsTerminal,
         Self::Godot,
+        Self::Metal,
     ];
 
     fn row(self) -> Row {
@@ -172,6 +174,17 @@ impl CHost {
                 declared: "",
                 is_upside_down: true,
             },
+            Self::Metal => Row {
+                name: "plain",
+                title: "Metal",
+                language: Language::Msl,
+                extension: "metal",
+                template: include_str!("hosts/plain.metal"),
+                substitute: "",
+                adaptations: &[],
+                declared: "Inputs Shader main_ gl_FragCoord",
+                is_upside_down: false,
+            },
         }
     }
 
@@ -191,19 +204,21 @@ impl CHost {
         self.row().language
     }
 
-    /// The language that compilers other than the host's read a file as ([`Self::hosted`]).
+    /// The language as which other compilers than the host's read a file ([`Self::hosted`]); `None` if only
+    /// the host's does.
     #[must_use]
-    pub fn target(self) -> Target {
+    pub fn read_as(self) -> Option<Target> {
         match self.language() {
-            Language::Hlsl => Target::Hlsl,
-            Language::Godot => Target::Glsl,
+            Language::Hlsl => Some(Target::Hlsl),
+            Language::Godot => Some(Target::Glsl),
+            Language::Msl => None,
         }
     }
 
     /// Whether it has the bindings of the other languages, so that naga can write what our own writer cannot.
     #[must_use]
     pub fn is_plain(self) -> bool {
-        self == Self::Hlsl
+        matches!(self, Self::Hlsl | Self::Metal)
     }
 
     /// The extension of its files, without the dot.
@@ -256,6 +271,11 @@ impl CHost {
         self.row().template
     }
 
+    /// The code around the file in a substitute for the host; empty if the file is complete.
+    pub(super) fn substitute(self) -> &'static str {
+        self.row().substitute
+    }
+
     /// Code of the file, and the code that does the same in the substitute for the host.
     pub(super) fn adaptations(self) -> &'static [(&'static str, &'static str)] {
         self.row().adaptations
@@ -270,69 +290,6 @@ impl CHost {
         conditions.any(|known| known == condition)
             || self.template().contains(&format!("#define {condition} "))
     }
-
-    /// A line of a file in the substitute for its host; `None` for lines that only the host reads.
-    fn line_in_substitute(self, line: &str) -> Option<String> {
-        let trimmed = line.trim();
-        match self.language() {
-            Language::Hlsl => {
-                let is_for_host = trimmed.starts_with("#pragma") || trimmed.starts_with("#include");
-                (!is_for_host).then(|| line.to_owned())
-            }
-            Language::Godot => {
-                let is_for_host = ["shader_type ", "render_mode ", "uniform "];
-                godots_channel(line).or_else(|| {
-                    let is_for_host = is_for_host.iter().any(|word| line.starts_with(word));
-                    (!is_for_host).then(|| line.to_owned())
-                })
-            }
-        }
-    }
-
-    /// Embeds a written file in a substitute for its host, which reads our uniform block.
-    #[must_use]
-    pub fn hosted(self, text: &str, stage: Stage) -> HostedText {
-        let row = self.row();
-        let upside_down = self.is_upside_down(stage);
-        if row.substitute.is_empty() {
-            let text = text.to_owned();
-            return HostedText { text, upside_down };
-        }
-        let program = match (text.split_once("HLSLPROGRAM\n"), text.rsplit_once("ENDHLSL")) {
-            (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
-            _ => text,
-        };
-        let lines = program.lines().filter_map(|line| self.line_in_substitute(line));
-        let program: String = lines.flat_map(|line| [line, "\n".to_owned()]).collect();
-        let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
-        let program = self.adaptations().iter().fold(program, replace);
-        let holds = |condition: &str| match channel_number(condition) {
-            _ if condition == "image" => stage == Stage::Image,
-            _ if condition == "buffer" => stage != Stage::Image,
-            Some(channel) => program.contains(&format!("iChannel{channel}")),
-            None => program.contains(condition),
-        };
-        let values = [("$block", block(self.language()))];
-        let [before, after] = around_shader(row.substitute).map(|part| fill(part, holds, &values));
-        HostedText {
-            text: format!("{before}{program}{after}"),
-            upside_down,
-        }
-    }
-}
-
-/// The declaration of a channel in Godot's language, `uniform sampler2D iChannel0 : hints;`, for Vulkan: a
-/// texture and a sampler with our bindings. `None` for other lines.
-fn godots_channel(line: &str) -> Option<String> {
-    let (ty, rest) = line.strip_prefix("uniform sampler")?.split_once(' ')?;
-    let (name, _) = rest.split_once(" : ")?;
-    let channel: u32 = name.strip_prefix("iChannel")?.parse().ok()?;
-    let [texture, sampler] = [2 * channel + 1, 2 * channel + 2];
-    Some(format!(
-        "layout(set = 0, binding = {texture}) uniform texture{ty} toyproof_texture{channel};\n\
-         layout(set = 0, binding = {sampler}) uniform sampler toyproof_sampler{channel};\n\
-         #define {name} sampler{ty}(toyproof_texture{channel}, toyproof_sampler{channel})"
-    ))
 }
 
 /// The names of the variables of an entry point, as templates name them.
@@ -356,46 +313,17 @@ cbuffer PixelShaderSettings : register(b0) {
 };
 ";
 
-/// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
-fn block(language: Language) -> String {
-    let mut text = match language {
-        Language::Hlsl => "cbuffer ToyproofFrame : register(b0) {\n",
-        Language::Godot => "layout(std140, set = 0, binding = 0) uniform ToyproofFrame {\n",
-    }
-    .to_owned();
-    for input in Input::ALL {
-        // In a block, each element of an array has 16 bytes.
-        let ty = match (input.ty(), input.length()) {
-            (InputType::Float, Some(_)) | (InputType::Vec4, _) => Type::Vector(Scalar::Float, 4),
-            (InputType::Float, None) => Type::FLOAT,
-            (InputType::Int, _) => Type::INT,
-            (InputType::Vec3, _) => Type::Vector(Scalar::Float, 3),
-        };
-        let length = input.length();
-        let length = length.map_or_else(String::new, |length| format!("[{length}]"));
-        let ty = language.numeric_type(ty).unwrap_or_default();
-        let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
-        let place = match language {
-            Language::Hlsl => format!(" : packoffset(c{}{component})", input.offset() / 16),
-            Language::Godot => String::new(),
-        };
-        let _ = writeln!(text, "    {ty} toyproof_{}{length}{place};", input.name());
-    }
-    text + "};\n"
-}
-
-/// A file that other compilers than the host's read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct HostedText {
-    /// The text, with our bindings and the entry point `main`.
-    pub text: String,
-    /// Whether row 0 of its target is the top of the image.
-    pub upside_down: bool,
-}
-
 impl Writer<'_> {
-    /// The whole file: the author's first comment, and the text in the host's code.
-    pub(super) fn embed(&self, order: &Order, first: &str, text: &str, title: Title) -> PrintResult<String> {
+    /// The whole file: the author's first comment, and the text in the host's code. `outside` stands before
+    /// the structure that contains the text, in languages that need one.
+    pub(super) fn embed(
+        &self,
+        order: &Order,
+        first: &str,
+        outside: &str,
+        text: &str,
+        title: Title,
+    ) -> PrintResult<String> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
         let mut channels = BTreeMap::new();
@@ -424,6 +352,8 @@ impl Writer<'_> {
         let holds = |condition: &str| match condition {
             "inputs" => !inputs.is_empty(),
             "channels" => !channels.is_empty(),
+            "outside" => !outside.is_empty(),
+            "stateless" => inputs.is_empty() && channels.is_empty() && !self.reads_position,
             "position" => self.reads_position || self.passes("position"),
             "derivatives" => self.takes_derivatives || self.passes(UPWARD),
             "image" => self.cx.stage == Stage::Image,
@@ -441,13 +371,13 @@ impl Writer<'_> {
         let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
-            values.push((value, texture_type(self.language(), shape).to_owned()));
+            values.push((value, self.language().texture_type(shape)));
         }
         let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
         for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
             let sampling = match self.language() {
                 Language::Godot => hints(sampling),
-                Language::Hlsl => inline_sampler(sampling).to_owned(),
+                Language::Hlsl | Language::Msl => inline_sampler(sampling).to_owned(),
             };
             values.push((value, sampling));
         }
@@ -479,6 +409,7 @@ impl Writer<'_> {
         };
         let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
         values.push(("$name", name));
+        values.push(("$outside", outside.trim_end().to_owned()));
         let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);

@@ -3,7 +3,7 @@
 use toyproof_glsl::tree::{Direction, FunctionId, Item, StructId, Type, VariableId, VariableKind};
 
 use super::Unprintable;
-use super::language::Words;
+use super::language::{Language, Words};
 use super::writer::{PrintResult, Writer};
 use crate::lower::helper_tree;
 use crate::print::{Names, Order};
@@ -85,19 +85,23 @@ impl Writer<'_> {
         }
         // A uniform that nothing sets is zero.
         let is_constant = matches!(variable.kind, VariableKind::Const | VariableKind::Uniform);
-        let word = if is_constant {
-            self.language().constant()
-        } else {
-            "static"
-        };
         let declared = self.declarator(variable.ty, self.variable(id))?;
+        let word = match self.language() {
+            Language::Hlsl if is_constant => "static const ",
+            Language::Hlsl => "static ",
+            Language::Godot => "const ",
+            Language::Msl if !self.members.contains(&Item::Variable(id)) => "constant ",
+            Language::Msl => "",
+        };
         let value = match variable.initializer {
             Some(value) => format!(" = {}", self.initializer(value)?),
             // Static variables are zero without a value, too (Microsoft's “Variable Syntax”).
-            None if self.element_count(variable.ty) > MAX_ZEROS => String::new(),
+            None if self.language() == Language::Hlsl && self.element_count(variable.ty) > MAX_ZEROS => {
+                String::new()
+            }
             None => format!(" = {}", self.zero(variable.ty)?),
         };
-        self.line(&format!("{word} {declared}{value};"));
+        self.line(&format!("{word}{declared}{value};"));
         if let Some(at) = variable.at {
             self.trailing_comment(at);
         }
@@ -120,7 +124,7 @@ impl Writer<'_> {
         let Some(body) = &function.body else {
             return Err(Unprintable::Construct("a function without a body"));
         };
-        if matches!(function.return_type, Type::Array(_)) {
+        if matches!(function.return_type, Type::Array(_)) && !self.language().has_array_values() {
             return Err(Unprintable::Construct("a function that returns an array"));
         }
         self.line("");
@@ -137,6 +141,7 @@ impl Writer<'_> {
         let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
         let returned = self.type_name(function.return_type)?;
         self.line(&format!("{returned} {}({parameters}) {{", self.function(id)));
+        self.returned = function.return_type;
         self.indented(|writer| writer.statements(body))?;
         self.line("}");
         Ok(())

@@ -14,12 +14,15 @@ mod host;
 mod item;
 mod language;
 mod lookup;
+mod metal;
 mod statement;
+mod substitute;
 #[cfg(test)]
 mod tests;
 mod writer;
 
-pub use host::{CHost, HostedText};
+pub use host::CHost;
+pub use substitute::HostedText;
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 
@@ -61,12 +64,18 @@ pub fn write(
     let mut cx = LoweringContext::new(checked);
     fold_except(&mut cx, |_| false);
     fold_by_precision(&mut cx);
-    let (early, late) = host.language().passes();
+    let language = host.language();
+    let (early, late) = language.passes();
+    cx.has_references = language.has_references();
     early.run(&mut cx, deadline)?;
-    branch_for_effects(&mut cx);
-    name_array_values(&mut cx);
+    if language.branches_for_effects() {
+        branch_for_effects(&mut cx);
+    }
+    if !language.has_array_values() {
+        name_array_values(&mut cx);
+    }
     late.run(&mut cx, deadline)?;
-    if host.language() == Language::Godot {
+    if language == Language::Godot {
         chain_switches(&mut cx);
     }
     let passed = globals::pass(&mut cx, host)?;

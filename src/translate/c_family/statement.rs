@@ -54,6 +54,7 @@ impl Writer<'_> {
             }
             StatementKind::Break => self.line("break;"),
             StatementKind::Continue => self.line("continue;"),
+            StatementKind::Discard if self.language() == Language::Msl => self.discard_in_metal()?,
             StatementKind::Discard => self.line("discard;"),
             StatementKind::Return(None) => self.line("return;"),
             StatementKind::Return(Some(value)) => {
@@ -133,7 +134,9 @@ impl Writer<'_> {
         /// Maximum number of elements in a list of zeros.
         const MAX_ZEROS: u64 = 16;
         let large = match self.cx.tree[id].ty {
-            Type::Array(array) if needs_value => Some(self.cx.tree.array(array)),
+            Type::Array(array) if needs_value && !self.language().has_array_values() => {
+                Some(self.cx.tree.array(array))
+            }
             _ => None,
         };
         let ty = self.cx.tree[id].ty;
@@ -169,14 +172,13 @@ impl Writer<'_> {
         let is_constant = variable.kind == VariableKind::Const;
         let word = match variable.ty {
             // Arrays of constants are not copied to the stack in each call.
-            Type::Array(_) if is_constant && variable.value.is_some() => self.language().constant(),
-            _ if is_constant => "const",
+            Type::Array(_)
+                if is_constant && variable.value.is_some() && self.language() == Language::Hlsl =>
+            {
+                "static const "
+            }
+            _ if is_constant => "const ",
             _ => "",
-        };
-        let word = if word.is_empty() {
-            String::new()
-        } else {
-            format!("{word} ")
         };
         let value = match variable.initializer {
             Some(value) => self.initializer(value)?,

@@ -32,6 +32,10 @@ pub(super) struct Writer<'a> {
     pub(super) helpers: BTreeMap<(String, String), String>,
     /// The structures that need a function that makes them: these languages list values in declarations only.
     pub(super) made: BTreeSet<StructId>,
+    /// What the structure around a shader contains, in languages without global variables.
+    pub(super) members: HashSet<Item>,
+    /// The type that the function being printed returns.
+    pub(super) returned: Type,
     /// The functions with side effects.
     pub(super) impure: HashSet<FunctionId>,
     /// All names in use.
@@ -68,6 +72,8 @@ impl<'a> Writer<'a> {
             macros: BTreeMap::new(),
             helpers: BTreeMap::new(),
             made: BTreeSet::new(),
+            members: HashSet::new(),
+            returned: Type::Void,
             impure: impure_functions(&cx.tree),
             taken: all.map(String::as_str).collect(),
             failed_at: None,
@@ -142,6 +148,9 @@ impl<'a> Writer<'a> {
 
     /// `float3 name`, or `float name[2]`.
     pub(super) fn declarator(&self, ty: Type, name: &str) -> PrintResult<String> {
+        if self.language().has_array_values() {
+            return Ok(format!("{} {name}", self.type_name(ty)?));
+        }
         let mut sizes = String::new();
         let mut element = ty;
         while let Type::Array(id) = element {
@@ -155,11 +164,19 @@ impl<'a> Writer<'a> {
         Ok(format!("{} {name}{sizes}", self.type_name(element)?))
     }
 
-    /// The name of a type that is not an array.
+    /// The name of a type; arrays have one in languages in which they are values.
     pub(super) fn type_name(&self, ty: Type) -> PrintResult<String> {
         match ty {
             Type::Struct(id) => Ok(self.structure_name(id).to_owned()),
             Type::Void => Ok("void".to_owned()),
+            Type::Array(id) if self.language().has_array_values() => {
+                let array = self.cx.tree.array(id);
+                Ok(format!(
+                    "array<{}, {}>",
+                    self.type_name(array.element)?,
+                    array.size
+                ))
+            }
             _ => {
                 let name = self.language().numeric_type(ty);
                 name.ok_or(Unprintable::Construct("this type"))
@@ -211,6 +228,9 @@ impl<'a> Writer<'a> {
         if !first.is_empty() {
             first.push_str("\n\n");
         }
+        if self.language() == Language::Msl {
+            self.members = self.members_in_metal(order);
+        }
         let mut items = Vec::new();
         for &item in &order.items {
             let printed = self.item(item);
@@ -234,15 +254,22 @@ impl<'a> Writer<'a> {
             text += helper;
             text.push('\n');
         }
-        let mut shader = String::new();
+        let (mut shader, mut members) = (String::new(), String::new());
         for (item, printed) in items {
+            if self.members.contains(&item) {
+                members += &printed;
+                continue;
+            }
             shader += &printed;
             if let Item::Struct(id) = item {
                 shader += makers.get(&id).map_or("", String::as_str);
             }
         }
         text += shader.trim_start_matches('\n');
-        self.embed(order, &first, &text, title)
+        if self.language() == Language::Msl {
+            return self.embed(order, &first, &text, members.trim_start_matches('\n'), title);
+        }
+        self.embed(order, &first, "", &text, title)
     }
 }
 

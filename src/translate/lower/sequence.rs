@@ -6,7 +6,8 @@
 use std::collections::HashSet;
 
 use toyproof_glsl::tree::{
-    Arm, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
+    Arm, BinaryOp, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind,
+    walk,
 };
 
 use crate::lower::context::LoweringContext;
@@ -102,6 +103,11 @@ fn always_evaluated(tree: &Tree, root: ExprId) -> Vec<ExprId> {
         let mut operands = Vec::new();
         match &tree[id].kind {
             ExprKind::Conditional { condition, .. } => operands.push(*condition),
+            ExprKind::Binary {
+                op: BinaryOp::And | BinaryOp::Or,
+                left,
+                ..
+            } => operands.push(*left),
             // A target is not read before it is written; only its indices are evaluated.
             &ExprKind::Assign {
                 op: None,
@@ -137,6 +143,15 @@ fn is_affected(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
             !fixed && (foreign && walk::calls(tree, effect) || walk::writes(tree, effect, variable))
         }
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
+        ExprKind::Binary {
+            op: BinaryOp::And | BinaryOp::Or,
+            right,
+            ..
+        } => tree.postorder(right).into_iter().any(|id| match tree[id].kind {
+            // Its operands follow.
+            ExprKind::Binary { .. } | ExprKind::Conditional { .. } => false,
+            _ => is_affected(tree, id, effect),
+        }),
         ExprKind::Conditional { yes, no, .. } => {
             let branches = [yes, no].into_iter().flat_map(|branch| tree.postorder(branch));
             let leaves = branches.filter(|&id| !matches!(tree[id].kind, ExprKind::Conditional { .. }));

@@ -2,6 +2,7 @@
 
 mod godot;
 mod hlsl;
+mod msl;
 
 use toyproof_glsl::tree::{BuiltIn, ExprId, Type};
 
@@ -23,6 +24,7 @@ impl Writer<'_> {
         match self.language() {
             Language::Hlsl => self.built_in_of_hlsl(function, arguments, ty),
             Language::Godot => self.built_in_of_godot(function, arguments, ty),
+            Language::Msl => self.built_in_of_metal(function, arguments, ty),
         }
     }
 
@@ -42,7 +44,7 @@ impl Writer<'_> {
         let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
         let name = match self.language() {
             Language::Hlsl => "mix",
-            Language::Godot => "mixBool",
+            Language::Msl | Language::Godot => "mixBool",
         };
         self.helper_function(name, types, ty, "", &body)
     }

@@ -3,8 +3,9 @@
 
 mod godot;
 mod hlsl;
+mod msl;
 
-use toyproof_glsl::tree::{Direction, Type};
+use toyproof_glsl::tree::{Direction, Sampler, SamplerShape, Type};
 
 use super::host::CHost;
 use crate::lower::{Pass, Passes};
@@ -17,6 +18,8 @@ pub(super) enum Language {
     Hlsl,
     /// The shading language of Godot 4: GLSL with fewer constructs, and without global variables.
     Godot,
+    /// Metal Shading Language, which is C++14.
+    Msl,
 }
 
 impl Language {
@@ -24,43 +27,69 @@ impl Language {
     /// side effects are lowered, and those after.
     pub(super) fn passes(self) -> (Passes, Passes) {
         let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
-        let not_needed: &[Pass] = match self {
+        let not_needed = [
+            Pass::Folding,
+            Pass::Booleans,
+            Pass::Inequality,
+            Pass::Members,
+            Pass::Constants,
+            Pass::Globals,
+            Pass::Steps,
+            Pass::DoWhile,
+            Pass::Nesting,
+        ];
+        let own: &[Pass] = match self {
             Self::Hlsl => &[
-                Pass::Folding,
                 Pass::Matrices,
-                Pass::Booleans,
                 Pass::Swizzles,
                 Pass::Indices,
                 Pass::Negations,
                 Pass::OutArguments,
-                Pass::Inequality,
-                Pass::Members,
-                Pass::Constants,
-                Pass::Globals,
-                Pass::Steps,
-                Pass::DoWhile,
                 Pass::DeadCode,
-                Pass::Nesting,
             ],
-            Self::Godot => &[
-                Pass::Folding,
-                Pass::MissingBuiltIns,
-                Pass::Booleans,
-                Pass::Inequality,
-                Pass::Members,
-                Pass::Constants,
-                Pass::Globals,
-                Pass::Steps,
-                Pass::DoWhile,
-                Pass::Nesting,
+            Self::Msl => &[
+                Pass::ShortCircuit,
+                Pass::Swizzles,
+                Pass::Indices,
+                Pass::Negations,
+                Pass::LoopVoids,
+                Pass::DeadCode,
+                Pass::Switches,
             ],
+            Self::Godot => &[Pass::MissingBuiltIns],
         };
         let late = early
             .into_iter()
-            .chain(not_needed.iter().copied())
+            .chain(not_needed)
+            .chain(own.iter().copied())
             .fold(Passes::required(), Passes::without);
-        let early = early.into_iter().fold(Passes::none(), Passes::with);
-        (early, late)
+        let early = early.into_iter().filter(|pass| !own.contains(pass));
+        (early.fold(Passes::none(), Passes::with), late)
+    }
+
+    /// Whether sides of `?:` with side effects must be branches: HLSL may evaluate both sides, and Godot has no
+    /// `a, b` in them. Neither selects structures and arrays.
+    pub(super) fn branches_for_effects(self) -> bool {
+        match self {
+            Self::Hlsl | Self::Godot => true,
+            Self::Msl => false,
+        }
+    }
+
+    /// Whether arrays are values, which have a name and a list of elements anywhere.
+    pub(super) fn has_array_values(self) -> bool {
+        match self {
+            Self::Hlsl | Self::Godot => false,
+            Self::Msl => true,
+        }
+    }
+
+    /// Whether parameters for `out` and `inout` are references as in C++.
+    pub(super) fn has_references(self) -> bool {
+        match self {
+            Self::Hlsl | Self::Godot => false,
+            Self::Msl => true,
+        }
     }
 
     /// The name of a scalar, vector or matrix type.
@@ -72,7 +101,7 @@ impl Language {
             Type::Scalar(scalar) => scalar.name().to_owned(),
             Type::Vector(scalar, size) => format!("{}{size}", scalar.name()),
             // A matrix of GLSL is stored with its columns as rows in HLSL, so that an index selects what it
-            // selects in GLSL; products exchange their sides.
+            // selects in GLSL; products exchange their sides. Metal's are those of GLSL.
             Type::Matrix { columns, rows } => format!("float{columns}x{rows}"),
             _ => return None,
         })
@@ -87,12 +116,38 @@ impl Language {
     pub(super) fn constant(self) -> &'static str {
         match self {
             Self::Hlsl => "static const",
+            Self::Msl => "constant",
             Self::Godot => "const",
         }
     }
 
+    /// The type of a texture of a shape; with its sampler, if the language combines both.
+    pub(super) fn texture_type(self, shape: SamplerShape) -> String {
+        let [plane, array, volume, cube] = match self {
+            Self::Hlsl => ["Texture2D", "Texture2DArray", "Texture3D", "TextureCube"],
+            Self::Msl => [
+                "texture2d<float>",
+                "texture2d_array<float>",
+                "texture3d<float>",
+                "texturecube<float>",
+            ],
+            Self::Godot => return Sampler::float(shape).name(),
+        };
+        let name = match shape {
+            SamplerShape::D2 => plane,
+            SamplerShape::D2Array => array,
+            SamplerShape::D3 => volume,
+            SamplerShape::Cube => cube,
+        };
+        name.to_owned()
+    }
+
     /// The declaration of a parameter, of which `declared` states type and name.
     pub(super) fn parameter(self, direction: Direction, declared: &str) -> String {
+        let is_out = matches!(direction, Direction::Out | Direction::InOut);
+        if let (Self::Msl, true, Some((ty, name))) = (self, is_out, declared.rsplit_once(' ')) {
+            return format!("thread {ty}& {name}");
+        }
         let word = match direction {
             Direction::Out => "out ",
             Direction::InOut => "inout ",
@@ -119,6 +174,7 @@ impl Vocabulary for Words {
         let is_word = match self.host.language() {
             Language::Hlsl => hlsl::is_reserved(word),
             Language::Godot => godot::is_reserved(word),
+            Language::Msl => msl::is_reserved(word),
         };
         is_word || is_unitys
     }
@@ -127,6 +183,7 @@ impl Vocabulary for Words {
         match self.host.language() {
             Language::Hlsl => hlsl::is_function(word),
             Language::Godot => godot::is_function(word),
+            Language::Msl => msl::is_function(word),
         }
     }
 
@@ -140,6 +197,9 @@ impl Vocabulary for Words {
     }
 
     fn with_free_stem(&self, word: &str) -> String {
+        if self.host.language() == Language::Msl {
+            return msl::with_free_stem(word);
+        }
         match word.trim_start_matches('_') {
             _ if !word.starts_with("__") => word.to_owned(),
             "" => "unused".to_owned(),
