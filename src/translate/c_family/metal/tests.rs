@@ -2,7 +2,7 @@ use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{self as glsl, Options};
 
 use crate::c_family::host::CHost;
-use crate::c_family::{WriteFailure, write};
+use crate::c_family::{Title, WriteFailure, write};
 
 /// Converts a shader to Metal.
 fn converted(text: &str) -> Result<String, WriteFailure> {
@@ -10,7 +10,13 @@ fn converted(text: &str) -> Result<String, WriteFailure> {
     let file = files.add(File::new("shader", text));
     let checked =
         glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
-    write(&checked, &files, CHost::Metal, "shader", &Deadline::default())
+    write(
+        &checked,
+        &files,
+        CHost::Metal,
+        Title::of_shader("shader"),
+        &Deadline::default(),
+    )
 }
 
 fn shader(items: &str, statements: &str) -> String {
