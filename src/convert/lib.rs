@@ -10,6 +10,7 @@
 //! or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without any
 //! worker.
 
+mod engine;
 mod graph;
 pub mod header;
 mod hosts;
@@ -42,7 +43,7 @@ use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, UniformMode};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::{self, CHost};
+use toyproof_translate::c_family::{self, CHost, Title};
 use toyproof_translate::wgsl::{self, Style};
 use toyproof_translate::{FloatMode, Lowered, Unprintable, WriteFailure};
 
@@ -80,8 +81,8 @@ pub struct Converter {
     pub target: Option<Target>,
     /// The kind of host that WGSL is written for.
     pub style: Style,
-    /// The host that HLSL is written for.
-    pub c_host: CHost,
+    /// The host that a language with the syntax of C is written for; `None` for other languages.
+    pub c_host: Option<CHost>,
     /// The host that GLSL is written for, in the author's words; `None` for GLSL by naga.
     pub dialect: Option<Dialect>,
     /// Whether functions such as `sin` are expanded.
@@ -233,7 +234,7 @@ impl Converter {
     pub fn convert(
         &self,
         source: Source,
-        name: &str,
+        title: Title,
         translator: &mut Worker,
         mut prover: Option<&mut Prover>,
     ) -> Result<Conversion, ConvertError> {
@@ -249,9 +250,9 @@ impl Converter {
             let written = self.write_with_naga(source, target, translator)?;
             return Conversion::new(source, written, prover);
         }
-        let own = match target {
-            Target::Wgsl => self.write_wgsl(source, translator),
-            _ => self.write_c(source, name),
+        let own = match self.c_host {
+            Some(host) => self.write_c(source, host, title),
+            None => self.write_wgsl(source, translator),
         };
         let own = own.and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
         let is_plain = self.may_fall_back();
@@ -290,31 +291,20 @@ impl Converter {
     pub fn extension(&self) -> &'static str {
         match (self.dialect, self.target) {
             (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
-            (None, Some(Target::Hlsl)) => self.c_host().extension(),
-            (_, Some(target)) => target.extension(),
+            (_, Some(target)) => self.c_host.map_or_else(|| target.extension(), CHost::extension),
             (_, None) => LOWERED_EXTENSION,
         }
     }
 
     /// Whether our own writer prints the files.
     fn prints(&self) -> bool {
-        matches!(self.target, Some(Target::Wgsl | Target::Hlsl | Target::Msl)) && self.float == FloatMode::Fast
-    }
-
-    /// The host of a language with the syntax of C. Metal has one only.
-    fn c_host(&self) -> CHost {
-        match self.target {
-            Some(Target::Msl) => CHost::Metal,
-            _ => self.c_host,
-        }
+        let has_writer = self.target == Some(Target::Wgsl) || self.c_host.is_some();
+        has_writer && self.float == FloatMode::Fast
     }
 
     /// Whether naga can write what our own writer cannot.
     fn may_fall_back(&self) -> bool {
-        let is_plain = match self.target {
-            Some(Target::Wgsl) => self.style == Style::Plain,
-            _ => matches!(self.c_host(), CHost::Hlsl | CHost::Metal),
-        };
+        let is_plain = self.c_host.map_or(self.style == Style::Plain, CHost::is_plain);
         self.prints() && is_plain
     }
 
@@ -360,14 +350,14 @@ impl Converter {
     }
 
     /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
-    fn write_c(&self, source: Source, name: &str) -> Result<TargetCode, ConvertError> {
+    fn write_c(&self, source: Source, host: CHost, title: Title) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = c_family::write(source.checked, source.files, self.c_host(), name, &deadline);
+        let text = c_family::write(source.checked, source.files, host, title, &deadline);
         match text {
-            Ok(text) => Ok(TargetCode::CFamily(text, self.c_host())),
+            Ok(text) => Ok(TargetCode::CFamily(text, host)),
             Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),
             Err(WriteFailure::Unprintable(why)) => Err(ConvertError::Unwritable(WriterError::Unprintable {
-                style: self.c_host().name(),
+                style: host.name(),
                 why,
             })),
         }

@@ -18,7 +18,7 @@ use toyproof::eval::{Program, Settings};
 use toyproof::glsl::tree::Input;
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::image::{Frame, Image, Shape, Texture, noise};
-use toyproof::translate::c_family::{CHost, write};
+use toyproof::translate::c_family::{CHost, Title, write};
 use toyproof::translate::lower_strict;
 use walkdir::WalkDir;
 
@@ -58,7 +58,7 @@ fn written(name: &str, shader: &str) -> Option<Written> {
     let mut files = Files::default();
     let file = files.add(File::new(name, shader));
     let checked = check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
-    let text = write(&checked, &files, CHost::Metal, name, &Deadline::default()).ok()?;
+    let text = write(&checked, &files, CHost::Metal, Title::of_shader(name), &Deadline::default()).ok()?;
     let name = name.to_owned();
     Some(Written { name, checked, text })
 }

@@ -16,6 +16,7 @@ use toyproof_gpu::{Failure, Worker};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_project::{CompiledProject, PassKind};
 use toyproof_translate::Unprintable;
+use toyproof_translate::c_family::Title;
 
 use super::super::inputs::{DriverArgs, LanguageArgs};
 use super::super::shader::{Shader, Unusable};
@@ -160,7 +161,9 @@ impl Settings<'_> {
             files: &shader.files,
         };
         let name = shader.name.as_str();
-        let converted = self.converter.convert(source, name, translator, prover.as_mut());
+        let converted = self
+            .converter
+            .convert(source, Title::of_shader(name), translator, prover.as_mut());
         let convert::Conversion {
             code,
             proof,
@@ -243,13 +246,13 @@ impl Settings<'_> {
             let name = format!("{}, {}", shader.name, pass.kind);
             self.output_file(Some(pass.name), pass.code, &name, &status)
         });
-        // It is complete when the host's file is there: its passes precede it.
-        let host = OutputFile {
-            name: Some(host.name.to_owned()),
-            bytes: host.text.into_bytes(),
-        };
+        // It is complete when the host's files are there: its passes precede them.
+        let host = host.into_iter().map(|file| OutputFile {
+            name: Some(file.name.to_owned()),
+            bytes: file.text.into_bytes(),
+        });
         Ok(Conversion {
-            files: passes.chain([host]).collect(),
+            files: passes.chain(host).collect(),
             status,
             fallback,
         })

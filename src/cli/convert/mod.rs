@@ -141,7 +141,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         converter: Converter {
             target: to.target(),
             style: args.style.wgsl().unwrap_or_default(),
-            c_host: args.style.c_family().unwrap_or(CHost::Hlsl),
+            c_host: args.style.c_family().or(to.plain_c_host()),
             dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),

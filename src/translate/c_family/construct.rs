@@ -1,5 +1,5 @@
-//! Constructors. HLSL has casts for a single argument, and lists of components; structures are made by
-//! functions.
+//! Constructors. HLSL has casts for a single argument, and structures are made by functions; the other
+//! languages make matrices of their columns.
 
 use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type};
 
@@ -27,11 +27,17 @@ impl Writer<'_> {
                 let Type::Struct(id) = ty else {
                     return Err(Unprintable::Construct("this constructor"));
                 };
+                if self.language() != Language::Hlsl {
+                    return primary(Self::call(self.structure_name(id), arguments));
+                }
                 self.made.insert(id);
                 primary(Self::call(self.maker_name(id), arguments))
             }
             Constructor::Array => Err(Unprintable::Construct("an array outside a declaration")),
             Constructor::Scalar => self.scalar(only, from, ty),
+            Constructor::Splat | Constructor::Diagonal if self.language() != Language::Hlsl => {
+                primary(Self::call(self.type_name(ty)?, arguments))
+            }
             Constructor::Splat => {
                 if self.is_short(only) {
                     let size = usize::from(ty.component_count().unwrap_or(1));
@@ -116,8 +122,16 @@ impl Writer<'_> {
             if position > 0 {
                 parts.push(Part::token(", "));
             }
+            let converts =
+                self.language() == Language::Godot && self.cx.tree[argument].ty.scalar() != Some(scalar);
             if count > room {
                 parts.extend([Part::Print(argument, level::POSTFIX), Part::token(first(room))]);
+            } else if converts && arguments.len() > 1 {
+                let converted = match count {
+                    1 => Type::Scalar(scalar),
+                    count => Type::Vector(scalar, count),
+                };
+                parts.extend(Self::call(self.type_name(converted)?, &[argument]));
             } else {
                 parts.push(Part::Print(argument, level::ASSIGN));
             }
@@ -143,11 +157,15 @@ impl Writer<'_> {
         let name = self.type_name(ty)?;
         if let &[only] = arguments {
             let fits = count(only)? == columns * rows;
-            return if fits { self.cast(only, ty) } else { Err(MIXED) };
+            return match self.language() {
+                Language::Hlsl if fits => self.cast(only, ty),
+                _ => Err(MIXED),
+            };
         }
         let counts = arguments.iter().map(|&argument| count(argument));
         let counts = counts.collect::<PrintResult<Vec<u8>>>()?;
-        if counts.iter().all(|&count| count == 1) || counts.iter().all(|&count| count == rows) {
+        let takes_components = self.language() == Language::Hlsl && counts.iter().all(|&count| count == 1);
+        if takes_components || counts.iter().all(|&count| count == rows) {
             return Ok((Self::call(name, arguments), level::POSTFIX));
         }
         let column_type = self.type_name(Type::Vector(Scalar::Float, rows))?;
@@ -214,7 +232,7 @@ impl Writer<'_> {
         else {
             return Err(Unprintable::Construct("this matrix constructor"));
         };
-        if columns <= has && rows <= long {
+        if columns <= has && rows <= long && self.language() == Language::Hlsl {
             return self.cast(matrix, ty);
         }
         if !self.is_short(matrix) {

@@ -89,6 +89,10 @@ impl Writer<'_> {
             }
             &ExprKind::Unary { op, operand } => match op {
                 UnaryOp::Plus => (vec![Print(operand, level::UNARY)], level::UNARY),
+                UnaryOp::Minus if self.language() == Language::Godot && is_matrix(tree[operand].ty) => {
+                    let level = BinaryOp::Multiply.precedence() + level::BINARY;
+                    (vec![Part::token("-1.0 * "), Print(operand, level + 1)], level)
+                }
                 // `- -x` without the space is another operator.
                 _ => (
                     vec![Part::token(op.symbol()), Print(operand, level::POSTFIX)],
@@ -212,6 +216,8 @@ impl Writer<'_> {
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
+            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
+            _ if self.language() == Language::Godot => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
                 if !self.is_pure(left) || !self.is_pure(right) {
                     // The arguments would be evaluated in the other order.
@@ -232,7 +238,6 @@ impl Writer<'_> {
                 parts.push(Part::token(")"));
                 (parts, level::POSTFIX)
             }
-            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
             _ => Self::infix(left, op, right),
         })
     }
@@ -247,13 +252,17 @@ impl Writer<'_> {
         }
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
-        if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
+        let is_hlsl = self.language() == Language::Hlsl;
+        if is_hlsl && op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
             if !self.is_pure(target) || !self.is_pure(value) {
                 return Err(Unprintable::Construct("a product of matrices with a side effect"));
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));
-        } else if op == Some(BinaryOp::Divide) && is_matrix_by_scalar(tree[target].ty, tree[value].ty) {
+        } else if is_hlsl
+            && op == Some(BinaryOp::Divide)
+            && is_matrix_by_scalar(tree[target].ty, tree[value].ty)
+        {
             if !self.is_pure(target) {
                 return Err(Unprintable::Construct(
                     "a matrix with a side effect that is divided",
@@ -282,13 +291,13 @@ impl Writer<'_> {
         Ok(self.variable(id).to_owned())
     }
 
-    /// The value of a declaration: lists in braces for structures and arrays.
+    /// The value of a declaration: lists in braces for arrays, and for structures in HLSL.
     pub(super) fn initializer(&mut self, id: ExprId) -> PrintResult<String> {
         match &self.cx.tree[id].kind {
             ExprKind::Construct {
                 constructor: Constructor::Struct | Constructor::Array,
                 arguments,
-            } => {
+            } if self.language() != Language::Godot || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
                 let arguments = arguments.clone();
                 let is_nested = self.language().has_array_values();
                 let values = arguments.into_iter().map(|argument| match is_nested {
@@ -305,10 +314,13 @@ impl Writer<'_> {
 
     /// The value of a declaration whose every component is zero.
     pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
+        if self.language() == Language::Godot {
+            return self.zero_of_godot(ty);
+        }
         Ok(match ty {
             Type::Array(_) | Type::Struct(_) if self.language() == Language::Msl => "{}".to_owned(),
             Type::Vector(..) | Type::Matrix { .. } if self.language() == Language::Msl => {
-                format!("{}({})", self.type_name(ty)?, number(&Literal::from(zero_of(ty.scalar()))))
+                format!("{}({})", self.type_name(ty)?, number(&Literal::from(zero_of(ty))))
             }
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
@@ -316,8 +328,29 @@ impl Writer<'_> {
                 format!("{{ {} }}", zeros.join(", "))
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
-            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
+            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
             _ => format!("({})0", self.type_name(ty)?),
+        })
+    }
+
+    fn zero_of_godot(&self, ty: Type) -> PrintResult<String> {
+        let list = |zeros: Vec<String>| zeros.join(", ");
+        Ok(match ty {
+            Type::Array(id) => {
+                let array = self.cx.tree.array(id);
+                let zeros = vec![self.zero(array.element)?; array.size as usize];
+                format!("{{ {} }}", list(zeros))
+            }
+            Type::Struct(id) => {
+                let members = self.cx.tree[id].members.iter().map(|member| self.zero(member.ty));
+                let zeros = members.collect::<PrintResult<Vec<_>>>()?;
+                format!("{}({})", self.structure_name(id), list(zeros))
+            }
+            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            _ => {
+                let zero = number(&Literal::from(zero_of(ty)));
+                format!("{}({zero})", self.type_name(ty)?)
+            }
         })
     }
 
@@ -337,7 +370,7 @@ impl Writer<'_> {
             Value::Uint(_) => "uint",
             Value::Bool(_) => "bool",
         };
-        let word = self.language().global_constant();
+        let word = self.language().constant();
         let declaration = format!("{word} {ty} {name} = {code};");
         let known = self.macros.entry(name.to_owned());
         // A macro may be redefined; its first definition keeps the name.
@@ -349,8 +382,9 @@ impl Writer<'_> {
     }
 }
 
-fn zero_of(scalar: Option<Scalar>) -> Value {
-    match scalar {
+/// The zero of the components of a type.
+fn zero_of(ty: Type) -> Value {
+    match ty.scalar() {
         Some(Scalar::Bool) => Value::Bool(false),
         Some(Scalar::Int) => Value::Int(0),
         Some(Scalar::Uint) => Value::Uint(0),
@@ -363,9 +397,12 @@ fn is_matrix_by_scalar(left: Type, right: Type) -> bool {
     matches!((left, right), (Type::Matrix { .. }, Type::Scalar(_)))
 }
 
+fn is_matrix(ty: Type) -> bool {
+    matches!(ty, Type::Matrix { .. })
+}
+
 /// Whether `*` is a product of linear algebra (§5.9).
 fn is_product(left: Type, right: Type) -> bool {
-    let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
     let is_operand = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
     (is_matrix(left) || is_matrix(right)) && is_operand(left) && is_operand(right)
 }

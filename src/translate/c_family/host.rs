@@ -10,14 +10,17 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
-use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
-    Direction, ExprKind, Input, InputType, Place, SamplerShape, Type, VariableId, VariableKind,
+    Direction, ExprKind, Input, InputType, Place, SamplerShape, Scalar, Type, VariableId, VariableKind,
 };
+use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
-use super::Unprintable;
 use super::language::Language;
+use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
+use super::{Title, Unprintable};
+use crate::backend::Target;
+use crate::lower::UPWARD;
 use crate::print::Order;
 use crate::template::{around_shader, channel_number, fill};
 
@@ -34,6 +37,8 @@ pub enum CHost {
     WindowsTerminal,
     /// Metal with our own bindings; row 0 of the target is the bottom.
     Metal,
+    /// A shader of Godot 4 for a `CanvasItem`.
+    Godot,
 }
 
 /// A row of the table.
@@ -59,12 +64,13 @@ struct Row {
 
 impl CHost {
     /// Every host.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Hlsl,
         Self::Slang,
         Self::Unity,
         Self::WindowsTerminal,
         Self::Metal,
+        Self::Godot,
     ];
 
     fn row(self) -> Row {
@@ -113,10 +119,15 @@ impl CHost {
                     (" iChannel1;", " iChannel1 : register(t3);"),
                     (" iChannel2;", " iChannel2 : register(t5);"),
                     (" iChannel3;", " iChannel3 : register(t7);"),
+                    ("iChannel0_state;", "iChannel0_state : register(s2);"),
+                    ("iChannel1_state;", "iChannel1_state : register(s4);"),
+                    ("iChannel2_state;", "iChannel2_state : register(s6);"),
+                    ("iChannel3_state;", "iChannel3_state : register(s8);"),
                     (" sampleriChannel0;", " sampleriChannel0 : register(s2);"),
                     (" sampleriChannel1;", " sampleriChannel1 : register(s4);"),
                     (" sampleriChannel2;", " sampleriChannel2 : register(s6);"),
                     (" sampleriChannel3;", " sampleriChannel3 : register(s8);"),
+                    ("float4 outputSize;", ""),
                     ("float4 iChannel0_TexelSize;", ""),
                     ("float4 iChannel1_TexelSize;", ""),
                     ("float4 iChannel2_TexelSize;", ""),
@@ -127,7 +138,7 @@ impl CHost {
                     GammaToLinearSpaceExact LinearToGammaSpace LinearToGammaSpaceExact LinearEyeDepth Linear01Depth \
                     EncodeFloatRGBA DecodeFloatRGBA EncodeFloatRG DecodeFloatRG DecodeHDR DecodeLightmap \
                     UnpackNormal ParallaxOffset Shade4PointLights ShadeSH9 SampleSH fixed fixed2 fixed3 fixed4 \
-                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward",
+                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward outputSize",
                 is_upside_down: true,
             },
             Self::WindowsTerminal => Row {
@@ -164,6 +175,17 @@ impl CHost {
                 declared: "Inputs Shader main_ gl_FragCoord",
                 is_upside_down: false,
             },
+            Self::Godot => Row {
+                name: "godot",
+                title: "Godot",
+                language: Language::Godot,
+                extension: "gdshader",
+                template: include_str!("hosts/godot.gdshader"),
+                substitute: include_str!("hosts/godot_substitute.glsl"),
+                adaptations: &[],
+                declared: "",
+                is_upside_down: true,
+            },
         }
     }
 
@@ -183,6 +205,22 @@ impl CHost {
         self.row().language
     }
 
+    /// The language that compilers other than the host's read a file as ([`Self::hosted`]).
+    #[must_use]
+    pub fn target(self) -> Target {
+        match self.language() {
+            Language::Hlsl => Target::Hlsl,
+            Language::Msl => Target::Msl,
+            Language::Godot => Target::Glsl,
+        }
+    }
+
+    /// Whether it has the bindings of the other languages, so that naga can write what our own writer cannot.
+    #[must_use]
+    pub fn is_plain(self) -> bool {
+        matches!(self, Self::Hlsl | Self::Metal)
+    }
+
     /// The extension of its files, without the dot.
     #[must_use]
     pub fn extension(self) -> &'static str {
@@ -192,18 +230,18 @@ impl CHost {
     /// Whether its passes are described by a graph, as those of our own bindings are.
     #[must_use]
     pub fn has_passes(self) -> bool {
-        matches!(self, Self::Hlsl | Self::Slang | Self::Metal)
-    }
-
-    /// Whether compilers of HLSL read its files. Only Apple's compiler reads Metal.
-    #[must_use]
-    pub fn is_hlsl(self) -> bool {
-        self.language() == Language::Hlsl
+        self != Self::WindowsTerminal
     }
 
     /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.
     pub(super) fn is_upside_down(self, stage: Stage) -> bool {
         self.row().is_upside_down && stage == Stage::Image
+    }
+
+    /// Whether derivatives along y must be multiplied by the direction of y in the target. What Unity renders
+    /// to a texture is upside down in some graphics APIs.
+    pub(super) fn orients_derivatives(self, stage: Stage) -> bool {
+        self.is_upside_down(stage) || self == Self::Unity
     }
 
     /// The names that the code around a shader declares.
@@ -218,7 +256,12 @@ impl CHost {
             "iChannel2_sampler",
             "iChannel3_sampler",
         ];
-        let inputs = Input::ALL.iter().map(|input| input.name());
+        // What is passed to functions is declared by them.
+        let is_global = |input: &&Input| {
+            !self.language().passes_globals()
+                || !matches!(input, Input::Resolution | Input::ChannelResolution)
+        };
+        let inputs = Input::ALL.iter().filter(is_global).map(|input| input.name());
         let own = self.row().declared.split(' ');
         own.chain(inputs).chain(CHANNELS).collect()
     }
@@ -243,6 +286,24 @@ impl CHost {
             || self.template().contains(&format!("#define {condition} "))
     }
 
+    /// A line of a file in the substitute for its host; `None` for lines that only the host reads.
+    fn line_in_substitute(self, line: &str) -> Option<String> {
+        let trimmed = line.trim();
+        match self.language() {
+            Language::Hlsl | Language::Msl => {
+                let is_for_host = trimmed.starts_with("#pragma") || trimmed.starts_with("#include");
+                (!is_for_host).then(|| line.to_owned())
+            }
+            Language::Godot => {
+                let is_for_host = ["shader_type ", "render_mode ", "uniform "];
+                godots_channel(line).or_else(|| {
+                    let is_for_host = is_for_host.iter().any(|word| line.starts_with(word));
+                    (!is_for_host).then(|| line.to_owned())
+                })
+            }
+        }
+    }
+
     /// Embeds a written file in a substitute for its host, which reads our uniform block.
     #[must_use]
     pub fn hosted(self, text: &str, stage: Stage) -> HostedText {
@@ -256,23 +317,37 @@ impl CHost {
             (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
             _ => text,
         };
-        let is_for_host =
-            |line: &&str| !line.trim().starts_with("#pragma") && !line.trim().starts_with("#include");
-        let lines = program.lines().filter(is_for_host);
-        let program: String = lines.flat_map(|line| [line, "\n"]).collect();
+        let lines = program.lines().filter_map(|line| self.line_in_substitute(line));
+        let program: String = lines.flat_map(|line| [line, "\n".to_owned()]).collect();
         let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
         let program = self.adaptations().iter().fold(program, replace);
         let holds = |condition: &str| match channel_number(condition) {
+            _ if condition == "image" => stage == Stage::Image,
+            _ if condition == "buffer" => stage != Stage::Image,
             Some(channel) => program.contains(&format!("iChannel{channel}")),
             None => program.contains(condition),
         };
-        let values = [("$block", block())];
+        let values = [("$block", block(self.language()))];
         let [before, after] = around_shader(row.substitute).map(|part| fill(part, holds, &values));
         HostedText {
             text: format!("{before}{program}{after}"),
             upside_down,
         }
     }
+}
+
+/// The declaration of a channel in Godot's language, `uniform sampler2D iChannel0 : hints;`, for Vulkan: a
+/// texture and a sampler with our bindings. `None` for other lines.
+fn godots_channel(line: &str) -> Option<String> {
+    let (ty, rest) = line.strip_prefix("uniform sampler")?.split_once(' ')?;
+    let (name, _) = rest.split_once(" : ")?;
+    let channel: u32 = name.strip_prefix("iChannel")?.parse().ok()?;
+    let [texture, sampler] = [2 * channel + 1, 2 * channel + 2];
+    Some(format!(
+        "layout(set = 0, binding = {texture}) uniform texture{ty} toyproof_texture{channel};\n\
+         layout(set = 0, binding = {sampler}) uniform sampler toyproof_sampler{channel};\n\
+         #define {name} sampler{ty}(toyproof_texture{channel}, toyproof_sampler{channel})"
+    ))
 }
 
 /// What Windows Terminal declares.
@@ -288,25 +363,29 @@ cbuffer PixelShaderSettings : register(b0) {
 ";
 
 /// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
-fn block() -> String {
-    let mut text = "cbuffer ToyproofFrame : register(b0) {\n".to_owned();
+fn block(language: Language) -> String {
+    let mut text = match language {
+        Language::Hlsl | Language::Msl => "cbuffer ToyproofFrame : register(b0) {\n",
+        Language::Godot => "layout(std140, set = 0, binding = 0) uniform ToyproofFrame {\n",
+    }
+    .to_owned();
     for input in Input::ALL {
+        // In a block, each element of an array has 16 bytes.
         let ty = match (input.ty(), input.length()) {
-            (InputType::Float, None) => "float",
-            (InputType::Int, _) => "int",
-            (InputType::Vec3, _) => "float3",
-            (InputType::Float, Some(_)) | (InputType::Vec4, _) => "float4",
+            (InputType::Float, Some(_)) | (InputType::Vec4, _) => Type::Vector(Scalar::Float, 4),
+            (InputType::Float, None) => Type::FLOAT,
+            (InputType::Int, _) => Type::INT,
+            (InputType::Vec3, _) => Type::Vector(Scalar::Float, 3),
         };
-        let length = input
-            .length()
-            .map_or_else(String::new, |length| format!("[{length}]"));
+        let length = input.length();
+        let length = length.map_or_else(String::new, |length| format!("[{length}]"));
+        let ty = language.numeric_type(ty).unwrap_or_default();
         let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
-        let _ = writeln!(
-            text,
-            "    {ty} toyproof_{}{length} : packoffset(c{}{component});",
-            input.name(),
-            input.offset() / 16
-        );
+        let place = match language {
+            Language::Hlsl | Language::Msl => format!(" : packoffset(c{}{component})", input.offset() / 16),
+            Language::Godot => String::new(),
+        };
+        let _ = writeln!(text, "    {ty} toyproof_{}{length}{place};", input.name());
     }
     text + "};\n"
 }
@@ -329,12 +408,14 @@ impl Writer<'_> {
         first: &str,
         outside: &str,
         text: &str,
-        name: &str,
+        title: Title,
     ) -> PrintResult<String> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
         let mut channels = BTreeMap::new();
-        for &id in &order.inputs {
+        let is_unread = |&id: &VariableId| !order.inputs.contains(&id);
+        let passed = self.passed.iter().copied().filter(is_unread);
+        for id in order.inputs.iter().copied().chain(passed) {
             match (tree[id].kind, tree[id].ty) {
                 (VariableKind::Channel(channel), Type::Sampler(sampler)) => {
                     if !self.host.knows(&format!("channel{channel}")) {
@@ -359,10 +440,12 @@ impl Writer<'_> {
             "channels" => !channels.is_empty(),
             "outside" => !outside.is_empty(),
             "stateless" => inputs.is_empty() && channels.is_empty() && !self.reads_position,
-            "position" => self.reads_position,
-            "derivatives" => self.takes_derivatives,
+            "position" => self.reads_position || self.passes("position"),
+            "derivatives" => self.takes_derivatives || self.passes(UPWARD),
             "image" => self.cx.stage == Stage::Image,
             "buffer" => self.cx.stage != Stage::Image,
+            "single" => title.pass.is_none(),
+            "pass" => title.pass.is_some(),
             "inout" => brings_color,
             "out" => !brings_color,
             "no_channels" => channels.is_empty(),
@@ -374,13 +457,32 @@ impl Writer<'_> {
         let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
-            values.push((value, self.language().texture_type(shape).to_owned()));
+            values.push((value, texture_type(self.language(), shape)));
         }
+        let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
+        for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
+            let sampling = match self.language() {
+                Language::Godot => hints(sampling),
+                Language::Hlsl | Language::Msl => inline_sampler(sampling).to_owned(),
+            };
+            values.push((value, sampling));
+        }
+        let passed = self
+            .passed
+            .iter()
+            .map(|&id| format!(", {}", self.cx.tree[id].name));
+        values.push(("$passed", passed.collect()));
         // The last, since names and comments may contain those of other values.
-        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
-        let stem: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        values.push(("$name", stem));
+        let name = match title.pass {
+            Some(pass) => format!("{}/{pass}", title.name),
+            None => {
+                let stem = Path::new(title.name).file_stem().unwrap_or_default();
+                stem.to_string_lossy().into_owned()
+            }
+        };
+        let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        values.push(("$name", name));
         values.push(("$outside", outside.trim_end().to_owned()));
         let template = self.host.template();
         // The text is indented as its place in the template.
@@ -395,6 +497,11 @@ impl Writer<'_> {
             text
         });
         Ok(format!("{first}{before}{text}{after}"))
+    }
+
+    /// Whether `mainImage` gets this from the host's entry point.
+    fn passes(&self, name: &str) -> bool {
+        self.passed.iter().any(|&id| self.cx.tree[id].name == name)
     }
 
     /// The first place where a variable is used.
@@ -417,4 +524,30 @@ impl Writer<'_> {
             diagnostic.help("use `--style plain`, which has every input and channel"),
         ))
     }
+}
+
+/// The name of a sampler of Unity, whose words say how it samples (“Using sampler states” in its manual).
+fn inline_sampler(sampling: Sampling) -> &'static str {
+    match (sampling.filter, sampling.wrap) {
+        (Filter::Nearest, Wrap::Clamp) => "point_clamp_",
+        (Filter::Nearest, Wrap::Repeat) => "point_repeat_",
+        (Filter::Linear, Wrap::Clamp) => "linear_clamp_",
+        (Filter::Linear, Wrap::Repeat) => "linear_repeat_",
+        (Filter::Mipmap, Wrap::Clamp) => "trilinear_clamp_",
+        (Filter::Mipmap, Wrap::Repeat) => "trilinear_repeat_",
+    }
+}
+
+/// How Godot samples a texture.
+fn hints(sampling: Sampling) -> String {
+    let filter = match sampling.filter {
+        Filter::Nearest => "filter_nearest",
+        Filter::Linear => "filter_linear",
+        Filter::Mipmap => "filter_linear_mipmap",
+    };
+    let wrap = match sampling.wrap {
+        Wrap::Clamp => "repeat_disable",
+        Wrap::Repeat => "repeat_enable",
+    };
+    format!("{filter}, {wrap}")
 }

@@ -87,10 +87,10 @@ impl Writer<'_> {
             || variable.kind == VariableKind::Uniform && variable.initializer.is_some();
         let declared = self.declarator(variable.ty, self.variable(id))?;
         let word = match self.language() {
-            Language::Hlsl if is_constant => "static const ",
-            Language::Hlsl => "static ",
-            Language::Msl if !self.members.contains(&Item::Variable(id)) => "constant ",
-            Language::Msl => "",
+            Language::Msl if self.members.contains(&Item::Variable(id)) => String::new(),
+            Language::Msl => format!("{} ", self.language().constant()),
+            _ if is_constant => format!("{} ", self.language().constant()),
+            _ => "static ".to_owned(),
         };
         let value = match variable.initializer {
             Some(value) => format!(" = {}", self.initializer(value)?),

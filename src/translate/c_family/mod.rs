@@ -9,6 +9,7 @@ mod builtin;
 mod construct;
 mod effect;
 mod expression;
+mod globals;
 mod host;
 mod item;
 mod language;
@@ -30,8 +31,24 @@ use crate::lower::{branch_for_effects, fold_by_precision, fold_except, name_arra
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
-/// Prints a checked shader for a host; the author's comments are read from `files`. `name` is the shader's,
-/// for hosts whose files state it.
+/// The title of a shader, for hosts whose files state it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Title<'a> {
+    /// The name of the shader or project.
+    pub name: &'a str,
+    /// The name of the pass, in a project with several.
+    pub pass: Option<&'a str>,
+}
+
+impl<'a> Title<'a> {
+    /// The title of a shader that is not a pass of a project.
+    #[must_use]
+    pub fn of_shader(name: &'a str) -> Self {
+        Self { name, pass: None }
+    }
+}
+
+/// Prints a checked shader for a host; the author's comments are read from `files`.
 ///
 /// # Errors
 /// If a construct is not supported, the host lacks an input, or the deadline passes.
@@ -39,7 +56,7 @@ pub fn write(
     checked: &Checked,
     files: &Files,
     host: CHost,
-    name: &str,
+    title: Title,
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
@@ -56,13 +73,15 @@ pub fn write(
         name_array_values(&mut cx);
     }
     late.run(&mut cx, deadline)?;
+    let passed = globals::pass(&mut cx, host)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);
     deadline.check()?;
     let names = Names::new(&cx, &order, &Words::new(host));
     deadline.check()?;
-    let writer = Writer::new(&cx, &names, host, files, deadline);
-    let written = writer.write(&order, name);
+    let mut writer = Writer::new(&cx, &names, host, files, deadline);
+    writer.passed = &passed;
+    let written = writer.write(&order, title);
     // An expired deadline also makes the writer fail.
     deadline.check()?;
     Ok(written?)

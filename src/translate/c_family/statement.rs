@@ -120,7 +120,9 @@ impl Writer<'_> {
             _ => None,
         };
         let ty = self.cx.tree[id].ty;
-        let large = large.filter(|_| self.element_count(ty) > MAX_ZEROS);
+        // Only HLSL has a short form of a zero structure.
+        let is_long = |element| self.language() != Language::Hlsl && matches!(element, Type::Struct(_));
+        let large = large.filter(|array| self.element_count(ty) > MAX_ZEROS || is_long(array.element));
         let code = self.declaration(id, needs_value && large.is_none())?;
         self.line(&format!("{code};"));
         if let Some(array) = large {
@@ -150,11 +152,16 @@ impl Writer<'_> {
         let is_constant = variable.kind == VariableKind::Const;
         let word = match variable.ty {
             // Arrays of constants are not copied to the stack in each call.
-            Type::Array(_) if is_constant && variable.value.is_some() && self.language() == Language::Hlsl => {
-                "static const "
+            Type::Array(_) if is_constant && variable.value.is_some() && self.language() != Language::Msl => {
+                self.language().constant()
             }
-            _ if is_constant => "const ",
+            _ if is_constant => "const",
             _ => "",
+        };
+        let word = if word.is_empty() {
+            String::new()
+        } else {
+            format!("{word} ")
         };
         let value = match variable.initializer {
             Some(value) => self.initializer(value)?,

@@ -2,7 +2,7 @@ use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{self as glsl, Options, Stage};
 
 use super::host::CHost;
-use super::{Unprintable, WriteFailure, write};
+use super::{Title, Unprintable, WriteFailure, write};
 
 /// Converts a shader for a host.
 fn converted(host: CHost, text: &str) -> Result<String, WriteFailure> {
@@ -10,7 +10,13 @@ fn converted(host: CHost, text: &str) -> Result<String, WriteFailure> {
     let file = files.add(File::new("shader", text));
     let checked =
         glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
-    write(&checked, &files, host, "shader", &Deadline::default())
+    write(
+        &checked,
+        &files,
+        host,
+        Title::of_shader("shader"),
+        &Deadline::default(),
+    )
 }
 
 /// The HLSL of a shader whose image function has this body, from that function on.
@@ -410,9 +416,106 @@ fn a_file_is_named_after_its_shader() {
     let file = files.add(File::new("shader", text));
     let checked = glsl::check(&files, file, &Options::default()).unwrap();
     let name = "class/a \"$texture0\".glsl";
-    let written = write(&checked, &files, CHost::Unity, name, &Deadline::default()).unwrap();
+    let written = write(&checked, &files, CHost::Unity, Title::of_shader(name), &Deadline::default()).unwrap();
     assert!(
         written.starts_with("Shader \"ShaderToy/a _$texture0_\" {\n"),
         "{written}"
     );
+}
+
+/// The file for Godot of a shader with these items and this image function, without its head.
+fn for_godot(items: &str, statements: &str) -> String {
+    let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
+    let written = converted(CHost::Godot, &text).unwrap();
+    written.split_once(";\n").map_or("", |(_, rest)| rest).to_owned()
+}
+
+#[test]
+fn global_variables_are_parameters_in_godot() {
+    let written = for_godot(
+        "float glow = 0.5;\nint steps;\nconst float SCALE = 2.0;\n\
+         float height(float x) { steps++; return x * SCALE / iResolution.x; }\n\
+         float march(float x) { return height(x) + glow; }\nfloat flat_(float x) { return x; }",
+        "float glow_ = 1.0;\ncolor = vec4(march(at.x) + flat_(gl_FragCoord.y), glow_, float(steps), 1.0);",
+    );
+    for expected in [
+        "float height(float x, inout int steps, vec3 iResolution) {\n    steps++;\n",
+        "float march(float x, float glow, inout int steps, vec3 iResolution) {\n    \
+         return height(x, steps, iResolution) + glow;\n",
+        "float flat_(float x) {\n",
+        "void mainImage(out vec4 color, vec2 at, vec3 iResolution, vec4 position) {\n    \
+         float glow = 0.5;\n    int steps = 0;\n    float glow_ = 1.0;\n    \
+         color = vec4(march(at.x, glow, steps, iResolution) + flat_(position.y), glow_, float(steps), 1.0);\n",
+        "    vec3 iResolution = vec3(size, 1.0);\n    vec4 position = vec4(fragCoord, FRAGCOORD.zw);\n",
+        "    mainImage(color, fragCoord, iResolution, position);\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn a_global_variable_shadows_nothing_in_godot() {
+    let written = for_godot(
+        "float x = 1.0;\nfloat f() { { float x = 2.0; return x; } return x++; }",
+        "float y = f() + x;\nfloat x = y;\ncolor = vec4(x);",
+    );
+    // The parameter `x` of the function and the variable of its block are two; so are those of the image.
+    for expected in [
+        "float f(inout float x_1) {",
+        "        float x_2 = 2.0;",
+        "    float x_1 = 1.0;\n    float y = f(x_1) + x_1;\n    float x_2 = y;\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn what_would_change_its_meaning_is_refused_for_godot() {
+    for (items, statements, why) in [
+        (
+            "float g;\nvoid f(out float x) { x = 1.0; g += x; }",
+            "f(g);\ncolor = vec4(g);",
+            "a global variable that is an `out` argument of a function that uses it",
+        ),
+        (
+            "",
+            "float a[2][2];\na[0][1] = at.x;\ncolor = vec4(a[0][1]);",
+            "an array of arrays",
+        ),
+        (
+            "",
+            "mat2x3 m = mat2x3(at.x);\ncolor = vec4(m[0], 1.0);",
+            "this type",
+        ),
+    ] {
+        let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
+        let error = converted(CHost::Godot, &text).unwrap_err();
+        let WriteFailure::Unprintable(error) = error else {
+            panic!("{error:?}");
+        };
+        assert!(error.to_string().contains(why), "{error}");
+    }
+}
+
+#[test]
+fn godot_lacks_some_constructs_of_glsl() {
+    let written = for_godot(
+        "struct Ray { vec3 o; float t; };",
+        "mat2 m = mat2(1, 2, 3, 4);\nmat2 n = -m;\nRay rays[2];\nvec3 b = vec3(at.x > 1.0, 1, at.y > 2.0);\n\
+         float f[2] = float[2](1.0, 2.0);\nbool c = at.x > 1.0 ^^ at.y > 1.0;\nfloat s = mix(at.x, at.y, c);\n\
+         int i = 0;\nswitch (i) { case 0: i = 3; default: i += 1; }\n\
+         color = vec4(b, rays[0].t + f[i] + s + n[0].x + texelFetch(iChannel0, ivec2(at), 0).x);",
+    );
+    for expected in [
+        "mat2 m = mat2(vec2(1, 2), vec2(3, 4));",
+        "mat2 n = -1.0 * m;",
+        "        rays[index] = Ray(vec3(0.0), 0.0);\n",
+        "vec3 b = vec3(float(at.x > 1.0), 1, float(at.y > 2.0));",
+        "float f[2] = { 1.0, 2.0 };",
+        "bool c = at.x > 1.0 != at.y > 1.0;",
+        "float s = mixBool(at.x, at.y, c);",
+        "uniform sampler2D iChannel0 : filter_linear_mipmap, repeat_enable;",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
 }

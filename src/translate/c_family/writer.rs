@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
 
-use super::Unprintable;
 use super::effect::impure_functions;
 use super::host::CHost;
 use super::language::{Language, Words};
+use super::{Title, Unprintable};
 use crate::author::{Comments, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::print::{Names, Order, Vocabulary};
@@ -46,6 +46,8 @@ pub(super) struct Writer<'a> {
     pub(super) reads_position: bool,
     /// Whether derivatives along y are taken, whose sign depends on the host.
     pub(super) takes_derivatives: bool,
+    /// What `mainImage` gets from the host's entry point besides its color and coordinates.
+    pub(super) passed: &'a [VariableId],
 }
 
 impl<'a> Writer<'a> {
@@ -77,6 +79,7 @@ impl<'a> Writer<'a> {
             failed_at: None,
             reads_position: false,
             takes_derivatives: false,
+            passed: &[],
         }
     }
 
@@ -154,6 +157,9 @@ impl<'a> Writer<'a> {
             let array = self.cx.tree.array(id);
             let _ = write!(sizes, "[{}]", array.size);
             element = array.element;
+            if self.language() == Language::Godot && matches!(element, Type::Array(_)) {
+                return Err(Unprintable::Construct("an array of arrays"));
+            }
         }
         Ok(format!("{} {name}{sizes}", self.type_name(element)?))
     }
@@ -167,7 +173,10 @@ impl<'a> Writer<'a> {
                 let array = self.cx.tree.array(id);
                 Ok(format!("array<{}, {}>", self.type_name(array.element)?, array.size))
             }
-            _ => self.language().numeric_type(ty).ok_or(Unprintable::Construct("this type")),
+            _ => {
+                let name = self.language().numeric_type(ty);
+                name.ok_or(Unprintable::Construct("this type"))
+            }
         }
     }
 
@@ -205,7 +214,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Prints the whole text: the author's first comment, and the items in the host's code.
-    pub(super) fn write(mut self, order: &Order, name: &str) -> PrintResult<String> {
+    pub(super) fn write(mut self, order: &Order, title: Title) -> PrintResult<String> {
         let entry = self.cx.tree[self.cx.main_image].at;
         let mut first = self.comments.first(entry).join("\n");
         if !first.is_empty() {
@@ -250,9 +259,9 @@ impl<'a> Writer<'a> {
         }
         text += shader.trim_start_matches('\n');
         if self.language() == Language::Msl {
-            return self.embed(order, &first, &text, members.trim_start_matches('\n'), name);
+            return self.embed(order, &first, &text, members.trim_start_matches('\n'), title);
         }
-        self.embed(order, &first, "", &text, name)
+        self.embed(order, &first, "", &text, title)
     }
 }
 

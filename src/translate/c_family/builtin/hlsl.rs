@@ -34,7 +34,7 @@ impl Writer<'_> {
                 parts.push(Part::token(")"));
                 return Ok((parts, level::POSTFIX));
             }
-            B::DFdy if self.host.is_upside_down(self.cx.stage) => {
+            B::DFdy if self.host.orients_derivatives(self.cx.stage) => {
                 self.takes_derivatives = true;
                 let mut parts = vec![Part::token("upward * ")];
                 parts.extend(Self::call("ddy", arguments));
@@ -51,8 +51,7 @@ impl Writer<'_> {
             B::FloatBitsToUint => "asuint".to_owned(),
             B::IntBitsToFloat | B::UintBitsToFloat => "asfloat".to_owned(),
             B::Mix if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => {
-                let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
-                self.helper_function("mix", &types, ty, "", &body)?
+                self.mix_of_bool(&types, ty)?
             }
             B::Mix => "lerp".to_owned(),
             B::Mod => self.helper_function(
@@ -106,19 +105,4 @@ impl Writer<'_> {
         };
         Ok((Self::call(name, arguments), level::POSTFIX))
     }
-}
-
-/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways
-/// before
-/// and since its version of 2021.
-fn mix_of_bool(ty: &str, size: u8) -> String {
-    if size == 1 {
-        return "return a ? y : x;".to_owned();
-    }
-    let component = |at: u8| {
-        let letter = char::from(b"xyzw"[usize::from(at)]);
-        format!("a.{letter} ? y.{letter} : x.{letter}")
-    };
-    let components: Vec<_> = (0..size.min(4)).map(component).collect();
-    format!("return {ty}({});", components.join(", "))
 }

@@ -1,5 +1,6 @@
 //! Built-in functions: each language has its own names for some of them, and lacks a few.
 
+mod godot;
 mod hlsl;
 mod msl;
 
@@ -23,6 +24,7 @@ impl Writer<'_> {
         match self.language() {
             Language::Hlsl => self.built_in_of_hlsl(function, arguments, ty),
             Language::Msl => self.built_in_of_metal(function, arguments, ty),
+            Language::Godot => self.built_in_of_godot(function, arguments, ty),
         }
     }
 
@@ -37,6 +39,16 @@ impl Writer<'_> {
         self.helper_function("divide", &[matrix, Type::FLOAT], matrix, "", &body)
     }
 
+    /// Adds the function `mix(x, y, a)` of a `bool` for each component, and returns its name.
+    fn mix_of_bool(&mut self, types: &[Type], ty: Type) -> PrintResult<String> {
+        let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
+        let name = match self.language() {
+            Language::Hlsl | Language::Msl => "mix",
+            Language::Godot => "mixBool",
+        };
+        self.helper_function(name, types, ty, "", &body)
+    }
+
     /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and
     /// returns its
     /// name.
@@ -48,7 +60,8 @@ impl Writer<'_> {
         comment: &str,
         body: &str,
     ) -> PrintResult<String> {
-        if self.indent == 0 {
+        // Members of a structure are computed at run time.
+        if self.indent == 0 && self.language() != Language::Msl {
             return Err(Unprintable::Construct(
                 "this built-in function in a global constant",
             ));
@@ -64,4 +77,18 @@ impl Writer<'_> {
         self.helpers.insert((function.clone(), parameters), text);
         Ok(function)
     }
+}
+
+/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways before and
+/// since its version of 2021.
+fn mix_of_bool(ty: &str, size: u8) -> String {
+    if size == 1 {
+        return "return a ? y : x;".to_owned();
+    }
+    let component = |at: u8| {
+        let letter = char::from(b"xyzw"[usize::from(at)]);
+        format!("a.{letter} ? y.{letter} : x.{letter}")
+    };
+    let components: Vec<_> = (0..size.min(4)).map(component).collect();
+    format!("return {ty}({});", components.join(", "))
 }

@@ -62,4 +62,3 @@ fn is_numbered_type(word: &str) -> bool {
         None => is_size(number),
     })
 }
-

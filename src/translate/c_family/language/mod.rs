@@ -1,10 +1,11 @@
 //! What differs between the languages: types, words and passes. Their built-in functions are in
 //! [`super::builtin`].
 
+mod godot;
 mod hlsl;
 mod msl;
 
-use toyproof_glsl::tree::{Direction, SamplerShape, Scalar, Type};
+use toyproof_glsl::tree::{Direction, Type};
 
 use super::host::CHost;
 use crate::lower::{Pass, Passes};
@@ -17,6 +18,8 @@ pub(super) enum Language {
     Hlsl,
     /// Metal Shading Language, which is C++14.
     Msl,
+    /// The shading language of Godot 4: GLSL with fewer constructs, and without global variables.
+    Godot,
 }
 
 impl Language {
@@ -24,38 +27,68 @@ impl Language {
     /// side effects are lowered, and those after.
     pub(super) fn passes(self) -> (Passes, Passes) {
         let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
-        let not_needed = [
-            Pass::Folding,
-            Pass::Booleans,
-            Pass::Swizzles,
-            Pass::Indices,
-            Pass::Negations,
-            Pass::Inequality,
-            Pass::Members,
-            Pass::Constants,
-            Pass::Globals,
-            Pass::Steps,
-            Pass::DoWhile,
-            Pass::DeadCode,
-            Pass::Nesting,
-        ];
-        let own: &[Pass] = match self {
-            Self::Hlsl => &[Pass::Matrices, Pass::OutArguments],
-            Self::Msl => &[Pass::ShortCircuit, Pass::LoopVoids, Pass::Switches],
+        let not_needed: &[Pass] = match self {
+            Self::Hlsl => &[
+                Pass::Folding,
+                Pass::Matrices,
+                Pass::Booleans,
+                Pass::Swizzles,
+                Pass::Indices,
+                Pass::Negations,
+                Pass::OutArguments,
+                Pass::Inequality,
+                Pass::Members,
+                Pass::Constants,
+                Pass::Globals,
+                Pass::Steps,
+                Pass::DoWhile,
+                Pass::DeadCode,
+                Pass::Nesting,
+            ],
+            Self::Msl => &[
+                Pass::ShortCircuit,
+                Pass::Folding,
+                Pass::Booleans,
+                Pass::Swizzles,
+                Pass::Indices,
+                Pass::Negations,
+                Pass::Inequality,
+                Pass::Members,
+                Pass::Constants,
+                Pass::Globals,
+                Pass::Steps,
+                Pass::DoWhile,
+                Pass::LoopVoids,
+                Pass::DeadCode,
+                Pass::Switches,
+                Pass::Nesting,
+            ],
+            Self::Godot => &[
+                Pass::Folding,
+                Pass::MissingBuiltIns,
+                Pass::Booleans,
+                Pass::Inequality,
+                Pass::Members,
+                Pass::Constants,
+                Pass::Globals,
+                Pass::Steps,
+                Pass::DoWhile,
+                Pass::DeadCode,
+                Pass::Nesting,
+            ],
         };
         let late = early
             .into_iter()
-            .chain(not_needed)
-            .chain(own.iter().copied())
+            .chain(not_needed.iter().copied())
             .fold(Passes::required(), Passes::without);
-        let early = early.into_iter().filter(|pass| !own.contains(pass));
+        let early = early.into_iter().filter(|pass| !not_needed.contains(pass));
         (early.fold(Passes::none(), Passes::with), late)
     }
 
     /// Whether `&&` and `?:` may evaluate a side that is not selected, and select no structures and arrays.
     pub(super) fn evaluates_both_sides(self) -> bool {
         match self {
-            Self::Hlsl => true,
+            Self::Hlsl | Self::Godot => true,
             Self::Msl => false,
         }
     }
@@ -63,7 +96,7 @@ impl Language {
     /// Whether arrays are values, which have a name and a list of elements anywhere.
     pub(super) fn has_array_values(self) -> bool {
         match self {
-            Self::Hlsl => false,
+            Self::Hlsl | Self::Godot => false,
             Self::Msl => true,
         }
     }
@@ -71,24 +104,19 @@ impl Language {
     /// Whether parameters for `out` and `inout` are references as in C++.
     pub(super) fn has_references(self) -> bool {
         match self {
-            Self::Hlsl => false,
+            Self::Hlsl | Self::Godot => false,
             Self::Msl => true,
-        }
-    }
-
-    /// What begins the declaration of a constant outside functions.
-    pub(super) fn global_constant(self) -> &'static str {
-        match self {
-            Self::Hlsl => "static const",
-            Self::Msl => "constant",
         }
     }
 
     /// The name of a scalar, vector or matrix type.
     pub(super) fn numeric_type(self, ty: Type) -> Option<String> {
+        if self == Self::Godot {
+            return godot::numeric_type(ty);
+        }
         Some(match ty {
-            Type::Scalar(scalar) => scalar_name(scalar).to_owned(),
-            Type::Vector(scalar, size) => format!("{}{size}", scalar_name(scalar)),
+            Type::Scalar(scalar) => scalar.name().to_owned(),
+            Type::Vector(scalar, size) => format!("{}{size}", scalar.name()),
             // A matrix of GLSL is stored with its columns as rows in HLSL, so that an index selects what it
             // selects in GLSL; products exchange their sides. Metal's are those of GLSL.
             Type::Matrix { columns, rows } => format!("float{columns}x{rows}"),
@@ -96,22 +124,17 @@ impl Language {
         })
     }
 
-    /// The type of a texture of a shape.
-    pub(super) fn texture_type(self, shape: SamplerShape) -> &'static str {
-        let [plane, array, volume, cube] = match self {
-            Self::Hlsl => ["Texture2D", "Texture2DArray", "Texture3D", "TextureCube"],
-            Self::Msl => [
-                "texture2d<float>",
-                "texture2d_array<float>",
-                "texture3d<float>",
-                "texturecube<float>",
-            ],
-        };
-        match shape {
-            SamplerShape::D2 => plane,
-            SamplerShape::D2Array => array,
-            SamplerShape::D3 => volume,
-            SamplerShape::Cube => cube,
+    /// Whether functions see no variables at global scope, other than constants and inputs.
+    pub(super) fn passes_globals(self) -> bool {
+        self == Self::Godot
+    }
+
+    /// The words that declare a constant at global scope.
+    pub(super) fn constant(self) -> &'static str {
+        match self {
+            Self::Hlsl => "static const",
+            Self::Msl => "constant",
+            Self::Godot => "const",
         }
     }
 
@@ -127,15 +150,6 @@ impl Language {
             Direction::In | Direction::ConstIn => "",
         };
         format!("{word}{declared}")
-    }
-}
-
-fn scalar_name(scalar: Scalar) -> &'static str {
-    match scalar {
-        Scalar::Bool => "bool",
-        Scalar::Int => "int",
-        Scalar::Uint => "uint",
-        Scalar::Float => "float",
     }
 }
 
@@ -156,6 +170,7 @@ impl Vocabulary for Words {
         let is_word = match self.host.language() {
             Language::Hlsl => hlsl::is_reserved(word),
             Language::Msl => msl::is_reserved(word),
+            Language::Godot => godot::is_reserved(word),
         };
         is_word || is_unitys
     }
@@ -164,6 +179,7 @@ impl Vocabulary for Words {
         match self.host.language() {
             Language::Hlsl => hlsl::is_function(word),
             Language::Msl => msl::is_function(word),
+            Language::Godot => godot::is_function(word),
         }
     }
 
