@@ -10,8 +10,8 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-use proptest::test_runner::{RngAlgorithm, TestRng};
 use proptest::prelude::RngCore;
+use proptest::test_runner::{RngAlgorithm, TestRng};
 use regex::Regex;
 use toyproof::diagnostic::{Deadline, File, Files};
 use toyproof::eval::{Program, Settings};
@@ -23,7 +23,8 @@ use toyproof::translate::lower_strict;
 use walkdir::WalkDir;
 
 use crate::hlsl_hosts;
-use crate::requirements::require_program;
+use crate::program::toyproof;
+use crate::requirements::{require_driver, require_program};
 use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
 
@@ -57,8 +58,16 @@ struct Written {
 fn written(name: &str, shader: &str) -> Option<Written> {
     let mut files = Files::default();
     let file = files.add(File::new(name, shader));
-    let checked = check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
-    let text = write(&checked, &files, CHost::Metal, Title::of_shader(name), &Deadline::default()).ok()?;
+    let checked =
+        check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
+    let text = write(
+        &checked,
+        &files,
+        CHost::Metal,
+        Title::of_shader(name),
+        &Deadline::default(),
+    )
+    .ok()?;
     let name = name.to_owned();
     Some(Written { name, checked, text })
 }
@@ -87,8 +96,12 @@ fn definitions() -> String {
             for number in 0..size.pow(count) {
                 let places = (0..count).map(|at| number / size.pow(at) % size);
                 let places: Vec<usize> = places.collect();
-                let [letters, colors] = ["xyzw", "rgba"]
-                    .map(|names| places.iter().map(|&place| &names[place..=place]).collect::<String>());
+                let [letters, colors] = ["xyzw", "rgba"].map(|names| {
+                    places
+                        .iter()
+                        .map(|&place| &names[place..=place])
+                        .collect::<String>()
+                });
                 let places: Vec<String> = places.iter().map(usize::to_string).collect();
                 let _ = write!(text, " swizzle<T, {}> {letters}, {colors};", places.join(", "));
             }
@@ -99,15 +112,23 @@ fn definitions() -> String {
     let lowered = lower_strict(&functions.checked);
     let (_, lowered) = lowered.text().split_once("\n\n").expect("there is a head");
     let (lowered, _) = lowered.split_once("void mainImage").expect("there is an image");
-    let lowered = Regex::new(r"toyproof_([a-z]+2?)\(").unwrap().replace_all(lowered, "math_$1(");
-    let lowered = lowered.replace("\nfloat ", "\ninline float ").replace("math_atan(float toyproof_a, ", "math_atan2(float toyproof_a, ");
-    let _ = write!(text, "typedef unsigned int uint;\nnamespace evaluator {{\n{GLSL}{lowered}}}\n");
+    let lowered = Regex::new(r"toyproof_([a-z]+2?)\(")
+        .unwrap()
+        .replace_all(lowered, "math_$1(");
+    let lowered = lowered
+        .replace("\nfloat ", "\ninline float ")
+        .replace("math_atan(float toyproof_a, ", "math_atan2(float toyproof_a, ");
+    let _ = write!(
+        text,
+        "typedef unsigned int uint;\nnamespace evaluator {{\n{GLSL}{lowered}}}\n"
+    );
     text
 }
 
 /// The text as the header takes it: swizzles that are read get their values.
 fn with_values(text: &str) -> String {
-    let swizzle = Regex::new(r"\.(?:[xyzw]{2,4}|[rgba]{2,4})\b(?<write>\s*(?:[-+*/%&|^]|<<|>>)?=[^=])?").unwrap();
+    let swizzle =
+        Regex::new(r"\.(?:[xyzw]{2,4}|[rgba]{2,4})\b(?<write>\s*(?:[-+*/%&|^]|<<|>>)?=[^=])?").unwrap();
     let value = |found: &regex::Captures<'_>| {
         if found.name("write").is_some() {
             found[0].to_owned()
@@ -153,7 +174,9 @@ fn program(shaders: &[Written]) -> String {
             arguments.join(", ")
         );
     }
-    let runs: Vec<String> = (0..shaders.len()).map(|number| format!("shader_{number}::run")).collect();
+    let runs: Vec<String> = (0..shaders.len())
+        .map(|number| format!("shader_{number}::run"))
+        .collect();
     let _ = write!(
         text,
         "static const Fragment fragments[] = {{{}}};\n\
@@ -176,13 +199,22 @@ fn frame_bytes(number: usize, frame: &Frame) -> Vec<u8> {
         let (sides, pixels) = match channel {
             Some(texture) => {
                 let [width, height] = texture.size();
-                let depth = if texture.shape() == Shape::Volume { texture.layers() } else { 1 };
+                let depth = if texture.shape() == Shape::Volume {
+                    texture.layers()
+                } else {
+                    1
+                };
                 ([width, height, depth], texture.stack().pixels().to_vec())
             }
             None => ([1; 3], vec![[0.0, 0.0, 0.0, 1.0]]),
         };
         integers(&mut bytes, &sides);
-        bytes.extend(pixels.iter().flatten().flat_map(|component| component.to_ne_bytes()));
+        bytes.extend(
+            pixels
+                .iter()
+                .flatten()
+                .flat_map(|component| component.to_ne_bytes()),
+        );
     }
     bytes
 }
@@ -201,11 +233,28 @@ fn rendered(shaders: &[Written], frame: &Frame) -> Vec<Image> {
     fs::write(path("frames"), frames.collect::<Vec<u8>>()).unwrap();
     let header = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/metal");
     let compiled = Command::new("clang++")
-        .args(["-std=c++14", "-O1", "-ffp-contract=off", "-fno-math-errno", "-fno-exceptions"])
+        .args([
+            "-std=c++14",
+            "-O1",
+            "-ffp-contract=off",
+            "-fno-math-errno",
+            "-fno-exceptions",
+        ])
         // A number without suffix is a `float`.
         .args(["-Xclang", "-cl-single-precision-constant"])
-        .args(["-Wall", "-Wextra", "-Werror", "-Wno-unknown-attributes", "-Wno-missing-braces", "-Wno-unused"])
-        .args(["-Wno-unused-parameter", "-Wno-parentheses", "-Wno-shift-op-parentheses"])
+        .args([
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-Wno-unknown-attributes",
+            "-Wno-missing-braces",
+            "-Wno-unused",
+        ])
+        .args([
+            "-Wno-unused-parameter",
+            "-Wno-parentheses",
+            "-Wno-shift-op-parentheses",
+        ])
         .arg("-I")
         .arg(folder.path())
         .arg("-isystem")
@@ -217,10 +266,17 @@ fn rendered(shaders: &[Written], frame: &Frame) -> Vec<Image> {
         .unwrap();
     let messages = String::from_utf8_lossy(&compiled.stderr);
     assert!(compiled.status.success(), "{messages}");
-    let run = Command::new(path("program")).arg(path("frames")).arg(path("images")).status().unwrap();
+    let run = Command::new(path("program"))
+        .arg(path("frames"))
+        .arg(path("images"))
+        .status()
+        .unwrap();
     assert!(run.success(), "{run}");
     let bytes = fs::read(path("images")).unwrap();
-    let floats: Vec<f32> = bytes.chunks_exact(4).map(|four| f32::from_ne_bytes(four.try_into().unwrap())).collect();
+    let floats: Vec<f32> = bytes
+        .chunks_exact(4)
+        .map(|four| f32::from_ne_bytes(four.try_into().unwrap()))
+        .collect();
     let [width, height] = frame.size;
     let images = floats.chunks_exact(4 * (width * height) as usize).map(|image| {
         let pixels = image.chunks_exact(4).map(|pixel| pixel.try_into().unwrap());
@@ -235,8 +291,12 @@ fn differences(shaders: &[Written], frame: &Frame) -> Vec<String> {
     assert_eq!(images.len(), shaders.len());
     let mut found = Vec::new();
     for (shader, image) in shaders.iter().zip(&images) {
-        let program = Program::new(&shader.checked).unwrap_or_else(|refusal| panic!("{}: {refusal}", shader.name));
-        let evaluated = program.render::<f32>(frame, &Settings::default()).unwrap().framebuffer;
+        let program =
+            Program::new(&shader.checked).unwrap_or_else(|refusal| panic!("{}: {refusal}", shader.name));
+        let evaluated = program
+            .render::<f32>(frame, &Settings::default())
+            .unwrap()
+            .framebuffer;
         let expected = evaluated.image();
         let mut differing = Vec::new();
         for y in 0..frame.size[1] {
@@ -249,7 +309,11 @@ fn differences(shaders: &[Written], frame: &Frame) -> Vec<String> {
             }
         }
         if let Some(first) = differing.first() {
-            found.push(format!("{}: {} pixels differ, {first}", shader.name, differing.len()));
+            found.push(format!(
+                "{}: {} pixels differ, {first}",
+                shader.name,
+                differing.len()
+            ));
         }
     }
     found
@@ -265,7 +329,9 @@ fn the_course_has_the_evaluators_bits() {
     for entry in WalkDir::new(&folder).sort_by_file_name() {
         let path = entry.unwrap().into_path();
         let is_shader = path.extension().is_some_and(|extension| extension == "glsl");
-        let is_tab = path.parent().is_some_and(|parent| parent.ends_with("16-progressive"));
+        let is_tab = path
+            .parent()
+            .is_some_and(|parent| parent.ends_with("16-progressive"));
         if is_shader && !is_tab {
             let name = path.strip_prefix(&folder).unwrap().to_string_lossy().into_owned();
             let text = fs::read_to_string(&path).unwrap();
@@ -290,12 +356,55 @@ fn random_programs_have_the_evaluators_bits() {
     let programs = (0..count).filter_map(|number| {
         let mut bytes = vec![0; 400 + (random.next_u32() % 500) as usize];
         random.fill_bytes(&mut bytes);
-        let effects = if number % 2 == 0 { Effects::Ordered } else { Effects::Anywhere };
+        let effects = if number % 2 == 0 {
+            Effects::Ordered
+        } else {
+            Effects::Anywhere
+        };
         let program = generate::program(&bytes, effects, Arithmetic::Exact);
         written(&format!("program {number} of seed {seed}"), &program)
     });
     let shaders: Vec<Written> = programs.collect();
-    assert!(3 * shaders.len() > count as usize, "{} of {count} are written", shaders.len());
+    assert!(
+        3 * shaders.len() > count as usize,
+        "{} of {count} are written",
+        shaders.len()
+    );
     let differing = differences(&shaders, &frame());
     assert!(differing.is_empty(), "{}", differing.join("\n"));
+}
+
+/// Without a proof the file is ours; with one it is naga's, and the message says why.
+#[test]
+fn a_proof_needs_the_text_of_naga() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.metal");
+    let shader = "// Stripes\nvoid mainImage(out vec4 c, in vec2 p) {\n    c = vec4(fract(p.x / 9.0)); // repeated\n}\n";
+    fs::write(folder.path().join("a.glsl"), shader).unwrap();
+    let convert = |options: &[&str]| {
+        let run = toyproof(
+            folder.path(),
+            &[&["convert", "a.glsl", "-o", "a.metal"], options].concat(),
+        );
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        (run.stdout, fs::read_to_string(&file).unwrap())
+    };
+    let (_, text) = convert(&[]);
+    assert!(
+        text.contains("// Stripes\n") && text.contains("c = float4(fract(p.x / 9.0)); // repeated\n"),
+        "{text}"
+    );
+    let (_, strict) = convert(&["--float", "strict"]);
+    assert!(!strict.contains("struct Shader"), "{strict}");
+    if !require_driver() {
+        return;
+    }
+    let (message, text) = convert(&["--verify"]);
+    let why = "up to naga's metal writer; written by naga, since only Apple's compiler reads Metal, so the readable text cannot be proved";
+    assert!(message.contains(why), "{message}");
+    assert!(
+        text.contains("// Proved: the module that this text was written from.")
+            && !text.contains("// Stripes"),
+        "{text}"
+    );
 }

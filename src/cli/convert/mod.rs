@@ -11,7 +11,6 @@ use toyproof_diagnostic::Deadline;
 use toyproof_gpu::browser::{self, THREE_VARIABLE, ThreeLibrary};
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
-use toyproof_translate::c_family::CHost;
 
 use self::batch::{Batch, Job};
 use self::conversion::Settings;

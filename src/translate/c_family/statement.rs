@@ -116,7 +116,9 @@ impl Writer<'_> {
         /// Maximum number of elements in a list of zeros.
         const MAX_ZEROS: u64 = 16;
         let large = match self.cx.tree[id].ty {
-            Type::Array(array) if needs_value && !self.language().has_array_values() => Some(self.cx.tree.array(array)),
+            Type::Array(array) if needs_value && !self.language().has_array_values() => {
+                Some(self.cx.tree.array(array))
+            }
             _ => None,
         };
         let ty = self.cx.tree[id].ty;

@@ -416,7 +416,14 @@ fn a_file_is_named_after_its_shader() {
     let file = files.add(File::new("shader", text));
     let checked = glsl::check(&files, file, &Options::default()).unwrap();
     let name = "class/a \"$texture0\".glsl";
-    let written = write(&checked, &files, CHost::Unity, Title::of_shader(name), &Deadline::default()).unwrap();
+    let written = write(
+        &checked,
+        &files,
+        CHost::Unity,
+        Title::of_shader(name),
+        &Deadline::default(),
+    )
+    .unwrap();
     assert!(
         written.starts_with("Shader \"ShaderToy/a _$texture0_\" {\n"),
         "{written}"

@@ -171,7 +171,11 @@ impl<'a> Writer<'a> {
             Type::Void => Ok("void".to_owned()),
             Type::Array(id) if self.language().has_array_values() => {
                 let array = self.cx.tree.array(id);
-                Ok(format!("array<{}, {}>", self.type_name(array.element)?, array.size))
+                Ok(format!(
+                    "array<{}, {}>",
+                    self.type_name(array.element)?,
+                    array.size
+                ))
             }
             _ => {
                 let name = self.language().numeric_type(ty);

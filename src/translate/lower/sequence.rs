@@ -6,7 +6,8 @@
 use std::collections::HashSet;
 
 use toyproof_glsl::tree::{
-    Arm, BinaryOp, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
+    Arm, BinaryOp, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind,
+    walk,
 };
 
 use crate::lower::context::LoweringContext;

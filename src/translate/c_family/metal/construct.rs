@@ -46,7 +46,10 @@ impl Writer<'_> {
                 return Ok((Self::call(self.type_name(ty)?, arguments), level::POSTFIX));
             }
             let components = if has == size { "" } else { first(size) };
-            let mut parts = vec![Part::Print(only, level::POSTFIX), Part::Token(components.to_owned())];
+            let mut parts = vec![
+                Part::Print(only, level::POSTFIX),
+                Part::Token(components.to_owned()),
+            ];
             if from != scalar {
                 parts.insert(0, Part::Token(format!("{}(", self.type_name(ty)?)));
                 parts.push(Part::token(")"));

@@ -73,18 +73,25 @@ impl Writer<'_> {
             _ => return Ok(None),
         };
         let operand = |ty, name: &str, column| {
-            if is_matrix(ty) { format!("{name}[{column}]") } else { name.to_owned() }
+            if is_matrix(ty) {
+                format!("{name}[{column}]")
+            } else {
+                name.to_owned()
+            }
         };
         let columns = (0..columns).map(|column| (operand(left, "x", column), operand(right, "y", column)));
         if matches!(op, B::Equal | B::NotEqual) {
             let equal: Vec<_> = columns.map(|(x, y)| format!("all({x} == {y})")).collect();
             let body = format!("return {};", equal.join(" && "));
-            return self.helper_function(name, &[left, right], Type::BOOL, "", &body).map(Some);
+            return self
+                .helper_function(name, &[left, right], Type::BOOL, "", &body)
+                .map(Some);
         }
         let symbol = op.symbol();
         let columns: Vec<_> = columns.map(|(x, y)| format!("{x} {symbol} {y}")).collect();
         let body = format!("return {}({});", self.type_name(matrix)?, columns.join(", "));
-        self.helper_function(name, &[left, right], matrix, "", &body).map(Some)
+        self.helper_function(name, &[left, right], matrix, "", &body)
+            .map(Some)
     }
 
     pub(in super::super) fn assignment_in_metal(
@@ -103,11 +110,15 @@ impl Writer<'_> {
         // C++ leaves open which side it evaluates first.
         let changes_both = !self.is_pure(target) && !self.is_pure(value);
         if changes_both || self.may_change(target, value) || self.changes_index(value, target) {
-            return Err(Unprintable::Construct("an assignment whose sides affect each other"));
+            return Err(Unprintable::Construct(
+                "an assignment whose sides affect each other",
+            ));
         }
         let mut parts = vec![Part::Print(target, level::UNARY)];
         let [target_type, value_type] = [target, value].map(|side| tree[side].ty);
-        let has_matrix = [target_type, value_type].iter().any(|ty| matches!(ty, Type::Matrix { .. }));
+        let has_matrix = [target_type, value_type]
+            .iter()
+            .any(|ty| matches!(ty, Type::Matrix { .. }));
         let wraps = match op {
             Some(op) => self.wrapped(op, target, value)?.is_some(),
             None => false,
@@ -115,7 +126,9 @@ impl Writer<'_> {
         match op {
             Some(op) if has_matrix || wraps => {
                 if !self.is_pure(target) {
-                    return Err(Unprintable::Construct("an assignment to a place with a side effect"));
+                    return Err(Unprintable::Construct(
+                        "an assignment to a place with a side effect",
+                    ));
                 }
                 parts.push(Part::token(" = "));
                 parts.extend(self.binary_in_metal(op, target, value)?.0);
@@ -126,7 +139,10 @@ impl Writer<'_> {
             }
             _ => {
                 let symbol = op.map_or("", BinaryOp::symbol);
-                parts.extend([Part::Token(format!(" {symbol}= ")), Part::Print(value, level::ASSIGN)]);
+                parts.extend([
+                    Part::Token(format!(" {symbol}= ")),
+                    Part::Print(value, level::ASSIGN),
+                ]);
             }
         }
         Ok((parts, level::ASSIGN))
@@ -147,10 +163,13 @@ impl Writer<'_> {
         if self.is_pure(first) {
             return false;
         }
-        let read = tree.postorder(second).into_iter().filter_map(|id| match tree[id].kind {
-            ExprKind::Variable(variable) => Some(variable),
-            _ => None,
-        });
+        let read = tree
+            .postorder(second)
+            .into_iter()
+            .filter_map(|id| match tree[id].kind {
+                ExprKind::Variable(variable) => Some(variable),
+                _ => None,
+            });
         let read: HashSet<VariableId> = read.collect();
         let reads_global = read.iter().any(|&id| tree[id].kind == VariableKind::Global);
         tree.postorder(first).into_iter().any(|id| {
@@ -181,7 +200,10 @@ impl Writer<'_> {
             }
             (Type::Vector(..), false) => {
                 let changed = format!(" {}= 1.0", &symbol[..1]);
-                Ok((vec![Part::Print(target, level::UNARY), Part::Token(changed)], level::ASSIGN))
+                Ok((
+                    vec![Part::Print(target, level::UNARY), Part::Token(changed)],
+                    level::ASSIGN,
+                ))
             }
             _ => Err(Unprintable::Construct("`++` or `--` of a vector or matrix")),
         }

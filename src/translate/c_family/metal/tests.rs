@@ -10,7 +10,13 @@ fn converted(text: &str) -> Result<String, WriteFailure> {
     let file = files.add(File::new("shader", text));
     let checked =
         glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
-    write(&checked, &files, CHost::Metal, Title::of_shader("shader"), &Deadline::default())
+    write(
+        &checked,
+        &files,
+        CHost::Metal,
+        Title::of_shader("shader"),
+        &Deadline::default(),
+    )
 }
 
 fn shader(items: &str, statements: &str) -> String {
@@ -23,7 +29,9 @@ fn with_items(items: &str, statements: &str) -> String {
     let (_, body) = written
         .split_once("        color = float4(0);\n")
         .unwrap_or_else(|| panic!("{written}"));
-    let (body, _) = body.split_once("\n    }\n};").unwrap_or_else(|| panic!("{written}"));
+    let (body, _) = body
+        .split_once("\n    }\n};")
+        .unwrap_or_else(|| panic!("{written}"));
     body.to_owned()
 }
 
@@ -69,7 +77,10 @@ fn only_what_has_state_is_in_the_structure() {
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");
     }
-    assert!(!written.contains("gl_FragCoord") && !written.contains("texture2d"), "{written}");
+    assert!(
+        !written.contains("gl_FragCoord") && !written.contains("texture2d"),
+        "{written}"
+    );
 }
 
 #[test]
@@ -79,7 +90,11 @@ fn a_shader_without_state_has_the_structure_too() {
         written.contains("struct Shader {\n    void mainImage(thread float4& c, float2 p) {\n"),
         "{written}"
     );
-    assert!(written.contains("fragment float4 main_(\n    float4 position [[position]]\n) {\n    Shader shader;\n"), "{written}");
+    assert!(
+        written
+            .contains("fragment float4 main_(\n    float4 position [[position]]\n) {\n    Shader shader;\n"),
+        "{written}"
+    );
     assert!(!written.contains("Inputs"), "{written}");
 }
 
@@ -257,7 +272,11 @@ fn conditions_with_effects_stay() {
 fn discard_leaves_the_function() {
     let items = "struct S { float a; };\nS make(float x) { if (x < 0.) discard; return S(x); }\n\
         vec2 pair(float x) { if (x < 0.) discard; return vec2(x); }";
-    let written = converted(&shader(items, "if (at.x > 9.) discard;\ncolor.x = make(at.x).a + pair(at.y).x;")).unwrap();
+    let written = converted(&shader(
+        items,
+        "if (at.x > 9.) discard;\ncolor.x = make(at.x).a + pair(at.y).x;",
+    ))
+    .unwrap();
     for expected in [
         "        discard_fragment();\n        return S{};\n",
         "        discard_fragment();\n        return float2(0.0);\n",
@@ -310,8 +329,16 @@ fn names_of_metal_are_free() {
 
 #[test]
 fn what_metal_evaluates_in_another_order_is_left_to_naga() {
-    assert_refused("", "int i = 0;\nfloat a[3];\na[i++] = float(i);\ncolor.x = a[0];", "sides affect each other");
-    assert_refused("", "int i = 0;\nint a[3];\na[i] = i++;\ncolor.x = float(a[0]);", "sides affect each other");
+    assert_refused(
+        "",
+        "int i = 0;\nfloat a[3];\na[i++] = float(i);\ncolor.x = a[0];",
+        "sides affect each other",
+    );
+    assert_refused(
+        "",
+        "int i = 0;\nint a[3];\na[i] = i++;\ncolor.x = float(a[0]);",
+        "sides affect each other",
+    );
     assert_refused("", "at.yx[int(color.x)] = 1.;", "an element of a swizzle");
     assert_refused("", "at++;", "`++` or `--` of a vector");
     // A call that changes nothing may name the index.

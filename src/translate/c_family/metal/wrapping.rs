@@ -45,7 +45,10 @@ impl Writer<'_> {
                     parts.push(Part::Token(unsigned(literal)));
                 }
                 _ => {
-                    let ty = self.cx.tree[id].ty.with_scalar(Scalar::Uint).unwrap_or(Type::UINT);
+                    let ty = self.cx.tree[id]
+                        .ty
+                        .with_scalar(Scalar::Uint)
+                        .unwrap_or(Type::UINT);
                     parts.extend(Self::call(self.type_name(ty)?, &[id]));
                 }
             }
@@ -81,7 +84,9 @@ impl Writer<'_> {
                         Value::Int(value) => i64::from(value).abs() >= LARGE,
                         _ => false,
                     };
-                    is_large |= tree.value(id).is_some_and(|value| value.components().iter().any(is_large_component));
+                    is_large |= tree
+                        .value(id)
+                        .is_some_and(|value| value.components().iter().any(is_large_component));
                 }
                 _ => {}
             }
