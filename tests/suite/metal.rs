@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-use proptest::prelude::RngCore;
+use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use regex::Regex;
 use toyproof::diagnostic::{Deadline, File, Files};
@@ -189,7 +189,7 @@ fn program(shaders: &[Written]) -> String {
 /// The bytes of a frame: its size, the uniform block and the textures.
 fn frame_bytes(number: usize, frame: &Frame) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut integers = |bytes: &mut Vec<u8>, numbers: &[u32]| {
+    let integers = |bytes: &mut Vec<u8>, numbers: &[u32]| {
         bytes.extend(numbers.iter().flat_map(|number| number.to_ne_bytes()));
     };
     integers(&mut bytes, &[number as u32, frame.size[0], frame.size[1]]);

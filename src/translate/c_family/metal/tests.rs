@@ -172,7 +172,7 @@ fn functions_have_the_names_of_metal() {
     let written = body(
         "float a = inversesqrt(at.y) + atan(at.y, at.x) + dFdx(at.x) + roundEven(at.x) + round(at.y) + radians(at.x);\n\
          bvec2 b = lessThan(at, vec2(.5));\nif (all(not(b)) ^^ at == vec2(1)) color = vec4(sign(int(a)));\n\
-         color *= mod(a, 2.) + intBitsToFloat(floatBitsToInt(a)) + dot(a, 2.);\nat = mix(at, vec2(1), b) + max(at, 0.);",
+         color *= mod(a, 2.) + intBitsToFloat(floatBitsToInt(a)) + dot(a, 2.) + length(a) + distance(a, a + 1.);\nat = mix(at, vec2(1), b) + max(at, 0.);",
     );
     assert_lines(
         &written,
@@ -182,7 +182,7 @@ fn functions_have_the_names_of_metal() {
             "if (all(!b) != all(at == float2(1))) {",
             "color = float4(signOf(int(a)));",
             "}",
-            "color *= mod(a, 2.0) + as_type<float>(as_type<int>(a)) + a * 2.0;",
+            "color *= mod(a, 2.0) + as_type<float>(as_type<int>(a)) + a * 2.0 + abs(a) + abs(a - (a + 1.0));",
             "at = select(at, float2(1), b) + max(at, 0.0);",
         ],
     );
