@@ -227,7 +227,7 @@ impl Conversion {
 
 impl Converter {
     /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL,
-    /// HLSL and Metal that our own writer cannot write, or that is not proved, is naga's. `name` is the shader's.
+    /// HLSL and Metal that our own writer cannot write, or that is not proved, is naga's.
     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.

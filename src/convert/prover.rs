@@ -326,14 +326,12 @@ impl Prover<'_> {
         text: &str,
         host: CHost,
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
-        if host.target() == Target::Msl {
-            return Err(ProofError::AppleOnly(host.title()));
-        }
+        let target = host.read_as().ok_or(ProofError::AppleOnly(host.title()))?;
         let hosted = host.hosted(text, checked.stage);
         let Runner::Driver(_) = self.runner else {
             return Err(ProofError::Binary);
         };
-        let compiled = tool::compile_hosted(host.target(), &hosted.text)?;
+        let compiled = tool::compile_hosted(target, &hosted.text)?;
         let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
         let artifact = ShaderArtifact::Words {
             words,

@@ -11,6 +11,7 @@ use toyproof_diagnostic::Deadline;
 use toyproof_gpu::browser::{self, THREE_VARIABLE, ThreeLibrary};
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
+use toyproof_translate::c_family::CHost;
 
 use self::batch::{Batch, Job};
 use self::conversion::Settings;
@@ -140,7 +141,11 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         converter: Converter {
             target: to.target(),
             style: args.style.wgsl().unwrap_or_default(),
-            c_host: args.style.c_family().or(to.plain_c_host()),
+            c_host: args.style.c_family().or(match to {
+                To::Hlsl => Some(CHost::Hlsl),
+                To::Metal => Some(CHost::Metal),
+                _ => None,
+            }),
             dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),

@@ -120,15 +120,6 @@ impl To {
         }
     }
 
-    /// The host without a style, of languages with the syntax of C.
-    pub(super) fn plain_c_host(self) -> Option<CHost> {
-        match self {
-            Self::Hlsl => Some(CHost::Hlsl),
-            Self::Metal => Some(CHost::Metal),
-            _ => None,
-        }
-    }
-
     /// The name on the command line.
     pub(super) fn name(self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
 //! Constructors. HLSL has casts for a single argument, and structures are made by functions; the other
 //! languages make matrices of their columns.
 
-use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type};
+use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type, Value};
 
 use super::Unprintable;
 use super::expression::{Part, Parts, level};
@@ -22,6 +22,11 @@ impl Writer<'_> {
         let only = only.ok_or(Unprintable::Construct("a constructor without arguments"))?;
         let from = self.cx.tree[only].ty;
         let primary = |parts| Ok((parts, level::POSTFIX));
+        if self.language() == Language::Godot
+            && let Some(literal) = self.converted_literal(constructor, only, ty)
+        {
+            return primary(literal);
+        }
         match constructor {
             Constructor::Struct => {
                 let Type::Struct(id) = ty else {
@@ -36,7 +41,11 @@ impl Writer<'_> {
             Constructor::Array => Err(Unprintable::Construct("an array outside a declaration")),
             Constructor::Scalar => self.scalar(only, from, ty),
             Constructor::Splat | Constructor::Diagonal if self.language() != Language::Hlsl => {
-                primary(Self::call(self.type_name(ty)?, arguments))
+                let scalar = ty.scalar().unwrap_or(Scalar::Float);
+                let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+                parts.extend(self.component(only, scalar)?);
+                parts.push(Part::token(")"));
+                primary(parts)
             }
             Constructor::Splat => {
                 if self.is_short(only) {
@@ -67,6 +76,37 @@ impl Writer<'_> {
             self.cx.tree[id].kind,
             ExprKind::Literal(_) | ExprKind::Variable(_)
         )
+    }
+
+    /// An argument of a constructor with several, whose components become those of the vector or matrix: Godot
+    /// converts none.
+    fn component(&self, argument: ExprId, scalar: Scalar) -> PrintResult<Vec<Part>> {
+        let from = self.cx.tree[argument].ty;
+        if self.language() != Language::Godot || from.scalar() == Some(scalar) {
+            return Ok(vec![Part::Print(argument, level::ASSIGN)]);
+        }
+        let ty = match from {
+            Type::Vector(_, size) => Type::Vector(scalar, size),
+            _ => Type::Scalar(scalar),
+        };
+        if let Some(literal) = self.converted_literal(Constructor::Scalar, argument, ty) {
+            return Ok(literal);
+        }
+        Ok(Self::call(self.type_name(ty)?, &[argument]))
+    }
+
+    /// The float that an integer literal becomes, unless it is a macro's.
+    fn converted_literal(&self, constructor: Constructor, value: ExprId, ty: Type) -> Option<Vec<Part>> {
+        let ExprKind::Literal(literal) = &self.cx.tree[value].kind else {
+            return None;
+        };
+        let Value::Int(number) = literal.value else {
+            return None;
+        };
+        let is_float = constructor == Constructor::Scalar && ty == Type::FLOAT;
+        let is_macro = self.source.macro_name(self.cx.tree[value].at).is_some();
+        let exact = number.unsigned_abs() < 1 << 24;
+        (is_float && !is_macro && exact).then(|| vec![Part::Token(format!("{number}.0"))])
     }
 
     pub(super) fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
@@ -122,16 +162,10 @@ impl Writer<'_> {
             if position > 0 {
                 parts.push(Part::token(", "));
             }
-            let converts =
-                self.language() == Language::Godot && self.cx.tree[argument].ty.scalar() != Some(scalar);
             if count > room {
                 parts.extend([Part::Print(argument, level::POSTFIX), Part::token(first(room))]);
-            } else if converts && arguments.len() > 1 {
-                let converted = match count {
-                    1 => Type::Scalar(scalar),
-                    count => Type::Vector(scalar, count),
-                };
-                parts.extend(Self::call(self.type_name(converted)?, &[argument]));
+            } else if arguments.len() > 1 {
+                parts.extend(self.component(argument, scalar)?);
             } else {
                 parts.push(Part::Print(argument, level::ASSIGN));
             }
@@ -188,7 +222,18 @@ impl Writer<'_> {
             }
             match column {
                 &[only] => parts.push(Part::Print(only, level::ASSIGN)),
-                _ => parts.extend(Self::call(column_type.as_str(), column)),
+                _ => {
+                    for (at, &component) in column.iter().enumerate() {
+                        let before = if at == 0 {
+                            format!("{column_type}(")
+                        } else {
+                            ", ".to_owned()
+                        };
+                        parts.push(Part::Token(before));
+                        parts.extend(self.component(component, Scalar::Float)?);
+                    }
+                    parts.push(Part::token(")"));
+                }
             }
             rest = others;
         }

@@ -113,7 +113,7 @@ impl Writer<'_> {
             }
             &ExprKind::Conditional { condition, yes, no } => {
                 let has_effect = |side| walk::has_side_effects(tree, side);
-                if self.language().evaluates_both_sides() && (has_effect(yes) || has_effect(no)) {
+                if self.language().branches_for_effects() && (has_effect(yes) || has_effect(no)) {
                     return Err(Unprintable::Construct("`?:` or `&&` with a side effect here"));
                 }
                 let parts = vec![
@@ -124,6 +124,9 @@ impl Writer<'_> {
                     Print(no, level::CONDITIONAL),
                 ];
                 (parts, level::CONDITIONAL)
+            }
+            ExprKind::Sequence { .. } if self.language() == Language::Godot => {
+                return Err(Unprintable::Construct("`a, b` here"));
             }
             &ExprKind::Sequence { first, second } => {
                 let parts = vec![
@@ -217,6 +220,15 @@ impl Writer<'_> {
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
             BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
+            BinaryOp::ShiftLeft
+            | BinaryOp::ShiftRight
+            | BinaryOp::BitAnd
+            | BinaryOp::BitXor
+            | BinaryOp::BitOr
+                if self.language() == Language::Godot =>
+            {
+                self.bitwise_in_godot(op, left, right)?
+            }
             _ if self.language() == Language::Godot => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
                 if !self.is_pure(left) || !self.is_pure(right) {
@@ -240,6 +252,33 @@ impl Writer<'_> {
             }
             _ => Self::infix(left, op, right),
         })
+    }
+
+    /// `a & ivec3(b)`: the operands of Godot's bitwise operators are of one type, except of shifts of vectors by
+    /// a number.
+    fn bitwise_in_godot(&self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+        let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
+        let is_shift = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
+        let is_vector = |ty| matches!(ty, Type::Vector(..));
+        let scalar = left_type.scalar().unwrap_or(Scalar::Int);
+        let wanted = match (left_type, right_type) {
+            (_, Type::Scalar(_)) if is_shift => Type::Scalar(scalar),
+            (_, Type::Vector(_, size)) | (Type::Vector(_, size), _) => Type::Vector(scalar, size),
+            _ => Type::Scalar(scalar),
+        };
+        let level = op.precedence() + level::BINARY;
+        let side = |side, ty, at_least| {
+            let converts = ty != wanted && !(is_shift && is_vector(ty) && side == left);
+            Ok(if converts {
+                Self::call(self.type_name(wanted)?, &[side])
+            } else {
+                vec![Part::Print(side, at_least)]
+            })
+        };
+        let mut parts = side(left, left_type, level)?;
+        parts.push(Part::Token(format!(" {} ", op.symbol())));
+        parts.extend(side(right, right_type, level + 1)?);
+        Ok((parts, level))
     }
 
     pub(super) fn is_pure(&self, id: ExprId) -> bool {
@@ -297,7 +336,7 @@ impl Writer<'_> {
             ExprKind::Construct {
                 constructor: Constructor::Struct | Constructor::Array,
                 arguments,
-            } if self.language() != Language::Godot || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
+            } if self.language() == Language::Hlsl || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
                 let arguments = arguments.clone();
                 let is_nested = self.language().has_array_values();
                 let values = arguments.into_iter().map(|argument| match is_nested {
@@ -320,7 +359,11 @@ impl Writer<'_> {
         Ok(match ty {
             Type::Array(_) | Type::Struct(_) if self.language() == Language::Msl => "{}".to_owned(),
             Type::Vector(..) | Type::Matrix { .. } if self.language() == Language::Msl => {
-                format!("{}({})", self.type_name(ty)?, number(&Literal::from(zero_of(ty))))
+                format!(
+                    "{}({})",
+                    self.type_name(ty)?,
+                    number(&Literal::from(zero_of(ty.scalar())))
+                )
             }
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
@@ -328,7 +371,7 @@ impl Writer<'_> {
                 format!("{{ {} }}", zeros.join(", "))
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
-            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
             _ => format!("({})0", self.type_name(ty)?),
         })
     }
@@ -346,9 +389,9 @@ impl Writer<'_> {
                 let zeros = members.collect::<PrintResult<Vec<_>>>()?;
                 format!("{}({})", self.structure_name(id), list(zeros))
             }
-            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
             _ => {
-                let zero = number(&Literal::from(zero_of(ty)));
+                let zero = number(&Literal::from(zero_of(ty.scalar())));
                 format!("{}({zero})", self.type_name(ty)?)
             }
         })
@@ -382,9 +425,8 @@ impl Writer<'_> {
     }
 }
 
-/// The zero of the components of a type.
-fn zero_of(ty: Type) -> Value {
-    match ty.scalar() {
+fn zero_of(scalar: Option<Scalar>) -> Value {
+    match scalar {
         Some(Scalar::Bool) => Value::Bool(false),
         Some(Scalar::Int) => Value::Int(0),
         Some(Scalar::Uint) => Value::Uint(0),

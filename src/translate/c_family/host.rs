@@ -4,19 +4,18 @@
 //! A host whose files only its engine completes has a second template: a substitute for the engine, so that
 //! other compilers read the written code.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::tree::{
-    Direction, ExprKind, Input, InputType, Place, SamplerShape, Scalar, Type, VariableId, VariableKind,
+    Direction, ExprKind, Input, Item, Place, SamplerShape, Type, VariableId, VariableKind,
 };
 use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
 use super::language::Language;
-use super::lookup::texture_type;
 use super::writer::{PrintResult, Writer};
 use super::{Title, Unprintable};
 use crate::backend::Target;
@@ -35,10 +34,10 @@ pub enum CHost {
     Unity,
     /// A pixel shader of Windows Terminal.
     WindowsTerminal,
-    /// Metal with our own bindings; row 0 of the target is the bottom.
-    Metal,
     /// A shader of Godot 4 for a `CanvasItem`.
     Godot,
+    /// Metal with our own bindings; row 0 of the target is the bottom.
+    Metal,
 }
 
 /// A row of the table.
@@ -69,8 +68,8 @@ impl CHost {
         Self::Slang,
         Self::Unity,
         Self::WindowsTerminal,
-        Self::Metal,
         Self::Godot,
+        Self::Metal,
     ];
 
     fn row(self) -> Row {
@@ -164,17 +163,6 @@ impl CHost {
                 declared: "upward shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
                 is_upside_down: true,
             },
-            Self::Metal => Row {
-                name: "plain",
-                title: "Metal",
-                language: Language::Msl,
-                extension: "metal",
-                template: include_str!("hosts/plain.metal"),
-                substitute: "",
-                adaptations: &[],
-                declared: "Inputs Shader main_ gl_FragCoord",
-                is_upside_down: false,
-            },
             Self::Godot => Row {
                 name: "godot",
                 title: "Godot",
@@ -185,6 +173,17 @@ impl CHost {
                 adaptations: &[],
                 declared: "",
                 is_upside_down: true,
+            },
+            Self::Metal => Row {
+                name: "plain",
+                title: "Metal",
+                language: Language::Msl,
+                extension: "metal",
+                template: include_str!("hosts/plain.metal"),
+                substitute: "",
+                adaptations: &[],
+                declared: "Inputs Shader main_ gl_FragCoord",
+                is_upside_down: false,
             },
         }
     }
@@ -205,13 +204,14 @@ impl CHost {
         self.row().language
     }
 
-    /// The language that compilers other than the host's read a file as ([`Self::hosted`]).
+    /// The language as which other compilers than the host's read a file ([`Self::hosted`]); `None` if only
+    /// the host's does.
     #[must_use]
-    pub fn target(self) -> Target {
+    pub fn read_as(self) -> Option<Target> {
         match self.language() {
-            Language::Hlsl => Target::Hlsl,
-            Language::Msl => Target::Msl,
-            Language::Godot => Target::Glsl,
+            Language::Hlsl => Some(Target::Hlsl),
+            Language::Godot => Some(Target::Glsl),
+            Language::Msl => None,
         }
     }
 
@@ -271,6 +271,11 @@ impl CHost {
         self.row().template
     }
 
+    /// The code around the file in a substitute for the host; empty if the file is complete.
+    pub(super) fn substitute(self) -> &'static str {
+        self.row().substitute
+    }
+
     /// Code of the file, and the code that does the same in the substitute for the host.
     pub(super) fn adaptations(self) -> &'static [(&'static str, &'static str)] {
         self.row().adaptations
@@ -285,70 +290,16 @@ impl CHost {
         conditions.any(|known| known == condition)
             || self.template().contains(&format!("#define {condition} "))
     }
-
-    /// A line of a file in the substitute for its host; `None` for lines that only the host reads.
-    fn line_in_substitute(self, line: &str) -> Option<String> {
-        let trimmed = line.trim();
-        match self.language() {
-            Language::Hlsl | Language::Msl => {
-                let is_for_host = trimmed.starts_with("#pragma") || trimmed.starts_with("#include");
-                (!is_for_host).then(|| line.to_owned())
-            }
-            Language::Godot => {
-                let is_for_host = ["shader_type ", "render_mode ", "uniform "];
-                godots_channel(line).or_else(|| {
-                    let is_for_host = is_for_host.iter().any(|word| line.starts_with(word));
-                    (!is_for_host).then(|| line.to_owned())
-                })
-            }
-        }
-    }
-
-    /// Embeds a written file in a substitute for its host, which reads our uniform block.
-    #[must_use]
-    pub fn hosted(self, text: &str, stage: Stage) -> HostedText {
-        let row = self.row();
-        let upside_down = self.is_upside_down(stage);
-        if row.substitute.is_empty() {
-            let text = text.to_owned();
-            return HostedText { text, upside_down };
-        }
-        let program = match (text.split_once("HLSLPROGRAM\n"), text.rsplit_once("ENDHLSL")) {
-            (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
-            _ => text,
-        };
-        let lines = program.lines().filter_map(|line| self.line_in_substitute(line));
-        let program: String = lines.flat_map(|line| [line, "\n".to_owned()]).collect();
-        let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
-        let program = self.adaptations().iter().fold(program, replace);
-        let holds = |condition: &str| match channel_number(condition) {
-            _ if condition == "image" => stage == Stage::Image,
-            _ if condition == "buffer" => stage != Stage::Image,
-            Some(channel) => program.contains(&format!("iChannel{channel}")),
-            None => program.contains(condition),
-        };
-        let values = [("$block", block(self.language()))];
-        let [before, after] = around_shader(row.substitute).map(|part| fill(part, holds, &values));
-        HostedText {
-            text: format!("{before}{program}{after}"),
-            upside_down,
-        }
-    }
 }
 
-/// The declaration of a channel in Godot's language, `uniform sampler2D iChannel0 : hints;`, for Vulkan: a
-/// texture and a sampler with our bindings. `None` for other lines.
-fn godots_channel(line: &str) -> Option<String> {
-    let (ty, rest) = line.strip_prefix("uniform sampler")?.split_once(' ')?;
-    let (name, _) = rest.split_once(" : ")?;
-    let channel: u32 = name.strip_prefix("iChannel")?.parse().ok()?;
-    let [texture, sampler] = [2 * channel + 1, 2 * channel + 2];
-    Some(format!(
-        "layout(set = 0, binding = {texture}) uniform texture{ty} toyproof_texture{channel};\n\
-         layout(set = 0, binding = {sampler}) uniform sampler toyproof_sampler{channel};\n\
-         #define {name} sampler{ty}(toyproof_texture{channel}, toyproof_sampler{channel})"
-    ))
-}
+/// The names of the variables of an entry point, as templates name them.
+const LOCALS: [(&str, &str); 5] = [
+    ("$size", "size"),
+    ("$coordinates", "fragCoord"),
+    ("$position", "position"),
+    ("$upward", UPWARD),
+    ("$color", "color"),
+];
 
 /// What Windows Terminal declares.
 const TERMINALS_BLOCK: &str = "\
@@ -361,43 +312,6 @@ cbuffer PixelShaderSettings : register(b0) {
     float4 Background;
 };
 ";
-
-/// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
-fn block(language: Language) -> String {
-    let mut text = match language {
-        Language::Hlsl | Language::Msl => "cbuffer ToyproofFrame : register(b0) {\n",
-        Language::Godot => "layout(std140, set = 0, binding = 0) uniform ToyproofFrame {\n",
-    }
-    .to_owned();
-    for input in Input::ALL {
-        // In a block, each element of an array has 16 bytes.
-        let ty = match (input.ty(), input.length()) {
-            (InputType::Float, Some(_)) | (InputType::Vec4, _) => Type::Vector(Scalar::Float, 4),
-            (InputType::Float, None) => Type::FLOAT,
-            (InputType::Int, _) => Type::INT,
-            (InputType::Vec3, _) => Type::Vector(Scalar::Float, 3),
-        };
-        let length = input.length();
-        let length = length.map_or_else(String::new, |length| format!("[{length}]"));
-        let ty = language.numeric_type(ty).unwrap_or_default();
-        let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
-        let place = match language {
-            Language::Hlsl | Language::Msl => format!(" : packoffset(c{}{component})", input.offset() / 16),
-            Language::Godot => String::new(),
-        };
-        let _ = writeln!(text, "    {ty} toyproof_{}{length}{place};", input.name());
-    }
-    text + "};\n"
-}
-
-/// A file that other compilers than the host's read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct HostedText {
-    /// The text, with our bindings and the entry point `main`.
-    pub text: String,
-    /// Whether row 0 of its target is the top of the image.
-    pub upside_down: bool,
-}
 
 impl Writer<'_> {
     /// The whole file: the author's first comment, and the text in the host's code. `outside` stands before
@@ -457,7 +371,7 @@ impl Writer<'_> {
         let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
-            values.push((value, texture_type(self.language(), shape)));
+            values.push((value, self.language().texture_type(shape)));
         }
         let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
         for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
@@ -467,12 +381,24 @@ impl Writer<'_> {
             };
             values.push((value, sampling));
         }
+        // Names in the entry point that nothing at global scope has.
+        let taken = self.global_names(order);
+        let local = |stem: &str| {
+            let mut name = stem.to_owned();
+            while taken.contains(name.as_str()) {
+                name.push('_');
+            }
+            name
+        };
+        for (value, name) in LOCALS {
+            values.push((value, local(name)));
+        }
         let passed = self
             .passed
             .iter()
-            .map(|&id| format!(", {}", self.cx.tree[id].name));
+            .map(|&id| format!(", {}", local(&self.cx.tree[id].name)));
         values.push(("$passed", passed.collect()));
-        // The last, since names and comments may contain those of other values.
+        // The last, since a name may contain those of other values.
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
         let name = match title.pass {
             Some(pass) => format!("{}/{pass}", title.name),
@@ -497,6 +423,17 @@ impl Writer<'_> {
             text
         });
         Ok(format!("{first}{before}{text}{after}"))
+    }
+
+    /// The names of the shader's functions, structures and constants.
+    fn global_names(&self, order: &Order) -> HashSet<&str> {
+        let items = order.items.iter().filter_map(|&item| match item {
+            Item::Variable(id) => Some(self.variable(id)),
+            Item::Function(id) => Some(self.function(id)),
+            Item::Struct(id) => Some(self.structure_name(id)),
+            Item::Prototype(_) => None,
+        });
+        items.chain(self.macros.keys().map(String::as_str)).collect()
     }
 
     /// Whether `mainImage` gets this from the host's entry point.

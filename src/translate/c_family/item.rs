@@ -83,14 +83,15 @@ impl Writer<'_> {
         if let Some(at) = variable.at {
             self.comment(at);
         }
-        let is_constant = variable.kind == VariableKind::Const
-            || variable.kind == VariableKind::Uniform && variable.initializer.is_some();
+        // A uniform that nothing sets is zero.
+        let is_constant = matches!(variable.kind, VariableKind::Const | VariableKind::Uniform);
         let declared = self.declarator(variable.ty, self.variable(id))?;
         let word = match self.language() {
-            Language::Msl if self.members.contains(&Item::Variable(id)) => String::new(),
-            Language::Msl => format!("{} ", self.language().constant()),
-            _ if is_constant => format!("{} ", self.language().constant()),
-            _ => "static ".to_owned(),
+            Language::Hlsl if is_constant => "static const ",
+            Language::Hlsl => "static ",
+            Language::Godot => "const ",
+            Language::Msl if !self.members.contains(&Item::Variable(id)) => "constant ",
+            Language::Msl => "",
         };
         let value = match variable.initializer {
             Some(value) => format!(" = {}", self.initializer(value)?),

@@ -1,6 +1,6 @@
 //! Texture lookups: a channel is a texture and a sampler in HLSL.
 
-use toyproof_glsl::tree::{BuiltIn, ExprId, ExprKind, Sampler, SamplerShape, Type, VariableKind};
+use toyproof_glsl::tree::{BuiltIn, ExprId, ExprKind, SamplerShape, Type, VariableKind};
 
 use super::Unprintable;
 use super::expression::{Part, Parts, level};
@@ -25,14 +25,15 @@ impl Writer<'_> {
             _ => return Err(ARGUMENT),
         };
         let name = self.variable(id);
-        if self.language() == Language::Msl {
-            return self.lookup_in_metal(function, name, shape, rest);
-        }
-        if self.language() == Language::Godot {
-            let mut parts = vec![Part::Token(format!("{}({name}, ", function.name()))];
-            parts.extend(Self::list(rest));
-            parts.push(Part::token(")"));
-            return Ok((parts, level::POSTFIX));
+        match self.language() {
+            Language::Hlsl => {}
+            Language::Msl => return self.lookup_in_metal(function, name, shape, rest),
+            Language::Godot => {
+                let mut parts = vec![Part::Token(format!("{}({name}, ", function.name()))];
+                parts.extend(Self::list(rest));
+                parts.push(Part::token(")"));
+                return Ok((parts, level::POSTFIX));
+            }
         }
         let method = match (function, rest.len()) {
             (B::Texture, 1) => "Sample",
@@ -65,7 +66,7 @@ impl Writer<'_> {
     /// Adds the function that returns the size of a level of a texture, and returns its name.
     fn size_function(&mut self, shape: SamplerShape) -> String {
         let function = self.free("textureSize");
-        let ty = texture_type(Language::Hlsl, shape);
+        let ty = Language::Hlsl.texture_type(shape);
         let (returned, depth, size) = match shape {
             SamplerShape::D3 => ("int3", ", depth", "int3(width, height, depth)"),
             _ => ("int2", "", "int2(width, height)"),
@@ -76,20 +77,5 @@ impl Writer<'_> {
         );
         self.helpers.insert((function.clone(), ty), text);
         function
-    }
-}
-
-/// The type of a texture of a shape; with its sampler, if the language combines both.
-pub(super) fn texture_type(language: Language, shape: SamplerShape) -> String {
-    match (language, shape) {
-        (Language::Hlsl, SamplerShape::D3) => "Texture3D".to_owned(),
-        (Language::Hlsl, SamplerShape::Cube) => "TextureCube".to_owned(),
-        (Language::Hlsl, SamplerShape::D2) => "Texture2D".to_owned(),
-        (Language::Hlsl, SamplerShape::D2Array) => "Texture2DArray".to_owned(),
-        (Language::Msl, SamplerShape::D3) => "texture3d<float>".to_owned(),
-        (Language::Msl, SamplerShape::Cube) => "texturecube<float>".to_owned(),
-        (Language::Msl, SamplerShape::D2) => "texture2d<float>".to_owned(),
-        (Language::Msl, SamplerShape::D2Array) => "texture2d_array<float>".to_owned(),
-        (Language::Godot, shape) => Sampler::float(shape).name(),
     }
 }

@@ -16,18 +16,20 @@ mod language;
 mod lookup;
 mod metal;
 mod statement;
+mod substitute;
 #[cfg(test)]
 mod tests;
 mod writer;
 
-pub use host::{CHost, HostedText};
+pub use host::CHost;
+pub use substitute::HostedText;
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 
-use self::language::Words;
+use self::language::{Language, Words};
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{branch_for_effects, fold_by_precision, fold_except, name_array_values};
+use crate::lower::{branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -66,13 +68,16 @@ pub fn write(
     let (early, late) = language.passes();
     cx.has_references = language.has_references();
     early.run(&mut cx, deadline)?;
-    if language.evaluates_both_sides() {
+    if language.branches_for_effects() {
         branch_for_effects(&mut cx);
     }
     if !language.has_array_values() {
         name_array_values(&mut cx);
     }
     late.run(&mut cx, deadline)?;
+    if language == Language::Godot {
+        chain_switches(&mut cx);
+    }
     let passed = globals::pass(&mut cx, host)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);

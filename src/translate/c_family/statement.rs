@@ -78,9 +78,19 @@ impl Writer<'_> {
                 step,
                 body,
             } => {
-                let init = self.init(init)?;
+                let init = match &init[..] {
+                    // Godot's loops declare a variable or begin with nothing.
+                    [first, ..]
+                        if self.language() == Language::Godot
+                            && matches!(first.kind, StatementKind::Expression(_)) =>
+                    {
+                        self.statements(init)?;
+                        String::new()
+                    }
+                    _ => self.init(init)?,
+                };
                 let condition = match condition {
-                    Some(condition) => format!(" {}", self.condition(*condition)?),
+                    Some(condition) => format!(" {}", self.loop_condition(*condition)?),
                     None => String::new(),
                 };
                 let step = match step {
@@ -102,6 +112,14 @@ impl Writer<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The condition of a `for`. Godot takes a type at its beginning for a declaration.
+    fn loop_condition(&mut self, condition: Condition) -> PrintResult<String> {
+        let code = self.condition(condition)?;
+        let first = code.split('(').next().unwrap_or_default();
+        let is_type = self.language() == Language::Godot && !first.is_empty() && self.is_reserved(first);
+        Ok(if is_type { format!("({code})") } else { code })
     }
 
     fn condition(&mut self, condition: Condition) -> PrintResult<String> {
@@ -154,16 +172,13 @@ impl Writer<'_> {
         let is_constant = variable.kind == VariableKind::Const;
         let word = match variable.ty {
             // Arrays of constants are not copied to the stack in each call.
-            Type::Array(_) if is_constant && variable.value.is_some() && self.language() != Language::Msl => {
-                self.language().constant()
+            Type::Array(_)
+                if is_constant && variable.value.is_some() && self.language() == Language::Hlsl =>
+            {
+                "static const "
             }
-            _ if is_constant => "const",
+            _ if is_constant => "const ",
             _ => "",
-        };
-        let word = if word.is_empty() {
-            String::new()
-        } else {
-            format!("{word} ")
         };
         let value = match variable.initializer {
             Some(value) => self.initializer(value)?,

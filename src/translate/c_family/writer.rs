@@ -192,6 +192,10 @@ impl<'a> Writer<'a> {
         !is_declared && !is_word && !self.taken.contains(name)
     }
 
+    pub(super) fn is_reserved(&self, word: &str) -> bool {
+        Words::new(self.host).is_reserved(word)
+    }
+
     /// A name that nothing else has.
     pub(super) fn free(&self, stem: &str) -> String {
         let mut name = stem.to_owned();

@@ -108,13 +108,19 @@ fn always_evaluated(tree: &Tree, root: ExprId) -> Vec<ExprId> {
                 left,
                 ..
             } => operands.push(*left),
-            // A target that is a variable is not read before it is written.
+            // A target is not read before it is written; only its indices are evaluated.
             &ExprKind::Assign {
                 op: None,
                 target,
                 value,
-            } if matches!(tree[target].kind, ExprKind::Variable(_)) => {
+            } => {
                 operands.push(value);
+                let indices = tree.path(target).filter_map(|node| match tree[node].kind {
+                    ExprKind::Index { index, .. } => Some(index),
+                    _ => None,
+                });
+                operands.extend(indices);
+                operands.reverse();
             }
             // The last operand of a sequence takes the sequence's place.
             &ExprKind::Sequence { first, .. } => operands.push(first),
@@ -134,7 +140,7 @@ fn is_affected(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
                 VariableKind::Local | VariableKind::Parameter(_)
             );
             let fixed = tree[variable].kind == VariableKind::Const || tree[variable].kind.is_input();
-            !fixed && (foreign || walk::mentions(tree, effect, variable))
+            !fixed && (foreign && walk::calls(tree, effect) || walk::writes(tree, effect, variable))
         }
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
         ExprKind::Binary {

@@ -23,8 +23,8 @@ impl Writer<'_> {
         }
         match self.language() {
             Language::Hlsl => self.built_in_of_hlsl(function, arguments, ty),
-            Language::Msl => self.built_in_of_metal(function, arguments, ty),
             Language::Godot => self.built_in_of_godot(function, arguments, ty),
+            Language::Msl => self.built_in_of_metal(function, arguments, ty),
         }
     }
 
@@ -43,8 +43,8 @@ impl Writer<'_> {
     fn mix_of_bool(&mut self, types: &[Type], ty: Type) -> PrintResult<String> {
         let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
         let name = match self.language() {
-            Language::Hlsl | Language::Msl => "mix",
-            Language::Godot => "mixBool",
+            Language::Hlsl => "mix",
+            Language::Msl | Language::Godot => "mixBool",
         };
         self.helper_function(name, types, ty, "", &body)
     }

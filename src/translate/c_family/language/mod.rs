@@ -5,7 +5,7 @@ mod godot;
 mod hlsl;
 mod msl;
 
-use toyproof_glsl::tree::{Direction, Type};
+use toyproof_glsl::tree::{Direction, Sampler, SamplerShape, Type};
 
 use super::host::CHost;
 use crate::lower::{Pass, Passes};
@@ -16,10 +16,10 @@ use crate::print::Vocabulary;
 pub(super) enum Language {
     /// HLSL, and Slang as far as it is HLSL.
     Hlsl,
-    /// Metal Shading Language, which is C++14.
-    Msl,
     /// The shading language of Godot 4: GLSL with fewer constructs, and without global variables.
     Godot,
+    /// Metal Shading Language, which is C++14.
+    Msl,
 }
 
 impl Language {
@@ -27,66 +27,49 @@ impl Language {
     /// side effects are lowered, and those after.
     pub(super) fn passes(self) -> (Passes, Passes) {
         let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
-        let not_needed: &[Pass] = match self {
+        let not_needed = [
+            Pass::Folding,
+            Pass::Booleans,
+            Pass::Inequality,
+            Pass::Members,
+            Pass::Constants,
+            Pass::Globals,
+            Pass::Steps,
+            Pass::DoWhile,
+            Pass::Nesting,
+        ];
+        let own: &[Pass] = match self {
             Self::Hlsl => &[
-                Pass::Folding,
                 Pass::Matrices,
-                Pass::Booleans,
                 Pass::Swizzles,
                 Pass::Indices,
                 Pass::Negations,
                 Pass::OutArguments,
-                Pass::Inequality,
-                Pass::Members,
-                Pass::Constants,
-                Pass::Globals,
-                Pass::Steps,
-                Pass::DoWhile,
                 Pass::DeadCode,
-                Pass::Nesting,
             ],
             Self::Msl => &[
                 Pass::ShortCircuit,
-                Pass::Folding,
-                Pass::Booleans,
                 Pass::Swizzles,
                 Pass::Indices,
                 Pass::Negations,
-                Pass::Inequality,
-                Pass::Members,
-                Pass::Constants,
-                Pass::Globals,
-                Pass::Steps,
-                Pass::DoWhile,
                 Pass::LoopVoids,
                 Pass::DeadCode,
                 Pass::Switches,
-                Pass::Nesting,
             ],
-            Self::Godot => &[
-                Pass::Folding,
-                Pass::MissingBuiltIns,
-                Pass::Booleans,
-                Pass::Inequality,
-                Pass::Members,
-                Pass::Constants,
-                Pass::Globals,
-                Pass::Steps,
-                Pass::DoWhile,
-                Pass::DeadCode,
-                Pass::Nesting,
-            ],
+            Self::Godot => &[Pass::MissingBuiltIns],
         };
         let late = early
             .into_iter()
-            .chain(not_needed.iter().copied())
+            .chain(not_needed)
+            .chain(own.iter().copied())
             .fold(Passes::required(), Passes::without);
-        let early = early.into_iter().filter(|pass| !not_needed.contains(pass));
+        let early = early.into_iter().filter(|pass| !own.contains(pass));
         (early.fold(Passes::none(), Passes::with), late)
     }
 
-    /// Whether `&&` and `?:` may evaluate a side that is not selected, and select no structures and arrays.
-    pub(super) fn evaluates_both_sides(self) -> bool {
+    /// Whether sides of `?:` with side effects must be branches: HLSL may evaluate both sides, and Godot has no
+    /// `a, b` in them. Neither selects structures and arrays.
+    pub(super) fn branches_for_effects(self) -> bool {
         match self {
             Self::Hlsl | Self::Godot => true,
             Self::Msl => false,
@@ -138,6 +121,27 @@ impl Language {
         }
     }
 
+    /// The type of a texture of a shape; with its sampler, if the language combines both.
+    pub(super) fn texture_type(self, shape: SamplerShape) -> String {
+        let [plane, array, volume, cube] = match self {
+            Self::Hlsl => ["Texture2D", "Texture2DArray", "Texture3D", "TextureCube"],
+            Self::Msl => [
+                "texture2d<float>",
+                "texture2d_array<float>",
+                "texture3d<float>",
+                "texturecube<float>",
+            ],
+            Self::Godot => return Sampler::float(shape).name(),
+        };
+        let name = match shape {
+            SamplerShape::D2 => plane,
+            SamplerShape::D2Array => array,
+            SamplerShape::D3 => volume,
+            SamplerShape::Cube => cube,
+        };
+        name.to_owned()
+    }
+
     /// The declaration of a parameter, of which `declared` states type and name.
     pub(super) fn parameter(self, direction: Direction, declared: &str) -> String {
         let is_out = matches!(direction, Direction::Out | Direction::InOut);
@@ -169,8 +173,8 @@ impl Vocabulary for Words {
         let is_unitys = self.host == CHost::Unity && word.to_ascii_lowercase().starts_with("unity_");
         let is_word = match self.host.language() {
             Language::Hlsl => hlsl::is_reserved(word),
-            Language::Msl => msl::is_reserved(word),
             Language::Godot => godot::is_reserved(word),
+            Language::Msl => msl::is_reserved(word),
         };
         is_word || is_unitys
     }
@@ -178,8 +182,8 @@ impl Vocabulary for Words {
     fn is_function(&self, word: &str) -> bool {
         match self.host.language() {
             Language::Hlsl => hlsl::is_function(word),
-            Language::Msl => msl::is_function(word),
             Language::Godot => godot::is_function(word),
+            Language::Msl => msl::is_function(word),
         }
     }
 

@@ -4,7 +4,6 @@ use toyproof_glsl::tree::{BuiltIn, ExprId, SamplerShape};
 
 use crate::c_family::Unprintable;
 use crate::c_family::expression::{Part, Parts, level};
-use crate::c_family::lookup::texture_type;
 use crate::c_family::writer::{PrintResult, Writer};
 
 impl Writer<'_> {
@@ -70,7 +69,7 @@ impl Writer<'_> {
     /// where Metal leaves the result open.
     fn fetch_function(&mut self, shape: SamplerShape) -> String {
         let function = self.free("texelFetch");
-        let ty = texture_type(self.language(), shape);
+        let ty = self.language().texture_type(shape);
         let (size, depth) = match shape {
             SamplerShape::D3 => (3, ", image.get_depth(level)"),
             _ => (2, ""),
@@ -90,7 +89,7 @@ impl Writer<'_> {
     /// Adds the function that returns the size of a level of a texture, and returns its name.
     fn size_function_of_metal(&mut self, shape: SamplerShape) -> String {
         let function = self.free("textureSize");
-        let ty = texture_type(self.language(), shape);
+        let ty = self.language().texture_type(shape);
         let (returned, depth) = match shape {
             SamplerShape::D3 => ("int3", ", image.get_depth(level)"),
             _ => ("int2", ""),
