@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-use proptest::prelude::RngCore;
+use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use regex::Regex;
 use toyproof::diagnostic::{Deadline, File, Files};
@@ -18,12 +18,13 @@ use toyproof::eval::{Program, Settings};
 use toyproof::glsl::tree::Input;
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::image::{Frame, Image, Shape, Texture, noise};
-use toyproof::translate::c_family::{CHost, write};
+use toyproof::translate::c_family::{CHost, Title, write};
 use toyproof::translate::lower_strict;
 use walkdir::WalkDir;
 
 use crate::hlsl_hosts;
-use crate::requirements::require_program;
+use crate::program::toyproof;
+use crate::requirements::{require_driver, require_program};
 use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
 
@@ -59,7 +60,14 @@ fn written(name: &str, shader: &str) -> Option<Written> {
     let file = files.add(File::new(name, shader));
     let checked =
         check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
-    let text = write(&checked, &files, CHost::Metal, name, &Deadline::default()).ok()?;
+    let text = write(
+        &checked,
+        &files,
+        CHost::Metal,
+        Title::of_shader(name),
+        &Deadline::default(),
+    )
+    .ok()?;
     let name = name.to_owned();
     Some(Written { name, checked, text })
 }
@@ -181,7 +189,7 @@ fn program(shaders: &[Written]) -> String {
 /// The bytes of a frame: its size, the uniform block and the textures.
 fn frame_bytes(number: usize, frame: &Frame) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut integers = |bytes: &mut Vec<u8>, numbers: &[u32]| {
+    let integers = |bytes: &mut Vec<u8>, numbers: &[u32]| {
         bytes.extend(numbers.iter().flat_map(|number| number.to_ne_bytes()));
     };
     integers(&mut bytes, &[number as u32, frame.size[0], frame.size[1]]);
@@ -364,4 +372,39 @@ fn random_programs_have_the_evaluators_bits() {
     );
     let differing = differences(&shaders, &frame());
     assert!(differing.is_empty(), "{}", differing.join("\n"));
+}
+
+/// Without a proof the file is ours; with one it is naga's, and the message says why.
+#[test]
+fn a_proof_needs_the_text_of_naga() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.metal");
+    let shader = "// Stripes\nvoid mainImage(out vec4 c, in vec2 p) {\n    c = vec4(fract(p.x / 9.0)); // repeated\n}\n";
+    fs::write(folder.path().join("a.glsl"), shader).unwrap();
+    let convert = |options: &[&str]| {
+        let run = toyproof(
+            folder.path(),
+            &[&["convert", "a.glsl", "-o", "a.metal"], options].concat(),
+        );
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        (run.stdout, fs::read_to_string(&file).unwrap())
+    };
+    let (_, text) = convert(&[]);
+    assert!(
+        text.contains("// Stripes\n") && text.contains("c = float4(fract(p.x / 9.0)); // repeated\n"),
+        "{text}"
+    );
+    let (_, strict) = convert(&["--float", "strict"]);
+    assert!(!strict.contains("struct Shader"), "{strict}");
+    if !require_driver() {
+        return;
+    }
+    let (message, text) = convert(&["--verify"]);
+    let why = "up to naga's metal writer; written by naga, since only Apple's compiler reads Metal, so the readable text cannot be proved";
+    assert!(message.contains(why), "{message}");
+    assert!(
+        text.contains("// Proved: the module that this text was written from.")
+            && !text.contains("// Stripes"),
+        "{text}"
+    );
 }

@@ -61,7 +61,8 @@ impl Writer<'_> {
         comment: &str,
         body: &str,
     ) -> PrintResult<String> {
-        if self.indent == 0 {
+        // Members of a structure are computed at run time.
+        if self.indent == 0 && self.language() != Language::Msl {
             return Err(Unprintable::Construct(
                 "this built-in function in a global constant",
             ));

@@ -1,6 +1,6 @@
 //! Built-in functions in Metal: most have the same name, some are operators, few are missing.
 
-use toyproof_glsl::tree::{BuiltIn, ExprId, Scalar, Type, Wgsl};
+use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, Scalar, Type, Wgsl};
 
 use crate::c_family::Unprintable;
 use crate::c_family::expression::{Part, Parts, level};
@@ -28,6 +28,15 @@ impl Writer<'_> {
             B::Not => {
                 let operand = Part::Print(arguments[0], level::POSTFIX);
                 return Ok((vec![Part::token("!"), operand], level::UNARY));
+            }
+            // Metal's are functions of vectors.
+            B::Length if types == [Type::FLOAT] => "abs".to_owned(),
+            B::Distance if types.first() == Some(&Type::FLOAT) => {
+                let (difference, _) = Self::infix(arguments[0], BinaryOp::Subtract, arguments[1]);
+                let mut parts = vec![Part::token("abs(")];
+                parts.extend(difference);
+                parts.push(Part::token(")"));
+                return Ok((parts, level::POSTFIX));
             }
             B::Atan if arguments.len() == 2 => "atan2".to_owned(),
             B::DFdx => "dfdx".to_owned(),

@@ -24,17 +24,19 @@ const RESERVED: &str = "\
 
 /// The functions of Metal's library, and the types and options of its samplers.
 const FUNCTIONS: &str = "\
-    main abs absdiff access acos acosh addsat addressed address all any asin asinh assume atan atan2 atanh bias \
+    main abs absdiff access acos acosh addsat address all any asin asinh assume atan atan2 atanh bias \
     border_color ceil clamp clz compare_func component coord copysign cos cosh cospi cross ctz determinant dfdx \
     dfdy discard_fragment distance distance_squared divide dot exp exp10 exp2 extract_bits fabs faceforward fdim \
     filter floor fma fmax fmax3 fmedian3 fmin fmin3 fmod forward fract frexp fwidth get_num_samples \
     get_sample_position gradient2d gradient3d gradientcube hadd ilogb insert_bits interpolant interpolation \
     isfinite isinf isnan isnormal isordered isunordered ldexp length length_squared level lod_clamp log log10 \
     log2 mad24 madhi madsat mag_filter max max3 max_anisotropy median3 mem_flags memory_order min min3 min_filter \
-    min_lod_clamp mip_filter mix modf move mul24 mulhi nextafter normalize popcount pow powr r_address reflect \
+    min_lod_clamp mip_filter mix modf move mul24 mulhi nextafter normalize pack_float_to_snorm2x16 pack_float_to_snorm4x8 pack_float_to_unorm2x16 \
+    pack_float_to_unorm4x8 popcount pow powr quad_broadcast quad_shuffle r_address reflect \
     refract reverse_bits rhadd rint rotate round rsqrt s_address saturate select sign signbit simdgroup_barrier \
     sin sincos sinh sinpi smoothstep sqrt step subsat swap t_address tan tanh tanpi thread_scope \
-    threadgroup_barrier transpose trunc uniform";
+    threadgroup_barrier transpose trunc uniform unpack_snorm2x16_to_float unpack_snorm4x8_to_float \
+    unpack_unorm2x16_to_float unpack_unorm4x8_to_float";
 
 /// The prefixes of the macros for the limits of types, and their other parts.
 const LIMITS: [(&str, &str); 2] = [
@@ -69,17 +71,7 @@ pub(super) fn with_free_stem(word: &str) -> String {
 
 /// Whether the name is a function's.
 pub(super) fn is_function(word: &str) -> bool {
-    let has_prefix = |prefix: &&str| word.starts_with(prefix);
-    let prefixes = [
-        "simd_",
-        "quad_",
-        "atomic_",
-        "pack_",
-        "unpack_",
-        "raster_",
-        "simdgroup_",
-    ];
-    lists(FUNCTIONS, word) || prefixes.iter().any(has_prefix)
+    lists(FUNCTIONS, word)
 }
 
 /// Whether the word is a constant's such as `M_PI_F`, or the limit of a type.
@@ -107,4 +99,21 @@ fn is_numbered_type(word: &str) -> bool {
         Some((columns, rows)) => is_size(columns) && is_size(rows),
         None => is_size(size),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names are numbered until one is free.
+    #[test]
+    fn numbered_names_are_free() {
+        let words =
+            format!("{RESERVED} {FUNCTIONS} M_PI_F INT_MAX float3 packed_half2 _ __ _X a__b a_ _a pack_x");
+        for word in words.split_whitespace() {
+            let stem = with_free_stem(word);
+            let name = format!("{stem}_1");
+            assert!(!is_reserved(&name) && !is_function(&name), "{word}: {name}");
+        }
+    }
 }

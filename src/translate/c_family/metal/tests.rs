@@ -27,7 +27,7 @@ fn shader(items: &str, statements: &str) -> String {
 fn with_items(items: &str, statements: &str) -> String {
     let written = converted(&shader(items, statements)).unwrap();
     let (_, body) = written
-        .split_once("        color = float4(0.0);\n")
+        .split_once("        color = float4(0);\n")
         .unwrap_or_else(|| panic!("{written}"));
     let (body, _) = body
         .split_once("\n    }\n};")
@@ -56,8 +56,8 @@ fn assert_refused(items: &str, statements: &str, why: &str) {
 
 #[test]
 fn only_what_has_state_is_in_the_structure() {
-    let items = "// Waves\n\n#define STEPS 8\nconst float SCALE = .5; // of all\nconst vec3 SUN = vec3(1, .9, .8) * 2.;\n\
-        struct Ray { vec3 o; float t; };\nfloat seed;\n// Noise\nfloat noise(vec2 p) { return p.x * SCALE; }\n\
+    let items = "// Waves\n\n#define STEPS 8\nconst float SCALE = .5;\nconst vec3 SUN = vec3(1, .9, .8) * 2.;\n\
+        float seed; // of all\n// Noise\nfloat noise(vec2 p) { return p.x * SCALE; }\n\
         float noise(vec3 p) { return p.x + iTime; }\nfloat both(vec2 p) { return noise(p); }\n\
         float next() { return seed++; }\nfloat square(float x) { return x * x; }\n";
     let statements = "for (int i = 0; i < STEPS; i++) color += next() + both(at) + noise(color.xyz) + square(at.x);\n\
@@ -65,23 +65,17 @@ fn only_what_has_state_is_in_the_structure() {
     let written = converted(&shader(items, statements)).unwrap();
     for expected in [
         "// Waves\n\n#include <metal_stdlib>\nusing namespace metal;\n\nconstant int STEPS = 8;\n\n\
-         constant float SCALE = 0.5; // of all\n\nstruct Ray",
+         constant float SCALE = 0.5;\n\n",
         // Overloads stay together, and what calls them; the value of `SUN` is computed.
         "float square(float x) {\n    return x * x;\n}\n\nstruct Shader {\n    float iTime;\n\n    \
-         float3 SUN = float3(1, 0.9, 0.8) * 2.0;\n    float seed = 0.0;\n\n    // Noise\n    float noise(float2 p) {\n",
+         float3 SUN = float3(1, 0.9, 0.8) * 2.0;\n    float seed = 0.0; // of all\n\n    // Noise\n    float noise(float2 p) {\n",
         "    void mainImage(thread float4& color, float2 at) {\n",
         "struct Inputs {\n    packed_float3 iResolution;\n    float iTime;\n",
         "fragment float4 main_(\n    constant Inputs& inputs [[buffer(0)]],\n    float4 position [[position]]\n) {\n    \
          Shader shader = {\n        inputs.iTime,\n    };\n    float4 color;\n    shader.mainImage(color, position.xy);\n    \
          return float4(color.xyz, 1.0);\n}\n",
     ] {
-        assert!(
-            written
-                .replace("struct Ray {\n    float3 o;\n    float t;\n};\n", "struct Ray")
-                .contains(expected)
-                || written.contains(expected),
-            "{expected}\n---\n{written}"
-        );
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
     }
     assert!(
         !written.contains("gl_FragCoord") && !written.contains("texture2d"),
@@ -178,7 +172,7 @@ fn functions_have_the_names_of_metal() {
     let written = body(
         "float a = inversesqrt(at.y) + atan(at.y, at.x) + dFdx(at.x) + roundEven(at.x) + round(at.y) + radians(at.x);\n\
          bvec2 b = lessThan(at, vec2(.5));\nif (all(not(b)) ^^ at == vec2(1)) color = vec4(sign(int(a)));\n\
-         color *= mod(a, 2.) + intBitsToFloat(floatBitsToInt(a)) + dot(a, 2.);\nat = mix(at, vec2(1), b) + max(at, 0.);",
+         color *= mod(a, 2.) + intBitsToFloat(floatBitsToInt(a)) + dot(a, 2.) + length(a) + distance(a, a + 1.);\nat = mix(at, vec2(1), b) + max(at, 0.);",
     );
     assert_lines(
         &written,
@@ -188,7 +182,7 @@ fn functions_have_the_names_of_metal() {
             "if (all(!b) != all(at == float2(1))) {",
             "color = float4(signOf(int(a)));",
             "}",
-            "color *= mod(a, 2.0) + as_type<float>(as_type<int>(a)) + a * 2.0;",
+            "color *= mod(a, 2.0) + as_type<float>(as_type<int>(a)) + a * 2.0 + abs(a) + abs(a - (a + 1.0));",
             "at = select(at, float2(1), b) + max(at, 0.0);",
         ],
     );
@@ -241,9 +235,9 @@ fn references_are_bound_to_variables_members_and_elements() {
             "float argument_2 = g;",
             "alias(argument_2);",
             "g = argument_2;",
-            "bool result_1 = false;",
+            "bool result = false;",
             "float argument_3 = 0.0;",
-            "if (at.x > 1.0 && (result_1 = put(argument_3), at.y = argument_3, result_1)) {",
+            "if (at.x > 1.0 && (result = put(argument_3), at.y = argument_3, result)) {",
             "color.x = s.a[1] + m[1].x + s.v.x;",
             "}",
         ],
@@ -302,7 +296,7 @@ fn hashes_of_integers_wrap() {
         &written,
         &[
             "int n = int(at.x);",
-            "n = (n << 13) ^ n;",
+            "n = n << 13 ^ n;",
             "n = int(uint(n) * (uint(n) * uint(n) * 15731u + 789221u) - uint(-1376312589));",
             "n = int(uint(n) * 16807u);",
             "int2 c = int2(uint2(int2(at)) * 73856093u + 1u);",
@@ -315,16 +309,16 @@ fn hashes_of_integers_wrap() {
 
 #[test]
 fn names_of_metal_are_free() {
-    let items = "struct half { float packed_float3; };\nfloat saturate(float x) { return x; }\nfloat main_(float x) { return x; }\n\
+    let items = "struct halfs { float packed_float3; };\nstruct kernel { float a; };\nfloat saturate(float x) { return x; }\nfloat main_(float x) { return x; }\n\
         const float M_PI_F = 3.;\nconst float INFINITY = 9.;\n#define NAN 4.\nfloat Shader = 2.;\nfloat a__b(float x) { return x; }";
     let written = converted(&shader(
         items,
-        "half h = half(1.);\nfloat thread = saturate(h.packed_float3);\nfloat level = main_(M_PI_F) + a__b(INFINITY) + NAN;\n\
+        "halfs h = halfs(kernel(1.).a);\nfloat thread = saturate(h.packed_float3);\nfloat level = main_(M_PI_F) + a__b(INFINITY) + NAN;\n\
          color.x = thread + level + Shader;",
     ))
     .unwrap();
     for expected in [
-        "struct half_1 {\n    float packed_float3_1;\n};",
+        "struct halfs {\n    float packed_float3_1;\n};\n\nstruct kernel_1 {",
         "float thread_1 = saturate_1(h.packed_float3_1);",
         "float level_1 = main_1(M_PI_F_1) + a_b(INFINITY_1) + 4.0;",
         "    float Shader_1 = 2.0;\n",
