@@ -202,7 +202,7 @@ fn passes_are_played_by_a_script() {
     assert!(buffer.contains("vec2 fragCoord = FRAGCOORD.xy;\n"), "{buffer}");
     assert!(buffer.contains("    COLOR = color;\n"), "{buffer}");
     assert!(
-        buffer.contains("uniform sampler2D iChannel0 : filter_nearest, repeat_disable;"),
+        buffer.contains("uniform sampler2D iChannel0 : filter_nearest, repeat_disable, hint_default_black;"),
         "{buffer}"
     );
     let buffer = fs::read_to_string(folder.path().join("unity/buffer-a.shader")).unwrap();

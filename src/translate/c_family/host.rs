@@ -388,6 +388,16 @@ impl Writer<'_> {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
             values.push((value, self.language().texture_type(shape)));
         }
+        let properties = ["$property0", "$property1", "$property2", "$property3"];
+        for (channel, value) in (0..).zip(properties) {
+            // The type of the texture in `ShaderLab`, and what stands for a missing one.
+            let property = match channels.get(&channel) {
+                Some(SamplerShape::D3) => "3D) = \"\"",
+                Some(SamplerShape::Cube) => "Cube) = \"\"",
+                _ => "2D) = \"black\"",
+            };
+            values.push((value, property.to_owned()));
+        }
         let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
         for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
             let sampling = match self.language() {
@@ -506,5 +516,5 @@ fn hints(sampling: Sampling) -> String {
         Wrap::Clamp => "repeat_disable",
         Wrap::Repeat => "repeat_enable",
     };
-    format!("{filter}, {wrap}")
+    format!("{filter}, {wrap}, hint_default_black")
 }

@@ -538,7 +538,7 @@ fn godot_lacks_some_constructs_of_glsl() {
         "float s = mixBool(at.x, at.y, c);",
         "k = (k & ivec3(1)) >> int(2u);",
         "    i = 1;\n    for (; (float(i) < at.x); i++) {\n",
-        "uniform sampler2D iChannel0 : filter_linear, repeat_enable;",
+        "uniform sampler2D iChannel0 : filter_linear, repeat_enable, hint_default_black;",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");
     }

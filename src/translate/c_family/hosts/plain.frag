@@ -3,16 +3,16 @@ precision highp float;
 precision highp int;
 
 layout(std140) uniform Inputs { //? inputs
-    vec3 iResolution; //? inputs
-    float iTime; //? inputs
-    float iTimeDelta; //? inputs
-    int iFrame; //? inputs
-    float iFrameRate; //? inputs
-    vec4 iChannelTime[4]; //? inputs
-    vec3 iChannelResolution[4]; //? inputs
-    vec4 iMouse; //? inputs
-    vec4 iDate; //? inputs
-    float iSampleRate; //? inputs
+    vec3 iResolution; //? inputs iResolution
+    float iTime; //? inputs iTime
+    float iTimeDelta; //? inputs iTimeDelta
+    int iFrame; //? inputs iFrame
+    float iFrameRate; //? inputs iFrameRate
+    vec4 iChannelTime[4]; //? inputs iChannelTime
+    vec3 iChannelResolution[4]; //? inputs iChannelResolution
+    vec4 iMouse; //? inputs iMouse
+    vec4 iDate; //? inputs iDate
+    float iSampleRate; //? inputs iSampleRate
 }; //? inputs
 uniform highp $texture0 iChannel0; //? channel0
 uniform highp $texture1 iChannel1; //? channel1
