@@ -98,7 +98,10 @@ impl Errors {
     fn judge(&mut self, function: &Function, operands: &[f32], result: f32, exact: &[f64]) -> f64 {
         let limits: Vec<_> = operands.iter().copied().map(Permitted::operand).collect();
         let permitted = (function.permitted)(&limits);
-        if !exact.iter().any(|&exact| permitted.contains(result, exact)) {
+        if !exact
+            .iter()
+            .any(|&exact| permitted.contains(result, exact, function.is_inherited()))
+        {
             self.beyond += 1;
             self.first_beyond
                 .get_or_insert_with(|| (operands.to_vec(), result));

@@ -23,6 +23,11 @@ impl Function {
     pub fn is_strict(&self) -> bool {
         ["x + y", "x * y", "x / y", "sqrt(x)"].contains(&self.expression)
     }
+
+    /// Whether it inherits its precision from a formula.
+    pub fn is_inherited(&self) -> bool {
+        self.limit.starts_with("inherited from ")
+    }
 }
 
 /// Arguments of trigonometric functions: [−π, π], rounded inwards.

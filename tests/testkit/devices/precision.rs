@@ -87,16 +87,17 @@ impl Permitted {
         f64::max((exact - self.low).abs(), (exact - self.high).abs())
     }
 
-    /// Whether a result is permitted for this exact value.
-    pub fn contains(self, result: f32, exact: f64) -> bool {
+    /// Whether a result is in the interval, or, if the precision is inherited from a formula, at most as far from the
+    /// exact value as the farthest value of the interval.
+    pub fn contains(self, result: f32, exact: f64, is_inherited: bool) -> bool {
         if self.is_any() {
             return true;
         }
-        let error = self.largest_error(exact);
         let flushed = self.flushed();
         let result = f64::from(result);
+        let is_as_near = is_inherited && (result - exact).abs() <= self.largest_error(exact);
         // An infinite limit means that the range exceeds the largest float.
-        (result - exact).abs() <= error || flushed.low <= result && result <= flushed.high
+        is_as_near || flushed.low <= result && result <= flushed.high
     }
 
     /// Adds zero to denormals.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, TestRunner};
-use toyproof::diagnostic::grouped;
+use toyproof::diagnostic::{grouped, plural};
 use toyproof::gpu::Worker;
 use toyproof::image::Frame;
 use toyproof::verify::compare::CheckSummary;
@@ -78,14 +78,20 @@ impl fmt::Display for Toolchain {
         if let Some((name, pixels)) = &self.first {
             write!(
                 f,
-                "; **{} differ** by at most {:.1e}, first {name} in {}",
+                "; **{} {}** by at most {:.1e}, first {name} in {} pixels",
                 self.shaders - self.equal,
+                plural((self.shaders - self.equal) as u64, "differs", "differ"),
                 self.sum.max_abs,
                 grouped(*pixels)
             )?;
         }
         if let Some((name, why)) = &self.failure {
-            write!(f, "; **{} have no image**, first {name}: {why}", self.failed)?;
+            write!(
+                f,
+                "; **{} {} no image**, first {name}: {why}",
+                self.failed,
+                plural(self.failed as u64, "has", "have")
+            )?;
         }
         match &self.stopped {
             Some(why) => write!(f, "; the others were not measured: {why}"),
@@ -112,7 +118,7 @@ pub fn course(worker: &mut Worker, exercises: &[&Exercise], timeout: Duration, s
     sum
 }
 
-/// Compares random programs, which are those of the test suite.
+/// Compares random programs, made as those of the test suite.
 ///
 /// # Panics
 /// If the generator makes an invalid program.
