@@ -1,4 +1,5 @@
-//! The measurements of `cargo xtask devices`: planted drivers are described as they are, and a driver is measured.
+//! The measurements of `cargo xtask devices`: planted drivers are described as they are, and a driver is
+//! measured.
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -388,7 +389,11 @@ fn the_table_has_a_row_for_each_measurement_and_a_column_for_each_device() {
     let columns = [
         Column {
             title: "One".to_owned(),
-            cells: vec![Ok("1.0 ULP".to_owned()), Err("the driver\ncrashed".to_owned())],
+            cells: vec![
+                Ok("1.0 ULP".to_owned()),
+                Err("the driver\ncrashed".to_owned()),
+                Err("interrupted".to_owned()),
+            ],
         },
         Column {
             title: "Two".to_owned(),
@@ -396,7 +401,7 @@ fn the_table_has_a_row_for_each_measurement_and_a_column_for_each_device() {
         },
     ];
     assert_eq!(
-        markdown(&rows, &columns, "interrupted"),
+        markdown(&rows, &columns),
         "| measurement | required | One | Two |\n\
          |---|---|---|---|\n\
          | **A** | | | |\n\

@@ -4,9 +4,12 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use clap::builder::RangedU64ValueParser;
+use clap::value_parser;
+use toyproof::diagnostic::grouped;
 use toyproof::gpu::{AdapterSelector, INSTALL_HINT};
 use toyproof_testkit::devices::behavior::GUARDED;
-use toyproof_testkit::devices::discovery::{Discovery, discover};
+use toyproof_testkit::devices::discovery::{Device, discover};
 use toyproof_testkit::devices::table::markdown;
 use toyproof_testkit::devices::{Plan, arguments};
 
@@ -16,7 +19,8 @@ const NO_DEVICE: u8 = 2;
 /// The time limit of an image, in seconds.
 const IMAGE_SECONDS: u64 = 20;
 
-/// The time for what has begun before a device's time limit ends: an image of the driver, and one of the evaluator.
+/// The time for what has begun before a device's time limit ends: an image of the driver, and one of the
+/// evaluator.
 const RESERVED_SECONDS: u64 = 2 * IMAGE_SECONDS;
 
 /// Set by an interrupt.
@@ -24,12 +28,17 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
-    /// Only this device: `auto`, `lavapipe`, or a substring of the name of an adapter or its driver; all devices by default
+    /// Only this device: `auto`, `lavapipe`, or a substring of the name of an adapter or its driver [default: all]
     #[arg(long, value_name = "DEVICE")]
     device: Option<String>,
     /// The time limit of each device, in seconds; what does not fit is not measured
-    #[arg(long, value_name = "SECONDS", default_value_t = 240, value_parser = clap::value_parser!(u64).range(RESERVED_SECONDS + 1..))]
+    #[arg(long, value_name = "SECONDS", default_value_t = 240, value_parser = time_limits())]
     time_limit: u64,
+}
+
+/// The accepted time limits.
+fn time_limits() -> RangedU64ValueParser {
+    value_parser!(u64).range(RESERVED_SECONDS + 1..)
 }
 
 /// Measures the devices, and prints the table, also where it is interrupted.
@@ -47,18 +56,18 @@ pub(super) fn print_table(options: &Arguments) -> ExitCode {
     for note in &discovery.notes {
         eprintln!("{note}");
     }
-    let names = names(&discovery);
+    let names: Vec<_> = discovery.devices.iter().map(Device::title).collect();
     if let Some(device) = &options.device {
         discovery.select(device);
     }
     if discovery.devices.is_empty() {
-        if names.is_empty() {
+        if !names.is_empty() {
+            let names = names.join("; ");
+            eprintln!("error: no device matches `--device`; available: {names}");
+        } else if discovery.notes.is_empty() {
             eprintln!("error: no Vulkan driver found; {INSTALL_HINT}");
         } else {
-            eprintln!(
-                "error: no device matches `--device`; available: {}",
-                names.join("; ")
-            );
+            eprintln!("error: no Vulkan driver starts");
         }
         return ExitCode::from(NO_DEVICE);
     }
@@ -88,16 +97,14 @@ pub(super) fn print_table(options: &Arguments) -> ExitCode {
         columns.push(plan.measure(device, &mut translator, &stop, &mut progress));
         eprintln!("{title}: {:.1} s in total", start.elapsed().as_secs_f64());
     }
-    print!("{}", markdown(&plan.rows(), &columns, "the run ended before"));
+    print!("{}", markdown(&plan.rows(), &columns));
     println!(
         "\n{GUARDED}\n\nArguments: {} for each function, random ones with seed {}.",
-        plan.arguments,
+        grouped(plan.arguments as u64),
         arguments::SEED
     );
+    for note in &discovery.notes {
+        println!("\n{note}");
+    }
     ExitCode::SUCCESS
-}
-
-/// The names of all devices.
-fn names(discovery: &Discovery) -> Vec<String> {
-    discovery.devices.iter().map(|device| device.title()).collect()
 }

@@ -59,7 +59,7 @@ enum Task {
         /// The folder of WGSL files, with the same names
         converted: PathBuf,
     },
-    /// Measure what the Vulkan drivers of this machine compute, and print the table of docs/evidence/drivers.md
+    /// Measure what the Vulkan drivers of this machine compute, for docs/evidence/drivers.md
     Devices(devices::Arguments),
     /// Build the files of a release: archives, and packages for Debian and Python, with their checksums
     Dist(dist::Arguments),

@@ -63,9 +63,9 @@ fn special() -> Vec<f32> {
     positive.flat_map(|value| [value, -value]).collect()
 }
 
-/// `count` arguments of a function whose operands have these usual ranges. One operand: all special numbers first.
-/// Several operands: special ones in an eighth of the cases. Of the rest, every third case has floats of
-/// any exponent, and the others are in the usual ranges. The same for every device.
+/// `count` arguments of a function whose operands have these usual ranges, the same for every device. One
+/// operand: all special numbers first. Several operands: special ones in an eighth of the cases. Of the rest,
+/// every third case has floats of any exponent, and the others are in the usual ranges.
 pub fn arguments(usual: &[Range], count: usize) -> Vec<Vec<f32>> {
     let mut random = Random(SEED);
     let special = special();

@@ -1,5 +1,5 @@
-//! What a driver does where Vulkan or GLSL leaves the result open: denormals, NaN, conversions that are out of
-//! range, divisions by zero, and contraction.
+//! What a driver does where Vulkan or GLSL leaves the result open: denormals, NaN, conversions that are out
+//! of range, divisions by zero, and contraction.
 
 use toyproof::diagnostic::grouped;
 
@@ -169,7 +169,7 @@ behaviors! {
         "clamp(2, NaN, 1)" = "clamp(x, y, z)" (TWO, NAN, ONE) Kind::Float;
         "clamp(2, 0, NaN)" = "clamp(x, y, z)" (TWO, ZERO, NAN) Kind::Float;
     ]
-    "tests of NaN and infinity", "NaN may be assumed not to occur": [
+    "tests of NaN and infinity¹", "NaN may be assumed not to occur": [
         "isnan(NaN)" = "isnan(x)" (NAN) Kind::Bool;
         "isinf(∞)" = "isinf(x)" (INFINITY) Kind::Bool;
         "NaN != NaN" = "x != x" (NAN) Kind::Bool;
@@ -211,8 +211,8 @@ behaviors! {
 }
 
 /// The note to the rows that are marked with it.
-pub const GUARDED: &str =
-    "¹ naga guards these operations, so the results show its guards rather than the driver.";
+pub const GUARDED: &str = "¹ naga guards divisions of integers and conversions, and toyproof writes `isnan` and \
+                           `isinf` as tests of bits, so these results are not the driver's alone.";
 
 /// The expression whose operations may be contracted to a fused one.
 pub const CONTRACTED: &str = "x * y + z";

@@ -62,8 +62,8 @@ pub fn render(worker: &mut Worker, float: FloatMode) -> Result<Image, Failure> {
     drawn.map(DrawOutput::image)
 }
 
-/// The image of a device that takes the differences of the quad's lines with these numbers (0 or 1), or of the pixel's
-/// own if there is none.
+/// The image of a device that takes the differences of the quad's lines with these numbers (0 or 1), or of
+/// the pixel's own if there is none.
 pub fn planted(line: Option<u32>, sign: f32) -> Image {
     let line = |coordinate: u32| line.map_or(coordinate, |line| coordinate & !1 | line);
     let pixel = |at: u32| {

@@ -51,8 +51,8 @@ pub struct Discovery<'a> {
     pub notes: Vec<String>,
 }
 
-/// Finds the devices of all drivers. Each driver is loaded alone, so that one that fails takes no other with it, and
-/// two versions of a driver are two devices.
+/// Finds the devices of all drivers. Each driver is loaded alone, so that one that fails takes no other with
+/// it, and two versions of a driver are two devices.
 pub fn discover(new_worker: &NewWorker) -> Discovery<'_> {
     let found = pinned().unwrap_or_else(manifests);
     let manifests = match found.len() {
@@ -97,8 +97,8 @@ impl<'a> Discovery<'a> {
         }
     }
 
-    /// Keeps the devices that `--device` names, as for other commands: `auto`, `lavapipe`, or a substring of the name
-    /// or of the driver's version.
+    /// Keeps the devices that `--device` names, as for other commands: `auto`, `lavapipe`, or a substring of
+    /// the name or of the driver's version.
     pub fn select(&mut self, device: &str) {
         let device = device.to_lowercase();
         match &device[..] {

@@ -8,14 +8,14 @@ use super::arguments::Range;
 use super::function::Function;
 use super::precision::{Permitted, error, is_rounded};
 
-/// The smallest magnitude of usual operands, 2⁻¹⁰: next to zero, a small absolute error is one of many units.
+/// The smallest magnitude of usual operands: next to zero, a small absolute error is one of many units.
 const SMALLEST_USUAL: f32 = 1.0 / 1024.0;
 
 /// The maximum number of operands that are listed.
 const MAX_LISTED: usize = 2;
 
-/// The errors of a function. Cases whose exact value is not a finite float are left out: infinities and NaN may be
-/// assumed not to occur.
+/// The errors of a function. Cases whose operands or exact value are not finite floats are left out:
+/// infinities and NaN may be assumed not to occur.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Errors {
     /// The cases with a finite exact value.
@@ -93,8 +93,9 @@ impl Errors {
         }
     }
 
-    /// Compares a result with the permitted ones of the exact values, of which any may be meant. Returns the error as a
-    /// share of the permitted one, or 0 if that is not limited, or not exceeded only because a denormal was flushed.
+    /// Compares a result with the permitted ones of the exact values, of which any may be meant. Returns the
+    /// error as a share of the permitted one, or 0 if that is not limited, or if a flushed denormal exceeds
+    /// it.
     fn judge(&mut self, function: &Function, operands: &[f32], result: f32, exact: &[f64]) -> f64 {
         let limits: Vec<_> = operands.iter().copied().map(Permitted::operand).collect();
         let permitted = (function.permitted)(&limits);

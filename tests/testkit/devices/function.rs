@@ -125,7 +125,8 @@ functions! {
         "inherited from x − y · floor(x / y)";
     "mix(x, y, z)" in [SMALL, SMALL, UNIT]: |v| v[0] * (1.0 - v[2]) + v[1] * v[2],
         // The second form is the first one by the distributive law, which an implementation may use.
-        |v| (v[0] * (one() - v[2]) + v[1] * v[2]).or(v[0] + (v[1] - v[0]) * v[2]), "inherited from x · (1 − z) + y · z";
+        |v| (v[0] * (one() - v[2]) + v[1] * v[2]).or(v[0] + (v[1] - v[0]) * v[2]),
+        "inherited from x · (1 − z) + y · z";
     "smoothstep(x, y, z)" in [UNIT, POSITIVE, SMALL]: smoothstep,
         |v| {
             let t = ((v[2] - v[0]) / (v[1] - v[0])).clamp(0.0, 1.0);

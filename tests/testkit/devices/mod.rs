@@ -1,5 +1,6 @@
-//! What a Vulkan driver computes: the toolchain check of the course and of random programs, the precision of functions,
-//! what drivers are free to choose, and proofs of conversions. `cargo xtask devices` prints it as a table.
+//! What a Vulkan driver computes: the toolchain check of the course and of random programs, the precision of
+//! functions, what drivers are free to choose, and proofs of conversions. `cargo xtask devices` prints it as
+//! a table.
 //!
 //! - `discovery`: the devices of this machine.
 //! - `toolchain`, `conversions`: shaders of the course and random programs.
@@ -104,8 +105,8 @@ impl Plan {
             .collect()
     }
 
-    /// Measures a device, row by row. `translator` runs naga for conversions; `progress` is called before each
-    /// section, and at the end with none. After `stop` has given a reason, nothing else is begun.
+    /// Measures a device, row by row. `translator` runs naga for conversions; `progress` is called before
+    /// each section, and at the end with none. After `stop` has given a reason, nothing else is begun.
     pub fn measure(
         &self,
         device: &Device,

@@ -1,9 +1,10 @@
-//! The results that Vulkan permits: intervals of reals, widened by each operation as the specification requires
-//! ("Precision and Operation of SPIR-V Instructions" in the appendix "Vulkan Environment for SPIR-V").
+//! The results that Vulkan permits: intervals of reals, widened by each operation as the specification
+//! requires ("Precision and Operation of SPIR-V Instructions" in the appendix "Vulkan Environment for
+//! SPIR-V").
 //!
 //! Where a function's precision is inherited from a formula, the formula is computed with intervals. An
-//! implementation may also use an equivalent formula, of which the functions list some, so a result outside of
-//! the interval need not be a fault of the driver.
+//! implementation may also use an equivalent formula, of which the functions list some, so a result outside
+//! of the interval need not be a fault of the driver.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -13,8 +14,8 @@ const MAX: f64 = f32::MAX as f64;
 /// The smallest normal f32.
 const MIN_NORMAL: f64 = f32::MIN_POSITIVE as f64;
 
-/// The distance between the floats next to a real number, in f32, as Vulkan defines it: at a power of two that
-/// of the floats below it. It is 2⁻¹⁴⁹ for denormals, and 2¹⁰⁴ beyond the largest float.
+/// The distance between the floats next to a real number, in f32, as Vulkan defines it: at a power of two
+/// that of the floats below it. It is 2⁻¹⁴⁹ for denormals, and 2¹⁰⁴ beyond the largest float.
 pub fn ulp(exact: f64) -> f64 {
     let magnitude = exact.abs().clamp(MIN_NORMAL, MAX);
     let exponent = libm::ilogb(magnitude);
@@ -22,9 +23,9 @@ pub fn ulp(exact: f64) -> f64 {
     libm::ldexp(1.0, exponent - 23 - i32::from(is_power))
 }
 
-/// The error of a finite result in units in the last place of an f32 next to the exact value. A denormal value that
-/// was flushed to zero counts as exact, since Vulkan allows it. An exact value that rounds to infinity has no error
-/// if the result is infinite.
+/// The error of a finite result in units in the last place of an f32 next to the exact value. A denormal
+/// value that was flushed to zero counts as exact, since Vulkan allows it. An exact value that rounds to
+/// infinity has no error if the result is infinite.
 pub fn error(result: f32, exact: f64) -> f64 {
     let rounded = exact as f32;
     if is_rounded(result, exact) || exact.is_nan() && result.is_nan() {
@@ -36,7 +37,8 @@ pub fn error(result: f32, exact: f64) -> f64 {
     (f64::from(result) - exact).abs() / ulp(exact)
 }
 
-/// Whether a result is the float next to the exact value, of either sign of zero, or zero instead of a denormal.
+/// Whether a result is the float next to the exact value, of either sign of zero, or zero instead of a
+/// denormal.
 pub fn is_rounded(result: f32, exact: f64) -> bool {
     result == exact as f32 || result == 0.0 && exact.abs() < MIN_NORMAL
 }
@@ -56,7 +58,8 @@ const ANY: Permitted = Permitted {
 };
 
 impl Permitted {
-    /// The values of an operand: a denormal may be flushed to zero. Infinities and NaN may be assumed not to occur.
+    /// The values of an operand: a denormal may be flushed to zero. Infinities and NaN may be assumed not to
+    /// occur.
     pub fn operand(value: f32) -> Self {
         if value.is_finite() {
             Self::exactly(f64::from(value)).flushed()
@@ -78,8 +81,8 @@ impl Permitted {
         self.low.is_nan() || self.high.is_nan()
     }
 
-    /// The largest permitted error for this exact value: the distance to the farthest value of the interval. NaN if any
-    /// result is permitted.
+    /// The largest permitted error for this exact value: the distance to the farthest value of the interval.
+    /// NaN if any result is permitted.
     pub fn largest_error(self, exact: f64) -> f64 {
         if self.is_any() {
             return f64::NAN;
@@ -87,8 +90,8 @@ impl Permitted {
         f64::max((exact - self.low).abs(), (exact - self.high).abs())
     }
 
-    /// Whether a result is in the interval, or, if the precision is inherited from a formula, at most as far from the
-    /// exact value as the farthest value of the interval.
+    /// Whether a result is in the interval, or, if the precision is inherited from a formula, at most as far
+    /// from the exact value as the farthest value of the interval.
     pub fn contains(self, result: f32, exact: f64, is_inherited: bool) -> bool {
         if self.is_any() {
             return true;

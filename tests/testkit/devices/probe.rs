@@ -1,5 +1,5 @@
-//! Expressions evaluated by a driver: operands and results are exchanged as bits, so that neither textures nor the
-//! color target change a denormal, the sign of a zero or NaN.
+//! Expressions evaluated by a driver: operands and results are exchanged as bits, so that neither textures
+//! nor the color target change a denormal, the sign of a zero or NaN.
 
 use std::fmt::Write;
 

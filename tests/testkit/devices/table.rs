@@ -18,12 +18,15 @@ pub struct Row {
 pub struct Column {
     /// The device.
     pub title: String,
-    /// A result for each row, or why it was not measured. Missing ones were not reached.
+    /// A result for each row, or why it was not measured.
     pub cells: Vec<Result<String, String>>,
 }
 
-/// Prints the table in Markdown. Rows that a column lacks were `missing` for this reason.
-pub fn markdown(rows: &[Row], columns: &[Column], missing: &str) -> String {
+/// Writes the table in Markdown.
+///
+/// # Panics
+/// If a column has fewer cells than there are rows.
+pub fn markdown(rows: &[Row], columns: &[Column]) -> String {
     let mut text = String::from("| measurement | required |");
     for column in columns {
         let _ = write!(text, " {} |", escaped(&column.title));
@@ -44,10 +47,9 @@ pub fn markdown(rows: &[Row], columns: &[Column], missing: &str) -> String {
             escaped(&row.requirement)
         );
         for column in columns {
-            let cell = match column.cells.get(index) {
-                Some(Ok(result)) => escaped(result),
-                Some(Err(why)) => format!("not measured: {}", escaped(why)),
-                None => format!("not measured: {}", escaped(missing)),
+            let cell = match &column.cells[index] {
+                Ok(result) => escaped(result),
+                Err(why) => format!("not measured: {}", escaped(why)),
             };
             let _ = write!(text, " {cell} |");
         }
