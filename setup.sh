@@ -132,6 +132,7 @@ install_programs() {
     has glslangValidator || missing="$missing ${glslang:-glslang}"
     has spirv-val || missing="$missing spirv-tools"
     has povray || missing="$missing povray"
+    has clang++ || missing="$missing clang"
     has ffmpeg || missing="$missing ${ffmpeg:-ffmpeg}"
     has script || missing="$missing ${script:-util-linux}"
     [ -z "$missing" ] || install "what tests use" "${missing# }"

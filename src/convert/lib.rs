@@ -10,6 +10,7 @@
 //! or on the CPU. `examples/convert.rs` uses both [`toyproof_translate::wgsl`] and a prover without any
 //! worker.
 
+mod engine;
 mod graph;
 pub mod header;
 mod hosts;
@@ -42,7 +43,7 @@ use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};
 use toyproof_glsl::{self as glsl, Checked, Dialect, PortError, UniformMode};
 use toyproof_gpu::{self as gpu, Worker};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::{self, HlslHost};
+use toyproof_translate::c_family::{self, CHost, Title};
 use toyproof_translate::wgsl::{self, Style};
 use toyproof_translate::{FloatMode, Lowered, Unprintable, WriteFailure};
 
@@ -80,8 +81,8 @@ pub struct Converter {
     pub target: Option<Target>,
     /// The kind of host that WGSL is written for.
     pub style: Style,
-    /// The host that HLSL is written for.
-    pub hlsl_host: HlslHost,
+    /// The host that a language with the syntax of C is written for; `None` for other languages.
+    pub c_host: Option<CHost>,
     /// The host that GLSL is written for, in the author's words; `None` for GLSL by naga.
     pub dialect: Option<Dialect>,
     /// Whether functions such as `sin` are expanded.
@@ -113,7 +114,7 @@ pub enum TargetCode {
     /// GLSL for a host.
     Glsl(String, Dialect),
     /// Code of a language with the syntax of C, for a host.
-    CFamily(String, HlslHost),
+    CFamily(String, CHost),
     /// A file of naga's in a language other than WGSL.
     Naga {
         /// The language.
@@ -225,15 +226,15 @@ impl Conversion {
 }
 
 impl Converter {
-    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL and
-    /// HLSL that our own writer cannot write, or that is not proved, is naga's. `name` is the shader's.
+    /// Converts a shader; `translator` runs naga. With a prover, the conversion is proved too. Plain WGSL,
+    /// HLSL and Metal that our own writer cannot write, or that is not proved, is naga's.
     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.
     pub fn convert(
         &self,
         source: Source,
-        name: &str,
+        title: Title,
         translator: &mut Worker,
         mut prover: Option<&mut Prover>,
     ) -> Result<Conversion, ConvertError> {
@@ -249,9 +250,9 @@ impl Converter {
             let written = self.write_with_naga(source, target, translator)?;
             return Conversion::new(source, written, prover);
         }
-        let own = match target {
-            Target::Wgsl => self.write_wgsl(source, translator),
-            _ => self.write_c(source, name),
+        let own = match self.c_host {
+            Some(host) => self.write_c(source, host, title),
+            None => self.write_wgsl(source, translator),
         };
         let own = own.and_then(|written| Conversion::new(source, written, prover.as_deref_mut()));
         let is_plain = self.may_fall_back();
@@ -277,7 +278,9 @@ impl Converter {
                     ..
                 }),
                 Ok(other),
-            ) if other.is_proved() => Ok(with_reason(FallbackReason::Unproved(unproved))(other)),
+            ) if other.is_proved() || matches!(unproved, ProofError::AppleOnly(_)) => {
+                Ok(with_reason(FallbackReason::Unproved(unproved))(other))
+            }
             // Neither is proved: the readable one is better.
             (Ok(own), _) => Ok(own),
         }
@@ -288,23 +291,20 @@ impl Converter {
     pub fn extension(&self) -> &'static str {
         match (self.dialect, self.target) {
             (Some(dialect), _) if dialect.calls_main_image() => SHADERTOY_EXTENSION,
-            (None, Some(Target::Hlsl)) => self.hlsl_host.extension(),
-            (_, Some(target)) => target.extension(),
+            (_, Some(target)) => self.c_host.map_or_else(|| target.extension(), CHost::extension),
             (_, None) => LOWERED_EXTENSION,
         }
     }
 
     /// Whether our own writer prints the files.
     fn prints(&self) -> bool {
-        matches!(self.target, Some(Target::Wgsl | Target::Hlsl)) && self.float == FloatMode::Fast
+        let has_writer = self.target == Some(Target::Wgsl) || self.c_host.is_some();
+        has_writer && self.float == FloatMode::Fast
     }
 
     /// Whether naga can write what our own writer cannot.
     fn may_fall_back(&self) -> bool {
-        let is_plain = match self.target {
-            Some(Target::Wgsl) => self.style == Style::Plain,
-            _ => self.hlsl_host == HlslHost::Hlsl,
-        };
+        let is_plain = self.c_host.map_or(self.style == Style::Plain, CHost::is_plain);
         self.prints() && is_plain
     }
 
@@ -350,14 +350,14 @@ impl Converter {
     }
 
     /// Writes code of a language with the syntax of C, which keeps the author's names and comments.
-    fn write_c(&self, source: Source, name: &str) -> Result<TargetCode, ConvertError> {
+    fn write_c(&self, source: Source, host: CHost, title: Title) -> Result<TargetCode, ConvertError> {
         let deadline = Deadline::after(self.timeout);
-        let text = c_family::write(source.checked, source.files, self.hlsl_host, name, &deadline);
+        let text = c_family::write(source.checked, source.files, host, title, &deadline);
         match text {
-            Ok(text) => Ok(TargetCode::CFamily(text, self.hlsl_host)),
+            Ok(text) => Ok(TargetCode::CFamily(text, host)),
             Err(WriteFailure::Overdue(overdue)) => Err(ConvertError::Overdue(overdue)),
             Err(WriteFailure::Unprintable(why)) => Err(ConvertError::Unwritable(WriterError::Unprintable {
-                style: self.hlsl_host.name(),
+                style: host.name(),
                 why,
             })),
         }

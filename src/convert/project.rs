@@ -7,9 +7,10 @@ use toyproof_gpu::Worker;
 use toyproof_player::BufferFormat;
 use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, UnsupportedPass};
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::{CHost, Title};
 use toyproof_translate::wgsl::Style;
 
+use crate::engine;
 use crate::graph::{GRAPH_FILE, HostGraph, target_name};
 use crate::passes::{GraphContent, PassSources, PassesProof};
 use crate::script::{SCRIPT_FILE, script};
@@ -58,8 +59,8 @@ impl ProjectSource<'_> {
 pub struct ProjectConversion {
     /// The passes, in the order in which they are rendered.
     pub passes: Vec<PassFile>,
-    /// The file that says how a host plays the passes.
-    pub host: HostFile,
+    /// The files that say how a host plays the passes; the last one makes the conversion complete.
+    pub host: Vec<HostFile>,
     /// The proof; `None` if no proof was requested.
     pub proof: Option<Result<PassesProof, ProofError>>,
     /// Why naga wrote a pass, if our own writer could have.
@@ -77,7 +78,7 @@ pub struct PassFile {
     pub code: TargetCode,
 }
 
-/// The file that says how a host plays the passes: [`GRAPH_FILE`], or a script.
+/// A file that says how a host plays the passes: [`GRAPH_FILE`], or a script.
 #[derive(Debug)]
 pub struct HostFile {
     /// The name.
@@ -98,7 +99,7 @@ pub enum ProjectError {
     Style(Style),
     /// Hosts of this kind render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
-    Host(HlslHost),
+    Host(CHost),
     /// GLSL is written for hosts that render one pass.
     #[error("its image reads other passes, which the style `{}` does not support", .0.name())]
     Dialect(Dialect),
@@ -148,8 +149,8 @@ impl Converter {
         if matches!(self.style, Style::ComputeToys | Style::Bevy) {
             return Err(ProjectError::Style(self.style));
         }
-        if self.target == Some(Target::Hlsl) && !self.hlsl_host.has_passes() {
-            return Err(ProjectError::Host(self.hlsl_host));
+        if let Some(host) = self.c_host.filter(|host| !host.has_passes()) {
+            return Err(ProjectError::Host(host));
         }
         if let Some(dialect) = self.dialect {
             return Err(ProjectError::Dialect(dialect));
@@ -174,7 +175,12 @@ impl Converter {
         let mut codes = Vec::new();
         let mut fallback = None;
         for (pass, &source) in sources.iter().enumerate() {
-            let converted = self.convert(source, name, translator, None);
+            let pass_name = target_name(host_graph.graph.passes()[pass].target);
+            let title = Title {
+                name,
+                pass: Some(pass_name),
+            };
+            let converted = self.convert(source, title, translator, None);
             let converted = converted.map_err(|error| ProjectError::Pass {
                 pass: kind(pass),
                 error,
@@ -216,31 +222,42 @@ impl Converter {
         })
     }
 
-    /// The file for the host of passes in these files, and the graph that it contains.
+    /// The files for the host of passes in these files, and the graph that they contain.
     fn host(
         &self,
         host_graph: &HostGraph,
         name: &str,
         names: &[String],
-    ) -> Result<(HostFile, GraphContent), ProjectError> {
+    ) -> Result<(Vec<HostFile>, GraphContent), ProjectError> {
         if self.style == Style::WgpuShadertoy {
             let text = script(host_graph, names).map_err(ProjectError::Script)?;
             let host = HostFile {
                 name: SCRIPT_FILE,
                 text,
             };
-            return Ok((host, host_graph.content()));
+            return Ok((vec![host], host_graph.content()));
         }
         let language = self.target.map_or("lowered", Target::name);
-        // Metal reserves `main`.
-        let is_metal = self.target == Some(Target::Msl);
-        let entry_point = if is_metal { "main_" } else { "main" };
-        let text = host_graph.file(name, language, entry_point, names).to_json();
+        let entry_point = match (self.c_host, self.target) {
+            (Some(CHost::Godot | CHost::Unity), _) => "fragment",
+            // Metal reserves `main`.
+            (_, Some(Target::Msl)) => "main_",
+            _ => "main",
+        };
+        let file = host_graph.file(name, language, entry_point, names);
+        if let Some(host) = self.c_host
+            && let Some(files) = engine::files(host, &file)
+        {
+            let script = files.last().map_or("", |file| &file.text);
+            let content = engine::read(host, host_graph, script).map_err(ProjectError::Graph)?;
+            return Ok((files, content));
+        }
+        let text = file.to_json();
         let content = host_graph.read(&text).map_err(ProjectError::Graph)?;
         let host = HostFile {
             name: GRAPH_FILE,
             text,
         };
-        Ok((host, content))
+        Ok((vec![host], content))
     }
 }

@@ -14,7 +14,7 @@ use toyproof_gpu::{self as gpu, ShaderArtifact};
 use toyproof_image::{Frame, Image};
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::{Target, roundtrip, spirv};
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::CHost;
 use toyproof_translate::naga_ir::Shape;
 use toyproof_translate::wgsl::Style;
 use toyproof_verify::Failure;
@@ -108,12 +108,12 @@ pub enum ProofError {
     /// The file of a host is not read as it was written.
     #[error("the output is not read again: {0}")]
     Unreadable(String),
-    /// The evaluator does not run SPIR-V.
-    #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
-    Binary,
     /// No compiler that reads the file is installed.
     #[error("no compiler that reads it for {0} is installed; on Debian: apt-get install glslang-tools")]
     NoReader(&'static str),
+    /// No compiler that runs here reads the language.
+    #[error("only Apple's compiler reads {0}, so the readable text cannot be proved")]
+    AppleOnly(&'static str),
     /// The evaluator does not play converted passes.
     #[error("several passes can be verified only with a Vulkan driver")]
     PassesWithoutDriver,
@@ -308,9 +308,7 @@ impl Prover<'_> {
             }
             Target::Wgsl | Target::Hlsl | Target::Msl => {}
         }
-        if let Runner::Driver(_) = self.runner
-            && let Some((words, compiler)) = tool::compile(target, bytes)?
-        {
+        if let Some((words, compiler)) = tool::compile(target, bytes)? {
             readings.push((Reader::Compiler(compiler), artifact(words, false)));
         }
         Ok(readings)
@@ -321,13 +319,11 @@ impl Prover<'_> {
         &self,
         checked: &Checked,
         text: &str,
-        host: HlslHost,
+        host: CHost,
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
+        let target = host.read_as().ok_or(ProofError::AppleOnly(host.title()))?;
         let hosted = host.hosted(text, checked.stage);
-        let Runner::Driver(_) = self.runner else {
-            return Err(ProofError::Binary);
-        };
-        let compiled = tool::compile(Target::Hlsl, hosted.text.as_bytes())?;
+        let compiled = tool::compile_hosted(target, &hosted.text)?;
         let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
         let artifact = ShaderArtifact::Words {
             words,

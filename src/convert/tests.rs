@@ -6,6 +6,7 @@ use std::time::Duration;
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{Checked, Options, check};
 use toyproof_translate::backend::{Target, emit};
+use toyproof_translate::c_family::{CHost, Title, write};
 use toyproof_translate::lower;
 use toyproof_translate::naga_ir::ValidModule;
 use toyproof_translate::wgsl::{Style, wgsl};
@@ -47,7 +48,7 @@ fn prove(
         files: &files,
     };
     let mut prover = Prover {
-        runner: Runner::Evaluator,
+        runner: Runner::Evaluator(None),
         browser: None,
         timeout,
         pool: None,
@@ -126,9 +127,22 @@ fn glsl_is_read_again_and_metal_only_in_its_source() {
         prove(WAVES, TIME_LIMIT, by_naga(Target::Msl)),
         Ok(ShaderProof::Source(_))
     ));
+    let readable = |source: &Source| {
+        let title = Title::of_shader("waves");
+        let text = write(
+            source.checked,
+            source.files,
+            CHost::Metal,
+            title,
+            &Deadline::default(),
+        );
+        TargetCode::CFamily(text.unwrap(), CHost::Metal)
+    };
+    let unproved = prove(WAVES, TIME_LIMIT, readable).unwrap_err();
+    assert!(matches!(unproved, ProofError::AppleOnly("Metal")) && !unproved.is_of_shader());
     assert!(matches!(
         prove(WAVES, TIME_LIMIT, by_naga(Target::Spirv)),
-        Err(ProofError::Binary)
+        Ok(ShaderProof::File(..))
     ));
 }
 

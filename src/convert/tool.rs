@@ -106,7 +106,18 @@ pub(super) fn validate(target: Target, bytes: &[u8]) -> Result<Option<String>, T
 /// The tool's first error message.
 pub(super) fn compile(target: Target, bytes: &[u8]) -> Result<Option<(Vec<u32>, String)>, ToolError> {
     let text = String::from_utf8_lossy(bytes);
-    let (Some(tool), Some(text)) = (compiler(target), roundtrip::for_glslang(target, &text)) else {
+    match roundtrip::for_glslang(target, &text) {
+        Some(text) => compile_hosted(target, &text),
+        None => Ok(None),
+    }
+}
+
+/// Compiles a text like [`compile`] that is written for Vulkan, or for a substitute of its host.
+///
+/// # Errors
+/// The tool's first error message.
+pub(super) fn compile_hosted(target: Target, text: &str) -> Result<Option<(Vec<u32>, String)>, ToolError> {
+    let Some(tool) = compiler(target) else {
         return Ok(None);
     };
     let file = tool.file(target, text.as_bytes())?;

@@ -1,4 +1,4 @@
-//! HLSL from the tree, and the files for hosts that take it: Unity, Windows Terminal and Slang.
+//! HLSL from the tree, and the files for hosts: Unity, Windows Terminal, Slang and Godot.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::time::Duration;
 use toyproof_convert::{ProofError, Prover, Runner, ShaderProof, Source, TargetCode};
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::check;
-use toyproof_translate::c_family::{HlslHost, write};
+use toyproof_translate::c_family::{CHost, Title, write};
 
 use crate::program::toyproof;
 use crate::requirements::{require_driver, require_program, require_worker};
@@ -15,7 +15,7 @@ use crate::requirements::{require_driver, require_program, require_worker};
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Reads what differs between hosts: inputs, a texture, derivatives and the position.
-const INPUTS: &str = "
+pub(crate) const INPUTS: &str = "
 float shade(vec2 p) { return p.y * 0.01 + dFdy(p.y * p.y) * 0.02 + gl_FragCoord.y * 0.001; }
 void mainImage(out vec4 color, in vec2 p) {
     vec2 uv = p / iResolution.xy;
@@ -23,7 +23,7 @@ void mainImage(out vec4 color, in vec2 p) {
 }";
 
 /// Proves the file for a host after one edit.
-fn prove(host: HlslHost, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
+fn prove(host: CHost, shader: &str, from: &str, to: &str) -> Option<Result<ShaderProof, ProofError>> {
     if !require_program("glslangValidator") {
         return None;
     }
@@ -31,7 +31,14 @@ fn prove(host: HlslHost, shader: &str, from: &str, to: &str) -> Option<Result<Sh
     let mut files = Files::default();
     let file = files.add(File::new("shader", shader));
     let checked = check(&files, file, &Default::default()).expect("it is valid");
-    let text = write(&checked, &files, host, "shader", &Deadline::default()).expect("it is written");
+    let text = write(
+        &checked,
+        &files,
+        host,
+        Title::of_shader("shader"),
+        &Deadline::default(),
+    )
+    .expect("it is written");
     assert!(text.contains(from), "{text}");
     let mut prover = Prover {
         runner: Runner::Driver(&mut worker),
@@ -48,7 +55,7 @@ fn prove(host: HlslHost, shader: &str, from: &str, to: &str) -> Option<Result<Sh
 
 #[test]
 fn files_for_hosts_are_proved() {
-    for host in HlslHost::ALL {
+    for host in CHost::ALL.into_iter().filter(|host| host.is_hlsl()) {
         let Some(proved) = prove(host, INPUTS, "", "") else {
             return;
         };
@@ -60,22 +67,22 @@ fn files_for_hosts_are_proved() {
 #[test]
 fn faults_in_a_hosts_code_are_found() {
     for (host, from, to) in [
-        (HlslHost::Hlsl, "position.xy);", "position.yx);"),
-        (HlslHost::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
-        (HlslHost::Unity, "? -1.0 : 1.0", "? 1.0 : -1.0"),
-        (HlslHost::WindowsTerminal, "upward = -1.0", "upward = 1.0"),
-        (HlslHost::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
+        (CHost::Hlsl, "position.xy);", "position.yx);"),
+        (CHost::Hlsl, "packoffset(c0.w)", "packoffset(c1)"),
+        (CHost::Unity, "? -1.0 : 1.0", "? 1.0 : -1.0"),
+        (CHost::WindowsTerminal, "upward = -1.0", "upward = 1.0"),
+        (CHost::Unity, "#define iTime _Time.y", "#define iTime _Time.x"),
+        (CHost::WindowsTerminal, "Resolution.y - position.y", "position.y"),
         (
-            HlslHost::WindowsTerminal,
-            "Resolution.y - position.y",
-            "position.y",
-        ),
-        (
-            HlslHost::WindowsTerminal,
+            CHost::WindowsTerminal,
             "#define iMouse float4(0.0",
             "#define iMouse float4(1.0",
         ),
-        (HlslHost::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
+        (CHost::Slang, "color.xyz, 1.0", "color.zyx, 1.0"),
+        (CHost::Godot, "size.y - FRAGCOORD.y", "FRAGCOORD.y"),
+        (CHost::Godot, "? -1.0 : 1.0", "? 1.0 : -1.0"),
+        (CHost::Godot, "#define iTime TIME", "#define iTime (2.0 * TIME)"),
+        (CHost::Godot, "vec4(fragCoord, FRAGCOORD.zw)", "FRAGCOORD"),
     ] {
         let Some(proved) = prove(host, INPUTS, from, to) else {
             return;
@@ -98,6 +105,7 @@ fn the_course_is_written_for_every_host() {
         ("unity", "shader"),
         ("windows-terminal", "hlsl"),
         ("slang", "slang"),
+        ("godot", "gdshader"),
         ("plain", "hlsl"),
     ];
     for (style, extension) in hosts {
@@ -109,7 +117,8 @@ fn the_course_is_written_for_every_host() {
             "glsl/2d/03-noise.glsl",
             "glsl/2d/05-matrices.glsl",
         ];
-        let options = ["--to", "hlsl", "--style", style, "-o", to, "--verify"];
+        let language = if style == "godot" { "glsl" } else { "hlsl" };
+        let options = ["--to", language, "--style", style, "-o", to, "--verify"];
         let run = toyproof(folder, &[&["convert"][..], &shaders, &options].concat());
         assert_eq!(run.code, 0, "{style}: {}{}", run.stdout, run.stderr);
         assert!(!run.stdout.contains("by naga"), "{style}: {}", run.stdout);
@@ -152,4 +161,58 @@ fn what_a_host_lacks_is_refused_with_its_place() {
     let arguments = ["convert", "date.glsl", "-o", "date.wgsl", "--style", "unity"];
     let run = toyproof(folder.path(), &arguments);
     assert_eq!(run.code, 2, "{}", run.stderr);
+}
+
+#[test]
+fn passes_are_played_by_a_script() {
+    if !require_driver() || !require_program("glslangValidator") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let run = toyproof(folder.path(), &["new", "project", "waves"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for (style, files) in [
+        (
+            "godot",
+            ["buffer-a.gdshader", "image.gdshader", "main.tscn", "player.gd"],
+        ),
+        (
+            "unity",
+            ["ShaderToyPlayer.cs", "buffer-a.shader", "image.shader", ""],
+        ),
+    ] {
+        let run = toyproof(
+            folder.path(),
+            &["convert", "waves", "-o", style, "--style", style, "--verify"],
+        );
+        assert_eq!(run.code, 0, "{style}: {}", run.stderr);
+        assert!(
+            run.stdout.contains("2 passes: 159,744 of 159,744 pixels"),
+            "{}",
+            run.stdout
+        );
+        let written = fs::read_dir(folder.path().join(style)).unwrap();
+        let mut names: Vec<_> = written.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        let expected: Vec<_> = files.iter().filter(|name| !name.is_empty()).collect();
+        assert_eq!(names, expected);
+    }
+    // Buffers are not upside down, and keep their alpha.
+    let buffer = fs::read_to_string(folder.path().join("godot/buffer-a.gdshader")).unwrap();
+    assert!(buffer.contains("vec2 fragCoord = FRAGCOORD.xy;\n"), "{buffer}");
+    assert!(buffer.contains("    COLOR = color;\n"), "{buffer}");
+    assert!(
+        buffer.contains("uniform sampler2D iChannel0 : filter_nearest, repeat_disable;"),
+        "{buffer}"
+    );
+    let buffer = fs::read_to_string(folder.path().join("unity/buffer-a.shader")).unwrap();
+    assert!(
+        buffer.contains("Shader \"ShaderToy/waves/buffer-a\" {"),
+        "{buffer}"
+    );
+    assert!(
+        buffer.contains("SamplerState point_clamp_iChannel0_state;"),
+        "{buffer}"
+    );
+    assert!(buffer.contains("                return color;\n"), "{buffer}");
 }

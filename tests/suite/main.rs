@@ -64,6 +64,7 @@ mod machine_code;
 mod marches;
 mod math;
 mod media;
+mod metal;
 mod miscompiles;
 mod nesting;
 mod page;

@@ -1,6 +1,7 @@
 //! Converts the inputs of a command on several threads, writes the results, and reports them in the order of
 //! the inputs.
 
+use std::fmt::Write as _;
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -10,7 +11,7 @@ use std::time::Instant;
 use anstyle::{AnsiColor, Style as TextStyle};
 use serde::Serialize;
 use toyproof_convert::header::{self, ProofStatus};
-use toyproof_convert::{GRAPH_FILE, ShaderProof};
+use toyproof_convert::{FallbackReason, GRAPH_FILE, ProofError, ShaderProof};
 use toyproof_diagnostic::{self as diagnostic, grouped, path_name, plural};
 use toyproof_project::files::{Input, ReadError};
 use toyproof_report::{Detail, Layout};
@@ -386,6 +387,13 @@ fn describe(converted: &Conversion, is_written: bool, to: To) -> (Status, String
             let mut message = header::describe_proof(proof) + &not_read;
             if to == To::Hlsl {
                 message += "; install glslang-tools to verify the text too";
+            }
+            match &converted.fallback {
+                Some(FallbackReason::Unproved(why @ ProofError::AppleOnly(_))) => {
+                    let _ = write!(message, "; written by naga, since {why}");
+                }
+                Some(FallbackReason::Unwritable(_)) => message += &fallback,
+                _ => {}
             }
             (Status::Proved, message)
         }

@@ -11,7 +11,7 @@ use toyproof_diagnostic::Deadline;
 use toyproof_gpu::browser::{self, THREE_VARIABLE, ThreeLibrary};
 use toyproof_project::files;
 use toyproof_translate::FloatMode;
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::CHost;
 
 use self::batch::{Batch, Job};
 use self::conversion::Settings;
@@ -141,7 +141,12 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
         converter: Converter {
             target: to.target(),
             style: args.style.wgsl().unwrap_or_default(),
-            hlsl_host: args.style.c_family().unwrap_or(HlslHost::Hlsl),
+            c_host: args.style.c_family().or(match to {
+                To::Hlsl => Some(CHost::Hlsl),
+                To::Metal => Some(CHost::Metal),
+                To::Glsl if args.style == StyleName::Plain => Some(CHost::Glsl),
+                _ => None,
+            }),
             dialect: args.style.dialect(),
             float,
             timeout: args.driver.timeout(),

@@ -9,7 +9,7 @@ use toyproof_diagnostic::path_name;
 use toyproof_glsl::Dialect;
 use toyproof_translate::FloatMode;
 use toyproof_translate::backend::Target;
-use toyproof_translate::c_family::HlslHost;
+use toyproof_translate::c_family::CHost;
 use toyproof_translate::wgsl::Style;
 
 use super::Args;
@@ -49,6 +49,8 @@ pub(super) enum StyleName {
     WindowsTerminal,
     /// A module of Slang with the bindings below
     Slang,
+    /// A shader for a CanvasItem of Godot 4
+    Godot,
     /// GLSL for ShaderToy
     Shadertoy,
     /// GLSL for the terminal Ghostty
@@ -77,12 +79,13 @@ impl StyleName {
         }
     }
 
-    /// The host of HLSL and languages like it; `None` for the plain one.
-    pub(super) fn c_family(self) -> Option<HlslHost> {
+    /// The host of a language with the syntax of C; `None` for the plain one.
+    pub(super) fn c_family(self) -> Option<CHost> {
         match self {
-            Self::Unity => Some(HlslHost::Unity),
-            Self::WindowsTerminal => Some(HlslHost::WindowsTerminal),
-            Self::Slang => Some(HlslHost::Slang),
+            Self::Unity => Some(CHost::Unity),
+            Self::WindowsTerminal => Some(CHost::WindowsTerminal),
+            Self::Slang => Some(CHost::Slang),
+            Self::Godot => Some(CHost::Godot),
             _ => None,
         }
     }
@@ -91,6 +94,7 @@ impl StyleName {
     fn language(self) -> Option<To> {
         match self {
             Self::Plain => None,
+            Self::Godot => Some(To::Glsl),
             _ if self.c_family().is_some() => Some(To::Hlsl),
             _ if self.dialect().is_some() => Some(To::Glsl),
             _ => Some(To::Wgsl),

@@ -167,6 +167,22 @@ pub fn mentions(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
     )
 }
 
+/// Whether an expression itself assigns to a variable or a part of it: by an operator, or as an `out` argument.
+pub fn writes(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
+    tree.postorder(root).into_iter().any(|id| {
+        let mut is_written = false;
+        tree.each_write(id, |target, _| {
+            is_written |= tree.root_variable(target) == Some(variable)
+        });
+        is_written
+    })
+}
+
+/// Whether an expression calls a function of the shader.
+pub fn calls(tree: &Tree, root: ExprId) -> bool {
+    any(tree, root, |kind| matches!(kind, ExprKind::Call { .. }))
+}
+
 /// Whether evaluating `value` may change what the lvalue `path` reads (its variable or variables in its
 /// indices): `value` has side effects and contains such a variable, or calls a function that may access a
 /// global one.

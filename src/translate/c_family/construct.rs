@@ -1,10 +1,11 @@
-//! Constructors. HLSL has casts for a single argument, and lists of components; structures are made by
-//! functions.
+//! Constructors. HLSL has casts for a single argument, and structures are made by functions; the other
+//! languages make matrices of their columns.
 
-use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type};
+use toyproof_glsl::tree::{Constructor, ExprId, ExprKind, Scalar, Type, Value};
 
 use super::Unprintable;
 use super::expression::{Part, Parts, level};
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 
 impl Writer<'_> {
@@ -14,20 +15,56 @@ impl Writer<'_> {
         arguments: &[ExprId],
         ty: Type,
     ) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.construct_in_metal(constructor, arguments, ty);
+        }
         let only = arguments.first().copied();
         let only = only.ok_or(Unprintable::Construct("a constructor without arguments"))?;
         let from = self.cx.tree[only].ty;
         let primary = |parts| Ok((parts, level::POSTFIX));
+        if self.language() != Language::Hlsl
+            && let Some(literal) = self.converted_literal(constructor, only, ty)
+        {
+            return primary(literal);
+        }
+        if self.language() == Language::Glsl {
+            let scalar = match constructor {
+                Constructor::Struct | Constructor::Array => None,
+                _ => ty.scalar(),
+            };
+            let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+            for (at, &argument) in arguments.iter().enumerate() {
+                if at > 0 {
+                    parts.push(Part::token(", "));
+                }
+                match scalar {
+                    Some(scalar) => parts.extend(self.component(argument, scalar)?),
+                    None => parts.push(Part::Print(argument, level::ASSIGN)),
+                }
+            }
+            parts.push(Part::token(")"));
+            return primary(parts);
+        }
         match constructor {
             Constructor::Struct => {
                 let Type::Struct(id) = ty else {
                     return Err(Unprintable::Construct("this constructor"));
                 };
+                if self.language() != Language::Hlsl {
+                    return primary(Self::call(self.structure_name(id), arguments));
+                }
                 self.made.insert(id);
                 primary(Self::call(self.maker_name(id), arguments))
             }
             Constructor::Array => Err(Unprintable::Construct("an array outside a declaration")),
             Constructor::Scalar => self.scalar(only, from, ty),
+            Constructor::Splat | Constructor::Diagonal if self.language() != Language::Hlsl => {
+                let scalar = ty.scalar().unwrap_or(Scalar::Float);
+                let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+                parts.extend(self.component(only, scalar)?);
+                parts.push(Part::token(")"));
+                primary(parts)
+            }
             Constructor::Splat => {
                 if self.is_short(only) {
                     let size = usize::from(ty.component_count().unwrap_or(1));
@@ -59,7 +96,38 @@ impl Writer<'_> {
         )
     }
 
-    fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+    /// An argument of a constructor with several, whose components become those of the vector or matrix: Godot
+    /// converts none.
+    fn component(&self, argument: ExprId, scalar: Scalar) -> PrintResult<Vec<Part>> {
+        let from = self.cx.tree[argument].ty;
+        if self.language() == Language::Hlsl || from.scalar() == Some(scalar) {
+            return Ok(vec![Part::Print(argument, level::ASSIGN)]);
+        }
+        let ty = match from {
+            Type::Vector(_, size) => Type::Vector(scalar, size),
+            _ => Type::Scalar(scalar),
+        };
+        if let Some(literal) = self.converted_literal(Constructor::Scalar, argument, ty) {
+            return Ok(literal);
+        }
+        Ok(Self::call(self.type_name(ty)?, &[argument]))
+    }
+
+    /// The float that an integer literal becomes, unless it is a macro's.
+    fn converted_literal(&self, constructor: Constructor, value: ExprId, ty: Type) -> Option<Vec<Part>> {
+        let ExprKind::Literal(literal) = &self.cx.tree[value].kind else {
+            return None;
+        };
+        let Value::Int(number) = literal.value else {
+            return None;
+        };
+        let is_float = constructor == Constructor::Scalar && ty == Type::FLOAT;
+        let is_macro = self.source.macro_name(self.cx.tree[value].at).is_some();
+        let exact = number.unsigned_abs() < 1 << 24;
+        (is_float && !is_macro && exact).then(|| vec![Part::Token(format!("{number}.0"))])
+    }
+
+    pub(super) fn scalar(&self, value: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
         let part = match from {
             Type::Vector(..) => ".x",
             Type::Matrix { .. } => "[0].x",
@@ -114,6 +182,8 @@ impl Writer<'_> {
             }
             if count > room {
                 parts.extend([Part::Print(argument, level::POSTFIX), Part::token(first(room))]);
+            } else if arguments.len() > 1 {
+                parts.extend(self.component(argument, scalar)?);
             } else {
                 parts.push(Part::Print(argument, level::ASSIGN));
             }
@@ -139,11 +209,15 @@ impl Writer<'_> {
         let name = self.type_name(ty)?;
         if let &[only] = arguments {
             let fits = count(only)? == columns * rows;
-            return if fits { self.cast(only, ty) } else { Err(MIXED) };
+            return match self.language() {
+                Language::Hlsl if fits => self.cast(only, ty),
+                _ => Err(MIXED),
+            };
         }
         let counts = arguments.iter().map(|&argument| count(argument));
         let counts = counts.collect::<PrintResult<Vec<u8>>>()?;
-        if counts.iter().all(|&count| count == 1) || counts.iter().all(|&count| count == rows) {
+        let takes_components = self.language() == Language::Hlsl && counts.iter().all(|&count| count == 1);
+        if takes_components || counts.iter().all(|&count| count == rows) {
             return Ok((Self::call(name, arguments), level::POSTFIX));
         }
         let column_type = self.type_name(Type::Vector(Scalar::Float, rows))?;
@@ -166,7 +240,18 @@ impl Writer<'_> {
             }
             match column {
                 &[only] => parts.push(Part::Print(only, level::ASSIGN)),
-                _ => parts.extend(Self::call(column_type.as_str(), column)),
+                _ => {
+                    for (at, &component) in column.iter().enumerate() {
+                        let before = if at == 0 {
+                            format!("{column_type}(")
+                        } else {
+                            ", ".to_owned()
+                        };
+                        parts.push(Part::Token(before));
+                        parts.extend(self.component(component, Scalar::Float)?);
+                    }
+                    parts.push(Part::token(")"));
+                }
             }
             rest = others;
         }
@@ -210,7 +295,7 @@ impl Writer<'_> {
         else {
             return Err(Unprintable::Construct("this matrix constructor"));
         };
-        if columns <= has && rows <= long {
+        if columns <= has && rows <= long && self.language() == Language::Hlsl {
             return self.cast(matrix, ty);
         }
         if !self.is_short(matrix) {

@@ -2,12 +2,13 @@
 //! of any length off the call stack.
 
 use toyproof_glsl::tree::{
-    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Type, UnaryOp, Value,
+    BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Scalar, Type, UnaryOp, Value,
     VariableId, VariableKind, walk,
 };
 
 use super::Unprintable;
 use super::effect::is_pure;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::author::{float, is_hexadecimal};
 
@@ -80,8 +81,18 @@ impl Writer<'_> {
                 (vec![Token(code)], level)
             }
             &ExprKind::Variable(variable) => (vec![Token(self.variable_code(variable)?)], level::POSTFIX),
+            &ExprKind::Unary {
+                op: UnaryOp::Minus,
+                operand,
+            } if self.language() == Language::Msl && matches!(tree[id].ty, Type::Matrix { .. }) => {
+                Self::negated_in_metal(operand)
+            }
             &ExprKind::Unary { op, operand } => match op {
                 UnaryOp::Plus => (vec![Print(operand, level::UNARY)], level::UNARY),
+                UnaryOp::Minus if self.language() == Language::Godot && is_matrix(tree[operand].ty) => {
+                    let level = BinaryOp::Multiply.precedence() + level::BINARY;
+                    (vec![Part::token("-1.0 * "), Print(operand, level + 1)], level)
+                }
                 // `- -x` without the space is another operator.
                 _ => (
                     vec![Part::token(op.symbol()), Print(operand, level::POSTFIX)],
@@ -92,7 +103,9 @@ impl Writer<'_> {
             &ExprKind::Assign { op, target, value } => self.assignment(op, target, value)?,
             &ExprKind::Step { op, postfix, target } => {
                 let symbol = Part::token(op.symbol());
-                if postfix {
+                if self.language() == Language::Msl {
+                    self.step_in_metal(op.symbol(), postfix, target)?
+                } else if postfix {
                     (vec![Print(target, level::POSTFIX), symbol], level::POSTFIX)
                 } else {
                     (vec![symbol, Print(target, level::UNARY)], level::UNARY)
@@ -100,7 +113,7 @@ impl Writer<'_> {
             }
             &ExprKind::Conditional { condition, yes, no } => {
                 let has_effect = |side| walk::has_side_effects(tree, side);
-                if has_effect(yes) || has_effect(no) {
+                if self.language().branches_for_effects() && (has_effect(yes) || has_effect(no)) {
                     return Err(Unprintable::Construct("`?:` or `&&` with a side effect here"));
                 }
                 let parts = vec![
@@ -111,6 +124,9 @@ impl Writer<'_> {
                     Print(no, level::CONDITIONAL),
                 ];
                 (parts, level::CONDITIONAL)
+            }
+            ExprKind::Sequence { .. } if self.language() == Language::Godot => {
+                return Err(Unprintable::Construct("`a, b` here"));
             }
             &ExprKind::Sequence { first, second } => {
                 let parts = vec![
@@ -197,9 +213,25 @@ impl Writer<'_> {
     }
 
     fn binary(&mut self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.binary_in_metal(op, left, right);
+        }
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
+            BinaryOp::Xor if self.language() != Language::Glsl => {
+                Self::infix(left, BinaryOp::NotEqual, right)
+            }
+            BinaryOp::ShiftLeft
+            | BinaryOp::ShiftRight
+            | BinaryOp::BitAnd
+            | BinaryOp::BitXor
+            | BinaryOp::BitOr
+                if self.language() == Language::Godot =>
+            {
+                self.bitwise_in_godot(op, left, right)?
+            }
+            _ if matches!(self.language(), Language::Godot | Language::Glsl) => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
                 if !self.is_pure(left) || !self.is_pure(right) {
                     // The arguments would be evaluated in the other order.
@@ -220,25 +252,58 @@ impl Writer<'_> {
                 parts.push(Part::token(")"));
                 (parts, level::POSTFIX)
             }
-            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
             _ => Self::infix(left, op, right),
         })
     }
 
-    fn is_pure(&self, id: ExprId) -> bool {
+    /// `a & ivec3(b)`: the operands of Godot's bitwise operators are of one type, except of shifts of vectors by
+    /// a number.
+    fn bitwise_in_godot(&self, op: BinaryOp, left: ExprId, right: ExprId) -> PrintResult<Parts> {
+        let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
+        let is_shift = matches!(op, BinaryOp::ShiftLeft | BinaryOp::ShiftRight);
+        let is_vector = |ty| matches!(ty, Type::Vector(..));
+        let scalar = left_type.scalar().unwrap_or(Scalar::Int);
+        let wanted = match (left_type, right_type) {
+            (_, Type::Scalar(_)) if is_shift => Type::Scalar(scalar),
+            (_, Type::Vector(_, size)) | (Type::Vector(_, size), _) => Type::Vector(scalar, size),
+            _ => Type::Scalar(scalar),
+        };
+        let level = op.precedence() + level::BINARY;
+        let side = |side, ty, at_least| {
+            let converts = ty != wanted && !(is_shift && is_vector(ty) && side == left);
+            Ok(if converts {
+                Self::call(self.type_name(wanted)?, &[side])
+            } else {
+                vec![Part::Print(side, at_least)]
+            })
+        };
+        let mut parts = side(left, left_type, level)?;
+        parts.push(Part::Token(format!(" {} ", op.symbol())));
+        parts.extend(side(right, right_type, level + 1)?);
+        Ok((parts, level))
+    }
+
+    pub(super) fn is_pure(&self, id: ExprId) -> bool {
         is_pure(&self.cx.tree, &self.impure, id)
     }
 
     fn assignment(&mut self, op: Option<BinaryOp>, target: ExprId, value: ExprId) -> PrintResult<Parts> {
+        if self.language() == Language::Msl {
+            return self.assignment_in_metal(op, target, value);
+        }
         let tree = &self.cx.tree;
         let mut parts = vec![Part::Print(target, level::UNARY)];
-        if op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
+        let is_hlsl = self.language() == Language::Hlsl;
+        if is_hlsl && op == Some(BinaryOp::Multiply) && is_product(tree[target].ty, tree[value].ty) {
             if !self.is_pure(target) || !self.is_pure(value) {
                 return Err(Unprintable::Construct("a product of matrices with a side effect"));
             }
             parts.push(Part::token(" = "));
             parts.extend(Self::call("mul", &[value, target]));
-        } else if op == Some(BinaryOp::Divide) && is_matrix_by_scalar(tree[target].ty, tree[value].ty) {
+        } else if is_hlsl
+            && op == Some(BinaryOp::Divide)
+            && is_matrix_by_scalar(tree[target].ty, tree[value].ty)
+        {
             if !self.is_pure(target) {
                 return Err(Unprintable::Construct(
                     "a matrix with a side effect that is divided",
@@ -261,21 +326,28 @@ impl Writer<'_> {
         let variable = &self.cx.tree[id];
         match variable.kind {
             VariableKind::BuiltIn(BuiltInVariable::FragCoord) => self.reads_position = true,
-            VariableKind::Channel(_) => return Err(Unprintable::Construct("a sampler here")),
+            VariableKind::Channel(_) if self.language() != Language::Glsl => {
+                return Err(Unprintable::Construct("a sampler here"));
+            }
             _ => {}
         }
         Ok(self.variable(id).to_owned())
     }
 
-    /// The value of a declaration: lists in braces for structures and arrays.
+    /// The value of a declaration: lists in braces for arrays, and for structures in HLSL.
     pub(super) fn initializer(&mut self, id: ExprId) -> PrintResult<String> {
         match &self.cx.tree[id].kind {
             ExprKind::Construct {
                 constructor: Constructor::Struct | Constructor::Array,
                 arguments,
-            } => {
+            } if self.lists_values(self.cx.tree[id].ty) => {
                 let arguments = arguments.clone();
-                let values = arguments.into_iter().map(|argument| self.initializer(argument));
+                let is_nested = self.language().has_array_values();
+                let values = arguments.into_iter().map(|argument| match is_nested {
+                    // Inner lists state their types.
+                    true => self.operand(argument, level::ASSIGN),
+                    false => self.initializer(argument),
+                });
                 let values = values.collect::<PrintResult<Vec<_>>>()?;
                 Ok(format!("{{ {} }}", values.join(", ")))
             }
@@ -283,23 +355,71 @@ impl Writer<'_> {
         }
     }
 
+    /// Whether the value of a declaration is a list in braces.
+    fn lists_values(&self, ty: Type) -> bool {
+        match self.language() {
+            Language::Hlsl => true,
+            Language::Msl | Language::Godot => matches!(ty, Type::Array(_)),
+            Language::Glsl => false,
+        }
+    }
+
     /// The value of a declaration whose every component is zero.
     pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
+        if matches!(self.language(), Language::Godot | Language::Glsl) {
+            return self.zero_of_glsl(ty);
+        }
         Ok(match ty {
+            Type::Array(_) | Type::Struct(_) if self.language() == Language::Msl => "{}".to_owned(),
+            Type::Vector(..) | Type::Matrix { .. } if self.language() == Language::Msl => {
+                format!(
+                    "{}({})",
+                    self.type_name(ty)?,
+                    number(&Literal::from(zero_of(ty.scalar())))
+                )
+            }
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
                 let zeros = vec![self.zero(array.element)?; array.size as usize];
                 format!("{{ {} }}", zeros.join(", "))
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
-            Type::Scalar(_) => number(&Literal::from(zero_of(ty))),
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
             _ => format!("({})0", self.type_name(ty)?),
+        })
+    }
+
+    fn zero_of_glsl(&self, ty: Type) -> PrintResult<String> {
+        let list = |zeros: Vec<String>| zeros.join(", ");
+        Ok(match ty {
+            Type::Array(id) => {
+                let array = self.cx.tree.array(id);
+                let zeros = vec![self.zero(array.element)?; array.size as usize];
+                match self.language() {
+                    Language::Glsl => format!("{}({})", self.type_name(ty)?, list(zeros)),
+                    _ => format!("{{ {} }}", list(zeros)),
+                }
+            }
+            Type::Struct(id) => {
+                let members = self.cx.tree[id].members.iter().map(|member| self.zero(member.ty));
+                let zeros = members.collect::<PrintResult<Vec<_>>>()?;
+                format!("{}({})", self.structure_name(id), list(zeros))
+            }
+            Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
+            _ => {
+                let zero = number(&Literal::from(zero_of(ty.scalar())));
+                format!("{}({zero})", self.type_name(ty)?)
+            }
         })
     }
 
     /// Prints a literal, or the constant of the macro that it comes from.
     fn literal(&mut self, literal: &Literal, at: Place) -> String {
-        let code = number(literal);
+        let is_infinite = matches!(literal.value, Value::Float(value) if (value as f32).is_infinite());
+        let code = match self.language() {
+            Language::Msl if is_infinite => "INFINITY".to_owned(),
+            _ => number(literal),
+        };
         let Some(name) = self.source.macro_name(at).filter(|name| self.is_free(name)) else {
             return code;
         };
@@ -309,7 +429,8 @@ impl Writer<'_> {
             Value::Uint(_) => "uint",
             Value::Bool(_) => "bool",
         };
-        let declaration = format!("static const {ty} {name} = {code};");
+        let word = self.language().constant();
+        let declaration = format!("{word} {ty} {name} = {code};");
         let known = self.macros.entry(name.to_owned());
         // A macro may be redefined; its first definition keeps the name.
         if *known.or_insert_with(|| declaration.clone()) == declaration {
@@ -320,11 +441,11 @@ impl Writer<'_> {
     }
 }
 
-fn zero_of(ty: Type) -> Value {
-    match ty {
-        Type::BOOL => Value::Bool(false),
-        Type::INT => Value::Int(0),
-        Type::UINT => Value::Uint(0),
+fn zero_of(scalar: Option<Scalar>) -> Value {
+    match scalar {
+        Some(Scalar::Bool) => Value::Bool(false),
+        Some(Scalar::Int) => Value::Int(0),
+        Some(Scalar::Uint) => Value::Uint(0),
         _ => Value::Float(0.0),
     }
 }
@@ -334,9 +455,12 @@ fn is_matrix_by_scalar(left: Type, right: Type) -> bool {
     matches!((left, right), (Type::Matrix { .. }, Type::Scalar(_)))
 }
 
+fn is_matrix(ty: Type) -> bool {
+    matches!(ty, Type::Matrix { .. })
+}
+
 /// Whether `*` is a product of linear algebra (§5.9).
 fn is_product(left: Type, right: Type) -> bool {
-    let is_matrix = |ty| matches!(ty, Type::Matrix { .. });
     let is_operand = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
     (is_matrix(left) || is_matrix(right)) && is_operand(left) && is_operand(right)
 }

@@ -4,26 +4,28 @@
 //! A host whose files only its engine completes has a second template: a substitute for the engine, so that
 //! other compilers read the written code.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{Code, Diagnostic};
-use toyproof_glsl::Stage;
 use toyproof_glsl::tree::{
-    Direction, ExprKind, Input, InputType, Place, SamplerShape, Type, VariableId, VariableKind,
+    Direction, ExprKind, Input, Item, Place, SamplerShape, Type, VariableId, VariableKind,
 };
+use toyproof_glsl::{Filter, Sampling, Stage, Wrap};
 
-use super::Unprintable;
-use super::lookup::texture_type;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
+use super::{Title, Unprintable};
+use crate::backend::Target;
+use crate::lower::UPWARD;
 use crate::print::Order;
 use crate::template::{around_shader, channel_number, fill};
 
 /// A host of a language with the syntax of C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum HlslHost {
+pub enum CHost {
     /// HLSL with our own bindings; row 0 of the target is the bottom.
     Hlsl,
     /// A module of Slang with our own bindings.
@@ -32,6 +34,12 @@ pub enum HlslHost {
     Unity,
     /// A pixel shader of Windows Terminal.
     WindowsTerminal,
+    /// A shader of Godot 4 for a `CanvasItem`.
+    Godot,
+    /// GLSL ES 3.00 with our own bindings; row 0 of the target is the bottom.
+    Glsl,
+    /// Metal with our own bindings; row 0 of the target is the bottom.
+    Metal,
 }
 
 /// A row of the table.
@@ -40,6 +48,7 @@ struct Row {
     name: &'static str,
     /// The name for people.
     title: &'static str,
+    language: Language,
     /// The extension of its files, without the dot.
     extension: &'static str,
     /// The code around a shader.
@@ -54,15 +63,24 @@ struct Row {
     is_upside_down: bool,
 }
 
-impl HlslHost {
+impl CHost {
     /// Every host.
-    pub const ALL: [Self; 4] = [Self::Hlsl, Self::Slang, Self::Unity, Self::WindowsTerminal];
+    pub const ALL: [Self; 7] = [
+        Self::Hlsl,
+        Self::Slang,
+        Self::Unity,
+        Self::WindowsTerminal,
+        Self::Godot,
+        Self::Glsl,
+        Self::Metal,
+    ];
 
     fn row(self) -> Row {
         match self {
             Self::Hlsl => Row {
                 name: "plain",
                 title: "HLSL",
+                language: Language::Hlsl,
                 extension: "hlsl",
                 template: include_str!("hosts/plain.hlsl"),
                 substitute: "",
@@ -73,6 +91,7 @@ impl HlslHost {
             Self::Slang => Row {
                 name: "slang",
                 title: "Slang",
+                language: Language::Hlsl,
                 extension: "slang",
                 template: include_str!("hosts/plain.slang"),
                 substitute: "$shader\n",
@@ -89,6 +108,7 @@ impl HlslHost {
             Self::Unity => Row {
                 name: "unity",
                 title: "Unity",
+                language: Language::Hlsl,
                 extension: "shader",
                 template: include_str!("hosts/unity.shader"),
                 substitute: include_str!("hosts/unity_substitute.hlsl"),
@@ -101,10 +121,15 @@ impl HlslHost {
                     (" iChannel1;", " iChannel1 : register(t3);"),
                     (" iChannel2;", " iChannel2 : register(t5);"),
                     (" iChannel3;", " iChannel3 : register(t7);"),
+                    ("iChannel0_state;", "iChannel0_state : register(s2);"),
+                    ("iChannel1_state;", "iChannel1_state : register(s4);"),
+                    ("iChannel2_state;", "iChannel2_state : register(s6);"),
+                    ("iChannel3_state;", "iChannel3_state : register(s8);"),
                     (" sampleriChannel0;", " sampleriChannel0 : register(s2);"),
                     (" sampleriChannel1;", " sampleriChannel1 : register(s4);"),
                     (" sampleriChannel2;", " sampleriChannel2 : register(s6);"),
                     (" sampleriChannel3;", " sampleriChannel3 : register(s8);"),
+                    ("float4 outputSize;", ""),
                     ("float4 iChannel0_TexelSize;", ""),
                     ("float4 iChannel1_TexelSize;", ""),
                     ("float4 iChannel2_TexelSize;", ""),
@@ -115,12 +140,13 @@ impl HlslHost {
                     GammaToLinearSpaceExact LinearToGammaSpace LinearToGammaSpaceExact LinearEyeDepth Linear01Depth \
                     EncodeFloatRGBA DecodeFloatRGBA EncodeFloatRG DecodeFloatRG DecodeHDR DecodeLightmap \
                     UnpackNormal ParallaxOffset Shade4PointLights ShadeSH9 SampleSH fixed fixed2 fixed3 fixed4 \
-                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward",
+                    sampleriChannel0 sampleriChannel1 sampleriChannel2 sampleriChannel3 upward outputSize",
                 is_upside_down: true,
             },
             Self::WindowsTerminal => Row {
                 name: "windows-terminal",
                 title: "Windows Terminal",
+                language: Language::Hlsl,
                 extension: "hlsl",
                 template: include_str!("hosts/windows_terminal.hlsl"),
                 substitute: "$block\n$shader\n",
@@ -140,6 +166,39 @@ impl HlslHost {
                 declared: "upward shaderTexture samplerState PixelShaderSettings Time Scale Resolution Background",
                 is_upside_down: true,
             },
+            Self::Godot => Row {
+                name: "godot",
+                title: "Godot",
+                language: Language::Godot,
+                extension: "gdshader",
+                template: include_str!("hosts/godot.gdshader"),
+                substitute: include_str!("hosts/godot_substitute.glsl"),
+                adaptations: &[],
+                declared: "",
+                is_upside_down: true,
+            },
+            Self::Glsl => Row {
+                name: "plain",
+                title: "GLSL ES",
+                language: Language::Glsl,
+                extension: "frag",
+                template: include_str!("hosts/plain.frag"),
+                substitute: include_str!("hosts/plain_substitute.frag"),
+                adaptations: &[],
+                declared: "Inputs main",
+                is_upside_down: false,
+            },
+            Self::Metal => Row {
+                name: "plain",
+                title: "Metal",
+                language: Language::Msl,
+                extension: "metal",
+                template: include_str!("hosts/plain.metal"),
+                substitute: "",
+                adaptations: &[],
+                declared: "Inputs Shader main_ gl_FragCoord",
+                is_upside_down: false,
+            },
         }
     }
 
@@ -155,6 +214,27 @@ impl HlslHost {
         self.row().title
     }
 
+    pub(super) fn language(self) -> Language {
+        self.row().language
+    }
+
+    /// The language as which other compilers than the host's read a file ([`Self::hosted`]); `None` if only
+    /// the host's does.
+    #[must_use]
+    pub fn read_as(self) -> Option<Target> {
+        match self.language() {
+            Language::Hlsl => Some(Target::Hlsl),
+            Language::Godot | Language::Glsl => Some(Target::Glsl),
+            Language::Msl => None,
+        }
+    }
+
+    /// Whether it has the bindings of the other languages, so that naga can write what our own writer cannot.
+    #[must_use]
+    pub fn is_plain(self) -> bool {
+        matches!(self, Self::Hlsl | Self::Metal | Self::Glsl)
+    }
+
     /// The extension of its files, without the dot.
     #[must_use]
     pub fn extension(self) -> &'static str {
@@ -164,12 +244,18 @@ impl HlslHost {
     /// Whether its passes are described by a graph, as those of our own bindings are.
     #[must_use]
     pub fn has_passes(self) -> bool {
-        matches!(self, Self::Hlsl | Self::Slang)
+        self != Self::WindowsTerminal
     }
 
     /// Whether y points down in the host's coordinates. Buffers are as in GLSL in every host that has them.
     pub(super) fn is_upside_down(self, stage: Stage) -> bool {
         self.row().is_upside_down && stage == Stage::Image
+    }
+
+    /// Whether derivatives along y must be multiplied by the direction of y in the target. What Unity renders
+    /// to a texture is upside down in some graphics APIs.
+    pub(super) fn orients_derivatives(self, stage: Stage) -> bool {
+        self.is_upside_down(stage) || self == Self::Unity
     }
 
     /// The names that the code around a shader declares.
@@ -184,7 +270,12 @@ impl HlslHost {
             "iChannel2_sampler",
             "iChannel3_sampler",
         ];
-        let inputs = Input::ALL.iter().map(|input| input.name());
+        // What is passed to functions is declared by them.
+        let is_global = |input: &&Input| {
+            !self.language().passes_globals()
+                || !matches!(input, Input::Resolution | Input::ChannelResolution)
+        };
+        let inputs = Input::ALL.iter().filter(is_global).map(|input| input.name());
         let own = self.row().declared.split(' ');
         own.chain(inputs).chain(CHANNELS).collect()
     }
@@ -192,6 +283,11 @@ impl HlslHost {
     /// The code around a shader.
     pub(super) fn template(self) -> &'static str {
         self.row().template
+    }
+
+    /// The code around the file in a substitute for the host; empty if the file is complete.
+    pub(super) fn substitute(self) -> &'static str {
+        self.row().substitute
     }
 
     /// Code of the file, and the code that does the same in the substitute for the host.
@@ -208,38 +304,17 @@ impl HlslHost {
         conditions.any(|known| known == condition)
             || self.template().contains(&format!("#define {condition} "))
     }
-
-    /// Embeds a written file in a substitute for its host, which reads our uniform block.
-    #[must_use]
-    pub fn hosted(self, text: &str, stage: Stage) -> HostedText {
-        let row = self.row();
-        let upside_down = self.is_upside_down(stage);
-        if row.substitute.is_empty() {
-            let text = text.to_owned();
-            return HostedText { text, upside_down };
-        }
-        let program = match (text.split_once("HLSLPROGRAM\n"), text.rsplit_once("ENDHLSL")) {
-            (Some((before, _)), Some((until, _))) => &until[before.len() + "HLSLPROGRAM\n".len()..],
-            _ => text,
-        };
-        let is_for_host =
-            |line: &&str| !line.trim().starts_with("#pragma") && !line.trim().starts_with("#include");
-        let lines = program.lines().filter(is_for_host);
-        let program: String = lines.flat_map(|line| [line, "\n"]).collect();
-        let replace = |text: String, &(code, adapted): &(&str, &str)| text.replace(code, adapted);
-        let program = self.adaptations().iter().fold(program, replace);
-        let holds = |condition: &str| match channel_number(condition) {
-            Some(channel) => program.contains(&format!("iChannel{channel}")),
-            None => program.contains(condition),
-        };
-        let values = [("$block", block())];
-        let [before, after] = around_shader(row.substitute).map(|part| fill(part, holds, &values));
-        HostedText {
-            text: format!("{before}{program}{after}"),
-            upside_down,
-        }
-    }
 }
+
+/// The names of the variables of an entry point, as templates name them.
+const LOCALS: [(&str, &str); 6] = [
+    ("$size", "size"),
+    ("$coordinates", "fragCoord"),
+    ("$position", "position"),
+    ("$upward", UPWARD),
+    ("$color", "color"),
+    ("$output", "outputColor"),
+];
 
 /// What Windows Terminal declares.
 const TERMINALS_BLOCK: &str = "\
@@ -253,46 +328,23 @@ cbuffer PixelShaderSettings : register(b0) {
 };
 ";
 
-/// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
-fn block() -> String {
-    let mut text = "cbuffer ToyproofFrame : register(b0) {\n".to_owned();
-    for input in Input::ALL {
-        let ty = match (input.ty(), input.length()) {
-            (InputType::Float, None) => "float",
-            (InputType::Int, _) => "int",
-            (InputType::Vec3, _) => "float3",
-            (InputType::Float, Some(_)) | (InputType::Vec4, _) => "float4",
-        };
-        let length = input
-            .length()
-            .map_or_else(String::new, |length| format!("[{length}]"));
-        let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
-        let _ = writeln!(
-            text,
-            "    {ty} toyproof_{}{length} : packoffset(c{}{component});",
-            input.name(),
-            input.offset() / 16
-        );
-    }
-    text + "};\n"
-}
-
-/// A file that other compilers than the host's read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct HostedText {
-    /// The text, with our bindings and the entry point `main`.
-    pub text: String,
-    /// Whether row 0 of its target is the top of the image.
-    pub upside_down: bool,
-}
-
 impl Writer<'_> {
-    /// The whole file: the author's first comment, and the text in the host's code.
-    pub(super) fn embed(&self, order: &Order, first: &str, text: &str, name: &str) -> PrintResult<String> {
+    /// The whole file: the author's first comment, and the text in the host's code. `outside` stands before
+    /// the structure that contains the text, in languages that need one.
+    pub(super) fn embed(
+        &self,
+        order: &Order,
+        first: &str,
+        outside: &str,
+        text: &str,
+        title: Title,
+    ) -> PrintResult<String> {
         let tree = &self.cx.tree;
         let mut inputs = BTreeSet::new();
         let mut channels = BTreeMap::new();
-        for &id in &order.inputs {
+        let is_unread = |&id: &VariableId| !order.inputs.contains(&id);
+        let passed = self.passed.iter().copied().filter(is_unread);
+        for id in order.inputs.iter().copied().chain(passed) {
             match (tree[id].kind, tree[id].ty) {
                 (VariableKind::Channel(channel), Type::Sampler(sampler)) => {
                     if !self.host.knows(&format!("channel{channel}")) {
@@ -315,10 +367,14 @@ impl Writer<'_> {
         let holds = |condition: &str| match condition {
             "inputs" => !inputs.is_empty(),
             "channels" => !channels.is_empty(),
-            "position" => self.reads_position,
-            "derivatives" => self.takes_derivatives,
+            "outside" => !outside.is_empty(),
+            "stateless" => inputs.is_empty() && channels.is_empty() && !self.reads_position,
+            "position" => self.reads_position || self.passes("position"),
+            "derivatives" => self.takes_derivatives || self.passes(UPWARD),
             "image" => self.cx.stage == Stage::Image,
             "buffer" => self.cx.stage != Stage::Image,
+            "single" => title.pass.is_none(),
+            "pass" => title.pass.is_some(),
             "inout" => brings_color,
             "out" => !brings_color,
             "no_channels" => channels.is_empty(),
@@ -330,13 +386,45 @@ impl Writer<'_> {
         let mut values = vec![("$main_image", self.function(main_image).to_owned())];
         for (channel, value) in (0..).zip(["$texture0", "$texture1", "$texture2", "$texture3"]) {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
-            values.push((value, texture_type(shape).to_owned()));
+            values.push((value, self.language().texture_type(shape)));
         }
+        let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
+        for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
+            let sampling = match self.language() {
+                Language::Godot => hints(sampling),
+                Language::Hlsl | Language::Msl | Language::Glsl => inline_sampler(sampling).to_owned(),
+            };
+            values.push((value, sampling));
+        }
+        // Names in the entry point that nothing at global scope has.
+        let taken = self.global_names(order);
+        let local = |stem: &str| {
+            let mut name = stem.to_owned();
+            while taken.contains(name.as_str()) {
+                name.push('_');
+            }
+            name
+        };
+        for (value, name) in LOCALS {
+            values.push((value, local(name)));
+        }
+        let passed = self
+            .passed
+            .iter()
+            .map(|&id| format!(", {}", local(&self.cx.tree[id].name)));
+        values.push(("$passed", passed.collect()));
         // The last, since a name may contain those of other values.
-        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
-        let stem: String = stem.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        values.push(("$name", stem));
+        let name = match title.pass {
+            Some(pass) => format!("{}/{pass}", title.name),
+            None => {
+                let stem = Path::new(title.name).file_stem().unwrap_or_default();
+                stem.to_string_lossy().into_owned()
+            }
+        };
+        let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        values.push(("$name", name));
+        values.push(("$outside", outside.trim_end().to_owned()));
         let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);
@@ -349,7 +437,28 @@ impl Writer<'_> {
             let _ = writeln!(text, "{indent}{line}");
             text
         });
-        Ok(format!("{first}{before}{text}{after}"))
+        // The version comes first.
+        let (version, before) = match before.split_once('\n') {
+            Some((version, rest)) if version.starts_with("#version") => (format!("{version}\n"), rest),
+            _ => (String::new(), before.as_str()),
+        };
+        Ok(format!("{version}{first}{before}{text}{after}"))
+    }
+
+    /// The names of the shader's functions, structures and constants.
+    fn global_names(&self, order: &Order) -> HashSet<&str> {
+        let items = order.items.iter().filter_map(|&item| match item {
+            Item::Variable(id) => Some(self.variable(id)),
+            Item::Function(id) => Some(self.function(id)),
+            Item::Struct(id) => Some(self.structure_name(id)),
+            Item::Prototype(_) => None,
+        });
+        items.chain(self.macros.keys().map(String::as_str)).collect()
+    }
+
+    /// Whether `mainImage` gets this from the host's entry point.
+    fn passes(&self, name: &str) -> bool {
+        self.passed.iter().any(|&id| self.cx.tree[id].name == name)
     }
 
     /// The first place where a variable is used.
@@ -372,4 +481,30 @@ impl Writer<'_> {
             diagnostic.help("use `--style plain`, which has every input and channel"),
         ))
     }
+}
+
+/// The name of a sampler of Unity, whose words say how it samples (“Using sampler states” in its manual).
+fn inline_sampler(sampling: Sampling) -> &'static str {
+    match (sampling.filter, sampling.wrap) {
+        (Filter::Nearest, Wrap::Clamp) => "point_clamp_",
+        (Filter::Nearest, Wrap::Repeat) => "point_repeat_",
+        (Filter::Linear, Wrap::Clamp) => "linear_clamp_",
+        (Filter::Linear, Wrap::Repeat) => "linear_repeat_",
+        (Filter::Mipmap, Wrap::Clamp) => "trilinear_clamp_",
+        (Filter::Mipmap, Wrap::Repeat) => "trilinear_repeat_",
+    }
+}
+
+/// How Godot samples a texture.
+fn hints(sampling: Sampling) -> String {
+    let filter = match sampling.filter {
+        Filter::Nearest => "filter_nearest",
+        Filter::Linear => "filter_linear",
+        Filter::Mipmap => "filter_linear_mipmap",
+    };
+    let wrap = match sampling.wrap {
+        Wrap::Clamp => "repeat_disable",
+        Wrap::Repeat => "repeat_enable",
+    };
+    format!("{filter}, {wrap}")
 }

@@ -3,7 +3,7 @@
 use toyproof_glsl::tree::{Direction, FunctionId, Item, StructId, Type, VariableId, VariableKind};
 
 use super::Unprintable;
-use super::language::Words;
+use super::language::{Language, Words};
 use super::writer::{PrintResult, Writer};
 use crate::lower::helper_tree;
 use crate::print::{Names, Order};
@@ -83,17 +83,27 @@ impl Writer<'_> {
         if let Some(at) = variable.at {
             self.comment(at);
         }
-        let is_constant = variable.kind == VariableKind::Const
-            || variable.kind == VariableKind::Uniform && variable.initializer.is_some();
-        let word = if is_constant { "static const" } else { "static" };
+        // A uniform that nothing sets is zero.
+        let is_constant = matches!(variable.kind, VariableKind::Const | VariableKind::Uniform);
         let declared = self.declarator(variable.ty, self.variable(id))?;
+        let word = match self.language() {
+            Language::Hlsl if is_constant => "static const ",
+            Language::Hlsl => "static ",
+            Language::Godot => "const ",
+            Language::Glsl if is_constant => "const ",
+            Language::Glsl => "",
+            Language::Msl if !self.members.contains(&Item::Variable(id)) => "constant ",
+            Language::Msl => "",
+        };
         let value = match variable.initializer {
             Some(value) => format!(" = {}", self.initializer(value)?),
             // Static variables are zero without a value, too (Microsoft's “Variable Syntax”).
-            None if self.element_count(variable.ty) > MAX_ZEROS => String::new(),
+            None if self.language() == Language::Hlsl && self.element_count(variable.ty) > MAX_ZEROS => {
+                String::new()
+            }
             None => format!(" = {}", self.zero(variable.ty)?),
         };
-        self.line(&format!("{word} {declared}{value};"));
+        self.line(&format!("{word}{declared}{value};"));
         if let Some(at) = variable.at {
             self.trailing_comment(at);
         }
@@ -116,7 +126,7 @@ impl Writer<'_> {
         let Some(body) = &function.body else {
             return Err(Unprintable::Construct("a function without a body"));
         };
-        if matches!(function.return_type, Type::Array(_)) {
+        if matches!(function.return_type, Type::Array(_)) && !self.language().has_array_values() {
             return Err(Unprintable::Construct("a function that returns an array"));
         }
         self.line("");
@@ -124,16 +134,16 @@ impl Writer<'_> {
         let parameters = function.parameters.iter().map(|&parameter| {
             let variable = &self.cx.tree[parameter];
             let direction = match variable.kind {
-                VariableKind::Parameter(Direction::Out) => "out ",
-                VariableKind::Parameter(Direction::InOut) => "inout ",
-                _ => "",
+                VariableKind::Parameter(direction) => direction,
+                _ => Direction::In,
             };
             let declared = self.declarator(variable.ty, self.variable(parameter))?;
-            Ok(format!("{direction}{declared}"))
+            Ok(self.language().parameter(direction, &declared))
         });
         let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
         let returned = self.type_name(function.return_type)?;
         self.line(&format!("{returned} {}({parameters}) {{", self.function(id)));
+        self.returned = function.return_type;
         self.indented(|writer| writer.statements(body))?;
         self.line("}");
         Ok(())

@@ -1,9 +1,10 @@
-//! Texture lookups: a channel is a texture and a sampler.
+//! Texture lookups: a channel is a texture and a sampler in HLSL.
 
 use toyproof_glsl::tree::{BuiltIn, ExprId, ExprKind, SamplerShape, Type, VariableKind};
 
 use super::Unprintable;
 use super::expression::{Part, Parts, level};
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 
 impl Writer<'_> {
@@ -15,6 +16,9 @@ impl Writer<'_> {
         let ExprKind::Variable(id) = tree[sampler].kind else {
             return Err(ARGUMENT);
         };
+        if self.language() == Language::Glsl {
+            return Ok((Self::call(function.name(), arguments), level::POSTFIX));
+        }
         let shape = match (tree[id].kind, tree[id].ty) {
             (VariableKind::Channel(_), Type::Sampler(sampler))
                 if sampler.shape != SamplerShape::D2Array && !sampler.shadow =>
@@ -24,6 +28,16 @@ impl Writer<'_> {
             _ => return Err(ARGUMENT),
         };
         let name = self.variable(id);
+        match self.language() {
+            Language::Hlsl | Language::Glsl => {}
+            Language::Msl => return self.lookup_in_metal(function, name, shape, rest),
+            Language::Godot => {
+                let mut parts = vec![Part::Token(format!("{}({name}, ", function.name()))];
+                parts.extend(Self::list(rest));
+                parts.push(Part::token(")"));
+                return Ok((parts, level::POSTFIX));
+            }
+        }
         let method = match (function, rest.len()) {
             (B::Texture, 1) => "Sample",
             (B::Texture, 2) => "SampleBias",
@@ -55,7 +69,7 @@ impl Writer<'_> {
     /// Adds the function that returns the size of a level of a texture, and returns its name.
     fn size_function(&mut self, shape: SamplerShape) -> String {
         let function = self.free("textureSize");
-        let ty = texture_type(shape);
+        let ty = Language::Hlsl.texture_type(shape);
         let (returned, depth, size) = match shape {
             SamplerShape::D3 => ("int3", ", depth", "int3(width, height, depth)"),
             _ => ("int2", "", "int2(width, height)"),
@@ -64,17 +78,7 @@ impl Writer<'_> {
             "{returned} {function}({ty} image, int level) {{\n    uint width, height{depth}, levels;\n    \
              image.GetDimensions(level, width, height{depth}, levels);\n    return {size};\n}}\n"
         );
-        self.helpers.insert((function.clone(), ty.to_owned()), text);
+        self.helpers.insert((function.clone(), ty), text);
         function
-    }
-}
-
-/// The type of a texture of a shape.
-pub(super) fn texture_type(shape: SamplerShape) -> &'static str {
-    match shape {
-        SamplerShape::D3 => "Texture3D",
-        SamplerShape::Cube => "TextureCube",
-        SamplerShape::D2 => "Texture2D",
-        SamplerShape::D2Array => "Texture2DArray",
     }
 }

@@ -3,89 +3,91 @@
 //!
 //! The tree is printed after the few lowering passes that these languages require too. Shaders that the
 //! writer does not support ([`Unprintable`]) are left to naga's writers. A host is a row of the table in
-//! [`host`](HlslHost) and a template in `hosts/`.
+//! [`host`](CHost) and a template in `hosts/`.
 
 mod builtin;
 mod construct;
 mod effect;
 mod expression;
+mod globals;
 mod host;
 mod item;
 mod language;
 mod lookup;
+mod metal;
 mod statement;
+mod substitute;
 #[cfg(test)]
 mod tests;
 mod writer;
 
-pub use host::{HlslHost, HostedText};
+pub use host::CHost;
+pub use substitute::HostedText;
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
 
-use self::language::Words;
+use self::language::{Language, Words};
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{Pass, Passes, branch_for_effects, fold_by_precision, fold_except, name_array_values};
+use crate::lower::{branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
-/// Prints a checked shader for a host; the author's comments are read from `files`. `name` is the shader's,
-/// for hosts whose files state it.
+/// The title of a shader, for hosts whose files state it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Title<'a> {
+    /// The name of the shader or project.
+    pub name: &'a str,
+    /// The name of the pass, in a project with several.
+    pub pass: Option<&'a str>,
+}
+
+impl<'a> Title<'a> {
+    /// The title of a shader that is not a pass of a project.
+    #[must_use]
+    pub fn of_shader(name: &'a str) -> Self {
+        Self { name, pass: None }
+    }
+}
+
+/// Prints a checked shader for a host; the author's comments are read from `files`.
 ///
 /// # Errors
 /// If a construct is not supported, the host lacks an input, or the deadline passes.
 pub fn write(
     checked: &Checked,
     files: &Files,
-    host: HlslHost,
-    name: &str,
+    host: CHost,
+    title: Title,
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
     fold_except(&mut cx, |_| false);
     fold_by_precision(&mut cx);
-    let (early, late) = passes();
+    let language = host.language();
+    let (early, late) = language.passes();
+    cx.has_references = language.has_references();
     early.run(&mut cx, deadline)?;
-    branch_for_effects(&mut cx);
-    name_array_values(&mut cx);
+    if language.branches_for_effects() {
+        branch_for_effects(&mut cx);
+    }
+    if !language.has_array_values() {
+        name_array_values(&mut cx);
+    }
     late.run(&mut cx, deadline)?;
+    if language == Language::Godot {
+        chain_switches(&mut cx);
+    }
+    let passed = globals::pass(&mut cx, host)?;
     writer::shorten_generated_names(&mut cx);
     let order = Order::new(&cx, CaseLabels::Values);
     deadline.check()?;
     let names = Names::new(&cx, &order, &Words::new(host));
     deadline.check()?;
-    let writer = Writer::new(&cx, &names, host, files, deadline);
-    let written = writer.write(&order, name);
+    let mut writer = Writer::new(&cx, &names, host, files, deadline);
+    writer.passed = &passed;
+    let written = writer.write(&order, title);
     // An expired deadline also makes the writer fail.
     deadline.check()?;
     Ok(written?)
-}
-
-/// The lowering passes for constructs that these languages lack too: those before `&&`, `||` and `?:` with
-/// side effects are lowered, and those after.
-fn passes() -> (Passes, Passes) {
-    let early = [Pass::Samplers, Pass::StageIo, Pass::ShortCircuit];
-    let not_needed = [
-        Pass::Folding,
-        Pass::Matrices,
-        Pass::Booleans,
-        Pass::Swizzles,
-        Pass::Indices,
-        Pass::Negations,
-        Pass::OutArguments,
-        Pass::Inequality,
-        Pass::Members,
-        Pass::Constants,
-        Pass::Globals,
-        Pass::Steps,
-        Pass::DoWhile,
-        Pass::DeadCode,
-        Pass::Nesting,
-    ];
-    let late = early
-        .into_iter()
-        .chain(not_needed)
-        .fold(Passes::required(), Passes::without);
-    let early = early.into_iter().fold(Passes::none(), Passes::with);
-    (early, late)
 }

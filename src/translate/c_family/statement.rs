@@ -8,6 +8,7 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
+use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::lower::is_written_first;
 
@@ -53,6 +54,7 @@ impl Writer<'_> {
             }
             StatementKind::Break => self.line("break;"),
             StatementKind::Continue => self.line("continue;"),
+            StatementKind::Discard if self.language() == Language::Msl => self.discard_in_metal()?,
             StatementKind::Discard => self.line("discard;"),
             StatementKind::Return(None) => self.line("return;"),
             StatementKind::Return(Some(value)) => {
@@ -76,9 +78,19 @@ impl Writer<'_> {
                 step,
                 body,
             } => {
-                let init = self.init(init)?;
+                let init = match &init[..] {
+                    // Godot's loops declare a variable or begin with nothing.
+                    [first, ..]
+                        if self.language() == Language::Godot
+                            && matches!(first.kind, StatementKind::Expression(_)) =>
+                    {
+                        self.statements(init)?;
+                        String::new()
+                    }
+                    _ => self.init(init)?,
+                };
                 let condition = match condition {
-                    Some(condition) => format!(" {}", self.condition(*condition)?),
+                    Some(condition) => format!(" {}", self.loop_condition(*condition)?),
                     None => String::new(),
                 };
                 let step = match step {
@@ -102,6 +114,14 @@ impl Writer<'_> {
         Ok(())
     }
 
+    /// The condition of a `for`. Godot takes a type at its beginning for a declaration.
+    fn loop_condition(&mut self, condition: Condition) -> PrintResult<String> {
+        let code = self.condition(condition)?;
+        let first = code.split('(').next().unwrap_or_default();
+        let is_type = self.language() == Language::Godot && !first.is_empty() && self.is_reserved(first);
+        Ok(if is_type { format!("({code})") } else { code })
+    }
+
     fn condition(&mut self, condition: Condition) -> PrintResult<String> {
         match condition {
             Condition::Expression(condition) => self.expression(condition),
@@ -114,11 +134,15 @@ impl Writer<'_> {
         /// Maximum number of elements in a list of zeros.
         const MAX_ZEROS: u64 = 16;
         let large = match self.cx.tree[id].ty {
-            Type::Array(array) if needs_value => Some(self.cx.tree.array(array)),
+            Type::Array(array) if needs_value && !self.language().has_array_values() => {
+                Some(self.cx.tree.array(array))
+            }
             _ => None,
         };
         let ty = self.cx.tree[id].ty;
-        let large = large.filter(|_| self.element_count(ty) > MAX_ZEROS);
+        // Only HLSL has a short form of a zero structure.
+        let is_long = |element| self.language() != Language::Hlsl && matches!(element, Type::Struct(_));
+        let large = large.filter(|array| self.element_count(ty) > MAX_ZEROS || is_long(array.element));
         let code = self.declaration(id, needs_value && large.is_none())?;
         self.line(&format!("{code};"));
         if let Some(array) = large {
@@ -148,7 +172,11 @@ impl Writer<'_> {
         let is_constant = variable.kind == VariableKind::Const;
         let word = match variable.ty {
             // Arrays of constants are not copied to the stack in each call.
-            Type::Array(_) if is_constant && variable.value.is_some() => "static const ",
+            Type::Array(_)
+                if is_constant && variable.value.is_some() && self.language() == Language::Hlsl =>
+            {
+                "static const "
+            }
             _ if is_constant => "const ",
             _ => "",
         };

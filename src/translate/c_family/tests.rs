@@ -1,16 +1,22 @@
 use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_glsl::{self as glsl, Options, Stage};
 
-use super::host::HlslHost;
-use super::{Unprintable, WriteFailure, write};
+use super::host::CHost;
+use super::{Title, Unprintable, WriteFailure, write};
 
 /// Converts a shader for a host.
-fn converted(host: HlslHost, text: &str) -> Result<String, WriteFailure> {
+fn converted(host: CHost, text: &str) -> Result<String, WriteFailure> {
     let mut files = Files::default();
     let file = files.add(File::new("shader", text));
     let checked =
         glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
-    write(&checked, &files, host, "shader", &Deadline::default())
+    write(
+        &checked,
+        &files,
+        host,
+        Title::of_shader("shader"),
+        &Deadline::default(),
+    )
 }
 
 /// The HLSL of a shader whose image function has this body, from that function on.
@@ -21,7 +27,7 @@ fn body(statements: &str) -> String {
 fn with_items(items: &str, statements: &str) -> String {
     let text =
         format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\ncolor = vec4(0);\n{statements}\n}}");
-    let written = converted(HlslHost::Hlsl, &text).unwrap();
+    let written = converted(CHost::Hlsl, &text).unwrap();
     let start = written
         .find("    color = ")
         .unwrap_or_else(|| panic!("{written}"));
@@ -47,7 +53,7 @@ fn names_comments_macros_and_loops_stay() {
         struct Ray { vec3 origin; float t; }; \n// Height\nfloat height(vec3 p) { return p.y - SCALE; }\n\
         void mainImage(out vec4 color, in vec2 at) {\n    Ray ray = Ray(vec3(at, 1), 0.);\n    // March\n    \
         for (int i = 0; i < STEPS; i++) ray.t += height(ray.origin); // on\n    color = vec4(ray.t);\n}";
-    let written = converted(HlslHost::Hlsl, text).unwrap();
+    let written = converted(CHost::Hlsl, text).unwrap();
     for expected in [
         "// Waves\n\nstatic const float SCALE = 0.5;\nstatic const int STEPS = 8;\n\nstruct Ray {",
         "// Height\nfloat height(float3 p) {\n    return p.y - SCALE;\n}\n",
@@ -274,7 +280,7 @@ fn cases_are_blocks_if_they_declare_variables() {
         "{written}"
     );
     let shared = "void mainImage(out vec4 c, in vec2 p) { c = vec4(0); switch (int(p.x)) { case 0: float a = 1.; c.x = a; break; default: a = 2.; c.x = a; } }";
-    let refused = converted(HlslHost::Hlsl, shared);
+    let refused = converted(CHost::Hlsl, shared);
     assert!(matches!(
         refused,
         Err(WriteFailure::Unprintable(
@@ -286,7 +292,7 @@ fn cases_are_blocks_if_they_declare_variables() {
 #[test]
 fn hosts_refuse_inputs_that_they_lack() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel1, p) * iDate; }";
-    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(HlslHost::WindowsTerminal, text)
+    let Err(WriteFailure::Unprintable(Unprintable::Host(error))) = converted(CHost::WindowsTerminal, text)
     else {
         panic!("it is not refused");
     };
@@ -294,7 +300,7 @@ fn hosts_refuse_inputs_that_they_lack() {
         error.message.contains("in the style `windows-terminal`"),
         "{error:?}"
     );
-    assert!(converted(HlslHost::Unity, text).is_ok());
+    assert!(converted(CHost::Unity, text).is_ok());
 }
 
 #[test]
@@ -302,11 +308,11 @@ fn hosts_code_is_complete() {
     let text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, p / iResolution.xy) + iMouse + dFdy(p.y); }";
     for (host, expected) in [
         (
-            HlslHost::Slang,
+            CHost::Slang,
             "[[vk::binding(1, 0)]] Texture2D iChannel0 : register(t1);",
         ),
         (
-            HlslHost::Unity,
+            CHost::Unity,
             "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + upward * ddy(p.y);",
         ),
     ] {
@@ -320,13 +326,13 @@ fn hosts_code_is_complete() {
             "{}",
             hosted.text
         );
-        assert_eq!(hosted.upside_down, host == HlslHost::Unity);
+        assert_eq!(hosted.upside_down, host == CHost::Unity);
     }
 }
 
 #[test]
 fn adaptations_are_of_the_templates() {
-    for host in HlslHost::ALL {
+    for host in CHost::ALL {
         for (code, _) in host.adaptations() {
             assert!(
                 host.template().replace("$texture", "Texture2D").contains(code),
@@ -366,7 +372,7 @@ fn comments_do_not_continue() {
 fn sides_of_products_are_evaluated_in_their_order() {
     let text = "float n = 0.; mat2 m() { n += 1.; return mat2(n); } vec2 v() { n *= 5.; return vec2(n); }\n\
         void mainImage(out vec4 c, in vec2 p) { c = vec4(m() * v(), p); }";
-    assert!(converted(HlslHost::Hlsl, text).is_err());
+    assert!(converted(CHost::Hlsl, text).is_err());
 }
 
 #[test]
@@ -389,7 +395,7 @@ fn long_constants_are_folded_in_one_pass() {
         "void mainImage(out vec4 c, in vec2 p) {{ c = vec4({}); }}",
         vec!["1.0"; 20_000].join(" + ")
     );
-    let written = converted(HlslHost::Hlsl, &text).unwrap();
+    let written = converted(CHost::Hlsl, &text).unwrap();
     assert!(written.contains("1.0 + 1.0 + 1.0"), "{}", written.len());
 }
 
@@ -400,7 +406,7 @@ fn deep_statements_are_refused() {
         "float n = 0.; float f() {{ return ++n; }}\n\
          void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0); if (p.x > 9.) c.x = 1.;\n{arms} }}"
     );
-    assert!(converted(HlslHost::Hlsl, &text).is_err());
+    assert!(converted(CHost::Hlsl, &text).is_err());
 }
 
 #[test]
@@ -410,9 +416,130 @@ fn a_file_is_named_after_its_shader() {
     let file = files.add(File::new("shader", text));
     let checked = glsl::check(&files, file, &Options::default()).unwrap();
     let name = "class/a \"$texture0\".glsl";
-    let written = write(&checked, &files, HlslHost::Unity, name, &Deadline::default()).unwrap();
+    let written = write(
+        &checked,
+        &files,
+        CHost::Unity,
+        Title::of_shader(name),
+        &Deadline::default(),
+    )
+    .unwrap();
     assert!(
         written.starts_with("Shader \"ShaderToy/a _$texture0_\" {\n"),
         "{written}"
     );
+}
+
+/// The file for Godot of a shader with these items and this image function, without its head.
+fn for_godot(items: &str, statements: &str) -> String {
+    let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
+    let written = converted(CHost::Godot, &text).unwrap();
+    written.split_once(";\n").map_or("", |(_, rest)| rest).to_owned()
+}
+
+#[test]
+fn global_variables_are_parameters_in_godot() {
+    let written = for_godot(
+        "float glow = 0.5;\nint steps;\nconst float SCALE = 2.0;\n\
+         float height(float x) { steps++; return x * SCALE / iResolution.x; }\n\
+         float march(float x) { return height(x) + glow; }\nfloat flat_(float x) { return x; }",
+        "float glow_ = 1.0;\ncolor = vec4(march(at.x) + flat_(gl_FragCoord.y), glow_, float(steps), 1.0);",
+    );
+    for expected in [
+        "float height(float x, vec3 iResolution, inout int steps) {\n    steps++;\n",
+        "float march(float x, vec3 iResolution, float glow, inout int steps) {\n    \
+         return height(x, iResolution, steps) + glow;\n",
+        "float flat_(float x) {\n",
+        "void mainImage(out vec4 color, vec2 at, vec3 iResolution, vec4 position) {\n    \
+         float glow = 0.5;\n    int steps = 0;\n    float glow_ = 1.0;\n    \
+         color = vec4(march(at.x, iResolution, glow, steps) + flat_(position.y), glow_, float(steps), 1.0);\n",
+        "    vec3 iResolution = vec3(size, 1.0);\n    vec4 position = vec4(fragCoord, FRAGCOORD.zw);\n",
+        "    mainImage(color, fragCoord, iResolution, position);\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn a_global_variable_shadows_nothing_in_godot() {
+    let written = for_godot(
+        "float x = 1.0;\nfloat f() { { float x = 2.0; if (x > 3.0) return x; } return x++; }",
+        "float y = f() + x;\nfloat x = y;\ncolor = vec4(x);",
+    );
+    // The parameter `x` of the function and the variable of its block are two; so are those of the image.
+    for expected in [
+        "float f(inout float x_1) {",
+        "        float x = 2.0;",
+        "    float x_1 = 1.0;\n    float y = f(x_1) + x_1;\n    float x = y;\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn what_would_change_its_meaning_is_refused_for_godot() {
+    for (items, statements, why) in [
+        (
+            "float g;\nvoid f(out float x) { x = 1.0; g += x; }",
+            "f(g);\ncolor = vec4(g);",
+            "a global variable that is an `out` argument of a function that uses it",
+        ),
+        (
+            "",
+            "mat2x3 m = mat2x3(at.x);\ncolor = vec4(m[0], 1.0);",
+            "this type",
+        ),
+    ] {
+        let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
+        let error = converted(CHost::Godot, &text).unwrap_err();
+        let WriteFailure::Unprintable(error) = error else {
+            panic!("{error:?}");
+        };
+        assert!(error.to_string().contains(why), "{error}");
+    }
+}
+
+#[test]
+fn switches_with_inner_jumps_are_chains_of_if_in_godot() {
+    let written = for_godot(
+        "float pick(int i) { switch (i + 1) { case 0: case 3: if (i > 2) return 1.0; break; \
+         case 1: return 2.0; default: for (;;) { if (i > 4) break; i++; } if (i > 5) break; i = 7; } return float(i); }",
+        "switch (int(at.x)) { case 0: color = vec4(1.0); break; default: color = vec4(0.0); }\ncolor += pick(int(at.y));",
+    );
+    for expected in [
+        "    int selector = i + 1;\n    for (int once = 0; once < 1; once++) {\n        \
+         if (selector == 0 || selector == 3) {\n            if (i > 2) {\n                return 1.0;\n",
+        "        } else if (selector == 1) {\n            return 2.0;\n        } else {\n            for (;;) {\n",
+        "            if (i > 5) {\n                break;\n            }\n            i = 7;\n        }\n    }\n    return float(i);",
+        // Without jumps in blocks, it stays.
+        "    switch (int(at.x)) {\n        case 0:\n            color = vec4(1.0);\n            break;\n        default:\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn godot_lacks_some_constructs_of_glsl() {
+    let written = for_godot(
+        "struct Ray { vec3 o; float t; };",
+        "mat2 m = mat2(1, 2, 3, 4);\nmat2 n = -m;\nRay rays[2];\nvec3 b = vec3(at.x > 1.0, 1, at.y > 2.0);\n\
+         float f[2] = float[2](1.0, 2.0);\nbool c = at.x > 1.0 ^^ at.y > 1.0;\nfloat s = mix(at.x, at.y, c);\n\
+         int i = 0;\nswitch (i) { case 0: i = 3; default: i += 1; }\n\
+         ivec3 k = ivec3(at.x);\nk = (k & 1) >> 2u;\nfor (i = 1; float(i) < at.x; i++) s += 1.0;\n\
+         color = vec4(b, float(k.x) + rays[0].t + f[i] + s + n[0].x + texelFetch(iChannel0, ivec2(at), 0).x);",
+    );
+    for expected in [
+        "mat2 m = mat2(vec2(1.0, 2.0), vec2(3.0, 4.0));",
+        "mat2 n = -1.0 * m;",
+        "        rays[index] = Ray(vec3(0.0), 0.0);\n",
+        "vec3 b = vec3(float(at.x > 1.0), 1.0, float(at.y > 2.0));",
+        "float f[2] = { 1.0, 2.0 };",
+        "bool c = at.x > 1.0 != at.y > 1.0;",
+        "float s = mixBool(at.x, at.y, c);",
+        "k = (k & ivec3(1)) >> int(2u);",
+        "    i = 1;\n    for (; (float(i) < at.x); i++) {\n",
+        "uniform sampler2D iChannel0 : filter_linear, repeat_enable;",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
 }

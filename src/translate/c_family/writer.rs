@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
 
-use super::Unprintable;
 use super::effect::impure_functions;
-use super::host::HlslHost;
-use super::language::{Words, numeric_type};
+use super::host::CHost;
+use super::language::{Language, Words};
+use super::{Title, Unprintable};
 use crate::author::{Comments, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::print::{Names, Order, Vocabulary};
@@ -20,7 +20,7 @@ pub(super) type PrintResult<T = ()> = Result<T, Unprintable>;
 pub(super) struct Writer<'a> {
     pub(super) cx: &'a LoweringContext,
     pub(super) names: &'a Names,
-    pub(super) host: HlslHost,
+    pub(super) host: CHost,
     pub(super) comments: Comments<'a>,
     pub(super) source: SourceText<'a>,
     pub(super) deadline: &'a Deadline,
@@ -32,6 +32,10 @@ pub(super) struct Writer<'a> {
     pub(super) helpers: BTreeMap<(String, String), String>,
     /// The structures that need a function that makes them: these languages list values in declarations only.
     pub(super) made: BTreeSet<StructId>,
+    /// What the structure around a shader contains, in languages without global variables.
+    pub(super) members: HashSet<Item>,
+    /// The type that the function being printed returns.
+    pub(super) returned: Type,
     /// The functions with side effects.
     pub(super) impure: HashSet<FunctionId>,
     /// All names in use.
@@ -42,13 +46,15 @@ pub(super) struct Writer<'a> {
     pub(super) reads_position: bool,
     /// Whether derivatives along y are taken, whose sign depends on the host.
     pub(super) takes_derivatives: bool,
+    /// What `mainImage` gets from the host's entry point besides its color and coordinates.
+    pub(super) passed: &'a [VariableId],
 }
 
 impl<'a> Writer<'a> {
     pub(super) fn new(
         cx: &'a LoweringContext,
         names: &'a Names,
-        host: HlslHost,
+        host: CHost,
         files: &'a Files,
         deadline: &'a Deadline,
     ) -> Self {
@@ -66,12 +72,19 @@ impl<'a> Writer<'a> {
             macros: BTreeMap::new(),
             helpers: BTreeMap::new(),
             made: BTreeSet::new(),
+            members: HashSet::new(),
+            returned: Type::Void,
             impure: impure_functions(&cx.tree),
             taken: all.map(String::as_str).collect(),
             failed_at: None,
             reads_position: false,
             takes_derivatives: false,
+            passed: &[],
         }
+    }
+
+    pub(super) fn language(&self) -> Language {
+        self.host.language()
     }
 
     /// Fails if the deadline has passed; [`super::write`] then reports that instead.
@@ -135,22 +148,43 @@ impl<'a> Writer<'a> {
 
     /// `float3 name`, or `float name[2]`.
     pub(super) fn declarator(&self, ty: Type, name: &str) -> PrintResult<String> {
+        if self.language() == Language::Msl {
+            return Ok(format!("{} {name}", self.type_name(ty)?));
+        }
         let mut sizes = String::new();
         let mut element = ty;
         while let Type::Array(id) = element {
             let array = self.cx.tree.array(id);
             let _ = write!(sizes, "[{}]", array.size);
             element = array.element;
+            if self.language() == Language::Godot && matches!(element, Type::Array(_)) {
+                return Err(Unprintable::Construct("an array of arrays"));
+            }
         }
         Ok(format!("{} {name}{sizes}", self.type_name(element)?))
     }
 
-    /// The name of a type that is not an array.
+    /// The name of a type; arrays have one in languages in which they are values.
     pub(super) fn type_name(&self, ty: Type) -> PrintResult<String> {
         match ty {
             Type::Struct(id) => Ok(self.structure_name(id).to_owned()),
             Type::Void => Ok("void".to_owned()),
-            _ => numeric_type(ty).ok_or(Unprintable::Construct("this type")),
+            Type::Array(id) if self.language() == Language::Glsl => {
+                let array = self.cx.tree.array(id);
+                Ok(format!("{}[{}]", self.type_name(array.element)?, array.size))
+            }
+            Type::Array(id) if self.language() == Language::Msl => {
+                let array = self.cx.tree.array(id);
+                Ok(format!(
+                    "array<{}, {}>",
+                    self.type_name(array.element)?,
+                    array.size
+                ))
+            }
+            _ => {
+                let name = self.language().numeric_type(ty);
+                name.ok_or(Unprintable::Construct("this type"))
+            }
         }
     }
 
@@ -160,6 +194,10 @@ impl<'a> Writer<'a> {
         let is_declared = words.declared().iter().any(|declared| declared == name);
         let is_word = words.is_reserved(name) || words.is_function(name);
         !is_declared && !is_word && !self.taken.contains(name)
+    }
+
+    pub(super) fn is_reserved(&self, word: &str) -> bool {
+        Words::new(self.host).is_reserved(word)
     }
 
     /// A name that nothing else has.
@@ -188,11 +226,14 @@ impl<'a> Writer<'a> {
     }
 
     /// Prints the whole text: the author's first comment, and the items in the host's code.
-    pub(super) fn write(mut self, order: &Order, name: &str) -> PrintResult<String> {
+    pub(super) fn write(mut self, order: &Order, title: Title) -> PrintResult<String> {
         let entry = self.cx.tree[self.cx.main_image].at;
         let mut first = self.comments.first(entry).join("\n");
         if !first.is_empty() {
             first.push_str("\n\n");
+        }
+        if self.language() == Language::Msl {
+            self.members = self.members_in_metal(order);
         }
         let mut items = Vec::new();
         for &item in &order.items {
@@ -217,15 +258,22 @@ impl<'a> Writer<'a> {
             text += helper;
             text.push('\n');
         }
-        let mut shader = String::new();
+        let (mut shader, mut members) = (String::new(), String::new());
         for (item, printed) in items {
+            if self.members.contains(&item) {
+                members += &printed;
+                continue;
+            }
             shader += &printed;
             if let Item::Struct(id) = item {
                 shader += makers.get(&id).map_or("", String::as_str);
             }
         }
         text += shader.trim_start_matches('\n');
-        self.embed(order, &first, &text, name)
+        if self.language() == Language::Msl {
+            return self.embed(order, &first, &text, members.trim_start_matches('\n'), title);
+        }
+        self.embed(order, &first, "", &text, title)
     }
 }
 

@@ -157,7 +157,7 @@ fn hoist_declaration(cx: &mut LoweringContext, statement: Statement, out: &mut B
 
 /// Builds the condition that the selector matches one of the labels; `default` matches if no other label of
 /// the whole `switch` does.
-fn selector_matches(
+pub(super) fn selector_matches(
     cx: &mut LoweringContext,
     selector: ExprId,
     labels: &[Label],

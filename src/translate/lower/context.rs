@@ -40,6 +40,8 @@ pub(crate) struct LoweringContext {
     pub(crate) helper_inputs: HashMap<FunctionId, VariableId>,
     /// Whether all fetches of texels check that these are within their textures.
     pub(crate) checks_fetches: bool,
+    /// Whether parameters are references as in C++, to which members and elements of variables can be bound.
+    pub(crate) has_references: bool,
     /// The diagnostic for a shader that nests deeper than drivers support.
     pub(crate) too_deep: Option<Diagnostic>,
     /// Helper functions, by the types of their arguments.
@@ -79,6 +81,7 @@ impl LoweringContext {
             helpers: HashMap::new(),
             helper_inputs: HashMap::new(),
             checks_fetches: false,
+            has_references: false,
             too_deep: None,
             helper_ids: HashMap::new(),
             expansions: HashMap::new(),

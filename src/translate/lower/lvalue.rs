@@ -3,9 +3,11 @@
 //! The passes here rewrite accesses whose parts naga evaluates twice, in another order, or through pointers
 //! that it cannot form: indices, swizzles, compound assignments and `out` arguments.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-use toyproof_glsl::tree::{Direction, ExprId, ExprKind, Swizzle, Tree, Type, Value, walk};
+use toyproof_glsl::tree::{
+    Direction, ExprId, ExprKind, FunctionId, Swizzle, Tree, Type, Value, VariableId, VariableKind, walk,
+};
 
 use crate::lower::context::LoweringContext;
 
@@ -315,8 +317,16 @@ pub(super) fn lower_compound_assignments(cx: &mut LoweringContext) {
 /// after all arguments are evaluated, as in glslang. Arguments that are parts of the same variable are also
 /// copied, since WGSL forbids aliasing pointers. Variables and their parts passed to `in` parameters are read
 /// last as well, those passed to `const in` parameters in order: `f(i, i++)`.
+///
+/// Where parameters are references, only arguments that cannot be bound to one are copied, and global
+/// variables that the function itself names.
 pub(super) fn lower_out_arguments(cx: &mut LoweringContext) {
     let discarded = cx.discarded_values();
+    let globals = if cx.has_references {
+        globals_of_functions(&cx.tree)
+    } else {
+        HashMap::new()
+    };
     cx.each_expression_postorder(|cx, id| {
         if let ExprKind::Call { function, arguments } = &cx.tree[id].kind {
             let directions = cx.tree[*function]
@@ -324,7 +334,7 @@ pub(super) fn lower_out_arguments(cx: &mut LoweringContext) {
                 .iter()
                 .map(|&parameter| walk::direction(&cx.tree, parameter));
             let arguments: Vec<_> = arguments.iter().copied().zip(directions).collect();
-            copy_in_out(cx, id, &arguments, discarded.contains(&id));
+            copy_in_out(cx, id, &arguments, discarded.contains(&id), globals.get(function));
         }
     });
 }
@@ -333,19 +343,70 @@ fn is_out(direction: Direction) -> bool {
     matches!(direction, Direction::Out | Direction::InOut)
 }
 
-/// Lets a call work on copies where naga cannot form pointers to the arguments.
-fn copy_in_out(cx: &mut LoweringContext, call: ExprId, arguments: &[(ExprId, Direction)], discarded: bool) {
+/// The variables outside functions that each function names, or a function that it calls.
+fn globals_of_functions(tree: &Tree) -> HashMap<FunctionId, HashSet<VariableId>> {
+    let mut globals: HashMap<FunctionId, HashSet<VariableId>> = HashMap::new();
+    let mut calls = Vec::new();
+    for (caller, function) in tree.functions.iter() {
+        let Some(body) = &function.body else { continue };
+        let roots = walk::roots(tree, body).into_iter();
+        for id in roots.flat_map(|root| tree.postorder(root)) {
+            match tree[id].kind {
+                ExprKind::Call { function, .. } => calls.push((caller, function)),
+                ExprKind::Variable(variable) if tree[variable].kind == VariableKind::Global => {
+                    globals.entry(caller).or_default().insert(variable);
+                }
+                _ => {}
+            }
+        }
+    }
+    loop {
+        let mut is_complete = true;
+        for (caller, called) in &calls {
+            let Some(named) = globals.get(called).cloned() else {
+                continue;
+            };
+            let known = globals.entry(*caller).or_default();
+            let count = known.len();
+            known.extend(named);
+            is_complete &= known.len() == count;
+        }
+        if is_complete {
+            return globals;
+        }
+    }
+}
+
+/// Whether a reference can be bound to a place: a variable, a member, an element, or a column of a matrix.
+fn binds_reference(tree: &Tree, place: ExprId) -> bool {
+    tree.path(place).all(|node| match tree[node].kind {
+        ExprKind::Variable(_) | ExprKind::Member { .. } => true,
+        ExprKind::Index { base, .. } => matches!(tree[base].ty, Type::Array(_) | Type::Matrix { .. }),
+        _ => false,
+    })
+}
+
+/// Lets a call work on copies where naga cannot form pointers to the arguments, or nothing can be bound to
+/// a reference. `globals` are the variables that the function itself names.
+fn copy_in_out(
+    cx: &mut LoweringContext,
+    call: ExprId,
+    arguments: &[(ExprId, Direction)],
+    discarded: bool,
+    globals: Option<&HashSet<VariableId>>,
+) {
     let mut written = HashSet::new();
     let needs_copy: Vec<bool> = arguments
         .iter()
         .map(|&(argument, direction)| {
-            let is_whole = matches!(cx.tree[argument].kind, ExprKind::Variable(_));
-            is_out(direction)
-                && (!cx
-                    .tree
-                    .root_variable(argument)
-                    .is_none_or(|root| written.insert(root))
-                    || !is_whole)
+            let is_in_place = if cx.has_references {
+                binds_reference(&cx.tree, argument)
+            } else {
+                matches!(cx.tree[argument].kind, ExprKind::Variable(_))
+            };
+            let root = cx.tree.root_variable(argument);
+            let is_named = root.is_some_and(|root| globals.is_some_and(|names| names.contains(&root)));
+            is_out(direction) && (!root.is_none_or(|root| written.insert(root)) || !is_in_place || is_named)
         })
         .collect();
     let read_last: Vec<bool> = arguments

@@ -17,6 +17,7 @@ mod flatten;
 mod float32;
 mod folding;
 mod generated;
+mod global_parameter;
 mod helper_tree;
 mod initializer;
 mod lookup;
@@ -29,6 +30,7 @@ mod operator;
 mod polyfill;
 mod sequence;
 mod stage_io;
+mod switch_chain;
 #[cfg(test)]
 mod tests;
 mod uniform_block;
@@ -36,8 +38,10 @@ mod uniform_block;
 pub(crate) use array_value::name_array_values;
 pub(crate) use conditional::branch_for_effects;
 pub(crate) use folding::{fold_by_precision, fold_except};
+pub(crate) use global_parameter::{GlobalConflict, UPWARD, orient_derivatives, pass_globals};
 pub(crate) use helper_tree::helper_tree;
 pub(crate) use initializer::is_written_first;
+pub(crate) use switch_chain::chain_switches;
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue};
 use toyproof_glsl::{Checked, overdue};
 

@@ -6,7 +6,8 @@
 use std::collections::HashSet;
 
 use toyproof_glsl::tree::{
-    Arm, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind, walk,
+    Arm, BinaryOp, Block, ExprId, ExprKind, Place, Statement, StatementKind, Tree, VariableId, VariableKind,
+    walk,
 };
 
 use crate::lower::context::LoweringContext;
@@ -102,13 +103,24 @@ fn always_evaluated(tree: &Tree, root: ExprId) -> Vec<ExprId> {
         let mut operands = Vec::new();
         match &tree[id].kind {
             ExprKind::Conditional { condition, .. } => operands.push(*condition),
-            // A target that is a variable is not read before it is written.
+            ExprKind::Binary {
+                op: BinaryOp::And | BinaryOp::Or,
+                left,
+                ..
+            } => operands.push(*left),
+            // A target is not read before it is written; only its indices are evaluated.
             &ExprKind::Assign {
                 op: None,
                 target,
                 value,
-            } if matches!(tree[target].kind, ExprKind::Variable(_)) => {
+            } => {
                 operands.push(value);
+                let indices = tree.path(target).filter_map(|node| match tree[node].kind {
+                    ExprKind::Index { index, .. } => Some(index),
+                    _ => None,
+                });
+                operands.extend(indices);
+                operands.reverse();
             }
             // The last operand of a sequence takes the sequence's place.
             &ExprKind::Sequence { first, .. } => operands.push(first),
@@ -128,9 +140,18 @@ fn is_affected(tree: &Tree, id: ExprId, effect: ExprId) -> bool {
                 VariableKind::Local | VariableKind::Parameter(_)
             );
             let fixed = tree[variable].kind == VariableKind::Const || tree[variable].kind.is_input();
-            !fixed && (foreign || walk::mentions(tree, effect, variable))
+            !fixed && (foreign && walk::calls(tree, effect) || walk::writes(tree, effect, variable))
         }
         ExprKind::Assign { .. } | ExprKind::Step { .. } | ExprKind::Call { .. } => true,
+        ExprKind::Binary {
+            op: BinaryOp::And | BinaryOp::Or,
+            right,
+            ..
+        } => tree.postorder(right).into_iter().any(|id| match tree[id].kind {
+            // Its operands follow.
+            ExprKind::Binary { .. } | ExprKind::Conditional { .. } => false,
+            _ => is_affected(tree, id, effect),
+        }),
         ExprKind::Conditional { yes, no, .. } => {
             let branches = [yes, no].into_iter().flat_map(|branch| tree.postorder(branch));
             let leaves = branches.filter(|&id| !matches!(tree[id].kind, ExprKind::Conditional { .. }));

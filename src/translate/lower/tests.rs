@@ -443,8 +443,7 @@ fn a_sequence_stays_behind_expressions_that_it_affects() {
             f,
             "vec2 q = p; float g = 1.0; o.x = (p.x > 0.0 ? q.x : g) + f(q.x);"
         ),
-        "vec2 q = p;\nfloat g = 1.0;\nfloat toyproof_argument;\nfloat toyproof_result;\n\
-         o.x = (p.x > 0.0 ? q.x : g) + (toyproof_argument = q.x, toyproof_result = f(toyproof_argument), \
-         q.x = toyproof_argument, toyproof_result);"
+        "vec2 q = p;\nfloat g = 1.0;\nfloat toyproof_argument = q.x;\nfloat toyproof_result = f(toyproof_argument);\n\
+         o.x = (p.x > 0.0 ? q.x : g) + (q.x = toyproof_argument, toyproof_result);"
     );
 }

@@ -1,4 +1,5 @@
 $block
+#define outputSize toyproof_iResolution
 #define _ScreenParams float4(toyproof_iResolution.xy, 0.0, 0.0)
 #define _Time float4(0.0, toyproof_iTime, 0.0, 0.0)
 #define unity_DeltaTime float4(toyproof_iTimeDelta, 0.0, 0.0, toyproof_iFrameRate)
@@ -21,6 +22,7 @@ $shader
 float4 main(float4 position : SV_Position) : SV_Target0 {
     Varyings input;
     input.position = position;
-    input.uv = float2(position.x, toyproof_iResolution.y - position.y);
+    input.uv = float2(position.x, toyproof_iResolution.y - position.y); //? image
+    input.uv = position.xy; //? buffer
     return fragment(input);
 }

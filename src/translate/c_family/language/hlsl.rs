@@ -1,9 +1,5 @@
-//! What differs between the languages: types, reserved words, and the functions that they have.
+//! The words of HLSL and Slang.
 
-use toyproof_glsl::tree::{Scalar, Type};
-
-use super::host::HlslHost;
-use crate::print::Vocabulary;
 use crate::print::keyword::lists;
 
 /// Keywords and types of HLSL (Microsoft's “Keywords” and “Reserved Words”), of Slang, and names that FXC
@@ -37,43 +33,14 @@ const FUNCTIONS: &str = "\
     sinh smoothstep sqrt step tan tanh tex1D tex1Dbias tex1Dlod tex2D tex2Dbias tex2Dgrad tex2Dlod tex2Dproj \
     tex3D tex3Dlod texCUBE texCUBElod transpose trunc";
 
-/// The names that are not free.
-pub(super) struct Words {
-    host: HlslHost,
+/// Whether nothing may have the name.
+pub(super) fn is_reserved(word: &str) -> bool {
+    lists(RESERVED, word) || is_numbered_type(word) || word.starts_with("__")
 }
 
-impl Words {
-    pub(super) fn new(host: HlslHost) -> Self {
-        Self { host }
-    }
-}
-
-impl Vocabulary for Words {
-    fn is_reserved(&self, word: &str) -> bool {
-        let is_unitys = self.host == HlslHost::Unity && word.to_ascii_lowercase().starts_with("unity_");
-        lists(RESERVED, word) || is_numbered_type(word) || is_unitys || word.starts_with("__")
-    }
-
-    fn is_function(&self, word: &str) -> bool {
-        lists(FUNCTIONS, word)
-    }
-
-    fn declared(&self) -> Vec<String> {
-        let declared = self.host.declared_words();
-        declared.into_iter().map(str::to_owned).collect()
-    }
-
-    fn has_scopes_of_c(&self) -> bool {
-        true
-    }
-
-    fn with_free_stem(&self, word: &str) -> String {
-        match word.trim_start_matches('_') {
-            _ if !word.starts_with("__") => word.to_owned(),
-            "" => "unused".to_owned(),
-            stem => stem.to_owned(),
-        }
-    }
+/// Whether the name is a function's.
+pub(super) fn is_function(word: &str) -> bool {
+    lists(FUNCTIONS, word)
 }
 
 /// Whether the word is a vector or matrix type, such as `float3` or `half3x3`.
@@ -94,24 +61,4 @@ fn is_numbered_type(word: &str) -> bool {
         Some((rows, columns)) => is_size(rows) && is_size(columns),
         None => is_size(number),
     })
-}
-
-/// The name of a scalar, vector or matrix type. A matrix of GLSL is stored with its columns as rows, so that
-/// an index selects what it selects in GLSL; products exchange their sides.
-pub(super) fn numeric_type(ty: Type) -> Option<String> {
-    Some(match ty {
-        Type::Scalar(scalar) => scalar_name(scalar).to_owned(),
-        Type::Vector(scalar, size) => format!("{}{size}", scalar_name(scalar)),
-        Type::Matrix { columns, rows } => format!("float{columns}x{rows}"),
-        _ => return None,
-    })
-}
-
-fn scalar_name(scalar: Scalar) -> &'static str {
-    match scalar {
-        Scalar::Bool => "bool",
-        Scalar::Int => "int",
-        Scalar::Uint => "uint",
-        Scalar::Float => "float",
-    }
 }

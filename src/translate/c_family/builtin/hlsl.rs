@@ -1,22 +1,19 @@
-//! Built-in functions: most have the same name in HLSL, some are operators there, few are missing.
+//! Built-in functions in HLSL: most have the same name, some are operators, few are missing.
 
 use toyproof_glsl::tree::{BinaryOp, BuiltIn, ExprId, Scalar, Type, Wgsl};
 
-use super::Unprintable;
-use super::expression::{Part, Parts, level};
-use super::writer::{PrintResult, Writer};
+use crate::c_family::Unprintable;
+use crate::c_family::expression::{Part, Parts, level};
+use crate::c_family::writer::{PrintResult, Writer};
 
 impl Writer<'_> {
-    pub(super) fn built_in(
+    pub(super) fn built_in_of_hlsl(
         &mut self,
         function: BuiltIn,
         arguments: &[ExprId],
         ty: Type,
     ) -> PrintResult<Parts> {
         use BuiltIn as B;
-        if function.is_texture() {
-            return self.lookup(function, arguments);
-        }
         let types: Vec<Type> = arguments
             .iter()
             .map(|&argument| self.cx.tree[argument].ty)
@@ -37,7 +34,7 @@ impl Writer<'_> {
                 parts.push(Part::token(")"));
                 return Ok((parts, level::POSTFIX));
             }
-            B::DFdy if self.host.is_upside_down(self.cx.stage) => {
+            B::DFdy if self.host.orients_derivatives(self.cx.stage) => {
                 self.takes_derivatives = true;
                 let mut parts = vec![Part::token("upward * ")];
                 parts.extend(Self::call("ddy", arguments));
@@ -54,8 +51,7 @@ impl Writer<'_> {
             B::FloatBitsToUint => "asuint".to_owned(),
             B::IntBitsToFloat | B::UintBitsToFloat => "asfloat".to_owned(),
             B::Mix if types.last().and_then(|ty| ty.scalar()) == Some(Scalar::Bool) => {
-                let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
-                self.helper_function("mix", &types, ty, "", &body)?
+                self.mix_of_bool(&types, ty)?
             }
             B::Mix => "lerp".to_owned(),
             B::Mod => self.helper_function(
@@ -109,58 +105,4 @@ impl Writer<'_> {
         };
         Ok((Self::call(name, arguments), level::POSTFIX))
     }
-
-    /// Adds the function that divides a matrix by a number, column by column, and returns its name: some
-    /// compilers multiply by the reciprocal.
-    pub(super) fn division(&mut self, matrix: Type) -> PrintResult<String> {
-        let Type::Matrix { columns, .. } = matrix else {
-            return Err(Unprintable::Construct("this division"));
-        };
-        let columns: Vec<_> = (0..columns).map(|column| format!("x[{column}] / y")).collect();
-        let body = format!("return {}({});", self.type_name(matrix)?, columns.join(", "));
-        self.helper_function("divide", &[matrix, Type::FLOAT], matrix, "", &body)
-    }
-
-    /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and
-    /// returns
-    /// its name.
-    pub(super) fn helper_function(
-        &mut self,
-        name: &str,
-        types: &[Type],
-        returned: Type,
-        comment: &str,
-        body: &str,
-    ) -> PrintResult<String> {
-        if self.indent == 0 {
-            return Err(Unprintable::Construct(
-                "this built-in function in a global constant",
-            ));
-        }
-        let function = self.free(name);
-        let parameters = types
-            .iter()
-            .zip(["x", "y", "a"])
-            .map(|(&ty, name)| self.declarator(ty, name));
-        let parameters = parameters.collect::<PrintResult<Vec<_>>>()?.join(", ");
-        let returned = self.type_name(returned)?;
-        let text = format!("{comment}{returned} {function}({parameters}) {{\n    {body}\n}}\n");
-        self.helpers.insert((function.clone(), parameters), text);
-        Ok(function)
-    }
-}
-
-/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways
-/// before
-/// and since its version of 2021.
-fn mix_of_bool(ty: &str, size: u8) -> String {
-    if size == 1 {
-        return "return a ? y : x;".to_owned();
-    }
-    let component = |at: u8| {
-        let letter = char::from(b"xyzw"[usize::from(at)]);
-        format!("a.{letter} ? y.{letter} : x.{letter}")
-    };
-    let components: Vec<_> = (0..size.min(4)).map(component).collect();
-    format!("return {ty}({});", components.join(", "))
 }
