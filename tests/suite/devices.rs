@@ -8,12 +8,12 @@ use std::time::Duration;
 use toyproof::diagnostic::grouped;
 use toyproof::gpu::{AdapterSelector, Worker};
 use toyproof::image::Image;
-use toyproof::translate::backend::Target;
 use toyproof::verify::compare::CheckSummary;
 
 use crate::requirements::require_driver;
 use crate::support::devices::arguments::{UNIT, arguments};
 use crate::support::devices::behavior::{BEHAVIORS, Behavior, Contraction};
+use crate::support::devices::conversions::LANGUAGES;
 use crate::support::devices::discovery::{Discovery, discover};
 use crate::support::devices::errors::Errors;
 use crate::support::devices::function::{FUNCTIONS, Function};
@@ -483,7 +483,7 @@ fn a_driver_is_measured() {
         functions: vec![function("sqrt(x)"), function("sin(x)")],
         arguments: 1 << 10,
         behaviors: vec![behavior("denormal operands")],
-        languages: vec![("WGSL", Target::Wgsl)],
+        languages: vec![&LANGUAGES[0]],
         ..Plan::complete(TIMEOUT)
     };
     let mut discovery = discover(&new_worker);

@@ -11,7 +11,7 @@ use toyproof::glsl::{self, Options};
 use toyproof::gpu::Worker;
 use toyproof::translate::FloatMode;
 use toyproof::translate::backend::Target;
-use toyproof::translate::c_family::HlslHost;
+use toyproof::translate::c_family::{CHost, Title};
 use toyproof::translate::wgsl::Style;
 
 use super::Stop;
@@ -20,12 +20,37 @@ use crate::Exercise;
 /// The compiler that reads HLSL for the proof.
 const GLSLANG: &str = "glslangValidator";
 
-/// The languages, with their names.
-pub const LANGUAGES: [(&str, Target); 4] = [
-    ("WGSL", Target::Wgsl),
-    ("SPIR-V", Target::Spirv),
-    ("GLSL ES", Target::Glsl),
-    ("HLSL", Target::Hlsl),
+/// A language of conversions.
+#[derive(Debug, Clone, Copy)]
+pub struct Language {
+    /// Its name.
+    pub name: &'static str,
+    target: Target,
+    host: Option<CHost>,
+}
+
+/// The languages of conversions.
+pub static LANGUAGES: [Language; 4] = [
+    Language {
+        name: "WGSL",
+        target: Target::Wgsl,
+        host: None,
+    },
+    Language {
+        name: "SPIR-V",
+        target: Target::Spirv,
+        host: None,
+    },
+    Language {
+        name: "GLSL ES",
+        target: Target::Glsl,
+        host: Some(CHost::Glsl),
+    },
+    Language {
+        name: "HLSL",
+        target: Target::Hlsl,
+        host: Some(CHost::Hlsl),
+    },
 ];
 
 /// The conversions that were proved.
@@ -68,20 +93,20 @@ impl fmt::Display for Conversions {
 /// # Panics
 /// If an exercise is invalid.
 pub fn prove(
-    target: Target,
+    language: &Language,
     worker: &mut Worker,
     translator: &mut Worker,
     exercises: &[&Exercise],
     timeout: Duration,
     stop: Stop,
 ) -> Result<Conversions, String> {
-    if target == Target::Hlsl && !is_installed(GLSLANG) {
+    if language.target == Target::Hlsl && !is_installed(GLSLANG) {
         return Err(format!("{GLSLANG}, which reads HLSL, is not installed"));
     }
     let converter = Converter {
-        target: Some(target),
+        target: Some(language.target),
         style: Style::Plain,
-        hlsl_host: HlslHost::Hlsl,
+        c_host: language.host,
         dialect: None,
         float: FloatMode::Fast,
         timeout,
@@ -133,7 +158,12 @@ fn prove_one(
         files: &files,
     };
     let conversion = converter
-        .convert(source, exercise.name, translator, Some(&mut prover))
+        .convert(
+            source,
+            Title::of_shader(exercise.name),
+            translator,
+            Some(&mut prover),
+        )
         .map_err(|error| error.to_string())?;
     match conversion.proof {
         Some(Ok(ShaderProof::File(_, readers))) => Ok(readers.run.iter().map(ToString::to_string).collect()),

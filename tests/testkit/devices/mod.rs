@@ -26,10 +26,10 @@ use std::time::Duration;
 use toyproof::diagnostic::grouped;
 use toyproof::gpu::{LoopCap, Worker};
 use toyproof::translate::FloatMode;
-use toyproof::translate::backend::Target;
 
 use self::arguments::arguments;
 use self::behavior::{BEHAVIORS, Behavior, CONTRACTED, Contraction};
+use self::conversions::{LANGUAGES, Language};
 use self::discovery::Device;
 use self::errors::Errors;
 use self::function::{FUNCTIONS, Function};
@@ -54,7 +54,7 @@ pub struct Plan {
     /// The rows of results that drivers choose.
     pub behaviors: Vec<&'static Behavior>,
     /// The languages of the conversions.
-    pub languages: Vec<(&'static str, Target)>,
+    pub languages: Vec<&'static Language>,
     /// The time limit of an image.
     pub timeout: Duration,
 }
@@ -68,7 +68,7 @@ impl Plan {
             functions: FUNCTIONS.iter().collect(),
             arguments: 1 << 15,
             behaviors: BEHAVIORS.iter().collect(),
-            languages: conversions::LANGUAGES.to_vec(),
+            languages: LANGUAGES.iter().collect(),
             timeout,
         }
     }
@@ -81,10 +81,7 @@ impl Plan {
         let strict = strict.map(|function| M::Function(function, FloatMode::Strict));
         let fast = functions.map(|function| M::Function(function, FloatMode::Fast));
         let behaviors = self.behaviors.iter().copied().map(M::Behavior);
-        let languages = self
-            .languages
-            .iter()
-            .map(|&(name, target)| M::Conversions(name, target));
+        let languages = self.languages.iter().copied().map(M::Conversions);
         device
             .chain([M::Course, M::Programs])
             .chain([M::Contraction(FloatMode::Strict)])
@@ -193,7 +190,7 @@ enum Measurement {
     Function(&'static Function, FloatMode),
     Behavior(&'static Behavior),
     Derivatives(FloatMode),
-    Conversions(&'static str, Target),
+    Conversions(&'static Language),
 }
 
 impl Measurement {
@@ -211,7 +208,7 @@ impl Measurement {
             Self::Behavior(_) | Self::Derivatives(FloatMode::Fast) => {
                 "Results that drivers choose, in fast runs"
             }
-            Self::Conversions(..) => "Conversions of the course, proved by running them",
+            Self::Conversions(_) => "Conversions of the course, proved by running them",
         }
     }
 
@@ -240,7 +237,7 @@ impl Measurement {
                 ("derivatives, strict".to_owned(), "fine, as requested".to_owned())
             }
             Self::Derivatives(FloatMode::Fast) => ("derivatives".to_owned(), "fine or coarse".to_owned()),
-            Self::Conversions(name, _) => (name.to_owned(), "all".to_owned()),
+            Self::Conversions(language) => (language.name.to_owned(), "all".to_owned()),
         };
         Row {
             section: self.section(),
@@ -292,9 +289,9 @@ impl Measurement {
                 let image = derivatives::render(&mut workers.optimized, float).map_err(failed)?;
                 Ok(derivatives::describe(&image))
             }
-            Self::Conversions(_, target) => {
+            Self::Conversions(language) => {
                 let (worker, translator) = (&mut workers.plain, &mut *workers.translator);
-                conversions::prove(target, worker, translator, &plan.exercises, plan.timeout, stop)
+                conversions::prove(language, worker, translator, &plan.exercises, plan.timeout, stop)
                     .map(|conversions| conversions.to_string())
             }
         }
