@@ -13,7 +13,7 @@ use std::{env, fs};
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use regex::Regex;
-use toyproof::diagnostic::{Deadline, File, Files};
+use toyproof::diagnostic::{Deadline, File, Files, short};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::tree::Input;
 use toyproof::glsl::{Checked, Options, check};
@@ -24,7 +24,7 @@ use walkdir::WalkDir;
 
 use crate::hlsl_hosts;
 use crate::program::toyproof;
-use crate::requirements::{require_driver, require_program};
+use crate::requirements::{require_driver, require_folder, require_program};
 use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
 
@@ -54,12 +54,23 @@ struct Written {
     text: String,
 }
 
-/// Writes a shader; `None` if it has a construct that the writer leaves to naga.
+/// Writes a valid shader; `None` if it has a construct that the writer leaves to naga.
 fn written(name: &str, shader: &str) -> Option<Written> {
+    let failed = |why: String| assert!(why.starts_with("not written"), "{name}: {why}");
+    try_written(name, shader).map_err(failed).ok()
+}
+
+/// Writes a shader, or returns why it is not written.
+fn try_written(name: &str, shader: &str) -> Result<Written, String> {
     let mut files = Files::default();
     let file = files.add(File::new(name, shader));
-    let checked =
-        check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
+    let checked = check(&files, file, &Options::default()).map_err(|errors| {
+        errors
+            .iter()
+            .map(|error| short(error, &files))
+            .collect::<Vec<_>>()
+            .join("; ")
+    })?;
     let text = write(
         &checked,
         &files,
@@ -67,9 +78,9 @@ fn written(name: &str, shader: &str) -> Option<Written> {
         Title::of_shader(name),
         &Deadline::default(),
     )
-    .ok()?;
+    .map_err(|failure| format!("not written: {failure}"))?;
     let name = name.to_owned();
-    Some(Written { name, checked, text })
+    Ok(Written { name, checked, text })
 }
 
 /// The frame that is compared.
@@ -371,6 +382,33 @@ fn random_programs_have_the_evaluators_bits() {
         shaders.len()
     );
     let differing = differences(&shaders, &frame());
+    assert!(differing.is_empty(), "{}", differing.join("\n"));
+}
+
+/// Compares each shader of a folder, with the textures of [`frame`].
+#[test]
+#[ignore = "takes minutes, and a folder of shaders that TOYPROOF_SHADERS names"]
+fn shaders_of_a_folder_have_the_evaluators_bits() {
+    let Some(folder) = require_folder("TOYPROOF_SHADERS") else {
+        return;
+    };
+    let mut shaders = Vec::new();
+    for entry in WalkDir::new(&folder).sort_by_file_name() {
+        let path = entry.unwrap().into_path();
+        if path.extension().is_some_and(|extension| extension == "glsl") {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let text = fs::read_to_string(&path).unwrap();
+            match try_written(&name, &text) {
+                Ok(shader) => shaders.push(shader),
+                Err(why) => eprintln!("{name}: {why}"),
+            }
+        }
+    }
+    let mut differing = Vec::new();
+    for shader in shaders.chunks(8) {
+        differing.extend(differences(shader, &frame()));
+    }
+    eprintln!("{} shaders, {} differ", shaders.len(), differing.len());
     assert!(differing.is_empty(), "{}", differing.join("\n"));
 }
 
