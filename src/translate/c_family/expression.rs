@@ -104,7 +104,7 @@ impl Writer<'_> {
             &ExprKind::Step { op, postfix, target } => {
                 let symbol = Part::token(op.symbol());
                 if self.language() == Language::Msl {
-                    self.step_in_metal(op.symbol(), postfix, target)?
+                    self.step_in_metal(id, op.symbol(), postfix, target)?
                 } else if postfix {
                     (vec![Print(target, level::POSTFIX), symbol], level::POSTFIX)
                 } else {
@@ -150,6 +150,12 @@ impl Writer<'_> {
             } => {
                 let (constructor, arguments) = (*constructor, arguments.clone());
                 self.construct(constructor, &arguments, tree[id].ty)?
+            }
+            &ExprKind::Swizzle { vector, .. }
+                if self.language() == Language::Msl
+                    && matches!(tree[vector].kind, ExprKind::Swizzle { .. }) =>
+            {
+                self.swizzle_in_metal(id)
             }
             &ExprKind::Swizzle { vector, components } => {
                 let letters = self.source.letters(components, tree[id].at);
@@ -336,7 +342,7 @@ impl Writer<'_> {
             ExprKind::Construct {
                 constructor: Constructor::Struct | Constructor::Array,
                 arguments,
-            } if self.language() == Language::Hlsl || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
+            } if self.language() != Language::Godot || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
                 let arguments = arguments.clone();
                 let is_nested = self.language().has_array_values();
                 let values = arguments.into_iter().map(|argument| match is_nested {
