@@ -51,7 +51,7 @@ struct Shader {
 
     void mainImage(thread float4& fragColor, float2 fragCoord) {
         fragColor = float4(0.0);
-        Sphere sphere = Sphere{ float3(0.0, 0.0, -6.0), 1.5, float3(1.0, 1.0, 0.0) };
+        Sphere sphere = { float3(0.0, 0.0, -6.0), 1.5, float3(1.0, 1.0, 0.0) };
         Ray ray = cameraRay(fragCoord);
         float3 color = float3(0.0);
 

@@ -73,7 +73,7 @@ struct Shader {
     void mainImage(thread float4& fragColor, float2 fragCoord) {
         fragColor = float4(0.0);
         makeScene();
-        Sphere sphere = Sphere{ float3(0.0, 0.0, -6.0), 1.5, float3(0.9, 0.6, 0.2) };
+        Sphere sphere = { float3(0.0, 0.0, -6.0), 1.5, float3(0.9, 0.6, 0.2) };
         Ray ray = cameraRay(fragCoord);
         float3 color = float3(0.02, 0.02, 0.05);
 

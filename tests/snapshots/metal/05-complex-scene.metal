@@ -85,8 +85,8 @@ void keepNearest(Ray ray, Sphere sphere, thread Intersection& hit) {
 }
 
 Intersection hitScene(Ray ray, int frame) {
-    Sphere parent = Sphere{ float3(0.0, 0.0, -7.5), 1.0, float3(0.9, 0.9, 0.8) };
-    Intersection hit = Intersection{ NO_HIT, parent };
+    Sphere parent = { float3(0.0, 0.0, -7.5), 1.0, float3(0.9, 0.9, 0.8) };
+    Intersection hit = { NO_HIT, parent };
     keepNearest(ray, parent, hit);
     for (int i = 0; i < 6; i++) {
         Sphere child = childOf(parent, i, frame);

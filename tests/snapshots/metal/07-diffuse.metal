@@ -82,7 +82,7 @@ struct Shader {
         float3 origin = point + 0.001 * normal;
         float3 toLight = light.position - origin;
         float distance_1 = length(toLight);
-        Ray ray = Ray{ origin, toLight / distance_1 };
+        Ray ray = { origin, toLight / distance_1 };
         for (int i = 0; i < SPHERES; i++) {
             if (intersectSphere(ray, spheres[i]) < distance_1) {
                 return true;

@@ -118,7 +118,7 @@ struct Shader {
     }
 
     Intersection nearestHit(Ray ray) {
-        Intersection hit = Intersection{ NO_HIT, float3(0.0), float3(0.0) };
+        Intersection hit = { NO_HIT, float3(0.0), float3(0.0) };
         for (int i = 0; i < QUADRICS; i++) {
             float3x3 f = frame(quadrics[i].axis);
             float t = intersectQuadric(ray, quadrics[i], f);
@@ -161,7 +161,7 @@ struct Shader {
             float cosine = dot(hit.normal, normalize(LIGHT - point));
             float3 sum = AMBIENT;
             if (cosine > 0.0) {
-                Ray shadow = Ray{ point + 0.001 * hit.normal, toLight / distance_1 };
+                Ray shadow = { point + 0.001 * hit.normal, toLight / distance_1 };
                 if (nearestHit(shadow).t > distance_1) {
                     sum += LIGHT_COLOR * cosine;
                 }

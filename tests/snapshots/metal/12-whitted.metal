@@ -101,7 +101,7 @@ struct Shader {
     }
 
     Intersection nearestHit(Ray ray) {
-        Intersection hit = Intersection{ NO_HIT, float3(0.0), float3(0.0), MATTE, float3(0.0) };
+        Intersection hit = { NO_HIT, float3(0.0), float3(0.0), MATTE, float3(0.0) };
         for (int i = 0; i < SPHERES; i++) {
             float t = intersectSphere(ray, spheres[i]);
             if (t < hit.t) {
@@ -155,7 +155,7 @@ struct Shader {
                 continue;
             }
             float3 throughput = branch.throughput * hit.color;
-            Ray mirrored = Ray{ hit.point, reflect(ray.direction, hit.normal) };
+            Ray mirrored = { hit.point, reflect(ray.direction, hit.normal) };
             if (hit.model == MIRROR) {
                 stack[top++] = Branch{ mirrored, throughput, depth };
                 continue;

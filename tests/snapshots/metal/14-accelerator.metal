@@ -93,7 +93,7 @@ struct Shader {
         float3 outOf = max(low, high);
         float enter = max(max(into.x, into.y), max(into.z, 0.0));
         float leave = min(outOf.x, min(outOf.y, outOf.z));
-        Intersection none = Intersection{ NO_HIT, int3(-1) };
+        Intersection none = { NO_HIT, int3(-1) };
         if (enter >= leave) {
             return none;
         }
