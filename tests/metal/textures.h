@@ -102,7 +102,7 @@ template <int N> struct texture {
         for (int axis = 0, left = 1 << N; axis < N; ++axis) {
             left /= 2;
             for (int corner = 0; corner < left; ++corner)
-                corners[corner] = mix(corners[2 * corner], corners[2 * corner + 1], weights[axis]);
+                corners[corner] = corners[2 * corner] + (corners[2 * corner + 1] - corners[2 * corner]) * weights[axis];
         }
         return corners[0];
     }

@@ -37,23 +37,23 @@ template <class T, int... I> struct swizzle {
         const T *all = &first;
         return vector(all[I]...);
     }
-    swizzle &operator=(vector from) {
+    vector operator=(vector from) {
         T *all = &first;
         const int places[] = {I...};
         for (size_t at = 0; at < sizeof...(I); ++at) all[places[at]] = from[at];
-        return *this;
+        return from;
     }
     swizzle &operator=(const swizzle &) = delete;
-    swizzle &operator+=(vector other) { return *this = value() + other; }
-    swizzle &operator-=(vector other) { return *this = value() - other; }
-    swizzle &operator*=(vector other) { return *this = value() * other; }
-    swizzle &operator/=(vector other) { return *this = value() / other; }
-    swizzle &operator%=(vector other) { return *this = value() % other; }
-    swizzle &operator&=(vector other) { return *this = value() & other; }
-    swizzle &operator|=(vector other) { return *this = value() | other; }
-    swizzle &operator^=(vector other) { return *this = value() ^ other; }
-    swizzle &operator<<=(vector other) { return *this = value() << other; }
-    swizzle &operator>>=(vector other) { return *this = value() >> other; }
+    vector operator+=(vector other) { return *this = value() + other; }
+    vector operator-=(vector other) { return *this = value() - other; }
+    vector operator*=(vector other) { return *this = value() * other; }
+    vector operator/=(vector other) { return *this = value() / other; }
+    vector operator%=(vector other) { return *this = value() % other; }
+    vector operator&=(vector other) { return *this = value() & other; }
+    vector operator|=(vector other) { return *this = value() | other; }
+    vector operator^=(vector other) { return *this = value() ^ other; }
+    vector operator<<=(vector other) { return *this = value() << other; }
+    vector operator>>=(vector other) { return *this = value() >> other; }
     vector operator++() { *this = value() + vector(T(1)); return value(); }
     vector operator--() { *this = value() - vector(T(1)); return value(); }
     vector operator++(int) { vector before = value(); *this = before + vector(T(1)); return before; }

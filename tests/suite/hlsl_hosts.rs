@@ -202,7 +202,7 @@ fn passes_are_played_by_a_script() {
         let written = fs::read_dir(folder.path().join(style)).unwrap();
         let mut names: Vec<_> = written.map(|entry| entry.unwrap().file_name()).collect();
         names.sort();
-        let expected: Vec<_> = files.iter().filter(|name| !name.is_empty()).collect();
+        let expected: Vec<_> = files.iter().copied().filter(|name| !name.is_empty()).collect();
         assert_eq!(names, expected);
     }
     // Buffers are not upside down, and keep their alpha.

@@ -104,7 +104,7 @@ impl Writer<'_> {
             &ExprKind::Step { op, postfix, target } => {
                 let symbol = Part::token(op.symbol());
                 if self.language() == Language::Msl {
-                    self.step_in_metal(op.symbol(), postfix, target)?
+                    self.step_in_metal(id, op.symbol(), postfix, target)?
                 } else if postfix {
                     (vec![Print(target, level::POSTFIX), symbol], level::POSTFIX)
                 } else {
@@ -150,6 +150,12 @@ impl Writer<'_> {
             } => {
                 let (constructor, arguments) = (*constructor, arguments.clone());
                 self.construct(constructor, &arguments, tree[id].ty)?
+            }
+            &ExprKind::Swizzle { vector, .. }
+                if self.language() == Language::Msl
+                    && matches!(tree[vector].kind, ExprKind::Swizzle { .. }) =>
+            {
+                self.swizzle_in_metal(id)
             }
             &ExprKind::Swizzle { vector, components } => {
                 let letters = self.source.letters(components, tree[id].at);
@@ -358,8 +364,8 @@ impl Writer<'_> {
     /// Whether the value of a declaration is a list in braces.
     fn lists_values(&self, ty: Type) -> bool {
         match self.language() {
-            Language::Hlsl => true,
-            Language::Msl | Language::Godot => matches!(ty, Type::Array(_)),
+            Language::Hlsl | Language::Msl => true,
+            Language::Godot => matches!(ty, Type::Array(_)),
             Language::Glsl => false,
         }
     }

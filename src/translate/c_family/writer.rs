@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
-use toyproof_glsl::tree::{FunctionId, Item, Place, StructId, Type, VariableId};
+use toyproof_glsl::tree::{ExprId, FunctionId, Item, Place, StructId, Type, VariableId};
 
 use super::effect::impure_functions;
 use super::host::CHost;
@@ -34,6 +34,8 @@ pub(super) struct Writer<'a> {
     pub(super) made: BTreeSet<StructId>,
     /// What the structure around a shader contains, in languages without global variables.
     pub(super) members: HashSet<Item>,
+    /// The expressions whose values are not used, in languages in which this matters.
+    pub(super) discarded: HashSet<ExprId>,
     /// The type that the function being printed returns.
     pub(super) returned: Type,
     /// The functions with side effects.
@@ -73,6 +75,7 @@ impl<'a> Writer<'a> {
             helpers: BTreeMap::new(),
             made: BTreeSet::new(),
             members: HashSet::new(),
+            discarded: HashSet::new(),
             returned: Type::Void,
             impure: impure_functions(&cx.tree),
             taken: all.map(String::as_str).collect(),
@@ -234,6 +237,7 @@ impl<'a> Writer<'a> {
         }
         if self.language() == Language::Msl {
             self.members = self.members_in_metal(order);
+            self.discarded = self.cx.discarded_values();
         }
         let mut items = Vec::new();
         for &item in &order.items {

@@ -185,7 +185,7 @@ impl LoweringContext {
     }
 
     /// The expressions whose values are not used.
-    pub(super) fn discarded_values(&self) -> HashSet<ExprId> {
+    pub(crate) fn discarded_values(&self) -> HashSet<ExprId> {
         let mut pending = Vec::new();
         for body in self
             .tree

@@ -1,823 +1,287 @@
 // glsl/13-importance-sampling.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
-// language: metal2.0
+// A path tracer with multiple importance sampling: at each hit, one direction is sampled toward an emitter and one from the
+// BRDF, and the power heuristic weights the two (Veach and Guibas 1995).
+
 #include <metal_stdlib>
-#include <simd/simd.h>
+using namespace metal;
 
-using metal::uint;
-
-struct type_4 {
-    metal::float4 inner[4];
-};
-struct type_5 {
-    metal::float3 inner[4];
-};
-struct ToyproofFrame {
-    metal::packed_float3 iResolution;
-    float iTime;
-    float iTimeDelta;
-    int iFrame;
-    float iFrameRate;
-    char _pad5[4];
-    type_4 iChannelTime;
-    type_5 iChannelResolution;
-    metal::float4 iMouse;
-    metal::float4 iDate;
-    float iSampleRate;
-    char _pad10[12];
-};
-struct Ray {
-    metal::float3 origin;
-    metal::float3 direction;
-};
-struct Material {
-    int model;
-    char _pad1[12];
-    metal::packed_float3 color;
-    float exponent;
-};
-struct Sphere {
-    metal::packed_float3 center;
-    float radius;
-    Material material;
-};
-struct Intersection {
-    float t;
-    char _pad1[12];
-    metal::float3 point;
-    metal::float3 normal;
-    Material material;
-    int sphere;
-    char _pad5[12];
-};
-struct type_6 {
-    Sphere inner[6];
-};
-struct FragmentOutput {
-    metal::float4 toyproof_color;
-};
 constant float SCREEN_DEPTH = -2.0;
-constant float NO_HIT = 1000000.0;
-constant float PI = 3.1415927;
+constant float NO_HIT = 1.0e6;
+constant float PI = 3.14159265359;
 constant float EPSILON = 0.001;
 constant int SAMPLES = 16;
 constant int SPHERES = 6;
 constant int EMITTERS = 2;
 constant int MAX_DEPTH = 4;
+
 constant int DIFFUSE = 0;
 constant int GLOSSY = 1;
 constant int EMITTER = 2;
 
-uint pcg(
-    uint v
-) {
-    uint v_1 = {};
-    uint s = {};
-    uint word = {};
-    v_1 = v;
-    uint _e2 = v_1;
-    s = (_e2 * 747796405u) + 2891336453u;
-    uint _e8 = s;
-    uint _e9 = s;
-    uint _e15 = s;
-    word = ((_e8 >> ((_e9 >> 28u) + 4u)) ^ _e15) * 277803737u;
-    uint _e20 = word;
-    uint _e23 = word;
-    return (_e20 >> 22u) ^ _e23;
+struct Ray {
+    float3 origin;
+    float3 direction;
+};
+
+struct Material {
+    int model;
+    float3 color;
+    float exponent;
+};
+
+struct Sphere {
+    float3 center;
+    float radius;
+    Material material;
+};
+
+struct Intersection {
+    float t;
+    float3 point;
+    float3 normal;
+    Material material;
+    // The index of the sphere, or -1; the first EMITTERS spheres are emitters.
+    int sphere;
+};
+
+// The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
+uint pcg(uint v) {
+    uint s = v * 747796405u + 2891336453u;
+    uint word = (s >> (s >> 28u) + 4u ^ s) * 277803737u;
+    return word >> 22u ^ word;
 }
 
-float random(
-    thread uint& state
-) {
-    uint _e1 = state;
-    uint _e2 = pcg(_e1);
-    state = _e2;
-    uint _e3 = state;
-    return static_cast<float>(_e3 >> 8u) / 16777216.0;
-}
-
-uint naga_f2u32(float value) {
-    return static_cast<uint>(metal::clamp(value, 0.0, 4294967000.0));
-}
-
-void startSample(
-    metal::float2 fragCoord,
-    int i,
-    thread uint& state
-) {
-    metal::float2 fragCoord_1 = {};
-    int i_1 = {};
-    fragCoord_1 = fragCoord;
-    i_1 = i;
-    metal::float2 _e5 = fragCoord_1;
-    metal::float2 _e8 = fragCoord_1;
-    int _e11 = i_1;
-    uint _e13 = pcg(static_cast<uint>(_e11));
-    uint _e15 = pcg(naga_f2u32(_e8.y) + _e13);
-    uint _e17 = pcg(naga_f2u32(_e5.x) + _e15);
-    state = _e17;
-    return;
-}
-
-void makeScene(
-    thread type_6& spheres
-) {
-    spheres.inner[0] = Sphere {metal::float3(-2.5, 1.4, -6.5), 0.25, Material {2, {}, metal::float3(80.0, 70.0, 55.0), 0.0}};
-    spheres.inner[1] = Sphere {metal::float3(2.2, 1.4, -7.5), 0.8, Material {2, {}, metal::float3(2.5, 3.0, 4.0), 0.0}};
-    spheres.inner[2] = Sphere {metal::float3(-1.8, -0.3, -6.0), 0.7, Material {1, {}, metal::float3(0.9, 0.7, 0.3), 300.0}};
-    spheres.inner[3] = Sphere {metal::float3(0.0, -0.3, -6.5), 0.7, Material {1, {}, metal::float3(0.8, 0.8, 0.8), 30.0}};
-    spheres.inner[4] = Sphere {metal::float3(1.7, -0.4, -5.5), 0.6, Material {0, {}, metal::float3(0.8, 0.25, 0.2), 0.0}};
-    spheres.inner[5] = Sphere {metal::float3(0.6, -0.75, -4.2), 0.25, Material {0, {}, metal::float3(0.3, 0.7, 0.4), 0.0}};
-    return;
-}
-
-float intersectSphere(
-    Ray ray,
-    Sphere sphere
-) {
-    Ray ray_1 = {};
-    Sphere sphere_1 = {};
-    metal::float3 f = {};
-    float b = {};
-    metal::float3 closest = {};
-    float disc = {};
-    float root = {};
-    float t = {};
-    ray_1 = ray;
-    sphere_1 = sphere;
-    Ray _e6 = ray_1;
-    Sphere _e8 = sphere_1;
-    f = _e6.origin - _e8.center;
-    metal::float3 _e12 = f;
-    Ray _e13 = ray_1;
-    b = metal::dot(_e12, _e13.direction);
-    metal::float3 _e17 = f;
-    float _e18 = b;
-    Ray _e19 = ray_1;
-    closest = _e17 - (_e18 * _e19.direction);
-    Sphere _e24 = sphere_1;
-    Sphere _e26 = sphere_1;
-    metal::float3 _e29 = closest;
-    metal::float3 _e30 = closest;
-    disc = (_e24.radius * _e26.radius) - metal::dot(_e29, _e30);
-    float _e34 = disc;
-    if (_e34 > 0.0) {
-        {
-            float _e37 = disc;
-            root = metal::sqrt(_e37);
-            float _e40 = b;
-            float _e42 = root;
-            t = -(_e40) - _e42;
-            float _e45 = t;
-            if (_e45 > EPSILON) {
-                {
-                    float _e47 = t;
-                    return _e47;
-                }
-            }
-            float _e48 = b;
-            float _e50 = root;
-            t = -(_e48) + _e50;
-            float _e52 = t;
-            if (_e52 > EPSILON) {
-                {
-                    float _e54 = t;
-                    return _e54;
-                }
-            }
+// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
+float intersectSphere(Ray ray, Sphere sphere) {
+    float3 f = ray.origin - sphere.center;
+    float b = dot(f, ray.direction);
+    float3 closest = f - b * ray.direction;
+    float disc = sphere.radius * sphere.radius - dot(closest, closest);
+    if (disc > 0.0) {
+        float root = sqrt(disc);
+        float t = -b - root;
+        if (t > EPSILON) {
+            return t;
+        }
+        t = -b + root;
+        if (t > EPSILON) {
+            return t;
         }
     }
     return NO_HIT;
 }
 
-Intersection nearestHit(
-    Ray ray_2,
-    thread type_6& spheres
-) {
-    Ray ray_3 = {};
-    Intersection hit = {};
-    int i_2 = 0;
-    float t_1 = {};
-    float t_2 = {};
-    ray_3 = ray_2;
-    hit.t = NO_HIT;
-    hit.sphere = -1;
-    while(true) {
-        int _e12 = i_2;
-        if (!((_e12 < SPHERES))) {
-            break;
-        }
-        {
-            Ray _e15 = ray_3;
-            int _e16 = i_2;
-            Sphere _e18 = spheres.inner[metal::min(unsigned(_e16), 5u)];
-            float _e19 = intersectSphere(_e15, _e18);
-            t_1 = _e19;
-            float _e21 = t_1;
-            Intersection _e22 = hit;
-            if (_e21 < _e22.t) {
-                {
-                    float _e26 = t_1;
-                    hit.t = _e26;
-                    int _e28 = i_2;
-                    hit.sphere = _e28;
-                }
-            }
-            int _e29 = i_2;
-            i_2 = as_type<int>(as_type<uint>(_e29) + as_type<uint>(1));
-        }
+// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
+float3 around(float3 w, float cosine, float turn) {
+    float3 up = abs(w.y) > 0.9 ? float3(1.0, 0.0, 0.0) : float3(0.0, 1.0, 0.0);
+    float3 a = normalize(cross(up, w));
+    float3 b = cross(w, a);
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float phi = 6.28318530718 * turn;
+    return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
+}
+
+// 1 - cos of the half angle of the cone that an emitter subtends.
+float coneDepth(float3 point, Sphere emitter) {
+    float3 toCenter = emitter.center - point;
+    float sine2 = emitter.radius * emitter.radius / dot(toCenter, toCenter);
+    return sine2 / (1.0 + sqrt(1.0 - sine2));
+}
+
+// The probability density, per solid angle, of sampling a direction toward this emitter.
+float lightDensity(float3 point, Sphere emitter) {
+    return 1.0 / (2.0 * PI * coneDepth(point, emitter) * float(EMITTERS));
+}
+
+float3 brdf(Material material, float3 reflected, float3 direction) {
+    if (material.model == GLOSSY) {
+        float lobe = pow(max(dot(reflected, direction), 0.0), material.exponent);
+        return material.color * (material.exponent + 2.0) / (2.0 * PI) * lobe;
     }
-    Ray _e33 = ray_3;
-    Ray _e37 = ray_3;
-    t_2 = (-1.0 - _e33.origin.y) / _e37.direction.y;
-    float _e42 = t_2;
-    float _e44 = t_2;
-    Intersection _e45 = hit;
-    if ((_e42 > EPSILON) && (_e44 < _e45.t)) {
-        {
-            float _e50 = t_2;
-            hit.t = _e50;
+    return material.color / PI;
+}
+
+float brdfDensity(Material material, float3 normal, float3 reflected, float3 direction) {
+    if (material.model == GLOSSY) {
+        float lobe = pow(max(dot(reflected, direction), 0.0), material.exponent);
+        return (material.exponent + 1.0) / (2.0 * PI) * lobe;
+    }
+    return max(dot(normal, direction), 0.0) / PI;
+}
+
+float weight(float density, float other) {
+    float ratio = other / density;
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+struct Shader {
+    float3 iResolution;
+
+    array<Sphere, 6> spheres = {};
+    uint state = 0u;
+
+    float random() {
+        state = pcg(state);
+        return float(state >> 8u) / 16777216.0;
+    }
+
+    void startSample(float2 fragCoord, int i) {
+        state = pcg(uint(fragCoord.x) + pcg(uint(fragCoord.y) + pcg(uint(i))));
+    }
+
+    void makeScene() {
+        spheres[0] = Sphere{ float3(-2.5, 1.4, -6.5), 0.25, Material{ EMITTER, float3(80.0, 70.0, 55.0), 0.0 } };
+        spheres[1] = Sphere{ float3(2.2, 1.4, -7.5), 0.8, Material{ EMITTER, float3(2.5, 3.0, 4.0), 0.0 } };
+        spheres[2] = Sphere{ float3(-1.8, -0.3, -6.0), 0.7, Material{ GLOSSY, float3(0.9, 0.7, 0.3), 300.0 } };
+        spheres[3] = Sphere{ float3(0.0, -0.3, -6.5), 0.7, Material{ GLOSSY, float3(0.8, 0.8, 0.8), 30.0 } };
+        spheres[4] = Sphere{ float3(1.7, -0.4, -5.5), 0.6, Material{ DIFFUSE, float3(0.8, 0.25, 0.2), 0.0 } };
+        spheres[5] = Sphere{ float3(0.6, -0.75, -4.2), 0.25, Material{ DIFFUSE, float3(0.3, 0.7, 0.4), 0.0 } };
+    }
+
+    Intersection nearestHit(Ray ray) {
+        Intersection hit = {};
+        hit.t = NO_HIT;
+        hit.sphere = -1;
+        for (int i = 0; i < SPHERES; i++) {
+            float t = intersectSphere(ray, spheres[i]);
+            if (t < hit.t) {
+                hit.t = t;
+                hit.sphere = i;
+            }
+        }
+        float t = (-1.0 - ray.origin.y) / ray.direction.y;
+        if (t > EPSILON && t < hit.t) {
+            hit.t = t;
             hit.sphere = -1;
-            hit.normal = metal::float3(0.0, 1.0, 0.0);
-            hit.material = Material {0, {}, metal::float3(0.6, 0.6, 0.65), 0.0};
+            hit.normal = float3(0.0, 1.0, 0.0);
+            hit.material = Material{ DIFFUSE, float3(0.6, 0.6, 0.65), 0.0 };
         }
-    }
-    Ray _e67 = ray_3;
-    Intersection _e69 = hit;
-    Ray _e71 = ray_3;
-    hit.point = _e67.origin + (_e69.t * _e71.direction);
-    Intersection _e75 = hit;
-    if (_e75.sphere >= 0) {
-        {
-            Intersection _e80 = hit;
-            Intersection _e82 = hit;
-            Sphere _e85 = spheres.inner[metal::min(unsigned(_e82.sphere), 5u)];
-            hit.normal = metal::normalize(_e80.point - _e85.center);
-            Intersection _e90 = hit;
-            Sphere _e93 = spheres.inner[metal::min(unsigned(_e90.sphere), 5u)];
-            hit.material = _e93.material;
+        hit.point = ray.origin + hit.t * ray.direction;
+        if (hit.sphere >= 0) {
+            hit.normal = normalize(hit.point - spheres[hit.sphere].center);
+            hit.material = spheres[hit.sphere].material;
         }
+        return hit;
     }
-    Intersection _e95 = hit;
-    return _e95;
-}
 
-metal::float3 around(
-    metal::float3 w,
-    float cosine,
-    float turn
-) {
-    metal::float3 w_1 = {};
-    float cosine_1 = {};
-    float turn_1 = {};
-    metal::float3 local = {};
-    metal::float3 up = {};
-    metal::float3 a = {};
-    metal::float3 b_1 = {};
-    float sine = {};
-    float phi = {};
-    w_1 = w;
-    cosine_1 = cosine;
-    turn_1 = turn;
-    metal::float3 _e6 = w_1;
-    if (metal::abs(_e6.y) > 0.9) {
-        local = metal::float3(1.0, 0.0, 0.0);
-    } else {
-        local = metal::float3(0.0, 1.0, 0.0);
-    }
-    metal::float3 _e20 = local;
-    up = _e20;
-    metal::float3 _e22 = up;
-    metal::float3 _e23 = w_1;
-    a = metal::normalize(metal::cross(_e22, _e23));
-    metal::float3 _e27 = w_1;
-    metal::float3 _e28 = a;
-    b_1 = metal::cross(_e27, _e28);
-    float _e32 = cosine_1;
-    float _e33 = cosine_1;
-    sine = metal::sqrt(metal::max(1.0 - (_e32 * _e33), 0.0));
-    float _e41 = turn_1;
-    phi = 6.2831855 * _e41;
-    float _e44 = sine;
-    float _e45 = phi;
-    metal::float3 _e48 = a;
-    float _e50 = sine;
-    float _e51 = phi;
-    metal::float3 _e54 = b_1;
-    float _e57 = cosine_1;
-    metal::float3 _e58 = w_1;
-    return (((_e44 * metal::cos(_e45)) * _e48) + ((_e50 * metal::sin(_e51)) * _e54)) + (_e57 * _e58);
-}
-
-float coneDepth(
-    metal::float3 point,
-    Sphere emitter
-) {
-    metal::float3 point_1 = {};
-    Sphere emitter_1 = {};
-    metal::float3 toCenter = {};
-    float sine2_ = {};
-    point_1 = point;
-    emitter_1 = emitter;
-    Sphere _e4 = emitter_1;
-    metal::float3 _e6 = point_1;
-    toCenter = _e4.center - _e6;
-    Sphere _e9 = emitter_1;
-    Sphere _e11 = emitter_1;
-    metal::float3 _e14 = toCenter;
-    metal::float3 _e15 = toCenter;
-    sine2_ = (_e9.radius * _e11.radius) / metal::dot(_e14, _e15);
-    float _e19 = sine2_;
-    float _e22 = sine2_;
-    return _e19 / (1.0 + metal::sqrt(1.0 - _e22));
-}
-
-float lightDensity(
-    metal::float3 point_2,
-    Sphere emitter_2
-) {
-    metal::float3 point_3 = {};
-    Sphere emitter_3 = {};
-    point_3 = point_2;
-    emitter_3 = emitter_2;
-    metal::float3 _e6 = point_3;
-    Sphere _e7 = emitter_3;
-    float _e8 = coneDepth(_e6, _e7);
-    return 1.0 / ((6.2831855 * _e8) * 2.0);
-}
-
-metal::float3 brdf(
-    Material material,
-    metal::float3 reflected,
-    metal::float3 direction
-) {
-    Material material_1 = {};
-    metal::float3 reflected_1 = {};
-    metal::float3 direction_1 = {};
-    float lobe = {};
-    material_1 = material;
-    reflected_1 = reflected;
-    direction_1 = direction;
-    Material _e7 = material_1;
-    if (_e7.model == GLOSSY) {
-        {
-            metal::float3 _e10 = reflected_1;
-            metal::float3 _e11 = direction_1;
-            Material _e15 = material_1;
-            lobe = metal::pow(metal::max(metal::dot(_e10, _e11), 0.0), _e15.exponent);
-            Material _e19 = material_1;
-            Material _e21 = material_1;
-            float _e29 = lobe;
-            return ((_e19.color * (_e21.exponent + 2.0)) / metal::float3(6.2831855)) * _e29;
+    float3 sampleBrdf(Material material, float3 normal, float3 reflected) {
+        float u = random();
+        float v = random();
+        if (material.model == GLOSSY) {
+            return around(reflected, pow(1.0 - u, 1.0 / (material.exponent + 1.0)), v);
         }
+        return around(normal, sqrt(1.0 - u), v);
     }
-    Material _e31 = material_1;
-    return _e31.color / metal::float3(3.1415927);
-}
 
-float brdfDensity(
-    Material material_2,
-    metal::float3 normal,
-    metal::float3 reflected_2,
-    metal::float3 direction_2
-) {
-    Material material_3 = {};
-    metal::float3 normal_1 = {};
-    metal::float3 reflected_3 = {};
-    metal::float3 direction_3 = {};
-    float lobe_1 = {};
-    material_3 = material_2;
-    normal_1 = normal;
-    reflected_3 = reflected_2;
-    direction_3 = direction_2;
-    Material _e10 = material_3;
-    if (_e10.model == GLOSSY) {
-        {
-            metal::float3 _e13 = reflected_3;
-            metal::float3 _e14 = direction_3;
-            Material _e18 = material_3;
-            lobe_1 = metal::pow(metal::max(metal::dot(_e13, _e14), 0.0), _e18.exponent);
-            Material _e22 = material_3;
-            float _e28 = lobe_1;
-            return ((_e22.exponent + 1.0) / 6.2831855) * _e28;
-        }
-    }
-    metal::float3 _e30 = normal_1;
-    metal::float3 _e31 = direction_3;
-    return metal::max(metal::dot(_e30, _e31), 0.0) / PI;
-}
-
-metal::float3 sampleBrdf(
-    Material material_4,
-    metal::float3 normal_2,
-    metal::float3 reflected_4,
-    thread uint& state
-) {
-    Material material_5 = {};
-    metal::float3 normal_3 = {};
-    metal::float3 reflected_5 = {};
-    float u = {};
-    float v_2 = {};
-    material_5 = material_4;
-    normal_3 = normal_2;
-    reflected_5 = reflected_4;
-    float _e7 = random(state);
-    u = _e7;
-    float _e9 = random(state);
-    v_2 = _e9;
-    Material _e11 = material_5;
-    if (_e11.model == GLOSSY) {
-        {
-            metal::float3 _e14 = reflected_5;
-            float _e16 = u;
-            Material _e19 = material_5;
-            float _e25 = v_2;
-            metal::float3 _e26 = around(_e14, metal::pow(1.0 - _e16, 1.0 / (_e19.exponent + 1.0)), _e25);
-            return _e26;
-        }
-    }
-    metal::float3 _e27 = normal_3;
-    float _e29 = u;
-    float _e32 = v_2;
-    metal::float3 _e33 = around(_e27, metal::sqrt(1.0 - _e29), _e32);
-    return _e33;
-}
-
-float weight(
-    float density,
-    float other
-) {
-    float density_1 = {};
-    float other_1 = {};
-    float ratio = {};
-    density_1 = density;
-    other_1 = other;
-    float _e4 = other_1;
-    float _e5 = density_1;
-    ratio = _e4 / _e5;
-    float _e10 = ratio;
-    float _e11 = ratio;
-    return 1.0 / (1.0 + (_e10 * _e11));
-}
-
-bool inShadow(
-    Ray ray_4,
-    int emitter_4,
-    thread type_6& spheres
-) {
-    Ray ray_5 = {};
-    int emitter_5 = {};
-    float distance = {};
-    int i_3 = 0;
-    bool local_1 = {};
-    float t_3 = {};
-    ray_5 = ray_4;
-    emitter_5 = emitter_4;
-    Ray _e7 = ray_5;
-    int _e8 = emitter_5;
-    Sphere _e10 = spheres.inner[metal::min(unsigned(_e8), 5u)];
-    float _e11 = intersectSphere(_e7, _e10);
-    distance = _e11;
-    while(true) {
-        int _e15 = i_3;
-        if (!((_e15 < SPHERES))) {
-            break;
-        }
-        {
-            int _e18 = i_3;
-            int _e19 = emitter_5;
-            if (_e18 != _e19) {
-                Ray _e21 = ray_5;
-                int _e22 = i_3;
-                Sphere _e24 = spheres.inner[metal::min(unsigned(_e22), 5u)];
-                float _e25 = intersectSphere(_e21, _e24);
-                float _e26 = distance;
-                local_1 = _e25 < _e26;
-            } else {
-                local_1 = false;
+    bool inShadow(Ray ray, int emitter) {
+        float distance_1 = intersectSphere(ray, spheres[emitter]);
+        for (int i = 0; i < SPHERES; i++) {
+            if (i != emitter && intersectSphere(ray, spheres[i]) < distance_1) {
+                return true;
             }
-            bool _e30 = local_1;
-            if (_e30) {
-                {
-                    return true;
+        }
+        float t = (-1.0 - ray.origin.y) / ray.direction.y;
+        return t > EPSILON && t < distance_1;
+    }
+
+    // The light from one randomly chosen emitter.
+    float3 sampleLight(Intersection hit, float3 reflected) {
+        int emitter = min(int(random() * float(EMITTERS)), EMITTERS - 1);
+        float u = random();
+        float v = random();
+        float cosine = 1.0 - u * coneDepth(hit.point, spheres[emitter]);
+        float3 direction = around(normalize(spheres[emitter].center - hit.point), cosine, v);
+        float facing = dot(hit.normal, direction);
+        if (facing <= 0.0) {
+            return float3(0.0);
+        }
+        if (inShadow(Ray{ hit.point + EPSILON * hit.normal, direction }, emitter)) {
+            return float3(0.0);
+        }
+        float density = lightDensity(hit.point, spheres[emitter]);
+        float other = brdfDensity(hit.material, hit.normal, reflected, direction);
+        return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
+    }
+
+    float3 trace(Ray ray) {
+        float3 color = float3(0.0);
+        float3 throughput = float3(1.0);
+        // The probability density of the ray's direction; 0 for camera rays.
+        float density = 0.0;
+        for (int depth = 0; depth < MAX_DEPTH; depth++) {
+            Intersection hit = nearestHit(ray);
+            if (hit.t == NO_HIT) {
+                return color + throughput * float3(0.05, 0.06, 0.08);
+            }
+            if (hit.material.model == EMITTER) {
+                float share = 1.0;
+                if (density > 0.0) {
+                    share = weight(density, lightDensity(ray.origin, spheres[hit.sphere]));
                 }
+                return color + throughput * hit.material.color * share;
             }
-            int _e32 = i_3;
-            i_3 = as_type<int>(as_type<uint>(_e32) + as_type<uint>(1));
-        }
-    }
-    Ray _e36 = ray_5;
-    Ray _e40 = ray_5;
-    t_3 = (-1.0 - _e36.origin.y) / _e40.direction.y;
-    float _e45 = t_3;
-    float _e47 = t_3;
-    float _e48 = distance;
-    return (_e45 > EPSILON) && (_e47 < _e48);
-}
-
-int naga_f2i32(float value) {
-    return static_cast<int>(metal::clamp(value, -2147483600.0, 2147483500.0));
-}
-
-metal::float3 sampleLight(
-    Intersection hit_1,
-    metal::float3 reflected_6,
-    thread type_6& spheres,
-    thread uint& state
-) {
-    Intersection hit_2 = {};
-    metal::float3 reflected_7 = {};
-    int emitter_6 = {};
-    float u_1 = {};
-    float v_3 = {};
-    float cosine_2 = {};
-    metal::float3 direction_4 = {};
-    float facing = {};
-    float density_2 = {};
-    float other_2 = {};
-    hit_2 = hit_1;
-    reflected_7 = reflected_6;
-    float _e6 = random(state);
-    emitter_6 = metal::min(naga_f2i32(_e6 * 2.0), 1);
-    float _e13 = random(state);
-    u_1 = _e13;
-    float _e15 = random(state);
-    v_3 = _e15;
-    float _e18 = u_1;
-    Intersection _e19 = hit_2;
-    int _e21 = emitter_6;
-    Sphere _e23 = spheres.inner[metal::min(unsigned(_e21), 5u)];
-    float _e24 = coneDepth(_e19.point, _e23);
-    cosine_2 = 1.0 - (_e18 * _e24);
-    int _e28 = emitter_6;
-    Sphere _e30 = spheres.inner[metal::min(unsigned(_e28), 5u)];
-    Intersection _e32 = hit_2;
-    float _e36 = cosine_2;
-    float _e37 = v_3;
-    metal::float3 _e38 = around(metal::normalize(_e30.center - _e32.point), _e36, _e37);
-    direction_4 = _e38;
-    Intersection _e40 = hit_2;
-    metal::float3 _e42 = direction_4;
-    facing = metal::dot(_e40.normal, _e42);
-    float _e45 = facing;
-    if (_e45 <= 0.0) {
-        {
-            return metal::float3(0.0);
-        }
-    }
-    Intersection _e50 = hit_2;
-    Intersection _e52 = hit_2;
-    metal::float3 _e56 = direction_4;
-    int _e58 = emitter_6;
-    bool _e59 = inShadow(Ray {_e50.point + (EPSILON * _e52.normal), _e56}, _e58, spheres);
-    if (_e59) {
-        {
-            return metal::float3(0.0);
-        }
-    }
-    Intersection _e62 = hit_2;
-    int _e64 = emitter_6;
-    Sphere _e66 = spheres.inner[metal::min(unsigned(_e64), 5u)];
-    float _e67 = lightDensity(_e62.point, _e66);
-    density_2 = _e67;
-    Intersection _e69 = hit_2;
-    Intersection _e71 = hit_2;
-    metal::float3 _e73 = reflected_7;
-    metal::float3 _e74 = direction_4;
-    float _e75 = brdfDensity(_e69.material, _e71.normal, _e73, _e74);
-    other_2 = _e75;
-    int _e77 = emitter_6;
-    Sphere _e79 = spheres.inner[metal::min(unsigned(_e77), 5u)];
-    Intersection _e82 = hit_2;
-    metal::float3 _e84 = reflected_7;
-    metal::float3 _e85 = direction_4;
-    metal::float3 _e86 = brdf(_e82.material, _e84, _e85);
-    float _e88 = facing;
-    float _e90 = density_2;
-    float _e91 = other_2;
-    float _e92 = weight(_e90, _e91);
-    float _e94 = density_2;
-    return (((_e79.material.color * _e86) * _e88) * _e92) / metal::float3(_e94);
-}
-
-metal::float3 trace(
-    Ray ray_6,
-    thread type_6& spheres,
-    thread uint& state
-) {
-    Ray ray_7 = {};
-    metal::float3 color = metal::float3(0.0);
-    metal::float3 throughput = metal::float3(1.0);
-    float density_3 = 0.0;
-    int depth = 0;
-    Intersection hit_3 = {};
-    float share = {};
-    metal::float3 reflected_8 = {};
-    metal::float3 direction_5 = {};
-    float facing_1 = {};
-    ray_7 = ray_6;
-    while(true) {
-        int _e17 = depth;
-        if (!((_e17 < MAX_DEPTH))) {
-            break;
-        }
-        {
-            Ray _e20 = ray_7;
-            Intersection _e21 = nearestHit(_e20, spheres);
-            hit_3 = _e21;
-            Intersection _e23 = hit_3;
-            if (_e23.t == NO_HIT) {
-                {
-                    metal::float3 _e26 = color;
-                    metal::float3 _e27 = throughput;
-                    return _e26 + (_e27 * metal::float3(0.05, 0.06, 0.08));
-                }
+            // A path through another surface would be longer than MAX_DEPTH segments.
+            if (depth + 1 == MAX_DEPTH) {
+                return color;
             }
-            Intersection _e34 = hit_3;
-            if (_e34.material.model == EMITTER) {
-                {
-                    share = 1.0;
-                    float _e40 = density_3;
-                    if (_e40 > 0.0) {
-                        {
-                            float _e43 = density_3;
-                            Ray _e44 = ray_7;
-                            Intersection _e46 = hit_3;
-                            Sphere _e49 = spheres.inner[metal::min(unsigned(_e46.sphere), 5u)];
-                            float _e50 = lightDensity(_e44.origin, _e49);
-                            float _e51 = weight(_e43, _e50);
-                            share = _e51;
-                        }
-                    }
-                    metal::float3 _e52 = color;
-                    metal::float3 _e53 = throughput;
-                    Intersection _e54 = hit_3;
-                    float _e58 = share;
-                    return _e52 + ((_e53 * _e54.material.color) * _e58);
-                }
+            float3 reflected = reflect(ray.direction, hit.normal);
+            color += throughput * sampleLight(hit, reflected);
+            float3 direction = sampleBrdf(hit.material, hit.normal, reflected);
+            float facing = dot(hit.normal, direction);
+            if (facing <= 0.0) {
+                return color;
             }
-            int _e61 = depth;
-            if (as_type<int>(as_type<uint>(_e61) + as_type<uint>(1)) == MAX_DEPTH) {
-                {
-                    metal::float3 _e65 = color;
-                    return _e65;
-                }
-            }
-            Ray _e66 = ray_7;
-            Intersection _e68 = hit_3;
-            reflected_8 = metal::reflect(_e66.direction, _e68.normal);
-            metal::float3 _e72 = color;
-            metal::float3 _e73 = throughput;
-            Intersection _e74 = hit_3;
-            metal::float3 _e75 = reflected_8;
-            metal::float3 _e76 = sampleLight(_e74, _e75, spheres, state);
-            color = _e72 + (_e73 * _e76);
-            Intersection _e79 = hit_3;
-            Intersection _e81 = hit_3;
-            metal::float3 _e83 = reflected_8;
-            metal::float3 _e84 = sampleBrdf(_e79.material, _e81.normal, _e83, state);
-            direction_5 = _e84;
-            Intersection _e86 = hit_3;
-            metal::float3 _e88 = direction_5;
-            facing_1 = metal::dot(_e86.normal, _e88);
-            float _e91 = facing_1;
-            if (_e91 <= 0.0) {
-                {
-                    metal::float3 _e94 = color;
-                    return _e94;
-                }
-            }
-            Intersection _e95 = hit_3;
-            Intersection _e97 = hit_3;
-            metal::float3 _e99 = reflected_8;
-            metal::float3 _e100 = direction_5;
-            float _e101 = brdfDensity(_e95.material, _e97.normal, _e99, _e100);
-            density_3 = _e101;
-            metal::float3 _e102 = throughput;
-            Intersection _e103 = hit_3;
-            metal::float3 _e105 = reflected_8;
-            metal::float3 _e106 = direction_5;
-            metal::float3 _e107 = brdf(_e103.material, _e105, _e106);
-            float _e108 = facing_1;
-            float _e110 = density_3;
-            throughput = _e102 * ((_e107 * _e108) / metal::float3(_e110));
-            Intersection _e114 = hit_3;
-            Intersection _e116 = hit_3;
-            metal::float3 _e120 = direction_5;
-            ray_7 = Ray {_e114.point + (EPSILON * _e116.normal), _e120};
-            int _e122 = depth;
-            depth = as_type<int>(as_type<uint>(_e122) + as_type<uint>(1));
+            density = brdfDensity(hit.material, hit.normal, reflected, direction);
+            throughput *= brdf(hit.material, reflected, direction) * facing / density;
+            ray = Ray{ hit.point + EPSILON * hit.normal, direction };
         }
+        return color;
     }
-    metal::float3 _e125 = color;
-    return _e125;
-}
 
-Ray cameraRay(
-    metal::float2 fragCoord_2,
-    constant ToyproofFrame& global
-) {
-    metal::float2 fragCoord_3 = {};
-    float aspect = {};
-    float x = {};
-    float y = {};
-    fragCoord_3 = fragCoord_2;
-    metal::float3 _e5 = global.iResolution;
-    metal::float3 _e7 = global.iResolution;
-    aspect = _e5.x / _e7.y;
-    metal::float2 _e11 = fragCoord_3;
-    metal::float3 _e13 = global.iResolution;
-    x = ((_e11.x / _e13.x) * 2.0) - 1.0;
-    metal::float2 _e21 = fragCoord_3;
-    metal::float3 _e23 = global.iResolution;
-    float _e30 = aspect;
-    y = (((_e21.y / _e23.y) * 2.0) - 1.0) / _e30;
-    float _e35 = x;
-    float _e36 = y;
-    return Ray {metal::float3(0.0), metal::normalize(metal::float3(_e35, _e36, SCREEN_DEPTH))};
-}
-
-void mainImage(
-    thread metal::float4& fragColor,
-    metal::float2 fragCoord_4,
-    constant ToyproofFrame& global,
-    thread type_6& spheres,
-    thread uint& state
-) {
-    metal::float2 fragCoord_5 = {};
-    metal::float3 color_1 = metal::float3(0.0);
-    int i_4 = 0;
-    float x_1 = {};
-    float y_1 = {};
-    fragCoord_5 = fragCoord_4;
-    fragColor = metal::float4(0.0);
-    makeScene(spheres);
-    while(true) {
-        int _e11 = i_4;
-        if (!((_e11 < SAMPLES))) {
-            break;
-        }
-        {
-            metal::float2 _e14 = fragCoord_5;
-            int _e15 = i_4;
-            startSample(_e14, _e15, state);
-            metal::float2 _e16 = fragCoord_5;
-            float _e18 = random(state);
-            x_1 = (_e16.x + _e18) - 0.5;
-            metal::float2 _e23 = fragCoord_5;
-            float _e25 = random(state);
-            y_1 = (_e23.y + _e25) - 0.5;
-            metal::float3 _e30 = color_1;
-            float _e31 = x_1;
-            float _e32 = y_1;
-            Ray _e34 = cameraRay(metal::float2(_e31, _e32), global);
-            metal::float3 _e35 = trace(_e34, spheres, state);
-            color_1 = _e30 + _e35;
-            int _e37 = i_4;
-            i_4 = as_type<int>(as_type<uint>(_e37) + as_type<uint>(1));
-        }
+    Ray cameraRay(float2 fragCoord) {
+        float aspect = iResolution.x / iResolution.y;
+        float x = fragCoord.x / iResolution.x * 2.0 - 1.0;
+        float y = (fragCoord.y / iResolution.y * 2.0 - 1.0) / aspect;
+        return Ray{ float3(0.0), normalize(float3(x, y, SCREEN_DEPTH)) };
     }
-    metal::float3 _e40 = color_1;
-    color_1 = _e40 / metal::float3(16.0);
-    metal::float3 _e44 = color_1;
-    metal::float3 _e45 = color_1;
-    metal::float3 _e52 = metal::pow(_e44 / (_e45 + metal::float3(1.0)), metal::float3(0.45454544));
-    fragColor = metal::float4(_e52.x, _e52.y, _e52.z, 1.0);
-    return;
-}
 
-void main_1(
-    thread metal::float4& toyproof_color,
-    constant ToyproofFrame& global,
-    thread type_6& spheres,
-    thread uint& state,
-    thread metal::float4& gl_FragCoord_1
-) {
-    metal::float4 toyproof_image_color = metal::float4(0.0, 0.0, 0.0, 1.0);
-    metal::float4 _e8 = gl_FragCoord_1;
-    mainImage(toyproof_image_color, _e8.xy, global, spheres, state);
-    metal::float4 _e10 = toyproof_image_color;
-    metal::float3 _e11 = _e10.xyz;
-    toyproof_color = metal::float4(_e11.x, _e11.y, _e11.z, 1.0);
-    return;
-}
-
-struct main_Input {
+    void mainImage(thread float4& fragColor, float2 fragCoord) {
+        fragColor = float4(0.0);
+        makeScene();
+        float3 color = float3(0.0);
+        for (int i = 0; i < SAMPLES; i++) {
+            startSample(fragCoord, i);
+            float x = fragCoord.x + random() - 0.5;
+            float y = fragCoord.y + random() - 0.5;
+            color += trace(cameraRay(float2(x, y)));
+        }
+        color /= float(SAMPLES);
+        fragColor = float4(pow(color / (color + 1.0), float3(0.45454544)), 1.0);
+    }
 };
-struct main_Output {
-    metal::float4 toyproof_color [[color(0)]];
+
+struct Inputs {
+    packed_float3 iResolution;
+    float iTime;
+    float iTimeDelta;
+    int iFrame;
+    float iFrameRate;
+    float4 iChannelTime[4];
+    float3 iChannelResolution[4];
+    float4 iMouse;
+    float4 iDate;
+    float iSampleRate;
 };
-fragment main_Output main_(
-  metal::float4 gl_FragCoord [[position]]
-, constant ToyproofFrame& global [[buffer(0)]]
+
+fragment float4 main_(
+    constant Inputs& inputs [[buffer(0)]],
+    float4 position [[position]]
 ) {
-    metal::float4 toyproof_color = {};
-    type_6 spheres = {};
-    uint state = {};
-    metal::float4 gl_FragCoord_1 = {};
-    gl_FragCoord_1 = gl_FragCoord;
-    main_1(toyproof_color, global, spheres, state, gl_FragCoord_1);
-    metal::float4 _e3 = toyproof_color;
-    const auto _tmp = FragmentOutput {_e3};
-    return main_Output { _tmp.toyproof_color };
+    Shader shader = {
+        float3(inputs.iResolution),
+    };
+    float4 color;
+    shader.mainImage(color, position.xy);
+    return float4(color.xyz, 1.0);
 }

@@ -181,9 +181,37 @@ impl Writer<'_> {
         })
     }
 
+    /// `v.zyx.xy` as `v.zy`.
+    pub(in super::super) fn swizzle_in_metal(&self, mut id: ExprId) -> Parts {
+        let tree = &self.cx.tree;
+        let mut places: Option<Vec<u8>> = None;
+        while let ExprKind::Swizzle { vector, components } = tree[id].kind {
+            let own = components.components();
+            // The outer swizzle selects among the components of the inner one.
+            places = Some(match places {
+                None => own.to_vec(),
+                Some(outer) => outer.into_iter().map(|place| own[usize::from(place)]).collect(),
+            });
+            id = vector;
+        }
+        let places = places.unwrap_or_default();
+        let letters: String = places
+            .iter()
+            .map(|&place| char::from(b"xyzw"[usize::from(place)]))
+            .collect();
+        (
+            vec![
+                Part::Print(id, level::POSTFIX),
+                Part::Token(format!(".{letters}")),
+            ],
+            level::POSTFIX,
+        )
+    }
+
     /// `x++`; vectors of floats have no such operator.
     pub(in super::super) fn step_in_metal(
         &self,
+        id: ExprId,
         symbol: &str,
         postfix: bool,
         target: ExprId,
@@ -198,7 +226,7 @@ impl Writer<'_> {
                 let parts = vec![Part::token(symbol), Part::Print(target, level::UNARY)];
                 Ok((parts, level::UNARY))
             }
-            (Type::Vector(..), false) => {
+            (Type::Vector(..), _) if !postfix || self.discarded.contains(&id) => {
                 let changed = format!(" {}= 1.0", &symbol[..1]);
                 Ok((
                     vec![Part::Print(target, level::UNARY), Part::Token(changed)],

@@ -339,8 +339,16 @@ fn what_metal_evaluates_in_another_order_is_left_to_naga() {
         "int i = 0;\nint a[3];\na[i] = i++;\ncolor.x = float(a[0]);",
         "sides affect each other",
     );
+    assert_lines(
+        &body("color.zyx.xz = at.yx.xx;\ncolor.rgb.gr.x = iResolution.xy.y;"),
+        &["color.zx = at.yy;", "color.y = iResolution.y;"],
+    );
     assert_refused("", "at.yx[int(color.x)] = 1.;", "an element of a swizzle");
-    assert_refused("", "at++;", "`++` or `--` of a vector");
+    assert_refused("", "color.xy = at++;", "`++` or `--` of a vector");
+    assert_lines(
+        &body("at++;\ncolor.xy = --at;"),
+        &["at += 1.0;", "color.xy = at -= 1.0;"],
+    );
     // A call that changes nothing may name the index.
     let items = "float hash(int x) { return float(x); }";
     let written = with_items(items, "int i = 0;\nfloat a[3];\na[i] = hash(i);\ncolor.x = a[0];");
