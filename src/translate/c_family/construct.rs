@@ -284,7 +284,7 @@ impl Writer<'_> {
     }
 
     /// The first columns and rows of a matrix; a larger matrix is completed by the identity's components.
-    fn resize(&self, matrix: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+    fn resize(&mut self, matrix: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
         let (
             Type::Matrix { columns, rows },
             Type::Matrix {
@@ -298,32 +298,28 @@ impl Writer<'_> {
         if columns <= has && rows <= long && self.language() == Language::Hlsl {
             return self.cast(matrix, ty);
         }
-        if !self.is_short(matrix) {
-            return Err(Unprintable::Construct("a matrix constructed from a smaller one"));
-        }
-        let identity = |column, row| if column == row { "1.0" } else { "0.0" };
-        let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+        let name = self.type_name(ty)?;
         let vector = self.type_name(Type::Vector(Scalar::Float, rows))?;
-        for column in 0..columns {
-            parts.push(Part::Token(format!(
-                "{}{vector}(",
-                if column > 0 { ", " } else { "" }
-            )));
-            let mut row = 0;
-            if column < has {
-                row = rows.min(long);
-                parts.push(Part::Print(matrix, level::POSTFIX));
-                let components = if row < long { first(row) } else { "" };
-                parts.push(Part::Token(format!("[{column}]{components}")));
-            }
-            for at in row..rows {
-                let comma = if at > 0 { ", " } else { "" };
-                parts.push(Part::Token(format!("{comma}{}", identity(column, at))));
-            }
-            parts.push(Part::token(")"));
+        let column_of = |source: &str, column: u8| {
+            let own = if column < has { rows.min(long) } else { 0 };
+            let components = if own < long { first(own) } else { "" };
+            let part = (own > 0).then(|| format!("{source}[{column}]{components}"));
+            let identity = (own..rows).map(|row| if row == column { "1.0" } else { "0.0" }.to_owned());
+            let parts: Vec<String> = part.into_iter().chain(identity).collect();
+            format!("{vector}({})", parts.join(", "))
+        };
+        let made_of = |source: &str| {
+            let columns: Vec<String> = (0..columns).map(|column| column_of(source, column)).collect();
+            format!("{name}({})", columns.join(", "))
+        };
+        if self.is_short(matrix) {
+            let source = self.operand(matrix, level::POSTFIX)?;
+            return Ok((vec![Part::Token(made_of(&source))], level::POSTFIX));
         }
-        parts.push(Part::token(")"));
-        Ok((parts, level::POSTFIX))
+        let body = format!("return {};", made_of("x"));
+        let stem = format!("resized{columns}x{rows}");
+        let function = self.helper_function(&stem, &[from], ty, "", &body)?;
+        Ok((Self::call(function, &[matrix]), level::POSTFIX))
     }
 }
 

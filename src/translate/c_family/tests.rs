@@ -545,6 +545,24 @@ fn godot_lacks_some_constructs_of_glsl() {
 }
 
 #[test]
+fn constants_are_not_shadowed_in_godot_and_literals_are_folded() {
+    let written = for_godot(
+        "const float c = 0.5;\nfloat f(float c) { return c; }",
+        "float d = c;\n{ float c = 2.0; d += c; }\nif (int(at.x) > max(35, 46)) d = 1.0;\n\
+         mat3 m = mat3(mat2(at, at));\ncolor = vec4(f(d), m[2]);",
+    );
+    for expected in [
+        "float f(float c_1) {\n    return c_1;\n",
+        "        float c_1 = 2.0;\n        d += c_1;\n",
+        "if (int(at.x) > 46) {",
+        "mat3 resized3x3(mat2 x) {\n    return mat3(vec3(x[0], 0.0), vec3(x[1], 0.0), vec3(0.0, 0.0, 1.0));\n}\n",
+        "mat3 m = resized3x3(mat2(at, at));",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
 fn glsl_stays_as_its_author_wrote_it() {
     let text = "// Waves\n#define COUNT 3\nfloat sum = 0.0;\nconst float W[2] = float[2](1., 2.);\n\
         vec4 tap(sampler2D image, vec2 uv) { return textureLod(image, uv, 0.); } // A tap\n\

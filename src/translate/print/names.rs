@@ -35,6 +35,10 @@ pub(crate) trait Vocabulary {
     /// Whether a declaration's own initializer is in the scope of its name, and functions share their names
     /// with variables, as in C.
     fn has_scopes_of_c(&self) -> bool;
+    /// Whether no local may have the name of a global constant.
+    fn keeps_constants_visible(&self) -> bool {
+        false
+    }
     /// A stem for `word` such that `{stem}_1` is not reserved.
     fn with_free_stem(&self, word: &str) -> String;
 
@@ -140,6 +144,12 @@ impl Names {
                 taken.insert(name.clone());
                 names.variables.insert(id, name);
             }
+        }
+        if vocabulary.keeps_constants_visible() {
+            surroundings.extend(order.items.iter().filter_map(|item| match item {
+                Item::Variable(id) => names.variables.get(id).cloned(),
+                _ => None,
+            }));
         }
         names.name_functions(cx, order, &taken, vocabulary);
         let own = names

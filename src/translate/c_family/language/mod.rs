@@ -221,6 +221,10 @@ impl Vocabulary for Words {
         self.host.language() != Language::Glsl
     }
 
+    fn keeps_constants_visible(&self) -> bool {
+        self.host.language() == Language::Godot
+    }
+
     fn with_free_stem(&self, word: &str) -> String {
         if self.host.language() == Language::Msl {
             return msl::with_free_stem(word);
