@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // With `Runner::Driver`, a GPU runs the WGSL.
     let mut prover = Prover {
-        runner: Runner::Evaluator,
+        runner: Runner::Evaluator(None),
         browser: None,
         timeout: Duration::from_secs(10),
         pool: None,

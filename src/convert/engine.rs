@@ -1,6 +1,7 @@
 //! The code that plays the passes of a project in an engine: a template with the graph as a literal in its
 //! language.
 
+use toyproof_player::BUFFERS;
 use toyproof_translate::c_family::CHost;
 
 use crate::graph::{GraphFile, HostGraph};
@@ -35,16 +36,16 @@ fn player(host: CHost) -> Option<Player> {
             script: ("ShaderToyPlayer.cs", include_str!("engines/unity.cs")),
             others: &[],
             before: "const string GraphText = @\"",
-            after: "\";\n\n    [Serializable]",
+            after: "\";\n\n        // JsonUtility",
             quote: "\"\"",
         }),
         _ => None,
     }
 }
 
-/// The files that play a graph in an engine; the script is last. `None` for hosts that read the graph's own
-/// file.
-pub(crate) fn files(host: CHost, graph: &GraphFile) -> Option<Vec<HostFile>> {
+/// The files that play the graph of a project in an engine; the script is last. `None` for hosts that read the
+/// graph's own file.
+pub(crate) fn files(host: CHost, graph: &GraphFile, name: &str) -> Option<Vec<HostFile>> {
     let Player {
         script,
         others,
@@ -52,7 +53,8 @@ pub(crate) fn files(host: CHost, graph: &GraphFile) -> Option<Vec<HostFile>> {
         ..
     } = player(host)?;
     let graph = graph.to_json().replace('"', quote);
-    let script = (script.0, script.1.replace("$graph", graph.trim_end()));
+    let text = script.1.replacen("$name", &identifier(name), 1);
+    let script = (script.0, text.replacen("$graph", graph.trim_end(), 1));
     let others = others.iter().map(|&(name, text)| (name, text.to_owned()));
     let files = others.chain([script]).map(|(name, text)| HostFile { name, text });
     Some(files.collect())
@@ -69,4 +71,19 @@ pub(crate) fn read(host: CHost, host_graph: &HostGraph, script: &str) -> Result<
         .and_then(|(_, rest)| rest.split_once(player.after));
     let (graph, _) = graph.ok_or("the script has no graph")?;
     host_graph.read(&graph.replace(player.quote, "\""))
+}
+
+/// A name in a language with the syntax of C.
+fn identifier(name: &str) -> String {
+    let plain = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+    format!("_{}", plain.collect::<String>())
+}
+
+/// What an engine does not have, of what a graph needs.
+pub(crate) fn missing(host: CHost, host_graph: &HostGraph) -> Option<&'static str> {
+    let has_mipmaps = (0..BUFFERS).any(|buffer| host_graph.graph.has_mipmaps(buffer));
+    (host == CHost::Godot && has_mipmaps)
+        .then_some("it reads mipmaps of a buffer, which viewports of Godot do not have")
 }

@@ -246,8 +246,11 @@ impl Converter {
         };
         let file = host_graph.file(name, language, entry_point, names);
         if let Some(host) = self.c_host
-            && let Some(files) = engine::files(host, &file)
+            && let Some(files) = engine::files(host, &file, name)
         {
+            if let Some(why) = engine::missing(host, host_graph) {
+                return Err(ProjectError::Unwritable(why.to_owned()));
+            }
             let script = files.last().map_or("", |file| &file.text);
             let content = engine::read(host, host_graph, script).map_err(ProjectError::Graph)?;
             return Ok((files, content));

@@ -10,11 +10,9 @@ use toyproof_eval::{self as eval, Observed, Refusal};
 use toyproof_eval_native::Program;
 use toyproof_glsl::tree::SamplerShape;
 use toyproof_glsl::{self as glsl, Checked, Dialect, Stage};
-use toyproof_gpu::{self as gpu, ShaderArtifact, Worker};
+use toyproof_gpu::{ShaderArtifact, Worker};
 use toyproof_image::{self as image, Frame, Image, Texture, cube};
 use toyproof_translate::FloatMode;
-use toyproof_translate::backend::roundtrip;
-use toyproof_translate::naga_ir::ValidModule;
 use toyproof_verify::compare::{self, CheckSummary};
 use toyproof_verify::evaluator::{Evaluation, Evaluator};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, join, within};
@@ -26,9 +24,9 @@ use super::prover::ProofError;
 pub enum Runner<'a> {
     /// A Vulkan driver, in a worker process.
     Driver(&'a mut Worker),
-    /// The evaluator, which runs the GLSL that naga makes of the file. naga runs in this process and without
-    /// a time limit, so the shader should be a trusted one. Binary files cannot be run.
-    Evaluator,
+    /// The evaluator, which runs the GLSL that naga makes of the file. naga runs in the worker process if there
+    /// is one; otherwise in this process and without a time limit, so the shader should be a trusted one.
+    Evaluator(Option<&'a mut Worker>),
 }
 
 /// The result of running a converted shader.
@@ -301,19 +299,12 @@ impl Runner<'_> {
                 let rendered = worker.render(artifact, original.sampling, frames.to_vec());
                 Ok(rendered.map_err(Failure::Gpu)?)
             }
-            Self::Evaluator => {
+            Self::Evaluator(reader) => {
                 let upside_down = artifact.is_upside_down();
-                let module = match artifact {
-                    ShaderArtifact::Wgsl(hosted) => ValidModule::of_wgsl(&hosted.text)
-                        .map_err(|error| gpu::Failure::Reread(error.to_string())),
-                    ShaderArtifact::Lowered(lowered) => {
-                        ValidModule::parse(&lowered).map_err(|errors| gpu::Failure::Refused(errors.into()))
-                    }
-                    ShaderArtifact::Words { .. } => return Err(ProofError::Binary),
+                let text = match reader {
+                    Some(worker) => worker.rewrite(artifact),
+                    None => artifact.as_shadertoy(),
                 };
-                let text = module.and_then(|module| {
-                    roundtrip::shadertoy(&module).map_err(|error| gpu::Failure::Naga(error.to_string()))
-                });
                 let text = text.map_err(Failure::Gpu)?;
                 let written = read_shadertoy(&text, original, Stage::Image, timeout)?;
                 let stop = AtomicBool::new(false);

@@ -108,9 +108,6 @@ pub enum ProofError {
     /// The file of a host is not read as it was written.
     #[error("the output is not read again: {0}")]
     Unreadable(String),
-    /// The evaluator does not run SPIR-V.
-    #[error("SPIR-V can be verified only with a Vulkan driver; the evaluator does not run it")]
-    Binary,
     /// No compiler that reads the file is installed.
     #[error("no compiler that reads it for {0} is installed; on Debian: apt-get install glslang-tools")]
     NoReader(&'static str),
@@ -311,9 +308,7 @@ impl Prover<'_> {
             }
             Target::Wgsl | Target::Hlsl | Target::Msl => {}
         }
-        if let Runner::Driver(_) = self.runner
-            && let Some((words, compiler)) = tool::compile(target, bytes)?
-        {
+        if let Some((words, compiler)) = tool::compile(target, bytes)? {
             readings.push((Reader::Compiler(compiler), artifact(words, false)));
         }
         Ok(readings)
@@ -328,9 +323,6 @@ impl Prover<'_> {
     ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
         let target = host.read_as().ok_or(ProofError::AppleOnly(host.title()))?;
         let hosted = host.hosted(text, checked.stage);
-        let Runner::Driver(_) = self.runner else {
-            return Err(ProofError::Binary);
-        };
         let compiled = tool::compile_hosted(target, &hosted.text)?;
         let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
         let artifact = ShaderArtifact::Words {

@@ -18,6 +18,8 @@ pub struct Driver {
     pub name: String,
     /// The driver's name and version, as it reports them.
     pub version: String,
+    /// The version of Vulkan that the device supports; `None` if it is not known.
+    pub api_version: Option<String>,
     /// Whether the device runs on the CPU.
     pub software: bool,
     /// Whether float32 textures can be filtered linearly.
@@ -92,12 +94,14 @@ pub(super) fn probe(selector: &AdapterSelector) -> Result<Vec<Driver>, Failure> 
 
 fn describe(adapter: Adapter) -> Driver {
     let info = adapter.get_info();
+    let (api_version, float_controls) = vulkan_properties(&adapter).unzip();
     Driver {
         name: info.name.clone(),
         version: version(&info),
+        api_version,
         software: info.device_type == DeviceType::Cpu,
         float32_filterable: adapter.features().contains(Features::FLOAT32_FILTERABLE),
-        float_controls: float_controls(&adapter),
+        float_controls: float_controls.unwrap_or_default(),
         loop_cap: Device::from_adapter(adapter)
             .and_then(|mut device| device.measured_cap())
             .ok(),
@@ -110,30 +114,34 @@ fn version(info: &wgpu::AdapterInfo) -> String {
 
 /// Metal has no such query.
 #[cfg(target_vendor = "apple")]
-fn float_controls(_: &Adapter) -> Vec<String> {
-    Vec::new()
+fn vulkan_properties(_: &Adapter) -> Option<(String, Vec<String>)> {
+    None
 }
 
 #[cfg(not(target_vendor = "apple"))]
 #[expect(
     unsafe_code,
-    reason = "wgpu does not expose float controls; Vulkan's own query does"
+    reason = "wgpu does not expose the version and the float controls; Vulkan's own query does"
 )]
-fn float_controls(adapter: &Adapter) -> Vec<String> {
+fn vulkan_properties(adapter: &Adapter) -> Option<(String, Vec<String>)> {
     use ash::vk;
     let mut float = vk::PhysicalDeviceFloatControlsProperties::default();
-    {
+    let api_version = {
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut float);
         // SAFETY: the handles outlive the guard's scope, and nothing is destroyed through it.
-        let Some(hal) = (unsafe { adapter.as_hal::<wgpu::hal::api::Vulkan>() }) else {
-            return Vec::new();
-        };
+        let hal = unsafe { adapter.as_hal::<wgpu::hal::api::Vulkan>() }?;
         let instance = hal.shared_instance().raw_instance();
         // SAFETY: the physical device belongs to this instance, and the chain holds one structure of Vulkan
         // 1.2, which wgpu requires anyway.
         unsafe { instance.get_physical_device_properties2(hal.raw_physical_device(), &mut properties) };
-    }
-    [
+        properties.properties.api_version
+    };
+    let [major, minor, patch] = [
+        vk::api_version_major(api_version),
+        vk::api_version_minor(api_version),
+        vk::api_version_patch(api_version),
+    ];
+    let controls = [
         (float.shader_denorm_preserve_float32, "DenormPreserve"),
         (float.shader_denorm_flush_to_zero_float32, "DenormFlushToZero"),
         (float.shader_rounding_mode_rte_float32, "RoundingModeRTE"),
@@ -146,7 +154,8 @@ fn float_controls(adapter: &Adapter) -> Vec<String> {
     .into_iter()
     .filter(|&(has, _)| has == vk::TRUE)
     .map(|(_, name)| name.to_owned())
-    .collect()
+    .collect();
+    Some((format!("{major}.{minor}.{patch}"), controls))
 }
 
 impl Device {

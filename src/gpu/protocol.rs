@@ -6,10 +6,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toyproof_image::{Frame, Image, Sampling, Texture};
 use toyproof_player::{DrawOutput, DriverFailure as Failure, Graph, Phase, Readback, State};
-use toyproof_translate::backend::Target;
-use toyproof_translate::naga_ir::Shape;
+use toyproof_translate::backend::{Target, roundtrip};
+use toyproof_translate::naga_ir::{Shape, ValidModule};
 use toyproof_translate::wgsl::HostedShader;
-use toyproof_translate::{FloatMode, Lowered};
+use toyproof_translate::{FloatMode, Lowered, TranslateError};
 
 use super::{AdapterSelector, Driver, Sandbox};
 
@@ -31,6 +31,8 @@ pub(super) enum Job {
     Translate(Lowered, Target, FloatMode),
     /// Parse and validate WGSL.
     ReadWgsl(String),
+    /// Parse a converted shader again, and write it as a shader of `ShaderToy`.
+    RewriteArtifact(Box<ShaderArtifact>),
     /// Translate, compile and render a frame.
     Draw(Box<DrawJob>),
     /// Parse a converted shader again, compile it with driver-dependent operations expanded, and render
@@ -114,6 +116,22 @@ pub enum ShaderArtifact {
 }
 
 impl ShaderArtifact {
+    /// Parses the shader with naga, and writes it as a shader of `ShaderToy`.
+    ///
+    /// # Errors
+    /// naga's message.
+    pub fn as_shadertoy(&self) -> Result<String, Failure> {
+        let reread = |error: TranslateError| Failure::Reread(error.0);
+        let module = match self {
+            Self::Wgsl(hosted) => ValidModule::of_wgsl(&hosted.text).map_err(reread)?,
+            Self::Lowered(lowered) => {
+                ValidModule::parse(lowered).map_err(|errors| Failure::Refused(errors.into()))?
+            }
+            Self::Words { words, .. } => ValidModule::of_spirv(words).map_err(reread)?,
+        };
+        roundtrip::shadertoy(&module).map_err(|error| Failure::Naga(error.0))
+    }
+
     /// Whether row 0 of the target is the top of the image.
     #[must_use]
     pub fn is_upside_down(&self) -> bool {

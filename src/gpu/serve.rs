@@ -114,6 +114,7 @@ impl<W: Write> Server<W> {
             Job::Probe => self.probe(),
             Job::Translate(lowered, target, float) => self.translate(lowered, target, float),
             Job::ReadWgsl(text) => self.read(text),
+            Job::RewriteArtifact(artifact) => self.rewrite(*artifact),
             Job::Draw(job) => self.draw(*job),
             Job::RenderArtifact(artifact, sampling, frames) => self.render(*artifact, sampling, &frames),
             Job::OpenPlayer(job) => self.open_player(*job),
@@ -194,6 +195,12 @@ impl<W: Write> Server<W> {
         self.phase(Phase::Translating)?;
         on_translator_thread(move || ValidModule::of_wgsl(&text).map_err(|error| Failure::Reread(error.0)))?;
         Ok(Output::Completed)
+    }
+
+    fn rewrite(&mut self, artifact: ShaderArtifact) -> Result<Output, Failure> {
+        self.phase(Phase::Translating)?;
+        let text = on_translator_thread(move || artifact.as_shadertoy())?;
+        Ok(Output::Translated(text.into_bytes()))
     }
 
     fn render(

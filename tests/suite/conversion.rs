@@ -74,7 +74,7 @@ fn every_exercise_is_proved_without_a_driver() {
         let checked = check(&files, file, &Options::default()).expect("it is valid");
         let text = wgsl(&checked, &files, Style::Plain, &Deadline::default()).unwrap();
         let mut prover = Prover {
-            runner: Runner::Evaluator,
+            runner: Runner::Evaluator(None),
             browser: None,
             timeout: TIMEOUT,
             pool: None,

@@ -12,10 +12,9 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
-use proptest::test_runner::{Config, RngAlgorithm, TestError, TestRng, TestRunner};
+use proptest::test_runner::{Config, TestError, TestRunner};
 use toyproof::diagnostic::{File, Files};
 use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Checked, Options, check};
@@ -28,13 +27,6 @@ use crate::glslang;
 use crate::requirements::{require_program, require_swiftshader, require_worker};
 use crate::support::generate::{self, Arithmetic, Effects};
 use crate::support::setting;
-
-/// Generates programs from at most `longest` decisions.
-fn programs(effects: Effects, arithmetic: Arithmetic, longest: usize) -> impl Strategy<Value = String> {
-    (8..longest)
-        .prop_flat_map(|length| vec(any::<u8>(), length / 2..=length))
-        .prop_map(move |bytes| generate::program(&bytes, effects, arithmetic))
-}
 
 fn frame() -> Frame {
     Frame {
@@ -216,8 +208,7 @@ fn effects(number: u32) -> Effects {
     match std::env::var("TOYPROOF_EFFECTS").as_deref() {
         Ok("ordered") => Effects::Ordered,
         Ok("anywhere") => Effects::Anywhere,
-        _ if number.is_multiple_of(2) => Effects::Ordered,
-        _ => Effects::Anywhere,
+        _ => generate::effects(number),
     }
 }
 
@@ -235,15 +226,12 @@ fn compare_all(
     let seed: u64 = setting("TOYPROOF_SEED", 0);
     let first: u32 = setting("TOYPROOF_FIRST", 0);
     let written = std::env::var_os("TOYPROOF_WRITTEN");
-    let mut seeds = [0; 32];
-    seeds[..8].copy_from_slice(&seed.to_le_bytes());
     let config = Config {
         failure_persistence: None,
         max_shrink_iters: setting("TOYPROOF_SHRINK", 300),
         ..Config::default()
     };
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seeds);
-    let mut runner = TestRunner::new_with_rng(config, rng);
+    let mut runner = TestRunner::new_with_rng(config, generate::rng(seed));
     let renderers = RefCell::new(Renderers {
         worker: worker.with_plain_code(),
         start,
@@ -256,7 +244,7 @@ fn compare_all(
     let (mut failures, mut crashes) = (Vec::new(), 0);
     for number in 0..count {
         let effects = effects(number);
-        let tree = programs(effects, arithmetic, longest)
+        let tree = generate::programs(effects, arithmetic, longest)
             .new_tree(&mut runner)
             .unwrap();
         if number < first {

@@ -25,6 +25,7 @@ mod converted_passes;
 mod cycles;
 mod debug;
 mod derivatives;
+mod devices;
 mod diagnostics;
 mod dialects;
 mod docs;

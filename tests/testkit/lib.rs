@@ -13,6 +13,7 @@
     reason = "tests show the paths that they made themselves"
 )]
 
+pub mod devices;
 pub mod devtools;
 pub mod exercises;
 pub mod faults;
@@ -22,6 +23,7 @@ pub mod judge;
 pub mod pages;
 pub mod rewrites;
 pub mod textures;
+pub mod toolchain;
 pub mod wait;
 
 use std::env;

@@ -2,31 +2,19 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use toyproof::convert::{Runner, compare_with_original, frames};
 use toyproof::diagnostic::{File, Files};
-use toyproof::eval::{Program, Settings};
 use toyproof::glsl::{Checked, Options, check};
 use toyproof::gpu::{AdapterSelector, ShaderArtifact, Worker};
 use toyproof::image::Frame;
 use toyproof::translate::wgsl::Style;
-use toyproof::translate::{FloatMode, lower_strict};
-use toyproof_testkit::differences;
+use toyproof::verify::compare::CheckSummary;
+use toyproof_testkit::toolchain::compare_bits;
 
 /// The time limit of an image.
 const TIMEOUT: Duration = Duration::from_secs(60);
-
-/// A worker that is this program.
-fn worker() -> Worker {
-    let program = std::env::current_exe().expect("this program has a path");
-    Worker::new(
-        program,
-        vec![toyproof::cli::WORKER.into()],
-        AdapterSelector::Auto,
-        TIMEOUT,
-    )
-}
 
 /// The valid shaders of a folder, in an order independent of their names.
 fn shaders(folder: &Path) -> impl Iterator<Item = (String, String, Checked)> {
@@ -50,18 +38,9 @@ fn shaders(folder: &Path) -> impl Iterator<Item = (String, String, Checked)> {
     })
 }
 
-/// What a comparison of two frames of a shader found, in pixels.
-#[derive(Default)]
-struct Bits {
-    all: u64,
-    undefined: u64,
-    differing: usize,
-}
-
 /// Compares a shader at two times and prints differences; fails with the reason if one of the two runs does.
-fn compare(worker: &mut Worker, name: &str, checked: &Checked) -> Result<Bits, String> {
-    let program = Program::new(checked).map_err(|refusal| refusal.to_string())?;
-    let mut bits = Bits::default();
+fn compare(worker: &mut Worker, name: &str, checked: &Checked) -> Result<CheckSummary, String> {
+    let mut sum = CheckSummary::default();
     for time in [0.7, 10.3] {
         let frame = Frame {
             size: [64, 36],
@@ -69,34 +48,19 @@ fn compare(worker: &mut Worker, name: &str, checked: &Checked) -> Result<Bits, S
             frame: (time * 60.0) as i32,
             ..Frame::default()
         };
-        let settings = Settings {
-            deadline: Some(Instant::now() + TIMEOUT),
-            ..Settings::default()
-        };
-        let rendered = program
-            .render::<f32>(&frame, &settings)
-            .map_err(|failure| format!("cpu: {failure}"))?;
-        let drawn = worker
-            .draw(lower_strict(checked), frame, FloatMode::Strict)
-            .map_err(|failure| format!("gpu: {failure}"))?;
-        let rendered = &rendered.framebuffer;
-        let (count, first) = differences(&rendered.image(), &drawn.image(), |x, y| {
-            rendered.is_undefined(x, y)
-        });
-        bits.all += 64 * 36;
-        bits.undefined += rendered.undefined();
-        bits.differing += count;
-        if count > 0 {
-            println!("{name}: {count} differ at {time} s, {first}");
+        let bits = compare_bits(worker, checked, &frame, TIMEOUT)?;
+        if let Some(first) = bits.first {
+            println!("{name}: {} differ at {time} s, first {first:?}", bits.differing);
         }
+        sum.extend(&bits, 0);
     }
-    Ok(bits)
+    Ok(sum)
 }
 
 /// Compares the bits of the evaluator and of the strict GPU run.
-pub(super) fn compare_bits(folder: &Path, limit: usize) {
-    let mut worker = worker();
-    let (mut count, mut same, mut sum) = (0, 0, Bits::default());
+pub(super) fn compare_folder(folder: &Path, limit: usize) {
+    let mut worker = super::worker(AdapterSelector::Auto, TIMEOUT);
+    let (mut count, mut same, mut sum) = (0, 0, CheckSummary::default());
     for (name, text, checked) in shaders(folder) {
         if count == limit {
             break;
@@ -108,22 +72,20 @@ pub(super) fn compare_bits(folder: &Path, limit: usize) {
             Ok(bits) => {
                 count += 1;
                 same += usize::from(bits.differing == 0);
-                sum.all += bits.all;
-                sum.undefined += bits.undefined;
-                sum.differing += bits.differing;
+                sum.extend(&bits, 0);
             }
             Err(why) => println!("{name}: {why}"),
         }
     }
     println!(
         "{count} shaders, {same} the same in every defined bit; of {} pixels {} undefined, {} differ",
-        sum.all, sum.undefined, sum.differing
+        sum.pixels, sum.undefined, sum.differing
     );
 }
 
 /// Compares conversions by another program with their source shaders.
 pub(super) fn compare_conversions(folder: &Path, converted: &Path) {
-    let mut worker = worker();
+    let mut worker = super::worker(AdapterSelector::Auto, TIMEOUT);
     for (name, _, checked) in shaders(folder) {
         let Ok(text) = fs::read_to_string(converted.join(format!("{name}.wgsl"))) else {
             continue;

@@ -3,6 +3,7 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command prints")]
 
 mod corpus;
+mod devices;
 mod dist;
 mod faults;
 mod front_end;
@@ -16,8 +17,10 @@ mod sensitivity;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::time::Duration;
 
 use clap::Parser;
+use toyproof::gpu::{AdapterSelector, Worker};
 
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
@@ -56,6 +59,8 @@ enum Task {
         /// The folder of WGSL files, with the same names
         converted: PathBuf,
     },
+    /// Measure what the Vulkan drivers of this machine compute, for docs/evidence/drivers.md
+    Devices(devices::Arguments),
     /// Build the files of a release: archives, and packages for Debian and Python, with their checksums
     Dist(dist::Arguments),
     /// Compare our GLSL front end for naga with naga's own, the tables of docs/evidence/front-end.md
@@ -125,7 +130,7 @@ enum Task {
         reseed: bool,
     },
     /// Run shaders: the process that other tasks start
-    #[command(hide = true)]
+    #[command(name = toyproof::cli::WORKER, hide = true)]
     Worker,
 }
 
@@ -140,8 +145,9 @@ fn main() -> ExitCode {
         Task::FaultNames { exercise } => faults::print_names(&exercise),
         Task::FaultPairs { exercise } => faults::print_pairs(&exercise),
         Task::Sensitivity => sensitivity::print_table(),
-        Task::Corpus { folder, limit } => corpus::compare_bits(&folder, limit),
+        Task::Corpus { folder, limit } => corpus::compare_folder(&folder, limit),
         Task::Conversions { shaders, converted } => corpus::compare_conversions(&shaders, &converted),
+        Task::Devices(arguments) => return devices::print_table(&arguments),
         Task::Dist(arguments) => {
             if let Err(error) = dist::build(&arguments) {
                 eprintln!("error: {error}");
@@ -174,6 +180,12 @@ fn main() -> ExitCode {
         }
     }
     ExitCode::SUCCESS
+}
+
+/// A worker process, which is this program.
+fn worker(selector: AdapterSelector, timeout: Duration) -> Worker {
+    let program = std::env::current_exe().expect("this program has a path");
+    Worker::new(program, vec![toyproof::cli::WORKER.into()], selector, timeout)
 }
 
 /// Runs the tests with expected texts so that they write them.

@@ -41,8 +41,10 @@ pub(super) struct Settings<'a> {
 /// The processes and the thread pool that a thread owns.
 pub(super) struct WorkerContext {
     translator: Worker,
-    /// Runs the conversion; `None` for `--device cpu`.
+    /// Runs the conversion; `None` without a driver.
     runner: Option<Worker>,
+    /// Reads conversions that the evaluator runs, without a driver.
+    reader: Option<Worker>,
     browser: Option<Chromium>,
     /// The evaluator's pool, if several threads convert.
     pool: Option<ThreadPool>,
@@ -99,9 +101,20 @@ impl Settings<'_> {
             // The process starts while the first shader is read.
             translator.warm_up(0);
         }
+        let mut runner = self.driver.worker_for(images)?.map(Worker::with_plain_code);
+        if self.verify
+            && self.driver.may_fall_back()
+            && let Some(worker) = &mut runner
+            && worker.probe().is_err_and(|failure| failure.is_without_driver())
+        {
+            runner = None;
+        }
+        let is_evaluated = self.verify && runner.is_none();
+        let reader = is_evaluated.then(|| self.driver.translator()).transpose()?;
         Ok(WorkerContext {
             translator,
-            runner: self.driver.worker_for(images)?.map(Worker::with_plain_code),
+            runner,
+            reader,
             pool: self.verify.then(|| pool::thread_pool(threads)).flatten(),
             browser: self.browser.as_ref().map(|program| {
                 let browser = Chromium::new(program.clone(), self.driver.timeout() * images);
@@ -139,9 +152,13 @@ impl Settings<'_> {
 
     /// The process that translates, and what proves, if proofs are requested.
     fn parts<'c>(&self, context: &'c mut WorkerContext) -> (&'c mut Worker, Option<Prover<'c>>) {
-        let runner = context.runner.as_mut().filter(|_| self.verify);
-        let prover = runner.map(|worker| Prover {
-            runner: Runner::Driver(worker),
+        let runner = match (&mut context.runner, &mut context.reader) {
+            (Some(worker), _) if self.verify => Some(Runner::Driver(worker)),
+            (_, Some(reader)) => Some(Runner::Evaluator(Some(reader))),
+            _ => None,
+        };
+        let prover = runner.map(|runner| Prover {
+            runner,
             browser: context.browser.as_mut(),
             timeout: self.driver.timeout(),
             pool: context.pool.as_ref(),
@@ -278,9 +295,6 @@ impl Settings<'_> {
         match proof {
             Some(Ok(proved)) => proved,
             Some(Err(unproved)) => ProofStatus::NotProved(unproved.to_string()),
-            None if self.verify => ProofStatus::NotProved(
-                "verification needs a Vulkan driver, which --device cpu excludes".to_owned(),
-            ),
             None => ProofStatus::NotRequested,
         }
     }

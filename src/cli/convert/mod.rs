@@ -144,6 +144,7 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
             c_host: args.style.c_family().or(match to {
                 To::Hlsl => Some(CHost::Hlsl),
                 To::Metal => Some(CHost::Metal),
+                To::Glsl if args.style == StyleName::Plain => Some(CHost::Glsl),
                 _ => None,
             }),
             dialect: args.style.dialect(),

@@ -264,11 +264,15 @@ pub(crate) fn set_environment(command: &mut Command) {
 mod tests {
     use std::collections::HashSet;
     use std::fmt::Write;
+    use std::fs;
     use std::path::Path;
 
     use expect_test::expect_file;
 
     use super::*;
+
+    /// The first section of the page that is not generated.
+    const MEASURED: &str = "\n## Measured drivers\n";
 
     #[test]
     fn the_page_lists_every_quirk() {
@@ -293,7 +297,10 @@ mod tests {
                 quirk.removal,
             );
         }
-        expect_file!["../../../docs/evidence/drivers.md"].assert_eq(&page);
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/evidence/drivers.md");
+        let text = fs::read_to_string(path).unwrap();
+        page += &text[text.find(MEASURED).unwrap_or(text.len())..];
+        expect_file![path].assert_eq(&page);
     }
 
     #[test]

@@ -194,6 +194,16 @@ impl Worker {
         result!(self.run(&Job::ReadWgsl(text.to_owned())), Output::Completed => ())
     }
 
+    /// Parses a converted shader by naga, and writes it as a shader of `ShaderToy`.
+    ///
+    /// # Errors
+    /// [`Failure::Reread`] if naga rejects it; other failures if it could not be processed.
+    pub fn rewrite(&mut self, artifact: ShaderArtifact) -> Result<String, Failure> {
+        let job = Job::RewriteArtifact(Box::new(artifact));
+        let bytes: Vec<u8> = result!(self.run(&job), Output::Translated(bytes) => bytes)?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
     /// Renders a frame of the shader. If the driver may terminate long loops, the frame is rendered again to
     /// check whether it did, under a separate deadline.
     ///

@@ -22,10 +22,28 @@ impl Writer<'_> {
         let only = only.ok_or(Unprintable::Construct("a constructor without arguments"))?;
         let from = self.cx.tree[only].ty;
         let primary = |parts| Ok((parts, level::POSTFIX));
-        if self.language() == Language::Godot
+        if self.language() != Language::Hlsl
             && let Some(literal) = self.converted_literal(constructor, only, ty)
         {
             return primary(literal);
+        }
+        if self.language() == Language::Glsl {
+            let scalar = match constructor {
+                Constructor::Struct | Constructor::Array => None,
+                _ => ty.scalar(),
+            };
+            let mut parts = vec![Part::Token(format!("{}(", self.type_name(ty)?))];
+            for (at, &argument) in arguments.iter().enumerate() {
+                if at > 0 {
+                    parts.push(Part::token(", "));
+                }
+                match scalar {
+                    Some(scalar) => parts.extend(self.component(argument, scalar)?),
+                    None => parts.push(Part::Print(argument, level::ASSIGN)),
+                }
+            }
+            parts.push(Part::token(")"));
+            return primary(parts);
         }
         match constructor {
             Constructor::Struct => {
@@ -82,7 +100,7 @@ impl Writer<'_> {
     /// converts none.
     fn component(&self, argument: ExprId, scalar: Scalar) -> PrintResult<Vec<Part>> {
         let from = self.cx.tree[argument].ty;
-        if self.language() != Language::Godot || from.scalar() == Some(scalar) {
+        if self.language() == Language::Hlsl || from.scalar() == Some(scalar) {
             return Ok(vec![Part::Print(argument, level::ASSIGN)]);
         }
         let ty = match from {

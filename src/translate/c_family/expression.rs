@@ -225,7 +225,9 @@ impl Writer<'_> {
         let [left_type, right_type] = [left, right].map(|side| self.cx.tree[side].ty);
         let is_number = |ty| matches!(ty, Type::Scalar(_));
         Ok(match op {
-            BinaryOp::Xor => Self::infix(left, BinaryOp::NotEqual, right),
+            BinaryOp::Xor if self.language() != Language::Glsl => {
+                Self::infix(left, BinaryOp::NotEqual, right)
+            }
             BinaryOp::ShiftLeft
             | BinaryOp::ShiftRight
             | BinaryOp::BitAnd
@@ -235,7 +237,7 @@ impl Writer<'_> {
             {
                 self.bitwise_in_godot(op, left, right)?
             }
-            _ if self.language() == Language::Godot => Self::infix(left, op, right),
+            _ if matches!(self.language(), Language::Godot | Language::Glsl) => Self::infix(left, op, right),
             BinaryOp::Multiply if is_product(left_type, right_type) => {
                 if !self.is_pure(left) || !self.is_pure(right) {
                     // The arguments would be evaluated in the other order.
@@ -330,7 +332,9 @@ impl Writer<'_> {
         let variable = &self.cx.tree[id];
         match variable.kind {
             VariableKind::BuiltIn(BuiltInVariable::FragCoord) => self.reads_position = true,
-            VariableKind::Channel(_) => return Err(Unprintable::Construct("a sampler here")),
+            VariableKind::Channel(_) if self.language() != Language::Glsl => {
+                return Err(Unprintable::Construct("a sampler here"));
+            }
             _ => {}
         }
         Ok(self.variable(id).to_owned())
@@ -342,7 +346,7 @@ impl Writer<'_> {
             ExprKind::Construct {
                 constructor: Constructor::Struct | Constructor::Array,
                 arguments,
-            } if self.language() != Language::Godot || matches!(self.cx.tree[id].ty, Type::Array(_)) => {
+            } if self.lists_values(self.cx.tree[id].ty) => {
                 let arguments = arguments.clone();
                 let is_nested = self.language().has_array_values();
                 let values = arguments.into_iter().map(|argument| match is_nested {
@@ -357,10 +361,19 @@ impl Writer<'_> {
         }
     }
 
+    /// Whether the value of a declaration is a list in braces.
+    fn lists_values(&self, ty: Type) -> bool {
+        match self.language() {
+            Language::Hlsl | Language::Msl => true,
+            Language::Godot => matches!(ty, Type::Array(_)),
+            Language::Glsl => false,
+        }
+    }
+
     /// The value of a declaration whose every component is zero.
     pub(super) fn zero(&self, ty: Type) -> PrintResult<String> {
-        if self.language() == Language::Godot {
-            return self.zero_of_godot(ty);
+        if matches!(self.language(), Language::Godot | Language::Glsl) {
+            return self.zero_of_glsl(ty);
         }
         Ok(match ty {
             Type::Array(_) | Type::Struct(_) if self.language() == Language::Msl => "{}".to_owned(),
@@ -382,13 +395,16 @@ impl Writer<'_> {
         })
     }
 
-    fn zero_of_godot(&self, ty: Type) -> PrintResult<String> {
+    fn zero_of_glsl(&self, ty: Type) -> PrintResult<String> {
         let list = |zeros: Vec<String>| zeros.join(", ");
         Ok(match ty {
             Type::Array(id) => {
                 let array = self.cx.tree.array(id);
                 let zeros = vec![self.zero(array.element)?; array.size as usize];
-                format!("{{ {} }}", list(zeros))
+                match self.language() {
+                    Language::Glsl => format!("{}({})", self.type_name(ty)?, list(zeros)),
+                    _ => format!("{{ {} }}", list(zeros)),
+                }
             }
             Type::Struct(id) => {
                 let members = self.cx.tree[id].members.iter().map(|member| self.zero(member.ty));

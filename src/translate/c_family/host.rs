@@ -36,6 +36,8 @@ pub enum CHost {
     WindowsTerminal,
     /// A shader of Godot 4 for a `CanvasItem`.
     Godot,
+    /// GLSL ES 3.00 with our own bindings; row 0 of the target is the bottom.
+    Glsl,
     /// Metal with our own bindings; row 0 of the target is the bottom.
     Metal,
 }
@@ -63,12 +65,13 @@ struct Row {
 
 impl CHost {
     /// Every host.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Hlsl,
         Self::Slang,
         Self::Unity,
         Self::WindowsTerminal,
         Self::Godot,
+        Self::Glsl,
         Self::Metal,
     ];
 
@@ -174,6 +177,17 @@ impl CHost {
                 declared: "",
                 is_upside_down: true,
             },
+            Self::Glsl => Row {
+                name: "plain",
+                title: "GLSL ES",
+                language: Language::Glsl,
+                extension: "frag",
+                template: include_str!("hosts/plain.frag"),
+                substitute: include_str!("hosts/plain_substitute.frag"),
+                adaptations: &[],
+                declared: "Inputs main",
+                is_upside_down: false,
+            },
             Self::Metal => Row {
                 name: "plain",
                 title: "Metal",
@@ -210,7 +224,7 @@ impl CHost {
     pub fn read_as(self) -> Option<Target> {
         match self.language() {
             Language::Hlsl => Some(Target::Hlsl),
-            Language::Godot => Some(Target::Glsl),
+            Language::Godot | Language::Glsl => Some(Target::Glsl),
             Language::Msl => None,
         }
     }
@@ -218,7 +232,7 @@ impl CHost {
     /// Whether it has the bindings of the other languages, so that naga can write what our own writer cannot.
     #[must_use]
     pub fn is_plain(self) -> bool {
-        matches!(self, Self::Hlsl | Self::Metal)
+        matches!(self, Self::Hlsl | Self::Metal | Self::Glsl)
     }
 
     /// The extension of its files, without the dot.
@@ -293,12 +307,13 @@ impl CHost {
 }
 
 /// The names of the variables of an entry point, as templates name them.
-const LOCALS: [(&str, &str); 5] = [
+const LOCALS: [(&str, &str); 6] = [
     ("$size", "size"),
     ("$coordinates", "fragCoord"),
     ("$position", "position"),
     ("$upward", UPWARD),
     ("$color", "color"),
+    ("$output", "outputColor"),
 ];
 
 /// What Windows Terminal declares.
@@ -373,11 +388,21 @@ impl Writer<'_> {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
             values.push((value, self.language().texture_type(shape)));
         }
+        let properties = ["$property0", "$property1", "$property2", "$property3"];
+        for (channel, value) in (0..).zip(properties) {
+            // The type of the texture in `ShaderLab`, and what stands for a missing one.
+            let property = match channels.get(&channel) {
+                Some(SamplerShape::D3) => "3D) = \"\"",
+                Some(SamplerShape::Cube) => "Cube) = \"\"",
+                _ => "2D) = \"black\"",
+            };
+            values.push((value, property.to_owned()));
+        }
         let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
         for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
             let sampling = match self.language() {
                 Language::Godot => hints(sampling),
-                Language::Hlsl | Language::Msl => inline_sampler(sampling).to_owned(),
+                Language::Hlsl | Language::Msl | Language::Glsl => inline_sampler(sampling).to_owned(),
             };
             values.push((value, sampling));
         }
@@ -422,7 +447,12 @@ impl Writer<'_> {
             let _ = writeln!(text, "{indent}{line}");
             text
         });
-        Ok(format!("{first}{before}{text}{after}"))
+        // The version comes first.
+        let (version, before) = match before.split_once('\n') {
+            Some((version, rest)) if version.starts_with("#version") => (format!("{version}\n"), rest),
+            _ => (String::new(), before.as_str()),
+        };
+        Ok(format!("{version}{first}{before}{text}{after}"))
     }
 
     /// The names of the shader's functions, structures and constants.
@@ -486,5 +516,5 @@ fn hints(sampling: Sampling) -> String {
         Wrap::Clamp => "repeat_disable",
         Wrap::Repeat => "repeat_enable",
     };
-    format!("{filter}, {wrap}")
+    format!("{filter}, {wrap}, hint_default_black")
 }

@@ -90,6 +90,8 @@ impl Writer<'_> {
             Language::Hlsl if is_constant => "static const ",
             Language::Hlsl => "static ",
             Language::Godot => "const ",
+            Language::Glsl if is_constant => "const ",
+            Language::Glsl => "",
             Language::Msl if !self.members.contains(&Item::Variable(id)) => "constant ",
             Language::Msl => "",
         };

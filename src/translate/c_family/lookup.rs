@@ -16,6 +16,9 @@ impl Writer<'_> {
         let ExprKind::Variable(id) = tree[sampler].kind else {
             return Err(ARGUMENT);
         };
+        if self.language() == Language::Glsl {
+            return Ok((Self::call(function.name(), arguments), level::POSTFIX));
+        }
         let shape = match (tree[id].kind, tree[id].ty) {
             (VariableKind::Channel(_), Type::Sampler(sampler))
                 if sampler.shape != SamplerShape::D2Array && !sampler.shadow =>
@@ -26,7 +29,7 @@ impl Writer<'_> {
         };
         let name = self.variable(id);
         match self.language() {
-            Language::Hlsl => {}
+            Language::Hlsl | Language::Glsl => {}
             Language::Msl => return self.lookup_in_metal(function, name, shape, rest),
             Language::Godot => {
                 let mut parts = vec![Part::Token(format!("{}({name}, ", function.name()))];

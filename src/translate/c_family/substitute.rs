@@ -20,9 +20,17 @@ impl CHost {
                 (!is_for_host).then(|| line.to_owned())
             }
             Language::Msl => Some(line.to_owned()),
+            Language::Glsl => Some(match line {
+                // The first version that glslang compiles to SPIR-V.
+                "#version 300 es" => "#version 310 es".to_owned(),
+                "layout(std140) uniform Inputs {" => {
+                    "layout(std140, set = 0, binding = 0) uniform Inputs {".to_owned()
+                }
+                _ => channel(line).unwrap_or_else(|| line.to_owned()),
+            }),
             Language::Godot => {
                 let is_for_host = ["shader_type ", "render_mode ", "uniform "];
-                godots_channel(line).or_else(|| {
+                channel(line).or_else(|| {
                     let is_for_host = is_for_host.iter().any(|word| line.starts_with(word));
                     (!is_for_host).then(|| line.to_owned())
                 })
@@ -61,16 +69,23 @@ impl CHost {
     }
 }
 
-/// The declaration of a channel in Godot's language, `uniform sampler2D iChannel0 : hints;`, for Vulkan: a
+/// The declaration of a channel, `uniform sampler2D iChannel0;` with Godot's hints or a precision, for Vulkan: a
 /// texture and a sampler with our bindings. `None` for other lines.
-fn godots_channel(line: &str) -> Option<String> {
-    let (ty, rest) = line.strip_prefix("uniform sampler")?.split_once(' ')?;
-    let (name, _) = rest.split_once(" : ")?;
+fn channel(line: &str) -> Option<String> {
+    let (ty, rest) = line.strip_prefix("uniform ")?.split_once(' ')?;
+    let (precision, ty, rest) = match ty.strip_prefix("sampler") {
+        Some(ty) => ("", ty, rest),
+        None => {
+            let (sampler, rest) = rest.split_once(' ')?;
+            ("highp ", sampler.strip_prefix("sampler")?, rest)
+        }
+    };
+    let name = rest.split([' ', ';']).next()?;
     let channel: u32 = name.strip_prefix("iChannel")?.parse().ok()?;
     let [texture, sampler] = [2 * channel + 1, 2 * channel + 2];
     Some(format!(
-        "layout(set = 0, binding = {texture}) uniform texture{ty} toyproof_texture{channel};\n\
-         layout(set = 0, binding = {sampler}) uniform sampler toyproof_sampler{channel};\n\
+        "layout(set = 0, binding = {texture}) uniform {precision}texture{ty} toyproof_texture{channel};\n\
+         layout(set = 0, binding = {sampler}) uniform {precision}sampler toyproof_sampler{channel};\n\
          #define {name} sampler{ty}(toyproof_texture{channel}, toyproof_sampler{channel})"
     ))
 }
@@ -78,7 +93,7 @@ fn godots_channel(line: &str) -> Option<String> {
 /// The uniform block of our host, in which a prefix distinguishes the inputs from the shader's.
 fn block(language: Language) -> String {
     let mut text = match language {
-        Language::Hlsl | Language::Msl => "cbuffer ToyproofFrame : register(b0) {\n",
+        Language::Hlsl | Language::Msl | Language::Glsl => "cbuffer ToyproofFrame : register(b0) {\n",
         Language::Godot => "layout(std140, set = 0, binding = 0) uniform ToyproofFrame {\n",
     }
     .to_owned();
@@ -95,7 +110,9 @@ fn block(language: Language) -> String {
         let ty = language.numeric_type(ty).unwrap_or_default();
         let component = ["", ".y", ".z", ".w"][input.offset() / 4 % 4];
         let place = match language {
-            Language::Hlsl | Language::Msl => format!(" : packoffset(c{}{component})", input.offset() / 16),
+            Language::Hlsl | Language::Msl | Language::Glsl => {
+                format!(" : packoffset(c{}{component})", input.offset() / 16)
+            }
             Language::Godot => String::new(),
         };
         let _ = writeln!(text, "    {ty} toyproof_{}{length}{place};", input.name());

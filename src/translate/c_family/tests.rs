@@ -538,8 +538,48 @@ fn godot_lacks_some_constructs_of_glsl() {
         "float s = mixBool(at.x, at.y, c);",
         "k = (k & ivec3(1)) >> int(2u);",
         "    i = 1;\n    for (; (float(i) < at.x); i++) {\n",
-        "uniform sampler2D iChannel0 : filter_linear, repeat_enable;",
+        "uniform sampler2D iChannel0 : filter_linear, repeat_enable, hint_default_black;",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn glsl_stays_as_its_author_wrote_it() {
+    let text = "// Waves\n#define COUNT 3\nfloat sum = 0.0;\nconst float W[2] = float[2](1., 2.);\n\
+        vec4 tap(sampler2D image, vec2 uv) { return textureLod(image, uv, 0.); } // A tap\n\
+        float size(vec2 color) { return color.x; }\n\
+        void mainImage(out vec4 color, in vec2 at) {\n    mat2x3 m = mat2x3(1);\n    \
+        for (int i = 0, j = 1; i < COUNT; i++, j += 2) sum += W[i & 1];\n    \
+        color = tap(iChannel0, at / iResolution.xy) * (sum += 1., sum) + vec4(m[0] * size(at), dFdy(at.y));\n}";
+    let written = converted(CHost::Glsl, text).unwrap();
+    for expected in [
+        "#version 300 es\n// Waves\n\nprecision highp float;\nprecision highp int;\n\nlayout(std140) uniform Inputs {\n",
+        "    vec3 iResolution;\n    float iTime;\n",
+        "uniform highp sampler2D iChannel0;\nlayout(location = 0) out vec4 outputColor;\n\nconst int COUNT = 3;\n",
+        "float sum = 0.0;\nconst float W[2] = float[2](1.0, 2.0);\n",
+        "vec4 tap(sampler2D image, vec2 uv) {\n    return textureLod(image, uv, 0.0);\n}\n",
+        "    mat2x3 m = mat2x3(1.0);\n",
+        "    for (int i = 0, j = 1; i < COUNT; i++, j += 2) {\n        sum += W[i & 1];\n    }\n",
+        "    color = tap(iChannel0, at / iResolution.xy) * (sum += 1.0, sum) + vec4(m[0] * size(at), dFdy(at.y));\n",
+        "void main() {\n    vec4 color;\n    mainImage(color, gl_FragCoord.xy);\n    outputColor = vec4(color.rgb, 1.0);\n}\n",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn glsl_is_read_again_with_bindings() {
+    let text = "void mainImage(out vec4 color, in vec2 at) { color = texture(iChannel2, at) * iTime; }";
+    let written = converted(CHost::Glsl, text).unwrap();
+    let hosted = CHost::Glsl.hosted(&written, Stage::Image).text;
+    for expected in [
+        "#version 310 es\n",
+        "layout(std140, set = 0, binding = 0) uniform Inputs {\n",
+        "layout(set = 0, binding = 5) uniform highp texture2D toyproof_texture2;\n",
+        "layout(set = 0, binding = 6) uniform highp sampler toyproof_sampler2;\n",
+        "#define iChannel2 sampler2D(toyproof_texture2, toyproof_sampler2)\n",
+    ] {
+        assert!(hosted.contains(expected), "{expected}\n---\n{hosted}");
     }
 }

@@ -151,7 +151,7 @@ impl<'a> Writer<'a> {
 
     /// `float3 name`, or `float name[2]`.
     pub(super) fn declarator(&self, ty: Type, name: &str) -> PrintResult<String> {
-        if self.language().has_array_values() {
+        if self.language() == Language::Msl {
             return Ok(format!("{} {name}", self.type_name(ty)?));
         }
         let mut sizes = String::new();
@@ -172,7 +172,11 @@ impl<'a> Writer<'a> {
         match ty {
             Type::Struct(id) => Ok(self.structure_name(id).to_owned()),
             Type::Void => Ok("void".to_owned()),
-            Type::Array(id) if self.language().has_array_values() => {
+            Type::Array(id) if self.language() == Language::Glsl => {
+                let array = self.cx.tree.array(id);
+                Ok(format!("{}[{}]", self.type_name(array.element)?, array.size))
+            }
+            Type::Array(id) if self.language() == Language::Msl => {
                 let array = self.cx.tree.array(id);
                 Ok(format!(
                     "array<{}, {}>",

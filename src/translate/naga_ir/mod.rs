@@ -105,6 +105,20 @@ impl ValidModule {
         Self::new(module)
     }
 
+    /// Parses and validates a SPIR-V module.
+    ///
+    /// # Errors
+    /// naga's message.
+    #[cfg(feature = "backend")]
+    pub fn of_spirv(words: &[u32]) -> Result<Self, TranslateError> {
+        let options = naga::front::spv::Options {
+            adjust_coordinate_space: false,
+            ..naga::front::spv::Options::default()
+        };
+        let parsed = naga::front::spv::Frontend::new(words.iter().copied(), &options).parse();
+        Self::new(parsed.map_err(TranslateError::new)?)
+    }
+
     /// Validates a module.
     ///
     /// # Errors

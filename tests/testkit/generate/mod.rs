@@ -14,6 +14,7 @@ mod expr;
 mod expression;
 mod inexact;
 mod place;
+mod random;
 mod statement;
 mod types;
 mod value;
@@ -22,6 +23,7 @@ use std::fmt::Write;
 
 use choices::Choices;
 use expr::Range;
+pub use random::{effects, programs, rng};
 use types::{Base, FLOAT, INT, SCALARS, Scalar, Struct, Type};
 
 /// The maximum number of executions of a program's most deeply nested statement.

@@ -7,7 +7,7 @@ mod msl;
 use toyproof_glsl::tree::{BuiltIn, ExprId, Type};
 
 use super::Unprintable;
-use super::expression::Parts;
+use super::expression::{Parts, level};
 use super::language::Language;
 use super::writer::{PrintResult, Writer};
 
@@ -24,6 +24,7 @@ impl Writer<'_> {
         match self.language() {
             Language::Hlsl => self.built_in_of_hlsl(function, arguments, ty),
             Language::Godot => self.built_in_of_godot(function, arguments, ty),
+            Language::Glsl => Ok((Self::call(function.name(), arguments), level::POSTFIX)),
             Language::Msl => self.built_in_of_metal(function, arguments, ty),
         }
     }
@@ -44,7 +45,7 @@ impl Writer<'_> {
         let body = mix_of_bool(&self.type_name(ty)?, ty.component_count().unwrap_or(1));
         let name = match self.language() {
             Language::Hlsl => "mix",
-            Language::Msl | Language::Godot => "mixBool",
+            Language::Msl | Language::Godot | Language::Glsl => "mixBool",
         };
         self.helper_function(name, types, ty, "", &body)
     }

@@ -1,9 +1,9 @@
 Shader "ShaderToy/$name" {
     Properties {
-        iChannel0 ("iChannel0", 2D) = "black" {} //? channel0
-        iChannel1 ("iChannel1", 2D) = "black" {} //? channel1
-        iChannel2 ("iChannel2", 2D) = "black" {} //? channel2
-        iChannel3 ("iChannel3", 2D) = "black" {} //? channel3
+        iChannel0 ("iChannel0", $property0 {} //? channel0
+        iChannel1 ("iChannel1", $property1 {} //? channel1
+        iChannel2 ("iChannel2", $property2 {} //? channel2
+        iChannel3 ("iChannel3", $property3 {} //? channel3
         iMouse ("iMouse", Vector) = (0, 0, 0, 0) //? iMouse
         iDate ("iDate", Vector) = (2000, 0, 1, 0) //? iDate
         iFrame ("iFrame", Integer) = 0 //? iFrame

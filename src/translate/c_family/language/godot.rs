@@ -1,8 +1,9 @@
 //! The words and types of Godot's shading language (“Shading language” and “CanvasItem shaders” in the Godot
 //! documentation).
 
-use toyproof_glsl::tree::{BuiltIn, Scalar, Type};
+use toyproof_glsl::tree::{BuiltIn, Type};
 
+use super::glsl;
 use crate::print::keyword::lists;
 
 /// Keywords, render modes, and the variables and constants that exist without a declaration in some function
@@ -45,10 +46,9 @@ pub(super) fn is_function(word: &str) -> bool {
 
 /// The name of a scalar, vector or matrix type. Matrices are square.
 pub(super) fn numeric_type(ty: Type) -> Option<String> {
-    Some(match ty {
-        Type::Scalar(scalar) => scalar.name().to_owned(),
-        Type::Vector(scalar, size) => format!("{}vec{size}", Scalar::vector_prefix(scalar)),
-        Type::Matrix { columns, rows } if columns == rows => format!("mat{columns}"),
-        _ => return None,
-    })
+    match ty {
+        Type::Matrix { columns, rows } if columns != rows => None,
+        Type::Sampler(_) => None,
+        _ => glsl::numeric_type(ty),
+    }
 }

@@ -1,6 +1,7 @@
 //! What differs between the languages: types, words and passes. Their built-in functions are in
 //! [`super::builtin`].
 
+mod glsl;
 mod godot;
 mod hlsl;
 mod msl;
@@ -18,6 +19,8 @@ pub(super) enum Language {
     Hlsl,
     /// The shading language of Godot 4: GLSL with fewer constructs, and without global variables.
     Godot,
+    /// GLSL ES 3.00.
+    Glsl,
     /// Metal Shading Language, which is C++14.
     Msl,
 }
@@ -57,6 +60,24 @@ impl Language {
                 Pass::Switches,
             ],
             Self::Godot => &[Pass::MissingBuiltIns],
+            Self::Glsl => &[
+                Pass::Samplers,
+                Pass::ShortCircuit,
+                Pass::MissingBuiltIns,
+                Pass::Geometric,
+                Pass::Texels,
+                Pass::Matrices,
+                Pass::Swizzles,
+                Pass::Indices,
+                Pass::Negations,
+                Pass::OutArguments,
+                Pass::Equality,
+                Pass::LoopVoids,
+                Pass::ElseIfs,
+                Pass::DeadCode,
+                Pass::Switches,
+                Pass::Sequences,
+            ],
         };
         let late = early
             .into_iter()
@@ -72,7 +93,7 @@ impl Language {
     pub(super) fn branches_for_effects(self) -> bool {
         match self {
             Self::Hlsl | Self::Godot => true,
-            Self::Msl => false,
+            Self::Msl | Self::Glsl => false,
         }
     }
 
@@ -80,22 +101,24 @@ impl Language {
     pub(super) fn has_array_values(self) -> bool {
         match self {
             Self::Hlsl | Self::Godot => false,
-            Self::Msl => true,
+            Self::Msl | Self::Glsl => true,
         }
     }
 
     /// Whether parameters for `out` and `inout` are references as in C++.
     pub(super) fn has_references(self) -> bool {
         match self {
-            Self::Hlsl | Self::Godot => false,
+            Self::Hlsl | Self::Godot | Self::Glsl => false,
             Self::Msl => true,
         }
     }
 
     /// The name of a scalar, vector or matrix type.
     pub(super) fn numeric_type(self, ty: Type) -> Option<String> {
-        if self == Self::Godot {
-            return godot::numeric_type(ty);
+        match self {
+            Self::Hlsl | Self::Msl => {}
+            Self::Godot => return godot::numeric_type(ty),
+            Self::Glsl => return glsl::numeric_type(ty),
         }
         Some(match ty {
             Type::Scalar(scalar) => scalar.name().to_owned(),
@@ -117,7 +140,7 @@ impl Language {
         match self {
             Self::Hlsl => "static const",
             Self::Msl => "constant",
-            Self::Godot => "const",
+            Self::Godot | Self::Glsl => "const",
         }
     }
 
@@ -131,7 +154,7 @@ impl Language {
                 "texture3d<float>",
                 "texturecube<float>",
             ],
-            Self::Godot => return Sampler::float(shape).name(),
+            Self::Godot | Self::Glsl => return Sampler::float(shape).name(),
         };
         let name = match shape {
             SamplerShape::D2 => plane,
@@ -174,6 +197,7 @@ impl Vocabulary for Words {
         let is_word = match self.host.language() {
             Language::Hlsl => hlsl::is_reserved(word),
             Language::Godot => godot::is_reserved(word),
+            Language::Glsl => glsl::is_reserved(word),
             Language::Msl => msl::is_reserved(word),
         };
         is_word || is_unitys
@@ -183,6 +207,7 @@ impl Vocabulary for Words {
         match self.host.language() {
             Language::Hlsl => hlsl::is_function(word),
             Language::Godot => godot::is_function(word),
+            Language::Glsl => glsl::is_function(word),
             Language::Msl => msl::is_function(word),
         }
     }
@@ -193,7 +218,7 @@ impl Vocabulary for Words {
     }
 
     fn has_scopes_of_c(&self) -> bool {
-        true
+        self.host.language() != Language::Glsl
     }
 
     fn with_free_stem(&self, word: &str) -> String {

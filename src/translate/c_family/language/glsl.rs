@@ -1,0 +1,25 @@
+//! The words and types of GLSL ES 3.00.
+
+use toyproof_glsl::tree::{BuiltIn, Scalar, Type};
+
+/// Whether nothing may have the name. The author's names are valid: the shader is GLSL.
+pub(super) fn is_reserved(word: &str) -> bool {
+    word.starts_with("gl_") || word.contains("__")
+}
+
+/// Whether the name is a function's.
+pub(super) fn is_function(word: &str) -> bool {
+    BuiltIn::ALL.iter().any(|function| function.name() == word)
+}
+
+/// The name of a scalar, vector, matrix or sampler type.
+pub(super) fn numeric_type(ty: Type) -> Option<String> {
+    Some(match ty {
+        Type::Scalar(scalar) => scalar.name().to_owned(),
+        Type::Vector(scalar, size) => format!("{}vec{size}", Scalar::vector_prefix(scalar)),
+        Type::Matrix { columns, rows } if columns == rows => format!("mat{columns}"),
+        Type::Matrix { columns, rows } => format!("mat{columns}x{rows}"),
+        Type::Sampler(sampler) => sampler.name(),
+        _ => return None,
+    })
+}
