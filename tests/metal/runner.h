@@ -44,7 +44,8 @@ inline void render_quad(Fragment shader, const char *block, const metal::Image *
             const metal::float4 position(float(column) + 0.5f, float(row) + 0.5f, 0.0f, 1.0f);
             metal::float4 color = shader(block, channels, position);
             quad.calls[quad.pixel] = quad.call;
-            if (quad.is_discarded) color = metal::float4(0.0f);
+            // The evaluator marks discarded pixels by this color.
+            if (quad.is_discarded) color = metal::float4(0.0f, 0.0f, 0.0f, 0.5f);
             if (column < size[0] && row < size[1])
                 memcpy(image + size_t(4) * size_t(row * size[0] + column), color.all, sizeof color.all);
         }
