@@ -199,7 +199,7 @@ fn flushed_denormals_are_permitted_and_other_zeros_are_not() {
 }
 
 #[test]
-fn imprecise_functions_are_measured_and_judged() {
+fn imprecise_functions_are_measured_and_checked() {
     let bent = |ulps: f64| {
         move |operands: &[f32]| {
             let exact = 1.0 / f64::from(operands[0]).sqrt();

@@ -87,7 +87,7 @@ impl Errors {
         } else if self.usual.as_ref().is_none_or(|&(largest, _)| ulps > largest) {
             self.usual = Some((ulps, operands.to_vec()));
         }
-        let share = self.judge(function, operands, result, &finite);
+        let share = self.check(function, operands, result, &finite);
         if is_usual {
             self.share = self.share.max(share);
         }
@@ -96,7 +96,7 @@ impl Errors {
     /// Compares a result with the permitted ones of the exact values, of which any may be meant. Returns the
     /// error as a share of the permitted one, or 0 if that is not limited, or if a flushed denormal exceeds
     /// it.
-    fn judge(&mut self, function: &Function, operands: &[f32], result: f32, exact: &[f64]) -> f64 {
+    fn check(&mut self, function: &Function, operands: &[f32], result: f32, exact: &[f64]) -> f64 {
         let limits: Vec<_> = operands.iter().copied().map(Permitted::operand).collect();
         let permitted = (function.permitted)(&limits);
         if !exact
