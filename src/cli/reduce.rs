@@ -10,17 +10,19 @@ use std::time::{Duration, Instant};
 use toyproof_diagnostic::{Code, Deadline, Severity, grouped, one_of, path_name, plural};
 use toyproof_glsl as glsl;
 use toyproof_gpu::Worker;
-use toyproof_image::Frame;
 use toyproof_image::output::Originals;
+use toyproof_image::{Frame, FrameInputs};
 use toyproof_project::files::{self, Input, Texts};
 use toyproof_reduce::fault::{CommandLine, Fault, FaultTester, Finding, Session, Subject, Wanted, find};
 use toyproof_reduce::report::Report;
-use toyproof_reduce::{Limits, Progress, Reduction, reduce};
+use toyproof_reduce::{Limits, Progress, Reduction, Tester as _, reduce};
 use toyproof_translate::lower::Pass;
 use toyproof_translate::{FloatMode, NAGA_VERSION};
 use toyproof_verify::{Expected, Verdict};
 
-use super::inputs::{DriverArgs, FrameArgs, LanguageArgs, check_output, parse_time_limit, shell_word};
+use super::inputs::{
+    DriverArgs, FrameArgs, LanguageArgs, check_output, frame_flags, parse_time_limit, shell_word,
+};
 use super::reference::{GivenReference, ReferenceArgs};
 use super::scenes::{parse_scene, read_scene};
 use super::shader::{Shader, find_one};
@@ -133,6 +135,9 @@ pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
     let found = found.map_err(|error| not_found(&error, &input, &wanted))?;
     terminal.note(&format!("fault: {found}"));
     let reduction = reduced(args, (&text, &output), &subject, &found.fault, terminal)?;
+    if !FaultTester::new(&subject, &found.fault, &text).shows_fault(&reduction.text) {
+        return Err(lost(&input, &wanted));
+    }
     if output == Path::new("-") {
         terminal.bytes(reduction.text.as_bytes())?;
     }
@@ -280,6 +285,20 @@ fn not_found(error: &dyn std::fmt::Display, input: &Input, wanted: &Wanted) -> C
     })
 }
 
+/// The error of a reduced shader that does not show the fault any more.
+fn lost(input: &Input, wanted: &Wanted) -> CliError {
+    let error = CliError::new(format_args!(
+        "{}: the reduced shader does not show the fault when it is tested again",
+        input.name()
+    ));
+    error.with_help(match wanted {
+        Wanted::Command(_) => {
+            "commands run in parallel, so each must write files of its own, such as `{}.spv`; or use --jobs 1"
+        }
+        _ => "a fault that occurs at random cannot be reduced",
+    })
+}
+
 /// The text of an issue about the reduced shader.
 fn report(
     args: &Args,
@@ -294,8 +313,9 @@ fn report(
         shader: text,
         file_name: &file_name_of(file),
         finding: &finding,
-        size: subject.frame.size,
+        frame: &subject.frame,
         command: &command_line(args, &finding, subject.frame.size, file),
+        output: tools.output.as_deref(),
         lowered: tools.lowered.as_deref(),
         spirv: tools.spirv.as_deref(),
         device: tools.device.as_deref(),
@@ -307,7 +327,7 @@ fn report(
 }
 
 /// The command that shows the fault with toyproof.
-fn command_line(args: &Args, finding: &Finding, [width, height]: [u32; 2], file: &Path) -> String {
+fn command_line(args: &Args, finding: &Finding, size: [u32; 2], file: &Path) -> String {
     let name = shell_word(&path_name(file));
     let mut words = match (args.without, &finding.fault) {
         (Some(pass), fault) => {
@@ -321,9 +341,11 @@ fn command_line(args: &Args, finding: &Finding, [width, height]: [u32; 2], file:
         }
         (None, _) => vec![format!("toyproof check {name}")],
     };
-    if !matches!(finding.fault, Fault::Naga { .. } | Fault::Diagnostic { .. }) {
-        words.push(format!("--size {width}x{height}"));
-    }
+    let is_rendered = !matches!(finding.fault, Fault::Naga { .. } | Fault::Diagnostic { .. });
+    words.extend(frame_flags(&FrameInputs {
+        size: is_rendered.then_some(size),
+        ..args.frame.inputs()
+    }));
     words.extend(args.reference.flags());
     words.extend(args.language.flags());
     words.join(" ")

@@ -1,6 +1,5 @@
 //! Rendering one frame and reading it back.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
 use toyproof_image::{Frame, Image, Sampling};
@@ -11,7 +10,7 @@ use wgpu::{BindGroup, PollType, RenderPipeline, Texture, TextureUsages};
 
 use super::device::Device;
 use super::pipeline::Layout;
-use super::quirks::{FOLDED_DENORMALS, LOOP_EXITS, OPAQUE_NUMBERS, loop_exits, opaque_numbers};
+use super::quirks::with_workarounds;
 use super::readback::RowBuffer;
 use super::texture::flat;
 use super::{AdapterSelector, Failure, naga_failed, refused};
@@ -102,26 +101,14 @@ impl Device {
     pub(super) fn compile(&self, program: &Program) -> Result<CompiledPipeline, Failure> {
         self.with_error_scopes(|| {
             let layout = Layout::new(self, program.channels);
-            let pipeline = layout.pipeline(&self.gpu, &self.driver_words(program));
+            let words = with_workarounds(&program.words, &self.adapter.get_info().name, program.float);
+            let pipeline = layout.pipeline(&self.gpu, &words);
             Ok(CompiledPipeline {
                 layout,
                 sampling: program.sampling,
                 pipeline,
             })
         })
-    }
-
-    /// Returns the words for this driver: Mesa's loops need early exits, and its compiler must not recognize
-    /// that strict, expanded operations are computed from uniforms and constants.
-    fn driver_words<'a>(&self, program: &'a Program) -> Cow<'a, [u32]> {
-        let mut words = Cow::from(&program.words);
-        if self.has(&LOOP_EXITS) {
-            words = loop_exits::with_early_exits(&words).into();
-        }
-        if program.float == FloatMode::Strict && (self.has(&OPAQUE_NUMBERS) || self.has(&FOLDED_DENORMALS)) {
-            words = opaque_numbers::with_opaque_numbers(&words).into();
-        }
-        words
     }
 
     /// Prepares the bindings and the target of a frame, with a draw that covers no pixel.

@@ -42,9 +42,11 @@
 //! - `outline`: declarations and statements of a text by its brackets; `rewrite`: edits that apply together.
 //! - `search`: tries candidates on several threads; `size`: which of two texts is smaller.
 //! - [`fault`]: the faults of naga, drivers, toyproof and commands, and how they are found and compared.
-//! - [`report`]: the text of an issue for the project whose fault it is.
+//! - [`report`]: the text of an issue for the project whose fault it is; `khronos`: what glslang and
+//!   spirv-val say about its shader.
 
 pub mod fault;
+mod khronos;
 mod outline;
 pub mod report;
 mod rewrite;

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use toyproof::reduce::Size;
 
 use crate::program::{Run, command, run, toyproof};
-use crate::requirements::require_driver;
+use crate::requirements::{require_driver, require_program};
 
 /// A shader of 100 tokens per function, whose `mainImage` gets a statement.
 fn shader(statement: &str) -> String {
@@ -109,10 +109,62 @@ fn a_refusal_of_naga_is_reduced_and_reported() {
         "# A valid fragment shader is not translated to SPIR-V: ",
         &small,
         "--shader-stage frag shader.frag shader.spv",
-        "#version 450",
+        "## Shader\n\nThis fragment shader was reduced automatically from a larger one.\n\n```glsl\n#version 450",
     ] {
         assert!(report.contains(part), "{part}\n{report}");
     }
+}
+
+#[test]
+fn a_report_states_whether_glslang_accepts_the_shader() {
+    if !require_program("glslangValidator") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let text = shader("mat2 m = mat2(cos(iTime + vec4(0.0, 33.0, 11.0, 0.0))); c.xy = m * c.xy;");
+    let arguments = ["--fault", "naga", "--without", "matrices", "--report", "issue.md"];
+    reduced(folder.path(), &text, &arguments);
+    let report = fs::read_to_string(folder.path().join("issue.md")).unwrap();
+    assert!(
+        report.contains("`glslangValidator -V` (Glslang Version: ") && report.contains(") accepts it."),
+        "{report}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_report_on_a_command_has_its_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let command = "if grep -q dFdx {}; then echo {}: unsupported; exit 3; fi";
+    let arguments = ["--command", command, "--report", "issue.md"];
+    let (run, _) = reduced(folder.path(), &shader("c += dFdx(c) * 0.1;"), &arguments);
+    assert_eq!(run.code, 0, "{run:?}");
+    let report = fs::read_to_string(folder.path().join("issue.md")).unwrap();
+    for part in [
+        "exit status 3. It prints:\n\n```text\na.glsl: unsupported\n```",
+        "Save the shader as `a.glsl`, and run `if grep -q dFdx a.glsl;",
+    ] {
+        assert!(report.contains(part), "{part}\n{report}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_fault_that_is_lost_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    // The command counts its runs in a file: from the fifth on, it shows no fault.
+    let command = "test -f {}; echo >> runs; test $(wc -l < runs) -lt 5";
+    let arguments = ["--command", command, "--jobs", "1", "--report", "issue.md"];
+    let (run, _) = reduced(folder.path(), &shader(""), &arguments);
+    assert!(
+        run.code == 2
+            && run
+                .stderr
+                .contains("does not show the fault when it is tested again"),
+        "{run:?}"
+    );
+    assert!(run.stderr.contains("help: commands run in parallel"), "{run:?}");
+    assert!(!folder.path().join("issue.md").exists());
 }
 
 #[test]

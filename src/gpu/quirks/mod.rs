@@ -9,7 +9,10 @@ pub(crate) mod loop_steps;
 mod opaque;
 pub(crate) mod opaque_numbers;
 
+use std::borrow::Cow;
 use std::process::Command;
+
+use toyproof_translate::FloatMode;
 
 /// A family of drivers that share their faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -252,6 +255,20 @@ pub const QUIRKS: [Quirk; 14] = [
         scope: Scope::Everywhere,
     },
 ];
+
+/// Returns the words of a module that the driver of an adapter gets instead: Mesa's loops need early exits, and
+/// its compiler must not recognize that strict, expanded operations are computed from uniforms and constants.
+pub fn with_workarounds<'a>(words: &'a [u32], adapter: &str, float: FloatMode) -> Cow<'a, [u32]> {
+    let applies = |quirk: &Quirk| quirk.applies_to(adapter);
+    let mut words = Cow::from(words);
+    if applies(&LOOP_EXITS) {
+        words = loop_exits::with_early_exits(&words).into();
+    }
+    if float == FloatMode::Strict && (applies(&OPAQUE_NUMBERS) || applies(&FOLDED_DENORMALS)) {
+        words = opaque_numbers::with_opaque_numbers(&words).into();
+    }
+    words
+}
 
 /// Prepares the environment of a process that loads drivers.
 pub(crate) fn set_environment(command: &mut Command) {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::fs;
-use std::io;
+use std::io::{self, Read as _, Seek as _};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
@@ -10,6 +10,10 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 use thiserror::Error;
+
+/// The longest output of a command in a report, in lines and bytes.
+const MAX_OUTPUT_LINES: usize = 40;
+const MAX_OUTPUT_BYTES: u64 = 1 << 16;
 
 /// What stands for the file in a command.
 const FILE: &str = "{}";
@@ -67,18 +71,54 @@ impl CommandLine {
         })
     }
 
+    /// The name of the file.
+    pub fn file_name(&self) -> &str {
+        &self.file_name
+    }
+
+    /// The command as a person types it, with the name of the file.
+    pub fn shown(&self) -> String {
+        self.text.replace(FILE, &self.file_name)
+    }
+
     /// Runs the command on a text, in a folder of its own for temporary files.
     ///
     /// # Errors
     /// If it does not start.
     pub fn run(&self, folder: &TempDir, text: &str, limit: Duration) -> Result<Ending, CommandError> {
+        self.run_into(folder, text, limit, [Stdio::null(), Stdio::null()])
+    }
+
+    /// Runs the command like [`run`](Self::run), and returns the first lines that it prints, without colors.
+    ///
+    /// # Errors
+    /// If it does not start.
+    pub fn output(&self, folder: &TempDir, text: &str, limit: Duration) -> Result<String, CommandError> {
+        let mut printed = tempfile::tempfile()?;
+        // Both write at the end of one file, in their order.
+        let streams = [printed.try_clone()?.into(), printed.try_clone()?.into()];
+        self.run_into(folder, text, limit, streams)?;
+        printed.rewind()?;
+        let mut bytes = Vec::new();
+        printed.take(MAX_OUTPUT_BYTES).read_to_end(&mut bytes)?;
+        let file = folder.path().join(&self.file_name);
+        let text = without_colors(&String::from_utf8_lossy(&bytes))
+            .replace(&*file.to_string_lossy(), &self.file_name);
+        let lines: Vec<&str> = text.lines().take(MAX_OUTPUT_LINES).collect();
+        Ok(lines.join("\n"))
+    }
+
+    fn run_into(
+        &self,
+        folder: &TempDir,
+        text: &str,
+        limit: Duration,
+        [stdout, stderr]: [Stdio; 2],
+    ) -> Result<Ending, CommandError> {
         let file = folder.path().join(&self.file_name);
         fs::write(&file, text)?;
         let mut command = shell(&self.text, &file);
-        command
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
+        command.stdin(Stdio::null()).stdout(stdout).stderr(stderr);
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn()?;
@@ -135,6 +175,20 @@ fn shell(text: &str, file: &Path) -> Command {
     command
 }
 
+/// A text without the escape sequences that color it: `ESC [`, numbers, and a letter.
+fn without_colors(text: &str) -> String {
+    let mut parts = text.split("\x1b[");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        out.push_str(
+            part.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';')
+                .get(1..)
+                .unwrap_or_default(),
+        );
+    }
+    out
+}
+
 fn ending(status: ExitStatus) -> Ending {
     #[cfg(unix)]
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
@@ -159,6 +213,19 @@ mod tests {
         assert_eq!(run("grep -q void {}", limit), Ending::Exit(0));
         assert_eq!(run("grep -q float {}", limit), Ending::Exit(1));
         assert_eq!(run("kill -SEGV $$ # {}", limit), Ending::Signal(11));
+    }
+
+    #[test]
+    fn the_output_has_the_name_of_the_file_and_no_colors() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "echo {}; printf '\\033[1;31merror\\033[0m\\n' >&2; seq 100; exit 3";
+        let command = CommandLine::new(text, "a.frag").unwrap();
+        let output = command
+            .output(&folder, "void f();", Duration::from_secs(10))
+            .unwrap();
+        assert!(output.starts_with("a.frag\nerror\n1\n2\n"), "{output}");
+        assert_eq!(output.lines().count(), MAX_OUTPUT_LINES);
+        assert!(command.shown().starts_with("echo a.frag; "));
     }
 
     #[test]

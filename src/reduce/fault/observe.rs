@@ -9,10 +9,11 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, Files, Severi
 use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
+use toyproof_gpu::quirks::with_workarounds;
 use toyproof_image::{Frame, Image};
 use toyproof_lint::lint;
 use toyproof_player::{DriverFailure, Phase};
-use toyproof_translate::backend::Target;
+use toyproof_translate::backend::{Target, spirv};
 use toyproof_translate::lower::{Pass, Passes, lower_within};
 use toyproof_translate::{FloatMode, Lowered};
 use toyproof_verify::compare::{CheckSummary, toolchain};
@@ -68,6 +69,8 @@ pub struct Tools {
     pub spirv: Option<Vec<u8>>,
     /// The driver.
     pub device: Option<String>,
+    /// What a command prints.
+    pub output: Option<String>,
 }
 
 /// A shader that compiles.
@@ -183,6 +186,12 @@ impl<'a> Session<'a> {
     /// What the tools at fault get, for a report.
     pub fn tools(&mut self, fault: &Fault, text: &str) -> Tools {
         let mut tools = Tools::default();
+        if let Fault::Command { command, .. } = fault {
+            let folder = tempfile::tempdir().ok();
+            let timeout = self.subject.timeout;
+            tools.output = folder.and_then(|folder| command.output(&folder, text, timeout).ok());
+            return tools;
+        }
         let Some(lowered) = self.compile(text).ok().and_then(|compiled| self.lower(&compiled)) else {
             return tools;
         };
@@ -194,8 +203,13 @@ impl<'a> Session<'a> {
                     tools.lowered = Some(lowered.text().to_owned());
                 }
                 if let Some(worker) = self.worker() {
-                    tools.spirv = worker.translate(lowered, Target::Spirv, float).ok();
+                    let module = worker.translate(lowered, Target::Spirv, float).ok();
                     let drivers = worker.probe().unwrap_or_default();
+                    let adapter = drivers.first().map_or("", |driver| driver.name.as_str());
+                    tools.spirv = module.as_deref().and_then(spirv::of_bytes).map(|words| {
+                        let words = with_workarounds(&words, adapter, float);
+                        words.iter().flat_map(|word| word.to_le_bytes()).collect()
+                    });
                     tools.device = drivers.first().map(|driver| driver.version.clone());
                 }
             }
