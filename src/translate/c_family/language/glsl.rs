@@ -7,6 +7,18 @@ pub(super) fn is_reserved(word: &str) -> bool {
     word.starts_with("gl_") || word.contains("__")
 }
 
+/// A stem for `word` such that `{stem}_1` is not reserved.
+pub(super) fn with_free_stem(word: &str) -> String {
+    if !is_reserved(&format!("{word}_1")) {
+        return word.to_owned();
+    }
+    let parts = word.split('_').filter(|part| !part.is_empty() && *part != "gl");
+    match parts.collect::<Vec<_>>().as_slice() {
+        [] => "unused".to_owned(),
+        parts => parts.join("_"),
+    }
+}
+
 /// Whether the name is a function's.
 pub(super) fn is_function(word: &str) -> bool {
     BuiltIn::ALL.iter().any(|function| function.name() == word)

@@ -226,8 +226,10 @@ impl Vocabulary for Words {
     }
 
     fn with_free_stem(&self, word: &str) -> String {
-        if self.host.language() == Language::Msl {
-            return msl::with_free_stem(word);
+        match self.host.language() {
+            Language::Msl => return msl::with_free_stem(word),
+            Language::Glsl => return glsl::with_free_stem(word),
+            _ => {}
         }
         match word.trim_start_matches('_') {
             _ if !word.starts_with("__") => word.to_owned(),
