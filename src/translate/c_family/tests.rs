@@ -563,6 +563,16 @@ fn constants_are_not_shadowed_in_godot_and_literals_are_folded() {
 }
 
 #[test]
+fn reserved_names_are_replaced_in_glsl_and_godot() {
+    let text = "float a__b(float gl) { return gl; }\nvoid mainImage(out vec4 color, in vec2 at) { float __ = a__b(at.x); color = vec4(__); }";
+    for host in [CHost::Glsl, CHost::Godot] {
+        let written = converted(host, text).unwrap();
+        assert!(written.contains("float a_b(float gl) {"), "{written}");
+        assert!(written.contains("float unused = a_b(at.x);"), "{written}");
+    }
+}
+
+#[test]
 fn glsl_stays_as_its_author_wrote_it() {
     let text = "// Waves\n#define COUNT 3\nfloat sum = 0.0;\nconst float W[2] = float[2](1., 2.);\n\
         vec4 tap(sampler2D image, vec2 uv) { return textureLod(image, uv, 0.); } // A tap\n\

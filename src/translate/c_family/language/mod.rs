@@ -228,8 +228,8 @@ impl Vocabulary for Words {
     fn with_free_stem(&self, word: &str) -> String {
         match self.host.language() {
             Language::Msl => return msl::with_free_stem(word),
-            Language::Glsl => return glsl::with_free_stem(word),
-            _ => {}
+            Language::Glsl | Language::Godot => return glsl::with_free_stem(word),
+            Language::Hlsl => {}
         }
         match word.trim_start_matches('_') {
             _ if !word.starts_with("__") => word.to_owned(),
