@@ -437,7 +437,7 @@ fn the_expressions_of_all_measurements_are_valid() {
         f32::MAX,
         -f32::MAX,
         2.0_f32.powi(-126),
-        3.141_592_7,
+        std::f32::consts::PI,
     ] {
         assert!(unit.iter().any(|operands| operands[0] == special), "{special:e}");
     }
@@ -492,7 +492,7 @@ fn a_driver_is_measured() {
     let mut translator = new_worker(AdapterSelector::Auto).without_driver();
     let mut sections = Vec::new();
     let column = plan.measure(device, &mut translator, &|| None, &mut |section| {
-        sections.extend(section)
+        sections.extend(section);
     });
     assert_eq!(sections.len(), 5, "{sections:?}");
     let rows = plan.rows();

@@ -42,8 +42,9 @@ fn time_limits() -> RangedU64ValueParser {
 }
 
 /// Measures the devices, and prints the table, also where it is interrupted.
+#[expect(clippy::exit, reason = "a second interrupt ends the program at once")]
 pub(super) fn print_table(options: &Arguments) -> ExitCode {
-    // If no handler can be installed, an interrupt ends the program. A second interrupt ends it at once.
+    // If no handler can be installed, an interrupt ends the program.
     let _ = ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(130);

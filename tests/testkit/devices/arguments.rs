@@ -27,7 +27,7 @@ const EDGES: [u32; 14] = [
     0x7fc0_0000, // NaN
 ];
 
-/// A generator of random numbers: SplitMix64.
+/// A generator of random numbers: `SplitMix64`.
 struct Random(u64);
 
 impl Random {
@@ -73,14 +73,14 @@ pub fn arguments(usual: &[Range], count: usize) -> Vec<Vec<f32>> {
         if let ([_], Some(&value)) = (usual, special.get(index)) {
             return vec![value];
         }
-        if usual.len() > 1 && index % 8 == 0 {
+        if usual.len() > 1 && index.is_multiple_of(8) {
             return usual
                 .iter()
                 .map(|_| special[random.next() as usize % special.len()])
                 .collect();
         }
         let mut operand = |&range: &Range| {
-            if index % 3 == 0 {
+            if index.is_multiple_of(3) {
                 random.any_float()
             } else {
                 random.in_range(range)

@@ -44,6 +44,7 @@ pub fn is_rounded(result: f32, exact: f64) -> bool {
 }
 
 /// A set of permitted results: an interval of reals, or any result.
+#[must_use]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Permitted {
     /// NaN if any result is permitted.
