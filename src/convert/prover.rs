@@ -128,7 +128,7 @@ pub enum ProofError {
     Run(Failure),
     /// Some pixels differ.
     #[error(
-        "{} of {} pixels {} from {}{}, by at most {max_abs:.1e}",
+        "{} of {} pixels {} from {}{}, {}",
         grouped(*differing),
         grouped(*pixels),
         plural(*differing, "differs", "differ"),
@@ -137,6 +137,10 @@ pub enum ProofError {
             ProofReference::StrictRun => "the original's image on the same driver",
         },
         reader.as_ref().map_or_else(String::new, |reader| format!(" as read by {reader}")),
+        match *max_abs {
+            0.0 => "in values that are not finite".to_owned(),
+            max_abs => format!("by at most {max_abs:.1e}"),
+        },
     )]
     Differs {
         /// The reader, if there are several.

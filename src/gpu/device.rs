@@ -199,9 +199,14 @@ impl Device {
         format!("{}, {}", info.name, version(&info))
     }
 
+    /// Returns the name of the adapter, without versions.
+    pub(super) fn adapter_name(&self) -> String {
+        self.adapter.get_info().name
+    }
+
     /// Returns whether a workaround is applied on this device.
     pub(super) fn has(&self, quirk: &Quirk) -> bool {
-        quirk.applies_to(&self.adapter.get_info().name)
+        quirk.applies_to(&self.adapter_name())
     }
 
     /// Returns the number of iterations after which this driver terminates the loops of an invocation, if it

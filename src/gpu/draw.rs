@@ -101,7 +101,7 @@ impl Device {
     pub(super) fn compile(&self, program: &Program) -> Result<CompiledPipeline, Failure> {
         self.with_error_scopes(|| {
             let layout = Layout::new(self, program.channels);
-            let words = with_workarounds(&program.words, &self.adapter.get_info().name, program.float);
+            let words = with_workarounds(&program.words, &self.adapter_name(), program.float);
             let pipeline = layout.pipeline(&self.gpu, &words);
             Ok(CompiledPipeline {
                 layout,

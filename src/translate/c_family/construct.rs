@@ -38,8 +38,8 @@ impl Writer<'_> {
                     parts.push(Part::token(", "));
                 }
                 match scalar {
-                    Some(scalar) => parts.extend(self.component(argument, scalar)?),
-                    None => parts.push(Part::Print(argument, level::ASSIGN)),
+                    Some(scalar) if arguments.len() > 1 => parts.extend(self.component(argument, scalar)?),
+                    _ => parts.push(Part::Print(argument, level::ASSIGN)),
                 }
             }
             parts.push(Part::token(")"));

@@ -57,7 +57,7 @@ impl Writer<'_> {
                         self.failed_at.get_or_insert(self.cx.tree[id].at);
                     })?;
                     if level < at_least {
-                        code.push('(');
+                        code += &self.parenthesis(id)?;
                         parts.push(Part::token(")"));
                     }
                     pending.extend(parts.into_iter().rev());
@@ -65,6 +65,36 @@ impl Writer<'_> {
             }
         }
         Ok(code)
+    }
+
+    /// What opens the parentheses around an expression. Godot prints the code again, and keeps only those around
+    /// operators with two operands: a constructor of the same type stands for others.
+    fn parenthesis(&self, id: ExprId) -> PrintResult<String> {
+        let expr = &self.cx.tree[id];
+        let is_kept = matches!(expr.kind, ExprKind::Binary { .. } | ExprKind::Conditional { .. });
+        if self.language() != Language::Godot || is_kept {
+            return Ok("(".to_owned());
+        }
+        match expr.ty {
+            Type::Scalar(_) | Type::Vector(..) | Type::Matrix { .. } => {
+                Ok(format!("{}(", self.type_name(expr.ty)?))
+            }
+            _ => Err(Unprintable::Construct("an assignment in an expression")),
+        }
+    }
+
+    /// Whether the code of an expression begins with a minus.
+    fn begins_with_minus(&self, id: ExprId) -> bool {
+        let mut id = id;
+        loop {
+            match &self.cx.tree[id].kind {
+                ExprKind::Binary { left, .. } => id = *left,
+                ExprKind::Unary { op, .. } => return *op == UnaryOp::Minus,
+                ExprKind::Step { op, postfix, .. } => return !postfix && op.symbol() == "--",
+                ExprKind::Literal(literal) => return number(literal).starts_with('-'),
+                _ => return false,
+            }
+        }
     }
 
     fn parts(&mut self, id: ExprId) -> PrintResult<Parts> {
@@ -92,6 +122,13 @@ impl Writer<'_> {
                 UnaryOp::Minus if self.language() == Language::Godot && is_matrix(tree[operand].ty) => {
                     let level = BinaryOp::Multiply.precedence() + level::BINARY;
                     (vec![Part::token("-1.0 * "), Print(operand, level + 1)], level)
+                }
+                // Godot prints `-(-x)` as `--x`.
+                UnaryOp::Minus if self.language() == Language::Godot && self.begins_with_minus(operand) => {
+                    let negated = self.type_name(tree[operand].ty)?;
+                    let mut parts = vec![Part::token("-")];
+                    parts.extend(Self::call(negated, &[operand]));
+                    (parts, level::UNARY)
                 }
                 // `- -x` without the space is another operator.
                 _ => (
@@ -320,10 +357,16 @@ impl Writer<'_> {
             parts.extend(Self::call(function, &[target, value]));
         } else {
             let symbol = op.map_or("", BinaryOp::symbol);
-            parts.extend([
-                Part::Token(format!(" {symbol}= ")),
-                Part::Print(value, level::ASSIGN),
-            ]);
+            parts.push(Part::Token(format!(" {symbol}= ")));
+            let is_shift = matches!(op, Some(BinaryOp::ShiftLeft | BinaryOp::ShiftRight));
+            let [own, by] = [target, value].map(|side| self.cx.tree[side].ty);
+            match by.with_scalar(own.scalar().unwrap_or(Scalar::Int)) {
+                // The operands of a shift have the same sign in Godot.
+                Some(ty) if self.language() == Language::Godot && is_shift && ty != by => {
+                    parts.extend(Self::call(self.type_name(ty)?, &[value]));
+                }
+                _ => parts.push(Part::Print(value, level::ASSIGN)),
+            }
         }
         Ok((parts, level::ASSIGN))
     }
@@ -407,6 +450,11 @@ impl Writer<'_> {
                 }
             }
             Type::Struct(id) => {
+                let is_array = |ty| matches!(ty, Type::Array(_));
+                let has_array = self.cx.tree[id].members.iter().any(|member| is_array(member.ty));
+                if has_array && self.language() == Language::Godot {
+                    return Err(Unprintable::Construct("an array in a structure without a value"));
+                }
                 let members = self.cx.tree[id].members.iter().map(|member| self.zero(member.ty));
                 let zeros = members.collect::<PrintResult<Vec<_>>>()?;
                 format!("{}({})", self.structure_name(id), list(zeros))
@@ -424,6 +472,7 @@ impl Writer<'_> {
         let is_infinite = matches!(literal.value, Value::Float(value) if (value as f32).is_infinite());
         let code = match self.language() {
             Language::Msl if is_infinite => "INFINITY".to_owned(),
+            Language::Godot => number_in_godot(literal),
             _ => number(literal),
         };
         let Some(name) = self.source.macro_name(at).filter(|name| self.is_free(name)) else {
@@ -469,6 +518,22 @@ fn is_matrix(ty: Type) -> bool {
 fn is_product(left: Type, right: Type) -> bool {
     let is_operand = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
     (is_matrix(left) || is_matrix(right)) && is_operand(left) && is_operand(right)
+}
+
+/// Godot prints the literals of its code with 14 decimals: smaller numbers are made of their bits.
+fn number_in_godot(literal: &Literal) -> String {
+    match literal.value {
+        Value::Float(value) => {
+            let single = value as f32;
+            let printed: f32 = format!("{single:.14}").parse().unwrap_or(single);
+            if single.is_finite() && printed.to_bits() != single.to_bits() {
+                format!("uintBitsToFloat({:#010x}u)", single.to_bits())
+            } else {
+                number(literal)
+            }
+        }
+        _ => number(literal),
+    }
 }
 
 fn number(literal: &Literal) -> String {

@@ -8,9 +8,10 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
+use super::expression::level;
 use super::language::Language;
 use super::writer::{PrintResult, Writer};
-use crate::lower::is_written_first;
+use crate::lower::{has_inner_jump, is_written_first};
 
 impl Writer<'_> {
     pub(super) fn statements(&mut self, block: &[Statement]) -> PrintResult {
@@ -94,7 +95,7 @@ impl Writer<'_> {
                     None => String::new(),
                 };
                 let step = match step {
-                    Some(step) => format!(" {}", self.expression(*step)?),
+                    Some(step) => format!(" {}", self.steps(*step)?),
                     None => String::new(),
                 };
                 self.block(&format!("for ({init};{condition};{step}) "), body)?;
@@ -114,6 +115,19 @@ impl Writer<'_> {
         Ok(())
     }
 
+    /// The step of a `for`, which may be several.
+    fn steps(&mut self, step: ExprId) -> PrintResult<String> {
+        let mut steps = Vec::new();
+        let mut pending = vec![step];
+        while let Some(step) = pending.pop() {
+            match self.cx.tree[step].kind {
+                ExprKind::Sequence { first, second } => pending.extend([second, first]),
+                _ => steps.push(self.operand(step, level::ASSIGN)?),
+            }
+        }
+        Ok(steps.join(", "))
+    }
+
     /// The condition of a `for`. Godot takes a type at its beginning for a declaration.
     fn loop_condition(&mut self, condition: Condition) -> PrintResult<String> {
         let code = self.condition(condition)?;
@@ -124,6 +138,10 @@ impl Writer<'_> {
 
     fn condition(&mut self, condition: Condition) -> PrintResult<String> {
         match condition {
+            // Slang refuses an assignment that is a condition without parentheses.
+            Condition::Expression(condition) if self.language() == Language::Hlsl => {
+                self.operand(condition, level::CONDITIONAL)
+            }
             Condition::Expression(condition) => self.expression(condition),
             Condition::Declare(_) => Err(Unprintable::Construct("a declaration in a condition")),
         }
@@ -229,6 +247,11 @@ impl Writer<'_> {
         let is_unsigned = self.cx.tree[selector].ty.scalar() == Some(Scalar::Uint);
         let selector = self.expression(selector)?;
         self.check_scopes(cases)?;
+        if self.language() == Language::Godot && cases.iter().any(has_inner_jump) {
+            return Err(Unprintable::Construct(
+                "a `switch` with both `continue` and `break` inside blocks",
+            ));
+        }
         self.line(&format!("switch ({selector}) {{"));
         self.indent += 1;
         for case in cases {

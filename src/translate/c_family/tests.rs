@@ -587,7 +587,7 @@ fn glsl_stays_as_its_author_wrote_it() {
         "uniform highp sampler2D iChannel0;\nlayout(location = 0) out vec4 outputColor;\n\nconst int COUNT = 3;\n",
         "float sum = 0.0;\nconst float W[2] = float[2](1.0, 2.0);\n",
         "vec4 tap(sampler2D image, vec2 uv) {\n    return textureLod(image, uv, 0.0);\n}\n",
-        "    mat2x3 m = mat2x3(1.0);\n",
+        "    mat2x3 m = mat2x3(1);\n",
         "    for (int i = 0, j = 1; i < COUNT; i++, j += 2) {\n        sum += W[i & 1];\n    }\n",
         "    color = tap(iChannel0, at / iResolution.xy) * (sum += 1.0, sum) + vec4(m[0] * size(at), dFdy(at.y));\n",
         "void main() {\n    vec4 color;\n    mainImage(color, gl_FragCoord.xy);\n    outputColor = vec4(color.rgb, 1.0);\n}\n",
@@ -610,4 +610,79 @@ fn glsl_is_read_again_with_bindings() {
     ] {
         assert!(hosted.contains(expected), "{expected}\n---\n{hosted}");
     }
+}
+
+#[test]
+fn godot_keeps_parentheses_of_binary_operators_only() {
+    let written = for_godot(
+        "",
+        "float g = floor(at.x) + 1.0;\nfloat a = (g += 1.0) * 2.0;\nint i = 0;\n\
+         while ((i += 1) < 5) a += 1.0;\nvec2 q = -(-at);\nfloat b = -(-a * 2.0) + - - a;\nuint u = 3u;\nu <<= 1;\n\
+         for (int j = 0, k = 5; j < k; j++, k--) b += 1.0;\ncolor = vec4(a, b, q.x, float(u) + (a - b) * 2.0);",
+    );
+    for expected in [
+        "float a = float(g += 1.0) * 2.0;",
+        "while (int(i += 1) < 5) {",
+        "vec2 q = -vec2(-at);",
+        "float b = -float(-a * 2.0) + -float(-a);",
+        "u <<= uint(1);",
+        "for (int j = 0, k = 5; j < k; j++, k--) {",
+        "float(u) + (a - b) * 2.0);",
+    ] {
+        assert!(written.contains(expected), "{expected}\n---\n{written}");
+    }
+}
+
+#[test]
+fn small_numbers_keep_their_bits_in_godot() {
+    let written = for_godot("", "color = vec4(1e-20, 0.001, 1.2345678e-12, 1e20) * 1e-5;");
+    let expected =
+        [1e-20_f32, 1.234_567_8e-12].map(|number| format!("uintBitsToFloat({:#010x}u)", number.to_bits()));
+    let line = format!(
+        "color = vec4({}, 0.001, {}, 1e20) * 1e-5;",
+        expected[0], expected[1]
+    );
+    assert!(written.contains(&line), "{line}\n---\n{written}");
+}
+
+#[test]
+fn what_godot_would_misread_is_refused() {
+    for (items, statements, why) in [
+        (
+            "int k(int n) { int a = 0; for (int i = 0; i < 5; i++) { switch (n) { case 7: a += 1; if (i > 3) break; \
+             if (i > 2) continue; a += 3; break; default: a++; } a += 100; } return a; }",
+            "color = vec4(k(int(at.x)));",
+            "a `switch` with both `continue` and `break` inside blocks",
+        ),
+        (
+            "struct M { float id; vec3 c[2]; };\nM gm;",
+            "gm.id = 1.0;\ncolor = vec4(gm.id, gm.c[1]);",
+            "an array in a structure without a value",
+        ),
+    ] {
+        let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
+        let error = converted(CHost::Godot, &text).unwrap_err();
+        let WriteFailure::Unprintable(error) = error else {
+            panic!("{error:?}");
+        };
+        assert!(error.to_string().contains(why), "{error}");
+    }
+}
+
+#[test]
+fn a_long_chain_of_calls_passes_globals_in_time() {
+    let mut text = (0..100)
+        .map(|at| format!("float g{at} = 1.0;\n"))
+        .collect::<String>();
+    text += "float f0() { return g0; }\n";
+    for at in 1..1000 {
+        let (before, global) = (at - 1, at % 100);
+        text += &format!("float f{at}() {{ g{global} += 1.0; return f{before}(); }}\n");
+    }
+    text += "void mainImage(out vec4 color, in vec2 at) { color = vec4(f999()); }";
+    let written = converted(CHost::Godot, &text).unwrap();
+    assert!(written.contains("float f0(float g0) {"));
+    // Every function from the hundredth on uses all variables.
+    let line = written.lines().find(|line| line.starts_with("float f500("));
+    assert_eq!(line.unwrap().matches("inout float").count(), 100);
 }

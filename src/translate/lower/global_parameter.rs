@@ -1,6 +1,6 @@
 //! Global variables as parameters, for languages whose functions see none that changes.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Input, Item, Statement,
@@ -116,34 +116,44 @@ fn is_passed(tree: &Tree, id: VariableId) -> bool {
 /// The variables that each function uses.
 fn uses(cx: &LoweringContext) -> BTreeMap<FunctionId, Uses> {
     let tree = &cx.tree;
-    let mut uses: BTreeMap<FunctionId, Uses> = BTreeMap::new();
-    let mut calls = Vec::new();
+    let mut own: BTreeMap<FunctionId, (Uses, BTreeSet<FunctionId>)> = BTreeMap::new();
     for (id, function) in tree.functions.iter() {
         let Some(body) = &function.body else { continue };
-        let mut used = Uses::new();
-        for root in walk::roots(tree, body) {
-            for expr in tree.postorder(root) {
-                add(tree, expr, &mut used);
-                if let ExprKind::Call { function, .. } = tree[expr].kind {
-                    calls.push((id, function));
+        let (used, called) = own.entry(id).or_default();
+        for expr in walk::roots(tree, body)
+            .into_iter()
+            .flat_map(|root| tree.postorder(root))
+        {
+            add(tree, expr, used);
+            if let ExprKind::Call { function, .. } = tree[expr].kind {
+                called.insert(function);
+            }
+        }
+    }
+    // Functions that are called precede their callers: there is no recursion.
+    let mut uses: BTreeMap<FunctionId, Uses> = BTreeMap::new();
+    let mut started = BTreeSet::new();
+    for &root in own.keys() {
+        let mut pending = vec![(root, false)];
+        while let Some((function, callees_done)) = pending.pop() {
+            let Some((used, called)) = own.get(&function) else {
+                continue;
+            };
+            if callees_done {
+                let mut all = used.clone();
+                for of_call in called.iter().filter_map(|callee| uses.get(callee)) {
+                    merge(&mut all, of_call);
                 }
+                if !all.is_empty() {
+                    uses.insert(function, all);
+                }
+            } else if started.insert(function) {
+                pending.push((function, true));
+                pending.extend(called.iter().map(|&callee| (callee, false)));
             }
         }
-        if !used.is_empty() {
-            uses.insert(id, used);
-        }
     }
-    loop {
-        let mut changed = false;
-        for (caller, called) in &calls {
-            if let Some(used) = uses.get(called).cloned() {
-                changed |= merge(uses.entry(*caller).or_default(), &used);
-            }
-        }
-        if !changed {
-            return uses;
-        }
-    }
+    uses
 }
 
 /// Adds what an expression itself, not its operands, uses.
@@ -173,17 +183,11 @@ fn of_expression(tree: &Tree, root: ExprId, uses: &BTreeMap<FunctionId, Uses>) -
     used
 }
 
-/// Adds the uses of a called function; returns whether there were new ones.
-fn merge(used: &mut Uses, of_call: &Uses) -> bool {
-    let mut changed = false;
+/// Adds the uses of a called function.
+fn merge(used: &mut Uses, of_call: &Uses) {
     for (&variable, &written) in of_call {
-        let known = used.get(&variable).copied();
-        if known.is_none() || known == Some(false) && written {
-            used.insert(variable, written);
-            changed = true;
-        }
+        *used.entry(variable).or_default() |= written;
     }
-    changed
 }
 
 /// Checks that no global variable is an `out` argument of a function that also uses it, and that only the

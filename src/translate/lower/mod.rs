@@ -41,7 +41,7 @@ pub(crate) use folding::{fold_by_precision, fold_except};
 pub(crate) use global_parameter::{GlobalConflict, UPWARD, orient_derivatives, pass_globals};
 pub(crate) use helper_tree::helper_tree;
 pub(crate) use initializer::is_written_first;
-pub(crate) use switch_chain::chain_switches;
+pub(crate) use switch_chain::{chain_switches, jumps_inside as has_inner_jump};
 use toyproof_diagnostic::{Deadline, Diagnostic, Overdue};
 use toyproof_glsl::{Checked, overdue};
 

@@ -14,7 +14,9 @@ pub(crate) fn chain_switches(cx: &mut LoweringContext) {
     cx.each_statement(|cx, statement, out| {
         let at = statement.at;
         match statement.kind {
-            StatementKind::Switch { selector, cases } if cases.iter().any(jumps_inside) => {
+            StatementKind::Switch { selector, cases }
+                if cases.iter().any(jumps_inside) && !is_continued_and_left(&cases) =>
+            {
                 let selector = named(cx, selector, at, out);
                 out.push(chain(cx, selector, cases, at));
             }
@@ -24,12 +26,26 @@ pub(crate) fn chain_switches(cx: &mut LoweringContext) {
 }
 
 /// Whether a case has a jump inside a block of its statements.
-fn jumps_inside(case: &Case) -> bool {
+pub(crate) fn jumps_inside(case: &Case) -> bool {
     let mut found = false;
     for block in case.body.iter().flat_map(walk::child_blocks) {
         walk::each(block, &mut |inner| found |= walk::jumps(inner));
     }
     found
+}
+
+/// Whether cases are left by `break` inside a block, which needs a loop, and by `continue`, which would be that
+/// loop's.
+fn is_continued_and_left(cases: &[Case]) -> bool {
+    let is_left = |case: &Case| {
+        let last = case.body.len().saturating_sub(1);
+        let is_trailing = |at, kind: &StatementKind| at == last && matches!(kind, StatementKind::Break);
+        let mut statements = case.body.iter().enumerate();
+        statements.any(|(at, statement)| {
+            !is_trailing(at, &statement.kind) && leaves(std::slice::from_ref(statement))
+        })
+    };
+    cases.iter().any(is_left) && cases.iter().any(|case| walk::continues(&case.body))
 }
 
 /// The selector as a variable, which is declared before the `switch` if it is an expression.
@@ -96,14 +112,16 @@ fn unwrap_last(tree: &Tree, body: &mut Block) {
 }
 
 /// Whether a block has a `break` that is not of a loop or `switch` inside it.
-fn leaves(block: &Block) -> bool {
+fn leaves(block: &[Statement]) -> bool {
     block.iter().any(|statement| match statement.kind {
         StatementKind::Break => true,
         StatementKind::For { .. }
         | StatementKind::While { .. }
         | StatementKind::DoWhile { .. }
         | StatementKind::Switch { .. } => false,
-        _ => walk::child_blocks(statement).into_iter().any(leaves),
+        _ => walk::child_blocks(statement)
+            .into_iter()
+            .any(|block| leaves(block)),
     })
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn lists(words: &str, word: &str) -> bool {
 }
 
 /// Whether naga or GLSL 450 reserves the word.
-pub(super) fn is_reserved(word: &str) -> bool {
+pub(crate) fn is_reserved(word: &str) -> bool {
     lists(KEYWORDS, word) || is_type(word) || word.starts_with("gl_") || word.contains("__")
 }
 
@@ -46,7 +46,7 @@ pub(super) fn with_free_stem(word: &str) -> String {
 }
 
 /// Whether a function of that name would clash with a built-in one.
-pub(super) fn is_function(word: &str) -> bool {
+pub(crate) fn is_function(word: &str) -> bool {
     lists(FUNCTIONS, word) || BuiltIn::ALL.iter().any(|function| function.name() == word)
 }
 

@@ -1,10 +1,13 @@
 //! The words and types of GLSL ES 3.00.
 
-use toyproof_glsl::tree::{BuiltIn, Scalar, Type};
+use toyproof_glsl::tree::{Scalar, Type};
 
-/// Whether nothing may have the name. The author's names are valid: the shader is GLSL.
+use crate::print::keyword;
+
+/// Whether nothing may have the name. Words of later versions of GLSL count: other compilers read the file as one
+/// of these.
 pub(super) fn is_reserved(word: &str) -> bool {
-    word.starts_with("gl_") || word.contains("__")
+    keyword::is_reserved(word)
 }
 
 /// A stem for `word` such that `{stem}_1` is not reserved.
@@ -21,7 +24,7 @@ pub(super) fn with_free_stem(word: &str) -> String {
 
 /// Whether the name is a function's.
 pub(super) fn is_function(word: &str) -> bool {
-    BuiltIn::ALL.iter().any(|function| function.name() == word)
+    keyword::is_function(word)
 }
 
 /// The name of a scalar, vector, matrix or sampler type.

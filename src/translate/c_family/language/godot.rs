@@ -1,7 +1,7 @@
 //! The words and types of Godot's shading language (“Shading language” and “CanvasItem shaders” in the Godot
 //! documentation).
 
-use toyproof_glsl::tree::{BuiltIn, Type};
+use toyproof_glsl::tree::Type;
 
 use super::glsl;
 use crate::print::keyword::lists;
@@ -34,14 +34,14 @@ const FUNCTIONS: &str = "\
     bitfieldReverse findLSB findMSB umulExtended imulExtended uaddCarry usubBorrow ldexp frexp fma \
     packUnorm4x8 packSnorm4x8 unpackUnorm4x8 unpackSnorm4x8";
 
-/// Whether nothing may have the name. Two underscores in a row are reserved in GLSL, to which Godot compiles.
+/// Whether nothing may have the name.
 pub(super) fn is_reserved(word: &str) -> bool {
-    lists(RESERVED, word) || word.starts_with("gl_") || word.contains("__")
+    lists(RESERVED, word) || glsl::is_reserved(word)
 }
 
 /// Whether the name is a function's.
 pub(super) fn is_function(word: &str) -> bool {
-    lists(FUNCTIONS, word) || BuiltIn::ALL.iter().any(|function| function.name() == word)
+    lists(FUNCTIONS, word) || glsl::is_function(word)
 }
 
 /// The name of a scalar, vector or matrix type. Matrices are square.

@@ -24,7 +24,7 @@ const RESERVED: &str = "\
 
 /// The functions of Metal's library, and the types and options of its samplers.
 const FUNCTIONS: &str = "\
-    main abs absdiff access acos acosh addsat address all any asin asinh assume atan atan2 atanh bias \
+    main precise fast abs absdiff access acos acosh addsat address all any asin asinh assume atan atan2 atanh bias \
     border_color ceil clamp clz compare_func component coord copysign cos cosh cospi cross ctz determinant dfdx \
     dfdy discard_fragment distance distance_squared divide dot exp exp10 exp2 extract_bits fabs faceforward fdim \
     filter floor fma fmax fmax3 fmedian3 fmin fmin3 fmod forward fract frexp fwidth get_num_samples \

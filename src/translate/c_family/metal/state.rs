@@ -95,8 +95,8 @@ impl Writer<'_> {
                 constructor,
                 arguments,
             } => {
-                let count = |ty: Type| ty.component_count().unwrap_or(1);
-                let given: u8 = arguments.iter().map(|&argument| count(tree[argument].ty)).sum();
+                let count = |ty: Type| u32::from(ty.component_count().unwrap_or(1));
+                let given: u32 = arguments.iter().map(|&argument| count(tree[argument].ty)).sum();
                 match constructor {
                     Constructor::Scalar => is_scalar(arguments[0]),
                     Constructor::Vector | Constructor::Matrix => given == count(tree[id].ty),

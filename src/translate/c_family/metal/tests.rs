@@ -360,3 +360,16 @@ fn infinities_have_a_name() {
     let written = body("color.x = 1e40 * at.x;\ncolor.y = -3e38;");
     assert_lines(&written, &["color.x = INFINITY * at.x;", "color.y = -3.0e38;"]);
 }
+
+#[test]
+fn a_table_of_constants_may_be_long() {
+    let values = vec!["1.0"; 300].join(", ");
+    let written = with_items(
+        &format!("const float w[300] = float[]({values});\nfloat fast(float x) {{ return x; }}"),
+        "color.x = w[int(at.x)] + fast(at.y);",
+    );
+    assert!(
+        written.contains("color.x = w[int(at.x)] + fast_1(at.y);"),
+        "{written}"
+    );
+}
