@@ -1,11 +1,12 @@
 #version 300 es
 // glsl/08-disney.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
+// The BRDF of B. Burley, "Physically Based Shading at Disney" (2012), on a grid of spheres over the ground.
 
 precision highp float;
 precision highp int;
 
-struct ToyproofFrame {
+layout(std140) uniform Inputs {
     vec3 iResolution;
     float iTime;
     float iTimeDelta;
@@ -17,10 +18,21 @@ struct ToyproofFrame {
     vec4 iDate;
     float iSampleRate;
 };
+layout(location = 0) out vec4 outputColor;
+
+const float SCREEN_DEPTH = -2.0;
+const float NO_HIT = 1.0e6;
+const float PI = 3.14159265359;
+const int SPHERES = 10;
+const vec3 AMBIENT = vec3(0.25, 0.27, 0.3);
+const vec3 LIGHT = vec3(-3.0, 6.0, 2.0);
+const vec3 LIGHT_COLOR = vec3(5.0, 4.8, 4.5);
+
 struct Ray {
     vec3 origin;
     vec3 direction;
 };
+
 struct Material {
     vec3 color;
     float metallic;
@@ -34,560 +46,188 @@ struct Material {
     float clearcoat;
     float clearcoatGloss;
 };
+
 struct Sphere {
     vec3 center;
     float radius;
     Material material;
 };
-struct FragmentOutput {
-    vec4 toyproof_color;
-};
-const float SCREEN_DEPTH = -2.0;
-const float NO_HIT = 1000000.0;
-const float PI = 3.1415927;
-const int SPHERES = 10;
-const vec3 AMBIENT = vec3(0.25, 0.27, 0.3);
-const vec3 LIGHT = vec3(-3.0, 6.0, 2.0);
-const vec3 LIGHT_COLOR = vec3(5.0, 4.8, 4.5);
-
-vec4 toyproof_color = vec4(0.0);
-
-layout(std140) uniform ToyproofFrame_block_0Fragment { ToyproofFrame _group_0_binding_0_fs; };
 
 Sphere spheres[10] = Sphere[10](Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)));
 
-vec4 gen_gl_FragCoord_1 = vec4(0.0);
-
-layout(location = 0) out vec4 _fs2p_location0;
-
 void makeScene() {
+    // Rough plastic.
     spheres[0] = Sphere(vec3(-2.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    // Plastic.
     spheres[1] = Sphere(vec3(0.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
+    // Smooth plastic with a tinted highlight.
     spheres[2] = Sphere(vec3(2.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
+    // Rough gold.
     spheres[3] = Sphere(vec3(-2.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    // Brushed gold.
     spheres[4] = Sphere(vec3(0.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
+    // Half metal.
     spheres[5] = Sphere(vec3(2.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
+    // Cloth.
     spheres[6] = Sphere(vec3(-2.0, -1.3, -7.0), 0.58, Material(vec3(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
+    // Skin.
     spheres[7] = Sphere(vec3(0.0, -1.3, -7.0), 0.58, Material(vec3(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    // Lacquer.
     spheres[8] = Sphere(vec3(2.0, -1.3, -7.0), 0.58, Material(vec3(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
+    // Ground.
     spheres[9] = Sphere(vec3(0.0, -52.3, -8.0), 50.0, Material(vec3(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
-    return;
 }
 
 float intersectSphere(Ray ray, Sphere sphere) {
-    Ray ray_1 = Ray(vec3(0.0), vec3(0.0));
-    Sphere sphere_1 = Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0));
-    vec3 f = vec3(0.0);
-    float b = 0.0;
-    float c = 0.0;
-    float disc = 0.0;
-    float root = 0.0;
-    float t = 0.0;
-    ray_1 = ray;
-    sphere_1 = sphere;
-    Ray _e5 = ray_1;
-    Sphere _e7 = sphere_1;
-    f = (_e5.origin - _e7.center);
-    vec3 _e11 = f;
-    Ray _e12 = ray_1;
-    b = dot(_e11, _e12.direction);
-    vec3 _e16 = f;
-    vec3 _e17 = f;
-    Sphere _e19 = sphere_1;
-    Sphere _e21 = sphere_1;
-    c = (dot(_e16, _e17) - (_e19.radius * _e21.radius));
-    float _e26 = b;
-    float _e27 = b;
-    float _e29 = c;
-    disc = ((_e26 * _e27) - _e29);
-    float _e32 = disc;
-    if ((_e32 > 0.0)) {
-        {
-            float _e35 = disc;
-            root = sqrt(_e35);
-            float _e38 = b;
-            float _e40 = root;
-            t = (-(_e38) - _e40);
-            float _e43 = t;
-            if ((_e43 > 1e-5)) {
-                {
-                    float _e46 = t;
-                    return _e46;
-                }
-            }
-            float _e47 = b;
-            float _e49 = root;
-            t = (-(_e47) + _e49);
-            float _e51 = t;
-            if ((_e51 > 1e-5)) {
-                {
-                    float _e54 = t;
-                    return _e54;
-                }
-            }
+    vec3 f = ray.origin - sphere.center;
+    float b = dot(f, ray.direction);
+    float c = dot(f, f) - sphere.radius * sphere.radius;
+    float disc = b * b - c;
+    if (disc > 0.0) {
+        float root = sqrt(disc);
+        float t = -b - root;
+        if (t > 0.00001) {
+            return t;
+        }
+        t = -b + root;
+        if (t > 0.00001) {
+            return t;
         }
     }
     return NO_HIT;
 }
 
 bool inShadow(vec3 point, vec3 normal) {
-    vec3 point_1 = vec3(0.0);
-    vec3 normal_1 = vec3(0.0);
-    vec3 origin = vec3(0.0);
-    vec3 toLight = vec3(0.0);
-    float distance_ = 0.0;
-    Ray ray_2 = Ray(vec3(0.0), vec3(0.0));
-    int i = 0;
-    point_1 = point;
-    normal_1 = normal;
-    vec3 _e7 = point_1;
-    vec3 _e9 = normal_1;
-    origin = (_e7 + (0.001 * _e9));
-    vec3 _e13 = origin;
-    toLight = (LIGHT - _e13);
-    vec3 _e16 = toLight;
-    distance_ = length(_e16);
-    vec3 _e19 = origin;
-    vec3 _e20 = toLight;
-    float _e21 = distance_;
-    ray_2 = Ray(_e19, (_e20 / vec3(_e21)));
-    while(true) {
-        int _e28 = i;
-        if (!((_e28 < SPHERES))) {
-            break;
-        }
-        {
-            Ray _e31 = ray_2;
-            int _e32 = i;
-            Sphere _e34 = spheres[_e32];
-            float _e35 = intersectSphere(_e31, _e34);
-            float _e36 = distance_;
-            if ((_e35 < _e36)) {
-                {
-                    return true;
-                }
-            }
-            int _e39 = i;
-            i = (_e39 + 1);
+    vec3 origin = point + 0.001 * normal;
+    vec3 toLight = LIGHT - origin;
+    float distance = length(toLight);
+    Ray ray = Ray(origin, toLight / distance);
+    for (int i = 0; i < SPHERES; i++) {
+        if (intersectSphere(ray, spheres[i]) < distance) {
+            return true;
         }
     }
     return false;
 }
 
 float square(float x) {
-    float x_1 = 0.0;
-    x_1 = x;
-    float _e2 = x_1;
-    float _e3 = x_1;
-    return (_e2 * _e3);
+    return x * x;
 }
 
+// The weight (1 - cosine)^5 of Schlick's Fresnel approximation.
 float schlick(float cosine) {
-    float cosine_1 = 0.0;
-    float m = 0.0;
-    cosine_1 = cosine;
-    float _e3 = cosine_1;
-    m = clamp((1.0 - _e3), 0.0, 1.0);
-    float _e9 = m;
-    float _e10 = square(_e9);
-    float _e11 = square(_e10);
-    float _e12 = m;
-    return (_e11 * _e12);
+    float m = clamp(1.0 - cosine, 0.0, 1.0);
+    return square(square(m)) * m;
 }
 
+// Normal distribution of the clear coat: GTR with gamma = 1, which has a long tail.
 float berry(float nH, float alpha) {
-    float nH_1 = 0.0;
-    float alpha_1 = 0.0;
-    float a2_ = 0.0;
-    nH_1 = nH;
-    alpha_1 = alpha;
-    float _e5 = alpha_1;
-    float _e6 = alpha_1;
-    a2_ = (_e5 * _e6);
-    float _e9 = a2_;
-    float _e12 = a2_;
-    float _e16 = a2_;
-    float _e19 = nH_1;
-    float _e21 = nH_1;
-    return ((_e9 - 1.0) / ((PI * log(_e12)) * (1.0 + (((_e16 - 1.0) * _e19) * _e21))));
+    float a2 = alpha * alpha;
+    return (a2 - 1.0) / (PI * log(a2) * (1.0 + (a2 - 1.0) * nH * nH));
 }
 
-float trowbridgeReitz(float nH_2, float xH, float yH, float ax, float ay) {
-    float nH_3 = 0.0;
-    float xH_1 = 0.0;
-    float yH_1 = 0.0;
-    float ax_1 = 0.0;
-    float ay_1 = 0.0;
-    nH_3 = nH_2;
-    xH_1 = xH;
-    yH_1 = yH;
-    ax_1 = ax;
-    ay_1 = ay;
-    float _e12 = ax_1;
-    float _e14 = ay_1;
-    float _e16 = xH_1;
-    float _e17 = ax_1;
-    float _e19 = square((_e16 / _e17));
-    float _e20 = yH_1;
-    float _e21 = ay_1;
-    float _e23 = square((_e20 / _e21));
-    float _e25 = nH_3;
-    float _e26 = nH_3;
-    float _e29 = square(((_e19 + _e23) + (_e25 * _e26)));
-    return (1.0 / (((PI * _e12) * _e14) * _e29));
+// Normal distribution of the specular lobe: anisotropic GTR with gamma = 2 (GGX).
+float trowbridgeReitz(float nH, float xH, float yH, float ax, float ay) {
+    return 1.0 / (PI * ax * ay * square(square(xH / ax) + square(yH / ay) + nH * nH));
 }
 
-float smith(float cosine_2, float alpha_2) {
-    float cosine_3 = 0.0;
-    float alpha_3 = 0.0;
-    float a2_1 = 0.0;
-    float c2_ = 0.0;
-    cosine_3 = cosine_2;
-    alpha_3 = alpha_2;
-    float _e4 = alpha_3;
-    float _e5 = alpha_3;
-    a2_1 = (_e4 * _e5);
-    float _e8 = cosine_3;
-    float _e9 = cosine_3;
-    c2_ = (_e8 * _e9);
-    float _e13 = cosine_3;
-    float _e14 = a2_1;
-    float _e15 = c2_;
-    float _e17 = a2_1;
-    float _e18 = c2_;
-    return (1.0 / (_e13 + sqrt(((_e14 + _e15) - (_e17 * _e18)))));
+// Smith's shadowing factor for one direction, divided by twice the cosine.
+float smith(float cosine, float alpha) {
+    float a2 = alpha * alpha;
+    float c2 = cosine * cosine;
+    return 1.0 / (cosine + sqrt(a2 + c2 - a2 * c2));
 }
 
-vec3 disney(Material m_1, vec3 light, vec3 view, vec3 normal_2) {
-    Material m_2 = Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    vec3 light_1 = vec3(0.0);
-    vec3 view_1 = vec3(0.0);
-    vec3 normal_3 = vec3(0.0);
-    float nL = 0.0;
-    float nV = 0.0;
-    vec3 middle = vec3(0.0);
-    float nH_4 = 0.0;
-    float lH = 0.0;
-    vec3 x_2 = vec3(0.0);
-    vec3 y = vec3(0.0);
-    float luminance = 0.0;
-    vec3 tint = vec3(0.0);
-    vec3 dielectric = vec3(0.0);
-    vec3 specularColor = vec3(0.0);
-    vec3 sheenColor = vec3(0.0);
-    float fL = 0.0;
-    float fV = 0.0;
-    float fH = 0.0;
-    float retro = 0.0;
-    float grazing = 0.0;
-    float diffuse = 0.0;
-    float flatness = 0.0;
-    float subsurface = 0.0;
-    vec3 base = vec3(0.0);
-    vec3 sheen = vec3(0.0);
-    float aspect = 0.0;
-    float ax_2 = 0.0;
-    float ay_2 = 0.0;
-    float d = 0.0;
-    float alpha_4 = 0.0;
-    float g = 0.0;
-    vec3 f_1 = vec3(0.0);
-    float coat = 0.0;
-    m_2 = m_1;
-    light_1 = light;
-    view_1 = view;
-    normal_3 = normal_2;
-    vec3 _e8 = normal_3;
-    vec3 _e9 = light_1;
-    nL = dot(_e8, _e9);
-    vec3 _e12 = normal_3;
-    vec3 _e13 = view_1;
-    nV = dot(_e12, _e13);
-    float _e16 = nL;
-    float _e19 = nV;
-    if (((_e16 <= 0.0) || (_e19 <= 0.0))) {
-        {
-            return vec3(0.0);
+vec3 disney(Material m, vec3 light, vec3 view, vec3 normal) {
+    float nL = dot(normal, light);
+    float nV = dot(normal, view);
+    if (nL <= 0.0 || nV <= 0.0) {
+        return vec3(0.0);
+    }
+    vec3 middle = normalize(light + view);
+    float nH = dot(normal, middle);
+    float lH = dot(light, middle);
+    // The tangents: around the y axis, and toward it.
+    vec3 x = normalize(vec3(normal.z, 0.0, -normal.x));
+    vec3 y = cross(normal, x);
+
+    float luminance = dot(m.color, vec3(0.3, 0.6, 0.1));
+    vec3 tint = m.color / luminance;
+    vec3 dielectric = 0.08 * m.specular * mix(vec3(1.0), tint, m.specularTint);
+    vec3 specularColor = mix(dielectric, m.color, m.metallic);
+    vec3 sheenColor = mix(vec3(1.0), tint, m.sheenTint);
+
+    float fL = schlick(nL);
+    float fV = schlick(nV);
+    float fH = schlick(lH);
+    float retro = lH * lH * m.roughness;
+    float grazing = 0.5 + 2.0 * retro;
+    float diffuse = mix(1.0, grazing, fL) * mix(1.0, grazing, fV);
+    float flatness = mix(1.0, retro, fL) * mix(1.0, retro, fV);
+    float subsurface = 1.25 * (flatness * (1.0 / (nL + nV) - 0.5) + 0.5);
+    vec3 base = m.color / PI * mix(diffuse, subsurface, m.subsurface);
+    vec3 sheen = fH * m.sheen * sheenColor;
+
+    float aspect = sqrt(1.0 - 0.9 * m.anisotropic);
+    float ax = max(0.001, square(m.roughness) / aspect);
+    float ay = max(0.001, square(m.roughness) * aspect);
+    float d = trowbridgeReitz(nH, dot(x, middle), dot(y, middle), ax, ay);
+    float alpha = square(0.5 + 0.5 * m.roughness);
+    float g = smith(nL, alpha) * smith(nV, alpha);
+    vec3 f = mix(specularColor, vec3(1.0), fH);
+
+    float coat = 0.25 * m.clearcoat * berry(nH, mix(0.1, 0.001, m.clearcoatGloss)) * mix(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
+    return (base + sheen) * (1.0 - m.metallic) + f * d * g + coat;
+}
+
+vec3 shade(vec3 point, vec3 normal, vec3 view, Material material) {
+    vec3 radiance = AMBIENT * material.color;
+    vec3 toLight = normalize(LIGHT - point);
+    float cosine = dot(normal, toLight);
+    if (cosine > 0.0) {
+        if (!inShadow(point, normal)) {
+            radiance += LIGHT_COLOR * disney(material, toLight, view, normal) * cosine;
         }
     }
-    vec3 _e25 = light_1;
-    vec3 _e26 = view_1;
-    middle = normalize((_e25 + _e26));
-    vec3 _e30 = normal_3;
-    vec3 _e31 = middle;
-    nH_4 = dot(_e30, _e31);
-    vec3 _e34 = light_1;
-    vec3 _e35 = middle;
-    lH = dot(_e34, _e35);
-    vec3 _e38 = normal_3;
-    vec3 _e41 = normal_3;
-    x_2 = normalize(vec3(_e38.z, 0.0, -(_e41.x)));
-    vec3 _e47 = normal_3;
-    vec3 _e48 = x_2;
-    y = cross(_e47, _e48);
-    Material _e51 = m_2;
-    luminance = dot(_e51.color, vec3(0.3, 0.6, 0.1));
-    Material _e59 = m_2;
-    float _e61 = luminance;
-    tint = (_e59.color / vec3(_e61));
-    Material _e66 = m_2;
-    vec3 _e71 = tint;
-    Material _e72 = m_2;
-    dielectric = ((0.08 * _e66.specular) * mix(vec3(1.0), _e71, vec3(_e72.specularTint)));
-    vec3 _e78 = dielectric;
-    Material _e79 = m_2;
-    Material _e81 = m_2;
-    specularColor = mix(_e78, _e79.color, vec3(_e81.metallic));
-    vec3 _e88 = tint;
-    Material _e89 = m_2;
-    sheenColor = mix(vec3(1.0), _e88, vec3(_e89.sheenTint));
-    float _e94 = nL;
-    float _e95 = schlick(_e94);
-    fL = _e95;
-    float _e97 = nV;
-    float _e98 = schlick(_e97);
-    fV = _e98;
-    float _e100 = lH;
-    float _e101 = schlick(_e100);
-    fH = _e101;
-    float _e103 = lH;
-    float _e104 = lH;
-    Material _e106 = m_2;
-    retro = ((_e103 * _e104) * _e106.roughness);
-    float _e112 = retro;
-    grazing = (0.5 + (2.0 * _e112));
-    float _e117 = grazing;
-    float _e118 = fL;
-    float _e121 = grazing;
-    float _e122 = fV;
-    diffuse = (mix(1.0, _e117, _e118) * mix(1.0, _e121, _e122));
-    float _e127 = retro;
-    float _e128 = fL;
-    float _e131 = retro;
-    float _e132 = fV;
-    flatness = (mix(1.0, _e127, _e128) * mix(1.0, _e131, _e132));
-    float _e137 = flatness;
-    float _e139 = nL;
-    float _e140 = nV;
-    subsurface = (1.25 * ((_e137 * ((1.0 / (_e139 + _e140)) - 0.5)) + 0.5));
-    Material _e150 = m_2;
-    float _e155 = diffuse;
-    float _e156 = subsurface;
-    Material _e157 = m_2;
-    base = ((_e150.color / vec3(3.1415927)) * mix(_e155, _e156, _e157.subsurface));
-    float _e162 = fH;
-    Material _e163 = m_2;
-    vec3 _e166 = sheenColor;
-    sheen = ((_e162 * _e163.sheen) * _e166);
-    Material _e171 = m_2;
-    aspect = sqrt((1.0 - (0.9 * _e171.anisotropic)));
-    Material _e178 = m_2;
-    float _e180 = square(_e178.roughness);
-    float _e181 = aspect;
-    ax_2 = max(0.001, (_e180 / _e181));
-    Material _e186 = m_2;
-    float _e188 = square(_e186.roughness);
-    float _e189 = aspect;
-    ay_2 = max(0.001, (_e188 * _e189));
-    float _e193 = nH_4;
-    vec3 _e194 = x_2;
-    vec3 _e195 = middle;
-    vec3 _e197 = y;
-    vec3 _e198 = middle;
-    float _e200 = ax_2;
-    float _e201 = ay_2;
-    float _e202 = trowbridgeReitz(_e193, dot(_e194, _e195), dot(_e197, _e198), _e200, _e201);
-    d = _e202;
-    Material _e206 = m_2;
-    float _e210 = square((0.5 + (0.5 * _e206.roughness)));
-    alpha_4 = _e210;
-    float _e212 = nL;
-    float _e213 = alpha_4;
-    float _e214 = smith(_e212, _e213);
-    float _e215 = nV;
-    float _e216 = alpha_4;
-    float _e217 = smith(_e215, _e216);
-    g = (_e214 * _e217);
-    vec3 _e220 = specularColor;
-    float _e223 = fH;
-    f_1 = mix(_e220, vec3(1.0), vec3(_e223));
-    Material _e228 = m_2;
-    float _e231 = nH_4;
-    Material _e234 = m_2;
-    float _e237 = berry(_e231, mix(0.1, 0.001, _e234.clearcoatGloss));
-    float _e241 = fH;
-    float _e244 = nL;
-    float _e246 = smith(_e244, 0.25);
-    float _e248 = nV;
-    float _e250 = smith(_e248, 0.25);
-    coat = (((((0.25 * _e228.clearcoat) * _e237) * mix(0.04, 1.0, _e241)) * _e246) * _e250);
-    vec3 _e253 = base;
-    vec3 _e254 = sheen;
-    Material _e257 = m_2;
-    vec3 _e261 = f_1;
-    float _e262 = d;
-    float _e264 = g;
-    float _e267 = coat;
-    return ((((_e253 + _e254) * (1.0 - _e257.metallic)) + ((_e261 * _e262) * _e264)) + vec3(_e267));
-}
-
-vec3 shade(vec3 point_2, vec3 normal_4, vec3 view_2, Material material) {
-    vec3 point_3 = vec3(0.0);
-    vec3 normal_5 = vec3(0.0);
-    vec3 view_3 = vec3(0.0);
-    Material material_1 = Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    vec3 radiance = vec3(0.0);
-    vec3 toLight_1 = vec3(0.0);
-    float cosine_4 = 0.0;
-    point_3 = point_2;
-    normal_5 = normal_4;
-    view_3 = view_2;
-    material_1 = material;
-    Material _e11 = material_1;
-    radiance = (AMBIENT * _e11.color);
-    vec3 _e15 = point_3;
-    toLight_1 = normalize((LIGHT - _e15));
-    vec3 _e19 = normal_5;
-    vec3 _e20 = toLight_1;
-    cosine_4 = dot(_e19, _e20);
-    float _e23 = cosine_4;
-    if ((_e23 > 0.0)) {
-        {
-            vec3 _e26 = point_3;
-            vec3 _e27 = normal_5;
-            bool _e28 = inShadow(_e26, _e27);
-            if (!(_e28)) {
-                {
-                    vec3 _e30 = radiance;
-                    Material _e31 = material_1;
-                    vec3 _e32 = toLight_1;
-                    vec3 _e33 = view_3;
-                    vec3 _e34 = normal_5;
-                    vec3 _e35 = disney(_e31, _e32, _e33, _e34);
-                    float _e37 = cosine_4;
-                    radiance = (_e30 + ((LIGHT_COLOR * _e35) * _e37));
-                }
-            }
-        }
-    }
-    vec3 _e40 = radiance;
-    return _e40;
+    return radiance;
 }
 
 vec3 toneMap(vec3 color) {
-    vec3 color_1 = vec3(0.0);
-    color_1 = color;
-    vec3 _e2 = color_1;
-    vec3 _e3 = color_1;
-    return (_e2 / (_e3 + vec3(1.0)));
+    return color / (color + 1.0);
 }
 
 Ray cameraRay(vec2 fragCoord) {
-    vec2 fragCoord_1 = vec2(0.0);
-    float aspect_1 = 0.0;
-    float x_3 = 0.0;
-    float y_1 = 0.0;
-    fragCoord_1 = fragCoord;
-    vec3 _e5 = _group_0_binding_0_fs.iResolution;
-    vec3 _e7 = _group_0_binding_0_fs.iResolution;
-    aspect_1 = (_e5.x / _e7.y);
-    vec2 _e11 = fragCoord_1;
-    vec3 _e13 = _group_0_binding_0_fs.iResolution;
-    x_3 = (((_e11.x / _e13.x) * 2.0) - 1.0);
-    vec2 _e21 = fragCoord_1;
-    vec3 _e23 = _group_0_binding_0_fs.iResolution;
-    float _e30 = aspect_1;
-    y_1 = ((((_e21.y / _e23.y) * 2.0) - 1.0) / _e30);
-    float _e35 = x_3;
-    float _e36 = y_1;
-    return Ray(vec3(0.0), normalize(vec3(_e35, _e36, SCREEN_DEPTH)));
+    float aspect = iResolution.x / iResolution.y;
+    float x = fragCoord.x / iResolution.x * 2.0 - 1.0;
+    float y = (fragCoord.y / iResolution.y * 2.0 - 1.0) / aspect;
+    return Ray(vec3(0.0), normalize(vec3(x, y, SCREEN_DEPTH)));
 }
 
-void mainImage(inout vec4 fragColor, vec2 fragCoord_2) {
-    vec2 fragCoord_3 = vec2(0.0);
-    Ray ray_3 = Ray(vec3(0.0), vec3(0.0));
-    vec3 color_2 = vec3(0.1, 0.12, 0.15);
-    float nearest = NO_HIT;
-    int hit = -1;
-    int i_1 = 0;
-    float t_1 = 0.0;
-    vec3 point_4 = vec3(0.0);
-    vec3 normal_6 = vec3(0.0);
-    fragCoord_3 = fragCoord_2;
+void mainImage(out vec4 fragColor, vec2 fragCoord) {
     fragColor = vec4(0.0);
     makeScene();
-    vec2 _e8 = fragCoord_3;
-    Ray _e9 = cameraRay(_e8);
-    ray_3 = _e9;
-    while(true) {
-        int _e21 = i_1;
-        if (!((_e21 < SPHERES))) {
-            break;
-        }
-        {
-            Ray _e24 = ray_3;
-            int _e25 = i_1;
-            Sphere _e27 = spheres[_e25];
-            float _e28 = intersectSphere(_e24, _e27);
-            t_1 = _e28;
-            float _e30 = t_1;
-            float _e31 = nearest;
-            if ((_e30 < _e31)) {
-                {
-                    float _e33 = t_1;
-                    nearest = _e33;
-                    int _e34 = i_1;
-                    hit = _e34;
-                }
-            }
-            int _e35 = i_1;
-            i_1 = (_e35 + 1);
-        }
-    }
-    int _e38 = hit;
-    if ((_e38 >= 0)) {
-        {
-            Ray _e41 = ray_3;
-            float _e43 = nearest;
-            Ray _e44 = ray_3;
-            point_4 = (_e41.origin + (_e43 * _e44.direction));
-            vec3 _e49 = point_4;
-            int _e50 = hit;
-            Sphere _e52 = spheres[_e50];
-            normal_6 = normalize((_e49 - _e52.center));
-            vec3 _e57 = point_4;
-            vec3 _e58 = normal_6;
-            Ray _e59 = ray_3;
-            int _e62 = hit;
-            Sphere _e64 = spheres[_e62];
-            vec3 _e66 = shade(_e57, _e58, -(_e59.direction), _e64.material);
-            color_2 = _e66;
-        }
-    }
-    vec3 _e67 = color_2;
-    vec3 _e68 = toneMap(_e67);
-    vec3 _e71 = pow(_e68, vec3(0.45454544));
-    fragColor = vec4(_e71.x, _e71.y, _e71.z, 1.0);
-    return;
-}
+    Ray ray = cameraRay(fragCoord);
+    vec3 color = vec3(0.1, 0.12, 0.15);
 
-void main_1() {
-    vec4 toyproof_image_color = vec4(0.0, 0.0, 0.0, 1.0);
-    vec4 _e8 = gen_gl_FragCoord_1;
-    mainImage(toyproof_image_color, _e8.xy);
-    vec4 _e10 = toyproof_image_color;
-    vec3 _e11 = _e10.xyz;
-    toyproof_color = vec4(_e11.x, _e11.y, _e11.z, 1.0);
-    return;
+    float nearest = NO_HIT;
+    int hit = -1;
+    for (int i = 0; i < SPHERES; i++) {
+        float t = intersectSphere(ray, spheres[i]);
+        if (t < nearest) {
+            nearest = t;
+            hit = i;
+        }
+    }
+    if (hit >= 0) {
+        vec3 point = ray.origin + nearest * ray.direction;
+        vec3 normal = normalize(point - spheres[hit].center);
+        color = shade(point, normal, -ray.direction, spheres[hit].material);
+    }
+    fragColor = vec4(pow(toneMap(color), vec3(0.45454544)), 1.0);
 }
 
 void main() {
-    vec4 gen_gl_FragCoord = gl_FragCoord;
-    gen_gl_FragCoord_1 = gen_gl_FragCoord;
-    main_1();
-    vec4 _e3 = toyproof_color;
-    FragmentOutput _tmp_return = FragmentOutput(_e3);
-    _fs2p_location0 = _tmp_return.toyproof_color;
-    return;
+    vec4 color;
+    mainImage(color, gl_FragCoord.xy);
+    outputColor = vec4(color.rgb, 1.0);
 }
-

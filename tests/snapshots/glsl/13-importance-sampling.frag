@@ -1,11 +1,13 @@
 #version 300 es
 // glsl/13-importance-sampling.glsl, converted by toyproof 0.1.0 (naga 30.0.1).
 
+// A path tracer with multiple importance sampling: at each hit, one direction is sampled toward an emitter and one from the
+// BRDF, and the power heuristic weights the two (Veach and Guibas 1995).
 
 precision highp float;
 precision highp int;
 
-struct ToyproofFrame {
+layout(std140) uniform Inputs {
     vec3 iResolution;
     float iTime;
     float iTimeDelta;
@@ -17,716 +19,261 @@ struct ToyproofFrame {
     vec4 iDate;
     float iSampleRate;
 };
-struct Ray {
-    vec3 origin;
-    vec3 direction;
-};
-struct Material {
-    int model;
-    vec3 color;
-    float exponent;
-};
-struct Sphere {
-    vec3 center;
-    float radius;
-    Material material;
-};
-struct Intersection {
-    float t;
-    vec3 point;
-    vec3 normal;
-    Material material;
-    int sphere;
-};
-struct FragmentOutput {
-    vec4 toyproof_color;
-};
+layout(location = 0) out vec4 outputColor;
+
 const float SCREEN_DEPTH = -2.0;
-const float NO_HIT = 1000000.0;
-const float PI = 3.1415927;
+const float NO_HIT = 1.0e6;
+const float PI = 3.14159265359;
 const float EPSILON = 0.001;
 const int SAMPLES = 16;
 const int SPHERES = 6;
 const int EMITTERS = 2;
 const int MAX_DEPTH = 4;
+
 const int DIFFUSE = 0;
 const int GLOSSY = 1;
 const int EMITTER = 2;
 
-vec4 toyproof_color = vec4(0.0);
+struct Ray {
+    vec3 origin;
+    vec3 direction;
+};
 
-layout(std140) uniform ToyproofFrame_block_0Fragment { ToyproofFrame _group_0_binding_0_fs; };
+struct Material {
+    int model;
+    vec3 color;
+    float exponent;
+};
+
+struct Sphere {
+    vec3 center;
+    float radius;
+    Material material;
+};
+
+struct Intersection {
+    float t;
+    vec3 point;
+    vec3 normal;
+    Material material;
+    // The index of the sphere, or -1; the first EMITTERS spheres are emitters.
+    int sphere;
+};
 
 Sphere spheres[6] = Sphere[6](Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)));
-
 uint state = 0u;
 
-vec4 gen_gl_FragCoord_1 = vec4(0.0);
-
-layout(location = 0) out vec4 _fs2p_location0;
-
+// The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
 uint pcg(uint v) {
-    uint v_1 = 0u;
-    uint s = 0u;
-    uint word = 0u;
-    v_1 = v;
-    uint _e2 = v_1;
-    s = ((_e2 * 747796405u) + 2891336453u);
-    uint _e8 = s;
-    uint _e9 = s;
-    uint _e15 = s;
-    word = (((_e8 >> ((_e9 >> 28u) + 4u)) ^ _e15) * 277803737u);
-    uint _e20 = word;
-    uint _e23 = word;
-    return ((_e20 >> 22u) ^ _e23);
+    uint s = v * 747796405u + 2891336453u;
+    uint word = (s >> (s >> 28u) + 4u ^ s) * 277803737u;
+    return word >> 22u ^ word;
 }
 
 float random() {
-    uint _e1 = state;
-    uint _e2 = pcg(_e1);
-    state = _e2;
-    uint _e3 = state;
-    return (float((_e3 >> 8u)) / 16777216.0);
+    state = pcg(state);
+    return float(state >> 8u) / 16777216.0;
 }
 
 void startSample(vec2 fragCoord, int i) {
-    vec2 fragCoord_1 = vec2(0.0);
-    int i_1 = 0;
-    fragCoord_1 = fragCoord;
-    i_1 = i;
-    vec2 _e5 = fragCoord_1;
-    vec2 _e8 = fragCoord_1;
-    int _e11 = i_1;
-    uint _e13 = pcg(uint(_e11));
-    uint _e15 = pcg((uint(_e8.y) + _e13));
-    uint _e17 = pcg((uint(_e5.x) + _e15));
-    state = _e17;
-    return;
+    state = pcg(uint(fragCoord.x) + pcg(uint(fragCoord.y) + pcg(uint(i))));
 }
 
 void makeScene() {
-    spheres[0] = Sphere(vec3(-2.5, 1.4, -6.5), 0.25, Material(2, vec3(80.0, 70.0, 55.0), 0.0));
-    spheres[1] = Sphere(vec3(2.2, 1.4, -7.5), 0.8, Material(2, vec3(2.5, 3.0, 4.0), 0.0));
-    spheres[2] = Sphere(vec3(-1.8, -0.3, -6.0), 0.7, Material(1, vec3(0.9, 0.7, 0.3), 300.0));
-    spheres[3] = Sphere(vec3(0.0, -0.3, -6.5), 0.7, Material(1, vec3(0.8, 0.8, 0.8), 30.0));
-    spheres[4] = Sphere(vec3(1.7, -0.4, -5.5), 0.6, Material(0, vec3(0.8, 0.25, 0.2), 0.0));
-    spheres[5] = Sphere(vec3(0.6, -0.75, -4.2), 0.25, Material(0, vec3(0.3, 0.7, 0.4), 0.0));
-    return;
+    spheres[0] = Sphere(vec3(-2.5, 1.4, -6.5), 0.25, Material(EMITTER, vec3(80.0, 70.0, 55.0), 0.0));
+    spheres[1] = Sphere(vec3(2.2, 1.4, -7.5), 0.8, Material(EMITTER, vec3(2.5, 3.0, 4.0), 0.0));
+    spheres[2] = Sphere(vec3(-1.8, -0.3, -6.0), 0.7, Material(GLOSSY, vec3(0.9, 0.7, 0.3), 300.0));
+    spheres[3] = Sphere(vec3(0.0, -0.3, -6.5), 0.7, Material(GLOSSY, vec3(0.8, 0.8, 0.8), 30.0));
+    spheres[4] = Sphere(vec3(1.7, -0.4, -5.5), 0.6, Material(DIFFUSE, vec3(0.8, 0.25, 0.2), 0.0));
+    spheres[5] = Sphere(vec3(0.6, -0.75, -4.2), 0.25, Material(DIFFUSE, vec3(0.3, 0.7, 0.4), 0.0));
 }
 
+// Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
 float intersectSphere(Ray ray, Sphere sphere) {
-    Ray ray_1 = Ray(vec3(0.0), vec3(0.0));
-    Sphere sphere_1 = Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0));
-    vec3 f = vec3(0.0);
-    float b = 0.0;
-    vec3 closest = vec3(0.0);
-    float disc = 0.0;
-    float root = 0.0;
-    float t = 0.0;
-    ray_1 = ray;
-    sphere_1 = sphere;
-    Ray _e6 = ray_1;
-    Sphere _e8 = sphere_1;
-    f = (_e6.origin - _e8.center);
-    vec3 _e12 = f;
-    Ray _e13 = ray_1;
-    b = dot(_e12, _e13.direction);
-    vec3 _e17 = f;
-    float _e18 = b;
-    Ray _e19 = ray_1;
-    closest = (_e17 - (_e18 * _e19.direction));
-    Sphere _e24 = sphere_1;
-    Sphere _e26 = sphere_1;
-    vec3 _e29 = closest;
-    vec3 _e30 = closest;
-    disc = ((_e24.radius * _e26.radius) - dot(_e29, _e30));
-    float _e34 = disc;
-    if ((_e34 > 0.0)) {
-        {
-            float _e37 = disc;
-            root = sqrt(_e37);
-            float _e40 = b;
-            float _e42 = root;
-            t = (-(_e40) - _e42);
-            float _e45 = t;
-            if ((_e45 > EPSILON)) {
-                {
-                    float _e47 = t;
-                    return _e47;
-                }
-            }
-            float _e48 = b;
-            float _e50 = root;
-            t = (-(_e48) + _e50);
-            float _e52 = t;
-            if ((_e52 > EPSILON)) {
-                {
-                    float _e54 = t;
-                    return _e54;
-                }
-            }
+    vec3 f = ray.origin - sphere.center;
+    float b = dot(f, ray.direction);
+    vec3 closest = f - b * ray.direction;
+    float disc = sphere.radius * sphere.radius - dot(closest, closest);
+    if (disc > 0.0) {
+        float root = sqrt(disc);
+        float t = -b - root;
+        if (t > EPSILON) {
+            return t;
+        }
+        t = -b + root;
+        if (t > EPSILON) {
+            return t;
         }
     }
     return NO_HIT;
 }
 
-Intersection nearestHit(Ray ray_2) {
-    Ray ray_3 = Ray(vec3(0.0), vec3(0.0));
+Intersection nearestHit(Ray ray) {
     Intersection hit = Intersection(0.0, vec3(0.0), vec3(0.0), Material(0, vec3(0.0), 0.0), 0);
-    int i_2 = 0;
-    float t_1 = 0.0;
-    float t_2 = 0.0;
-    ray_3 = ray_2;
     hit.t = NO_HIT;
     hit.sphere = -1;
-    while(true) {
-        int _e12 = i_2;
-        if (!((_e12 < SPHERES))) {
-            break;
-        }
-        {
-            Ray _e15 = ray_3;
-            int _e16 = i_2;
-            Sphere _e18 = spheres[_e16];
-            float _e19 = intersectSphere(_e15, _e18);
-            t_1 = _e19;
-            float _e21 = t_1;
-            Intersection _e22 = hit;
-            if ((_e21 < _e22.t)) {
-                {
-                    float _e26 = t_1;
-                    hit.t = _e26;
-                    int _e28 = i_2;
-                    hit.sphere = _e28;
-                }
-            }
-            int _e29 = i_2;
-            i_2 = (_e29 + 1);
+    for (int i = 0; i < SPHERES; i++) {
+        float t = intersectSphere(ray, spheres[i]);
+        if (t < hit.t) {
+            hit.t = t;
+            hit.sphere = i;
         }
     }
-    Ray _e33 = ray_3;
-    Ray _e37 = ray_3;
-    t_2 = ((-1.0 - _e33.origin.y) / _e37.direction.y);
-    float _e42 = t_2;
-    float _e44 = t_2;
-    Intersection _e45 = hit;
-    if (((_e42 > EPSILON) && (_e44 < _e45.t))) {
-        {
-            float _e50 = t_2;
-            hit.t = _e50;
-            hit.sphere = -1;
-            hit.normal = vec3(0.0, 1.0, 0.0);
-            hit.material = Material(0, vec3(0.6, 0.6, 0.65), 0.0);
-        }
+    float t = (-1.0 - ray.origin.y) / ray.direction.y;
+    if (t > EPSILON && t < hit.t) {
+        hit.t = t;
+        hit.sphere = -1;
+        hit.normal = vec3(0.0, 1.0, 0.0);
+        hit.material = Material(DIFFUSE, vec3(0.6, 0.6, 0.65), 0.0);
     }
-    Ray _e67 = ray_3;
-    Intersection _e69 = hit;
-    Ray _e71 = ray_3;
-    hit.point = (_e67.origin + (_e69.t * _e71.direction));
-    Intersection _e75 = hit;
-    if ((_e75.sphere >= 0)) {
-        {
-            Intersection _e80 = hit;
-            Intersection _e82 = hit;
-            Sphere _e85 = spheres[_e82.sphere];
-            hit.normal = normalize((_e80.point - _e85.center));
-            Intersection _e90 = hit;
-            Sphere _e93 = spheres[_e90.sphere];
-            hit.material = _e93.material;
-        }
+    hit.point = ray.origin + hit.t * ray.direction;
+    if (hit.sphere >= 0) {
+        hit.normal = normalize(hit.point - spheres[hit.sphere].center);
+        hit.material = spheres[hit.sphere].material;
     }
-    Intersection _e95 = hit;
-    return _e95;
+    return hit;
 }
 
+// The direction at an angle to w, given by its cosine, rotated about w by `turn` turns.
 vec3 around(vec3 w, float cosine, float turn) {
-    vec3 w_1 = vec3(0.0);
-    float cosine_1 = 0.0;
-    float turn_1 = 0.0;
-    vec3 local = vec3(0.0);
-    vec3 up = vec3(0.0);
-    vec3 a = vec3(0.0);
-    vec3 b_1 = vec3(0.0);
-    float sine = 0.0;
-    float phi = 0.0;
-    w_1 = w;
-    cosine_1 = cosine;
-    turn_1 = turn;
-    vec3 _e6 = w_1;
-    if ((abs(_e6.y) > 0.9)) {
-        local = vec3(1.0, 0.0, 0.0);
-    } else {
-        local = vec3(0.0, 1.0, 0.0);
-    }
-    vec3 _e20 = local;
-    up = _e20;
-    vec3 _e22 = up;
-    vec3 _e23 = w_1;
-    a = normalize(cross(_e22, _e23));
-    vec3 _e27 = w_1;
-    vec3 _e28 = a;
-    b_1 = cross(_e27, _e28);
-    float _e32 = cosine_1;
-    float _e33 = cosine_1;
-    sine = sqrt(max((1.0 - (_e32 * _e33)), 0.0));
-    float _e41 = turn_1;
-    phi = (6.2831855 * _e41);
-    float _e44 = sine;
-    float _e45 = phi;
-    vec3 _e48 = a;
-    float _e50 = sine;
-    float _e51 = phi;
-    vec3 _e54 = b_1;
-    float _e57 = cosine_1;
-    vec3 _e58 = w_1;
-    return ((((_e44 * cos(_e45)) * _e48) + ((_e50 * sin(_e51)) * _e54)) + (_e57 * _e58));
+    vec3 up = abs(w.y) > 0.9 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    vec3 a = normalize(cross(up, w));
+    vec3 b = cross(w, a);
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float phi = 6.28318530718 * turn;
+    return sine * cos(phi) * a + sine * sin(phi) * b + cosine * w;
 }
 
+// 1 - cos of the half angle of the cone that an emitter subtends.
 float coneDepth(vec3 point, Sphere emitter) {
-    vec3 point_1 = vec3(0.0);
-    Sphere emitter_1 = Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0));
-    vec3 toCenter = vec3(0.0);
-    float sine2_ = 0.0;
-    point_1 = point;
-    emitter_1 = emitter;
-    Sphere _e4 = emitter_1;
-    vec3 _e6 = point_1;
-    toCenter = (_e4.center - _e6);
-    Sphere _e9 = emitter_1;
-    Sphere _e11 = emitter_1;
-    vec3 _e14 = toCenter;
-    vec3 _e15 = toCenter;
-    sine2_ = ((_e9.radius * _e11.radius) / dot(_e14, _e15));
-    float _e19 = sine2_;
-    float _e22 = sine2_;
-    return (_e19 / (1.0 + sqrt((1.0 - _e22))));
+    vec3 toCenter = emitter.center - point;
+    float sine2 = emitter.radius * emitter.radius / dot(toCenter, toCenter);
+    return sine2 / (1.0 + sqrt(1.0 - sine2));
 }
 
-float lightDensity(vec3 point_2, Sphere emitter_2) {
-    vec3 point_3 = vec3(0.0);
-    Sphere emitter_3 = Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0));
-    point_3 = point_2;
-    emitter_3 = emitter_2;
-    vec3 _e6 = point_3;
-    Sphere _e7 = emitter_3;
-    float _e8 = coneDepth(_e6, _e7);
-    return (1.0 / ((6.2831855 * _e8) * 2.0));
+// The probability density, per solid angle, of sampling a direction toward this emitter.
+float lightDensity(vec3 point, Sphere emitter) {
+    return 1.0 / (2.0 * PI * coneDepth(point, emitter) * float(EMITTERS));
 }
 
 vec3 brdf(Material material, vec3 reflected, vec3 direction) {
-    Material material_1 = Material(0, vec3(0.0), 0.0);
-    vec3 reflected_1 = vec3(0.0);
-    vec3 direction_1 = vec3(0.0);
-    float lobe = 0.0;
-    material_1 = material;
-    reflected_1 = reflected;
-    direction_1 = direction;
-    Material _e7 = material_1;
-    if ((_e7.model == GLOSSY)) {
-        {
-            vec3 _e10 = reflected_1;
-            vec3 _e11 = direction_1;
-            Material _e15 = material_1;
-            lobe = pow(max(dot(_e10, _e11), 0.0), _e15.exponent);
-            Material _e19 = material_1;
-            Material _e21 = material_1;
-            float _e29 = lobe;
-            return (((_e19.color * (_e21.exponent + 2.0)) / vec3(6.2831855)) * _e29);
-        }
+    if (material.model == GLOSSY) {
+        float lobe = pow(max(dot(reflected, direction), 0.0), material.exponent);
+        return material.color * (material.exponent + 2.0) / (2.0 * PI) * lobe;
     }
-    Material _e31 = material_1;
-    return (_e31.color / vec3(3.1415927));
+    return material.color / PI;
 }
 
-float brdfDensity(Material material_2, vec3 normal, vec3 reflected_2, vec3 direction_2) {
-    Material material_3 = Material(0, vec3(0.0), 0.0);
-    vec3 normal_1 = vec3(0.0);
-    vec3 reflected_3 = vec3(0.0);
-    vec3 direction_3 = vec3(0.0);
-    float lobe_1 = 0.0;
-    material_3 = material_2;
-    normal_1 = normal;
-    reflected_3 = reflected_2;
-    direction_3 = direction_2;
-    Material _e10 = material_3;
-    if ((_e10.model == GLOSSY)) {
-        {
-            vec3 _e13 = reflected_3;
-            vec3 _e14 = direction_3;
-            Material _e18 = material_3;
-            lobe_1 = pow(max(dot(_e13, _e14), 0.0), _e18.exponent);
-            Material _e22 = material_3;
-            float _e28 = lobe_1;
-            return (((_e22.exponent + 1.0) / 6.2831855) * _e28);
-        }
+float brdfDensity(Material material, vec3 normal, vec3 reflected, vec3 direction) {
+    if (material.model == GLOSSY) {
+        float lobe = pow(max(dot(reflected, direction), 0.0), material.exponent);
+        return (material.exponent + 1.0) / (2.0 * PI) * lobe;
     }
-    vec3 _e30 = normal_1;
-    vec3 _e31 = direction_3;
-    return (max(dot(_e30, _e31), 0.0) / PI);
+    return max(dot(normal, direction), 0.0) / PI;
 }
 
-vec3 sampleBrdf(Material material_4, vec3 normal_2, vec3 reflected_4) {
-    Material material_5 = Material(0, vec3(0.0), 0.0);
-    vec3 normal_3 = vec3(0.0);
-    vec3 reflected_5 = vec3(0.0);
-    float u = 0.0;
-    float v_2 = 0.0;
-    material_5 = material_4;
-    normal_3 = normal_2;
-    reflected_5 = reflected_4;
-    float _e7 = random();
-    u = _e7;
-    float _e9 = random();
-    v_2 = _e9;
-    Material _e11 = material_5;
-    if ((_e11.model == GLOSSY)) {
-        {
-            vec3 _e14 = reflected_5;
-            float _e16 = u;
-            Material _e19 = material_5;
-            float _e25 = v_2;
-            vec3 _e26 = around(_e14, pow((1.0 - _e16), (1.0 / (_e19.exponent + 1.0))), _e25);
-            return _e26;
-        }
+vec3 sampleBrdf(Material material, vec3 normal, vec3 reflected) {
+    float u = random();
+    float v = random();
+    if (material.model == GLOSSY) {
+        return around(reflected, pow(1.0 - u, 1.0 / (material.exponent + 1.0)), v);
     }
-    vec3 _e27 = normal_3;
-    float _e29 = u;
-    float _e32 = v_2;
-    vec3 _e33 = around(_e27, sqrt((1.0 - _e29)), _e32);
-    return _e33;
+    return around(normal, sqrt(1.0 - u), v);
 }
 
 float weight(float density, float other) {
-    float density_1 = 0.0;
-    float other_1 = 0.0;
-    float ratio = 0.0;
-    density_1 = density;
-    other_1 = other;
-    float _e4 = other_1;
-    float _e5 = density_1;
-    ratio = (_e4 / _e5);
-    float _e10 = ratio;
-    float _e11 = ratio;
-    return (1.0 / (1.0 + (_e10 * _e11)));
+    float ratio = other / density;
+    return 1.0 / (1.0 + ratio * ratio);
 }
 
-bool inShadow(Ray ray_4, int emitter_4) {
-    Ray ray_5 = Ray(vec3(0.0), vec3(0.0));
-    int emitter_5 = 0;
-    float distance_ = 0.0;
-    int i_3 = 0;
-    bool local_1 = false;
-    float t_3 = 0.0;
-    ray_5 = ray_4;
-    emitter_5 = emitter_4;
-    Ray _e7 = ray_5;
-    int _e8 = emitter_5;
-    Sphere _e10 = spheres[_e8];
-    float _e11 = intersectSphere(_e7, _e10);
-    distance_ = _e11;
-    while(true) {
-        int _e15 = i_3;
-        if (!((_e15 < SPHERES))) {
-            break;
-        }
-        {
-            int _e18 = i_3;
-            int _e19 = emitter_5;
-            if ((_e18 != _e19)) {
-                Ray _e21 = ray_5;
-                int _e22 = i_3;
-                Sphere _e24 = spheres[_e22];
-                float _e25 = intersectSphere(_e21, _e24);
-                float _e26 = distance_;
-                local_1 = (_e25 < _e26);
-            } else {
-                local_1 = false;
-            }
-            bool _e30 = local_1;
-            if (_e30) {
-                {
-                    return true;
-                }
-            }
-            int _e32 = i_3;
-            i_3 = (_e32 + 1);
+bool inShadow(Ray ray, int emitter) {
+    float distance = intersectSphere(ray, spheres[emitter]);
+    for (int i = 0; i < SPHERES; i++) {
+        if (i != emitter && intersectSphere(ray, spheres[i]) < distance) {
+            return true;
         }
     }
-    Ray _e36 = ray_5;
-    Ray _e40 = ray_5;
-    t_3 = ((-1.0 - _e36.origin.y) / _e40.direction.y);
-    float _e45 = t_3;
-    float _e47 = t_3;
-    float _e48 = distance_;
-    return ((_e45 > EPSILON) && (_e47 < _e48));
+    float t = (-1.0 - ray.origin.y) / ray.direction.y;
+    return t > EPSILON && t < distance;
 }
 
-vec3 sampleLight(Intersection hit_1, vec3 reflected_6) {
-    Intersection hit_2 = Intersection(0.0, vec3(0.0), vec3(0.0), Material(0, vec3(0.0), 0.0), 0);
-    vec3 reflected_7 = vec3(0.0);
-    int emitter_6 = 0;
-    float u_1 = 0.0;
-    float v_3 = 0.0;
-    float cosine_2 = 0.0;
-    vec3 direction_4 = vec3(0.0);
-    float facing = 0.0;
-    float density_2 = 0.0;
-    float other_2 = 0.0;
-    hit_2 = hit_1;
-    reflected_7 = reflected_6;
-    float _e6 = random();
-    emitter_6 = min(int((_e6 * 2.0)), 1);
-    float _e13 = random();
-    u_1 = _e13;
-    float _e15 = random();
-    v_3 = _e15;
-    float _e18 = u_1;
-    Intersection _e19 = hit_2;
-    int _e21 = emitter_6;
-    Sphere _e23 = spheres[_e21];
-    float _e24 = coneDepth(_e19.point, _e23);
-    cosine_2 = (1.0 - (_e18 * _e24));
-    int _e28 = emitter_6;
-    Sphere _e30 = spheres[_e28];
-    Intersection _e32 = hit_2;
-    float _e36 = cosine_2;
-    float _e37 = v_3;
-    vec3 _e38 = around(normalize((_e30.center - _e32.point)), _e36, _e37);
-    direction_4 = _e38;
-    Intersection _e40 = hit_2;
-    vec3 _e42 = direction_4;
-    facing = dot(_e40.normal, _e42);
-    float _e45 = facing;
-    if ((_e45 <= 0.0)) {
-        {
-            return vec3(0.0);
-        }
+// The light from one randomly chosen emitter.
+vec3 sampleLight(Intersection hit, vec3 reflected) {
+    int emitter = min(int(random() * float(EMITTERS)), EMITTERS - 1);
+    float u = random();
+    float v = random();
+    float cosine = 1.0 - u * coneDepth(hit.point, spheres[emitter]);
+    vec3 direction = around(normalize(spheres[emitter].center - hit.point), cosine, v);
+    float facing = dot(hit.normal, direction);
+    if (facing <= 0.0) {
+        return vec3(0.0);
     }
-    Intersection _e50 = hit_2;
-    Intersection _e52 = hit_2;
-    vec3 _e56 = direction_4;
-    int _e58 = emitter_6;
-    bool _e59 = inShadow(Ray((_e50.point + (EPSILON * _e52.normal)), _e56), _e58);
-    if (_e59) {
-        {
-            return vec3(0.0);
-        }
+    if (inShadow(Ray(hit.point + EPSILON * hit.normal, direction), emitter)) {
+        return vec3(0.0);
     }
-    Intersection _e62 = hit_2;
-    int _e64 = emitter_6;
-    Sphere _e66 = spheres[_e64];
-    float _e67 = lightDensity(_e62.point, _e66);
-    density_2 = _e67;
-    Intersection _e69 = hit_2;
-    Intersection _e71 = hit_2;
-    vec3 _e73 = reflected_7;
-    vec3 _e74 = direction_4;
-    float _e75 = brdfDensity(_e69.material, _e71.normal, _e73, _e74);
-    other_2 = _e75;
-    int _e77 = emitter_6;
-    Sphere _e79 = spheres[_e77];
-    Intersection _e82 = hit_2;
-    vec3 _e84 = reflected_7;
-    vec3 _e85 = direction_4;
-    vec3 _e86 = brdf(_e82.material, _e84, _e85);
-    float _e88 = facing;
-    float _e90 = density_2;
-    float _e91 = other_2;
-    float _e92 = weight(_e90, _e91);
-    float _e94 = density_2;
-    return ((((_e79.material.color * _e86) * _e88) * _e92) / vec3(_e94));
+    float density = lightDensity(hit.point, spheres[emitter]);
+    float other = brdfDensity(hit.material, hit.normal, reflected, direction);
+    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
 }
 
-vec3 trace(Ray ray_6) {
-    Ray ray_7 = Ray(vec3(0.0), vec3(0.0));
+vec3 trace(Ray ray) {
     vec3 color = vec3(0.0);
     vec3 throughput = vec3(1.0);
-    float density_3 = 0.0;
-    int depth = 0;
-    Intersection hit_3 = Intersection(0.0, vec3(0.0), vec3(0.0), Material(0, vec3(0.0), 0.0), 0);
-    float share = 0.0;
-    vec3 reflected_8 = vec3(0.0);
-    vec3 direction_5 = vec3(0.0);
-    float facing_1 = 0.0;
-    ray_7 = ray_6;
-    while(true) {
-        int _e17 = depth;
-        if (!((_e17 < MAX_DEPTH))) {
-            break;
+    // The probability density of the ray's direction; 0 for camera rays.
+    float density = 0.0;
+    for (int depth = 0; depth < MAX_DEPTH; depth++) {
+        Intersection hit = nearestHit(ray);
+        if (hit.t == NO_HIT) {
+            return color + throughput * vec3(0.05, 0.06, 0.08);
         }
-        {
-            Ray _e20 = ray_7;
-            Intersection _e21 = nearestHit(_e20);
-            hit_3 = _e21;
-            Intersection _e23 = hit_3;
-            if ((_e23.t == NO_HIT)) {
-                {
-                    vec3 _e26 = color;
-                    vec3 _e27 = throughput;
-                    return (_e26 + (_e27 * vec3(0.05, 0.06, 0.08)));
-                }
+        if (hit.material.model == EMITTER) {
+            float share = 1.0;
+            if (density > 0.0) {
+                share = weight(density, lightDensity(ray.origin, spheres[hit.sphere]));
             }
-            Intersection _e34 = hit_3;
-            if ((_e34.material.model == EMITTER)) {
-                {
-                    share = 1.0;
-                    float _e40 = density_3;
-                    if ((_e40 > 0.0)) {
-                        {
-                            float _e43 = density_3;
-                            Ray _e44 = ray_7;
-                            Intersection _e46 = hit_3;
-                            Sphere _e49 = spheres[_e46.sphere];
-                            float _e50 = lightDensity(_e44.origin, _e49);
-                            float _e51 = weight(_e43, _e50);
-                            share = _e51;
-                        }
-                    }
-                    vec3 _e52 = color;
-                    vec3 _e53 = throughput;
-                    Intersection _e54 = hit_3;
-                    float _e58 = share;
-                    return (_e52 + ((_e53 * _e54.material.color) * _e58));
-                }
-            }
-            int _e61 = depth;
-            if (((_e61 + 1) == MAX_DEPTH)) {
-                {
-                    vec3 _e65 = color;
-                    return _e65;
-                }
-            }
-            Ray _e66 = ray_7;
-            Intersection _e68 = hit_3;
-            reflected_8 = reflect(_e66.direction, _e68.normal);
-            vec3 _e72 = color;
-            vec3 _e73 = throughput;
-            Intersection _e74 = hit_3;
-            vec3 _e75 = reflected_8;
-            vec3 _e76 = sampleLight(_e74, _e75);
-            color = (_e72 + (_e73 * _e76));
-            Intersection _e79 = hit_3;
-            Intersection _e81 = hit_3;
-            vec3 _e83 = reflected_8;
-            vec3 _e84 = sampleBrdf(_e79.material, _e81.normal, _e83);
-            direction_5 = _e84;
-            Intersection _e86 = hit_3;
-            vec3 _e88 = direction_5;
-            facing_1 = dot(_e86.normal, _e88);
-            float _e91 = facing_1;
-            if ((_e91 <= 0.0)) {
-                {
-                    vec3 _e94 = color;
-                    return _e94;
-                }
-            }
-            Intersection _e95 = hit_3;
-            Intersection _e97 = hit_3;
-            vec3 _e99 = reflected_8;
-            vec3 _e100 = direction_5;
-            float _e101 = brdfDensity(_e95.material, _e97.normal, _e99, _e100);
-            density_3 = _e101;
-            vec3 _e102 = throughput;
-            Intersection _e103 = hit_3;
-            vec3 _e105 = reflected_8;
-            vec3 _e106 = direction_5;
-            vec3 _e107 = brdf(_e103.material, _e105, _e106);
-            float _e108 = facing_1;
-            float _e110 = density_3;
-            throughput = (_e102 * ((_e107 * _e108) / vec3(_e110)));
-            Intersection _e114 = hit_3;
-            Intersection _e116 = hit_3;
-            vec3 _e120 = direction_5;
-            ray_7 = Ray((_e114.point + (EPSILON * _e116.normal)), _e120);
-            int _e122 = depth;
-            depth = (_e122 + 1);
+            return color + throughput * hit.material.color * share;
         }
+        // A path through another surface would be longer than MAX_DEPTH segments.
+        if (depth + 1 == MAX_DEPTH) {
+            return color;
+        }
+        vec3 reflected = reflect(ray.direction, hit.normal);
+        color += throughput * sampleLight(hit, reflected);
+        vec3 direction = sampleBrdf(hit.material, hit.normal, reflected);
+        float facing = dot(hit.normal, direction);
+        if (facing <= 0.0) {
+            return color;
+        }
+        density = brdfDensity(hit.material, hit.normal, reflected, direction);
+        throughput *= brdf(hit.material, reflected, direction) * facing / density;
+        ray = Ray(hit.point + EPSILON * hit.normal, direction);
     }
-    vec3 _e125 = color;
-    return _e125;
+    return color;
 }
 
-Ray cameraRay(vec2 fragCoord_2) {
-    vec2 fragCoord_3 = vec2(0.0);
-    float aspect = 0.0;
-    float x = 0.0;
-    float y = 0.0;
-    fragCoord_3 = fragCoord_2;
-    vec3 _e5 = _group_0_binding_0_fs.iResolution;
-    vec3 _e7 = _group_0_binding_0_fs.iResolution;
-    aspect = (_e5.x / _e7.y);
-    vec2 _e11 = fragCoord_3;
-    vec3 _e13 = _group_0_binding_0_fs.iResolution;
-    x = (((_e11.x / _e13.x) * 2.0) - 1.0);
-    vec2 _e21 = fragCoord_3;
-    vec3 _e23 = _group_0_binding_0_fs.iResolution;
-    float _e30 = aspect;
-    y = ((((_e21.y / _e23.y) * 2.0) - 1.0) / _e30);
-    float _e35 = x;
-    float _e36 = y;
-    return Ray(vec3(0.0), normalize(vec3(_e35, _e36, SCREEN_DEPTH)));
+Ray cameraRay(vec2 fragCoord) {
+    float aspect = iResolution.x / iResolution.y;
+    float x = fragCoord.x / iResolution.x * 2.0 - 1.0;
+    float y = (fragCoord.y / iResolution.y * 2.0 - 1.0) / aspect;
+    return Ray(vec3(0.0), normalize(vec3(x, y, SCREEN_DEPTH)));
 }
 
-void mainImage(inout vec4 fragColor, vec2 fragCoord_4) {
-    vec2 fragCoord_5 = vec2(0.0);
-    vec3 color_1 = vec3(0.0);
-    int i_4 = 0;
-    float x_1 = 0.0;
-    float y_1 = 0.0;
-    fragCoord_5 = fragCoord_4;
+void mainImage(out vec4 fragColor, vec2 fragCoord) {
     fragColor = vec4(0.0);
     makeScene();
-    while(true) {
-        int _e11 = i_4;
-        if (!((_e11 < SAMPLES))) {
-            break;
-        }
-        {
-            vec2 _e14 = fragCoord_5;
-            int _e15 = i_4;
-            startSample(_e14, _e15);
-            vec2 _e16 = fragCoord_5;
-            float _e18 = random();
-            x_1 = ((_e16.x + _e18) - 0.5);
-            vec2 _e23 = fragCoord_5;
-            float _e25 = random();
-            y_1 = ((_e23.y + _e25) - 0.5);
-            vec3 _e30 = color_1;
-            float _e31 = x_1;
-            float _e32 = y_1;
-            Ray _e34 = cameraRay(vec2(_e31, _e32));
-            vec3 _e35 = trace(_e34);
-            color_1 = (_e30 + _e35);
-            int _e37 = i_4;
-            i_4 = (_e37 + 1);
-        }
+    vec3 color = vec3(0.0);
+    for (int i = 0; i < SAMPLES; i++) {
+        startSample(fragCoord, i);
+        float x = fragCoord.x + random() - 0.5;
+        float y = fragCoord.y + random() - 0.5;
+        color += trace(cameraRay(vec2(x, y)));
     }
-    vec3 _e40 = color_1;
-    color_1 = (_e40 / vec3(16.0));
-    vec3 _e44 = color_1;
-    vec3 _e45 = color_1;
-    vec3 _e52 = pow((_e44 / (_e45 + vec3(1.0))), vec3(0.45454544));
-    fragColor = vec4(_e52.x, _e52.y, _e52.z, 1.0);
-    return;
-}
-
-void main_1() {
-    vec4 toyproof_image_color = vec4(0.0, 0.0, 0.0, 1.0);
-    vec4 _e8 = gen_gl_FragCoord_1;
-    mainImage(toyproof_image_color, _e8.xy);
-    vec4 _e10 = toyproof_image_color;
-    vec3 _e11 = _e10.xyz;
-    toyproof_color = vec4(_e11.x, _e11.y, _e11.z, 1.0);
-    return;
+    color /= float(SAMPLES);
+    fragColor = vec4(pow(color / (color + 1.0), vec3(0.45454544)), 1.0);
 }
 
 void main() {
-    vec4 gen_gl_FragCoord = gl_FragCoord;
-    gen_gl_FragCoord_1 = gen_gl_FragCoord;
-    main_1();
-    vec4 _e3 = toyproof_color;
-    FragmentOutput _tmp_return = FragmentOutput(_e3);
-    _fs2p_location0 = _tmp_return.toyproof_color;
-    return;
+    vec4 color;
+    mainImage(color, gl_FragCoord.xy);
+    outputColor = vec4(color.rgb, 1.0);
 }
-
