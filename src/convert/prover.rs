@@ -470,6 +470,11 @@ pub(super) fn in_browser(
             let images = browser.render(Text::Glsl(&text), sampling, frames);
             (original, images.map_err(ProofError::Browser)?)
         }
+        TargetCode::CFamily(text, CHost::Glsl) => {
+            let original = render_original(browser)?;
+            let images = browser.render(Text::Glsl(text), sampling, frames);
+            (original, images.map_err(ProofError::Browser)?)
+        }
         TargetCode::Glsl(text, dialect) if dialect.calls_main_image() => {
             let original = render_original(browser)?;
             let text = browser::as_shadertoy(text, channels);

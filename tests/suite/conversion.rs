@@ -343,15 +343,34 @@ fn proved_files_are_written_with_a_header() {
 
     fs::remove_file(&out).unwrap();
     let run = convert(&["--device", "cpu"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let text = fs::read_to_string(&out).unwrap();
+    assert!(text.contains("and run on toyproof's evaluator,"), "{text}");
+
+    fs::remove_file(&out).unwrap();
+    let undefined = folder.path().join("undefined.glsl");
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, pow(-p.x, 2.0), 1); }";
+    fs::write(&undefined, text).unwrap();
+    let convert = |options: &[&str]| {
+        let arguments = [
+            "convert",
+            undefined.to_str().unwrap(),
+            "-o",
+            out.to_str().unwrap(),
+            "--verify",
+        ];
+        toyproof(folder.path(), &[&arguments[..], options].concat())
+    };
+    let run = convert(&[]);
     assert_eq!(run.code, 2);
     assert!(
-        run.stdout.contains("verification needs a Vulkan driver"),
+        run.stdout.contains("every pixel depends on undefined behavior"),
         "{}",
         run.stdout
     );
     assert!(!out.exists(), "what is not proved is not written");
 
-    let run = convert(&["--device", "cpu", "--force"]);
+    let run = convert(&["--force"]);
     assert_eq!(run.code, 2, "it is still not proved");
     assert!(fs::read_to_string(&out).unwrap().contains("// NOT PROVED: "));
 }
@@ -442,7 +461,7 @@ fn files_in_every_language_state_their_proof() {
         (
             "frag",
             if glslang {
-                "as read by toyproof's GLSL front end and glslangValidator (Glslang Version"
+                "as read by glslangValidator (Glslang Version"
             } else {
                 "as read by toyproof's GLSL front end and run on"
             },
@@ -555,8 +574,9 @@ fn authors_may_use_names_of_the_surrounding_code() {
                 "{ending} {style}: {}{}\n{text}",
                 run.stdout, run.stderr
             );
+            // Nothing here reads Metal, so naga's is proved.
             assert!(
-                !run.stdout.contains("written by naga"),
+                ending == "metal" || !run.stdout.contains("written by naga"),
                 "{style}: {}\n{text}",
                 run.stdout
             );
