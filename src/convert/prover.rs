@@ -289,7 +289,7 @@ impl Prover<'_> {
                 let lowered = lowered.map_err(ProofError::Overdue)?;
                 return Ok(vec![(Reader::FrontEnd, ShaderArtifact::Lowered(lowered))]);
             }
-            TargetCode::CFamily(text, host) => return self.compiled(checked, text, *host),
+            TargetCode::CFamily(text, host) => return compiled(checked, text, *host),
             TargetCode::Naga { target, bytes, .. } => (*target, bytes),
         };
         let artifact = |words, upside_down| ShaderArtifact::Words {
@@ -316,25 +316,6 @@ impl Prover<'_> {
             readings.push((Reader::Compiler(compiler), artifact(words, false)));
         }
         Ok(readings)
-    }
-
-    /// The results of the compilers that read a file for a host, in a substitute for it.
-    fn compiled(
-        &self,
-        checked: &Checked,
-        text: &str,
-        host: CHost,
-    ) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
-        let target = host.read_as().ok_or(ProofError::AppleOnly(host.title()))?;
-        let hosted = host.hosted(text, checked.stage);
-        let compiled = tool::compile_hosted(target, &hosted.text)?;
-        let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
-        let artifact = ShaderArtifact::Words {
-            words,
-            channels: shapes(checked),
-            upside_down: hosted.upside_down,
-        };
-        Ok(vec![(Reader::Compiler(compiler), artifact)])
     }
 
     /// Runs each reader's result; all of them must agree with the shader.
@@ -372,6 +353,20 @@ impl Prover<'_> {
         // There is a proof for each reader, and at least one reader.
         Ok((readers, proofs.swap_remove(0)))
     }
+}
+
+/// The results of the compilers that read a file for a host, in a substitute for it.
+fn compiled(checked: &Checked, text: &str, host: CHost) -> Result<Vec<(Reader, ShaderArtifact)>, ProofError> {
+    let target = host.read_as().ok_or(ProofError::AppleOnly(host.title()))?;
+    let hosted = host.hosted(text, checked.stage);
+    let compiled = tool::compile_hosted(target, &hosted.text)?;
+    let (words, compiler) = compiled.ok_or(ProofError::NoReader(host.title()))?;
+    let artifact = ShaderArtifact::Words {
+        words,
+        channels: shapes(checked),
+        upside_down: hosted.upside_down,
+    };
+    Ok(vec![(Reader::Compiler(compiler), artifact)])
 }
 
 /// The shapes of the textures that a shader reads.

@@ -186,7 +186,7 @@ impl Settings<'_> {
             proof,
             fallback,
         } = converted.map_err(refusal)?;
-        let status = self.status(proof.map(|proof| proof.map(ProofStatus::Proved)));
+        let status = status_of(proof.map(|proof| proof.map(ProofStatus::Proved)));
         Ok(Conversion {
             files: vec![self.output_file(None, code, &shader.name, &status)],
             status,
@@ -218,7 +218,7 @@ impl Settings<'_> {
             ProjectError::Pass { error, .. } => refusal(error),
             error => Refusal::Message(error.to_string(), Exit::Error),
         })?;
-        let status = self.status(proof);
+        let status = status_of(proof);
         let bytes = header::insert_in_hosted(&text, host, &shader.name, &status).into_bytes();
         Ok(Conversion {
             files: vec![OutputFile { name: None, bytes }],
@@ -258,7 +258,7 @@ impl Settings<'_> {
             ProjectError::Pass { pass, error } => refusal(error).in_pass(pass),
             error => Refusal::Message(error.to_string(), Exit::Error),
         })?;
-        let status = self.status(proof.map(|proof| proof.map(ProofStatus::ProvedPasses)));
+        let status = status_of(proof.map(|proof| proof.map(ProofStatus::ProvedPasses)));
         let passes = passes.into_iter().map(|pass| {
             let name = format!("{}, {}", shader.name, pass.kind);
             self.output_file(Some(pass.name), pass.code, &name, &status)
@@ -289,14 +289,14 @@ impl Settings<'_> {
         }
         OutputFile { name, bytes }
     }
+}
 
-    /// The status of a proof, if there is a prover.
-    fn status(&self, proof: Option<Result<ProofStatus, ProofError>>) -> ProofStatus {
-        match proof {
-            Some(Ok(proved)) => proved,
-            Some(Err(unproved)) => ProofStatus::NotProved(unproved.to_string()),
-            None => ProofStatus::NotRequested,
-        }
+/// The status of a proof, if one was requested.
+fn status_of(proof: Option<Result<ProofStatus, ProofError>>) -> ProofStatus {
+    match proof {
+        Some(Ok(proved)) => proved,
+        Some(Err(unproved)) => ProofStatus::NotProved(unproved.to_string()),
+        None => ProofStatus::NotRequested,
     }
 }
 

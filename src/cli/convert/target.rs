@@ -49,7 +49,7 @@ pub(super) enum StyleName {
     WindowsTerminal,
     /// A module of Slang with the bindings below
     Slang,
-    /// A shader for a CanvasItem of Godot 4
+    /// A shader of Godot 4, for 2D
     Godot,
     /// GLSL for ShaderToy
     Shadertoy,

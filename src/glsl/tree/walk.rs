@@ -172,7 +172,7 @@ pub fn writes(tree: &Tree, root: ExprId, variable: VariableId) -> bool {
     tree.postorder(root).into_iter().any(|id| {
         let mut is_written = false;
         tree.each_write(id, |target, _| {
-            is_written |= tree.root_variable(target) == Some(variable)
+            is_written |= tree.root_variable(target) == Some(variable);
         });
         is_written
     })

@@ -238,20 +238,19 @@ impl Writer<'_> {
             if rest.len() < arguments.len() {
                 parts.push(Part::token(", "));
             }
-            match column {
-                &[only] => parts.push(Part::Print(only, level::ASSIGN)),
-                _ => {
-                    for (at, &component) in column.iter().enumerate() {
-                        let before = if at == 0 {
-                            format!("{column_type}(")
-                        } else {
-                            ", ".to_owned()
-                        };
-                        parts.push(Part::Token(before));
-                        parts.extend(self.component(component, Scalar::Float)?);
-                    }
-                    parts.push(Part::token(")"));
+            if let &[only] = column {
+                parts.push(Part::Print(only, level::ASSIGN));
+            } else {
+                for (at, &component) in column.iter().enumerate() {
+                    let before = if at == 0 {
+                        format!("{column_type}(")
+                    } else {
+                        ", ".to_owned()
+                    };
+                    parts.push(Part::Token(before));
+                    parts.extend(self.component(component, Scalar::Float)?);
                 }
+                parts.push(Part::token(")"));
             }
             rest = others;
         }

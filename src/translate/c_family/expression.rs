@@ -97,6 +97,7 @@ impl Writer<'_> {
         }
     }
 
+    #[expect(clippy::too_many_lines, reason = "an arm for each kind of expression")]
     fn parts(&mut self, id: ExprId) -> PrintResult<Parts> {
         use Part::{Print, Token};
         let tree = &self.cx.tree;
@@ -391,11 +392,13 @@ impl Writer<'_> {
                 arguments,
             } if self.lists_values(self.cx.tree[id].ty) => {
                 let arguments = arguments.clone();
-                let is_nested = self.language().has_array_values();
-                let values = arguments.into_iter().map(|argument| match is_nested {
+                let values = arguments.into_iter().map(|argument| {
                     // Inner lists state their types.
-                    true => self.operand(argument, level::ASSIGN),
-                    false => self.initializer(argument),
+                    if self.language().has_array_values() {
+                        self.operand(argument, level::ASSIGN)
+                    } else {
+                        self.initializer(argument)
+                    }
                 });
                 let values = values.collect::<PrintResult<Vec<_>>>()?;
                 Ok(format!("{{ {} }}", values.join(", ")))

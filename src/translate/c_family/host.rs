@@ -75,6 +75,7 @@ impl CHost {
         Self::Metal,
     ];
 
+    #[expect(clippy::too_many_lines, reason = "a table")]
     fn row(self) -> Row {
         match self {
             Self::Hlsl => Row {
@@ -388,21 +389,16 @@ impl Writer<'_> {
             let shape = channels.get(&channel).copied().unwrap_or(SamplerShape::D2);
             values.push((value, self.language().texture_type(shape)));
         }
-        let properties = ["$property0", "$property1", "$property2", "$property3"];
-        for (channel, value) in (0..).zip(properties) {
-            // The type of the texture in `ShaderLab`, and what stands for a missing one.
-            let property = match channels.get(&channel) {
-                Some(SamplerShape::D3) => "3D) = \"\"",
-                Some(SamplerShape::Cube) => "Cube) = \"\"",
-                _ => "2D) = \"black\"",
-            };
-            values.push((value, property.to_owned()));
+        for (channel, value) in (0..).zip(["$property0", "$property1", "$property2", "$property3"]) {
+            values.push((value, property(channels.get(&channel).copied()).to_owned()));
         }
         let samplings = ["$sampling0", "$sampling1", "$sampling2", "$sampling3"];
         for (sampling, value) in self.cx.sampling.into_iter().zip(samplings) {
-            let sampling = match self.language() {
-                Language::Godot => hints(sampling),
-                Language::Hlsl | Language::Msl | Language::Glsl => inline_sampler(sampling).to_owned(),
+            let is_godot = self.language() == Language::Godot;
+            let sampling = if is_godot {
+                hints(sampling)
+            } else {
+                inline_sampler(sampling).to_owned()
             };
             values.push((value, sampling));
         }
@@ -415,25 +411,14 @@ impl Writer<'_> {
             }
             name
         };
-        for (value, name) in LOCALS {
-            values.push((value, local(name)));
-        }
+        values.extend(LOCALS.map(|(value, name)| (value, local(name))));
         let passed = self
             .passed
             .iter()
             .map(|&id| format!(", {}", local(&self.cx.tree[id].name)));
         values.push(("$passed", passed.collect()));
         // The last, since a name may contain those of other values.
-        let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
-        let name = match title.pass {
-            Some(pass) => format!("{}/{pass}", title.name),
-            None => {
-                let stem = Path::new(title.name).file_stem().unwrap_or_default();
-                stem.to_string_lossy().into_owned()
-            }
-        };
-        let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        values.push(("$name", name));
+        values.push(("$name", name_of(title)));
         values.push(("$outside", outside.trim_end().to_owned()));
         let template = self.host.template();
         // The text is indented as its place in the template.
@@ -490,6 +475,27 @@ impl Writer<'_> {
         Unprintable::Host(Box::new(
             diagnostic.help("use `--style plain`, which has every input and channel"),
         ))
+    }
+}
+
+/// The name of a shader in the files of its host, within quotation marks.
+fn name_of(title: Title) -> String {
+    let is_plain = |c: char| !c.is_control() && !matches!(c, '"' | '\\');
+    let name = if let Some(pass) = title.pass {
+        format!("{}/{pass}", title.name)
+    } else {
+        let stem = Path::new(title.name).file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    };
+    name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect()
+}
+
+/// The type of a texture in `ShaderLab`, and what stands for a missing one.
+fn property(shape: Option<SamplerShape>) -> &'static str {
+    match shape {
+        Some(SamplerShape::D3) => "3D) = \"\"",
+        Some(SamplerShape::Cube) => "Cube) = \"\"",
+        _ => "2D) = \"black\"",
     }
 }
 

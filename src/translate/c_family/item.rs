@@ -91,9 +91,8 @@ impl Writer<'_> {
             Language::Hlsl => "static ",
             Language::Godot => "const ",
             Language::Glsl if is_constant => "const ",
-            Language::Glsl => "",
             Language::Msl if !self.members.contains(&Item::Variable(id)) => "constant ",
-            Language::Msl => "",
+            Language::Msl | Language::Glsl => "",
         };
         let value = match variable.initializer {
             Some(value) => format!(" = {}", self.initializer(value)?),

@@ -73,12 +73,11 @@ impl CHost {
 /// texture and a sampler with our bindings. `None` for other lines.
 fn channel(line: &str) -> Option<String> {
     let (ty, rest) = line.strip_prefix("uniform ")?.split_once(' ')?;
-    let (precision, ty, rest) = match ty.strip_prefix("sampler") {
-        Some(ty) => ("", ty, rest),
-        None => {
-            let (sampler, rest) = rest.split_once(' ')?;
-            ("highp ", sampler.strip_prefix("sampler")?, rest)
-        }
+    let (precision, ty, rest) = if let Some(ty) = ty.strip_prefix("sampler") {
+        ("", ty, rest)
+    } else {
+        let (sampler, rest) = rest.split_once(' ')?;
+        ("highp ", sampler.strip_prefix("sampler")?, rest)
     };
     let name = rest.split([' ', ';']).next()?;
     let channel: u32 = name.strip_prefix("iChannel")?.parse().ok()?;

@@ -597,6 +597,19 @@ fn glsl_stays_as_its_author_wrote_it() {
 }
 
 #[test]
+fn no_local_hides_a_generated_function_in_glsl() {
+    let text = "void mainImage(out vec4 color, in vec2 at) { int remainder = int(at.x) % 3; float distance = at.x; \
+        color = vec4(remainder) * distance; }";
+    let written = converted(CHost::Glsl, text).unwrap();
+    assert!(
+        written.contains("int remainder_1 = remainder(int(at.x), 3);"),
+        "{written}"
+    );
+    // GLSL allows names of built-in functions.
+    assert!(written.contains("float distance = at.x;"), "{written}");
+}
+
+#[test]
 fn glsl_is_read_again_with_bindings() {
     let text = "void mainImage(out vec4 color, in vec2 at) { color = texture(iChannel2, at) * iTime; }";
     let written = converted(CHost::Glsl, text).unwrap();
@@ -671,14 +684,14 @@ fn what_godot_would_misread_is_refused() {
 
 #[test]
 fn a_long_chain_of_calls_passes_globals_in_time() {
-    let mut text = (0..100)
-        .map(|at| format!("float g{at} = 1.0;\n"))
-        .collect::<String>();
-    text += "float f0() { return g0; }\n";
-    for at in 1..1000 {
+    let globals = (0..100).map(|at| format!("float g{at} = 1.0;\n"));
+    let functions = (1..1000).map(|at| {
         let (before, global) = (at - 1, at % 100);
-        text += &format!("float f{at}() {{ g{global} += 1.0; return f{before}(); }}\n");
-    }
+        format!("float f{at}() {{ g{global} += 1.0; return f{before}(); }}\n")
+    });
+    let first = "float f0() { return g0; }\n".to_owned();
+    let lines: Vec<String> = globals.chain([first]).chain(functions).collect();
+    let mut text = lines.concat();
     text += "void mainImage(out vec4 color, in vec2 at) { color = vec4(f999()); }";
     let written = converted(CHost::Godot, &text).unwrap();
     assert!(written.contains("float f0(float g0) {"));

@@ -35,6 +35,10 @@ pub(crate) trait Vocabulary {
     /// Whether a declaration's own initializer is in the scope of its name, and functions share their names
     /// with variables, as in C.
     fn has_scopes_of_c(&self) -> bool;
+    /// Whether a function that is called may have the name of a local: those of lowering have no prefix.
+    fn may_hide_functions(&self) -> bool {
+        self.has_scopes_of_c()
+    }
     /// Whether no local may have the name of a global constant.
     fn keeps_constants_visible(&self) -> bool {
         false
@@ -255,7 +259,7 @@ impl Names {
             {
                 match tree[id].kind {
                     ExprKind::Variable(variable) => globals.extend(self.variables.get(&variable).cloned()),
-                    ExprKind::Call { function, .. } if vocabulary.has_scopes_of_c() => {
+                    ExprKind::Call { function, .. } if vocabulary.may_hide_functions() => {
                         globals.extend(self.functions.get(&function).cloned());
                     }
                     _ => {}

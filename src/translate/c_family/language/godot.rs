@@ -1,4 +1,4 @@
-//! The words and types of Godot's shading language (“Shading language” and “CanvasItem shaders” in the Godot
+//! The words and types of Godot's shading language (“Shading language” and “Canvas item shaders” in the Godot
 //! documentation).
 
 use toyproof_glsl::tree::Type;

@@ -221,6 +221,10 @@ impl Vocabulary for Words {
         self.host.language() != Language::Glsl
     }
 
+    fn may_hide_functions(&self) -> bool {
+        true
+    }
+
     fn keeps_constants_visible(&self) -> bool {
         self.host.language() == Language::Godot
     }

@@ -82,7 +82,7 @@ impl Writer<'_> {
              if (!all(uint{size}(texel) < size)) {{\n        return float4(0.0);\n    }}\n    \
              return image.read(uint{size}(texel), level);\n}}\n"
         );
-        self.helpers.insert((function.clone(), ty.to_owned()), text);
+        self.helpers.insert((function.clone(), ty), text);
         function
     }
 
@@ -98,7 +98,7 @@ impl Writer<'_> {
             "{returned} {function}({ty} image, int level) {{\n    \
              return {returned}(image.get_width(level), image.get_height(level){depth});\n}}\n"
         );
-        self.helpers.insert((function.clone(), ty.to_owned()), text);
+        self.helpers.insert((function.clone(), ty), text);
         function
     }
 }
