@@ -291,6 +291,7 @@ pub(super) fn shorten_generated_names(cx: &mut LoweringContext) {
     let short = |name: &mut String| {
         if let Some(rest) = name.strip_prefix(PREFIX)
             && !all.contains(rest)
+            && !BuiltIn::ALL.iter().any(|function| function.name() == rest)
         {
             *name = rest.to_owned();
         }
