@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fmt::Write as _;
 
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
-use toyproof_glsl::tree::{ExprId, FunctionId, Item, Place, StructId, Type, VariableId};
+use toyproof_glsl::tree::{BuiltIn, ExprId, FunctionId, Item, Place, StructId, Type, VariableId};
 
 use super::effect::impure_functions;
 use super::host::CHost;
