@@ -312,7 +312,9 @@ impl Prover<'_> {
             }
             Target::Wgsl | Target::Hlsl | Target::Msl => {}
         }
-        if let Some((words, compiler)) = tool::compile(target, bytes)? {
+        // naga's reader of SPIR-V does not read all that glslang writes: the evaluator runs what has another reader.
+        let is_needed = matches!(self.runner, Runner::Driver(_)) || readings.is_empty();
+        if is_needed && let Some((words, compiler)) = tool::compile(target, bytes)? {
             readings.push((Reader::Compiler(compiler), artifact(words, false)));
         }
         Ok(readings)
