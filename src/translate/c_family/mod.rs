@@ -79,7 +79,7 @@ pub fn write(
         chain_switches(&mut cx);
     }
     let passed = globals::pass(&mut cx, host)?;
-    writer::shorten_generated_names(&mut cx);
+    writer::shorten_generated_names(&mut cx, language);
     let order = Order::new(&cx, CaseLabels::Values);
     deadline.check()?;
     let names = Names::new(&cx, &order, &Words::new(host));

@@ -281,8 +281,13 @@ impl<'a> Writer<'a> {
     }
 }
 
+/// Whether GLSL has a function of this name, which a local would hide.
+fn is_built_in(name: &str) -> bool {
+    BuiltIn::ALL.iter().any(|function| function.name() == name)
+}
+
 /// Shortens generated names, which a prefix distinguishes from the author's in GLSL.
-pub(super) fn shorten_generated_names(cx: &mut LoweringContext) {
+pub(super) fn shorten_generated_names(cx: &mut LoweringContext, language: Language) {
     const PREFIX: &str = "toyproof_";
     let tree = &mut cx.tree;
     let names = tree.variables.iter().map(|(_, variable)| &variable.name);
@@ -291,7 +296,7 @@ pub(super) fn shorten_generated_names(cx: &mut LoweringContext) {
     let short = |name: &mut String| {
         if let Some(rest) = name.strip_prefix(PREFIX)
             && !all.contains(rest)
-            && !BuiltIn::ALL.iter().any(|function| function.name() == rest)
+            && !(language == Language::Glsl && is_built_in(rest))
         {
             *name = rest.to_owned();
         }
