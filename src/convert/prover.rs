@@ -154,6 +154,19 @@ pub enum ProofError {
         /// The reference.
         against: ProofReference,
     },
+    /// Some pixels differ as naga reads SPIR-V for the evaluator.
+    #[error(
+        "{} of {} pixels {} as naga reads glslang's SPIR-V, which it may misread; a Vulkan driver decides",
+        grouped(*differing),
+        grouped(*pixels),
+        plural(*differing, "differs", "differ"),
+    )]
+    DiffersAsRead {
+        /// The number of pixels that differ.
+        differing: u64,
+        /// The number of pixels of all frames.
+        pixels: u64,
+    },
     /// A pass of a shader with several differs from the original's on the same driver.
     #[error("{}", differing_passes(.0))]
     PassesDiffer(Vec<PassComparison>),
@@ -344,6 +357,16 @@ impl Prover<'_> {
         }
         let different = proofs.iter().zip(&readers).find(|(proof, _)| !proof.holds());
         if let Some((proof, reader)) = different {
+            // naga's reader of SPIR-V mistakes fall-through in a `switch`, for instance.
+            if matches!(
+                (&self.runner, reader),
+                (Runner::Evaluator(_), Reader::Compiler(_))
+            ) {
+                return Err(ProofError::DiffersAsRead {
+                    differing: proof.differing(),
+                    pixels: proof.pixels(),
+                });
+            }
             return Err(ProofError::Differs {
                 reader: (readers.len() > 1).then(|| reader.clone()),
                 differing: proof.differing(),

@@ -31,6 +31,8 @@ mod dialects;
 mod docs;
 #[cfg(unix)]
 mod driver_start;
+#[cfg(target_os = "linux")]
+mod engines;
 mod equivalent_rewrites;
 mod estimators;
 mod evaluator;
@@ -48,8 +50,6 @@ mod generated;
 mod glslang;
 mod grading;
 mod growth;
-#[cfg(target_os = "linux")]
-mod hlsl_hosts;
 mod hosted;
 mod hostile;
 mod hostile_class;

@@ -22,7 +22,7 @@ use toyproof::translate::c_family::{CHost, Title, write};
 use toyproof::translate::lower_strict;
 use walkdir::WalkDir;
 
-use crate::hlsl_hosts;
+use crate::engines;
 use crate::program::toyproof;
 use crate::requirements::{require_driver, require_folder, require_program};
 use crate::support::generate::{self, Arithmetic, Effects};
@@ -344,7 +344,7 @@ fn the_course_has_the_evaluators_bits() {
         return;
     }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl");
-    let mut shaders = vec![written("inputs", hlsl_hosts::INPUTS).expect("it is written")];
+    let mut shaders = vec![written("inputs", engines::INPUTS).expect("it is written")];
     for entry in WalkDir::new(&folder).sort_by_file_name() {
         let path = entry.unwrap().into_path();
         let is_shader = path.extension().is_some_and(|extension| extension == "glsl");
@@ -375,7 +375,7 @@ fn faults_in_the_text_are_found() {
         ("fract(", "floor("),
     ];
     let shaders = faults.map(|(from, to)| {
-        let mut shader = written(to, hlsl_hosts::INPUTS).expect("it is written");
+        let mut shader = written(to, engines::INPUTS).expect("it is written");
         assert!(shader.text.contains(from), "{}", shader.text);
         shader.text = shader.text.replacen(from, to, 1);
         shader

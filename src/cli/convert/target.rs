@@ -217,9 +217,14 @@ pub(super) fn target_language(args: &Args, output: &Path, kind: OutputKind) -> R
     };
     let Some(to) = to.or((is_standard_output || several || output.is_dir()).then_some(To::Wgsl)) else {
         let error = format!("cannot determine the language of {}", path_name(output));
-        return Err(CliError::new(error).with_help(
-            "give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to",
-        ));
+        let extension = output.extension().unwrap_or_default();
+        let mut hosts = CHost::ALL.into_iter();
+        let help = match hosts.find(|host| !host.is_plain() && extension == host.extension()) {
+            Some(host) => format!("for {}, add --style {}", host.title(), host.name()),
+            None => "give it an extension (.wgsl .spv .metal .hlsl .frag), or name the language with --to"
+                .to_owned(),
+        };
+        return Err(CliError::new(error).with_help(help));
     };
     if several && (is_standard_output || of_extension.is_some()) {
         return Err(needs_folder(kind, output));

@@ -283,7 +283,7 @@ impl Writer<'_> {
     }
 
     /// The first columns and rows of a matrix; a larger matrix is completed by the identity's components.
-    fn resize(&mut self, matrix: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
+    pub(super) fn resize(&mut self, matrix: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
         let (
             Type::Matrix { columns, rows },
             Type::Matrix {
@@ -299,30 +299,25 @@ impl Writer<'_> {
         }
         let name = self.type_name(ty)?;
         let vector = self.type_name(Type::Vector(Scalar::Float, rows))?;
-        let column_of = |source: &str, column: u8| {
+        let column = |column: u8| {
             let own = if column < has { rows.min(long) } else { 0 };
             let components = if own < long { first(own) } else { "" };
-            let part = (own > 0).then(|| format!("{source}[{column}]{components}"));
+            let part = (own > 0).then(|| format!("x[{column}]{components}"));
             let identity = (own..rows).map(|row| if row == column { "1.0" } else { "0.0" }.to_owned());
             let parts: Vec<String> = part.into_iter().chain(identity).collect();
-            format!("{vector}({})", parts.join(", "))
+            match &parts[..] {
+                [only] => only.clone(),
+                _ => format!("{vector}({})", parts.join(", ")),
+            }
         };
-        let made_of = |source: &str| {
-            let columns: Vec<String> = (0..columns).map(|column| column_of(source, column)).collect();
-            format!("{name}({})", columns.join(", "))
-        };
-        if self.is_short(matrix) {
-            let source = self.operand(matrix, level::POSTFIX)?;
-            return Ok((vec![Part::Token(made_of(&source))], level::POSTFIX));
-        }
-        let body = format!("return {};", made_of("x"));
-        let stem = format!("resized{columns}x{rows}");
-        let function = self.helper_function(&stem, &[from], ty, "", &body)?;
+        let columns: Vec<String> = (0..columns).map(column).collect();
+        let body = format!("return {name}({});", columns.join(", "));
+        let function = self.helper_function(&format!("to_{name}"), &[from], ty, "", &body)?;
         Ok((Self::call(function, &[matrix]), level::POSTFIX))
     }
 }
 
 /// The swizzle of a vector's first components.
-fn first(size: u8) -> &'static str {
+pub(super) fn first(size: u8) -> &'static str {
     [".x", ".xy", ".xyz", ".xyzw"][usize::from(size.clamp(1, 4)) - 1]
 }

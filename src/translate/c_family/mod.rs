@@ -9,7 +9,8 @@ mod builtin;
 mod construct;
 mod effect;
 mod expression;
-mod globals;
+#[cfg(test)]
+mod godot_tests;
 mod host;
 mod item;
 mod language;
@@ -25,11 +26,15 @@ pub use host::CHost;
 pub use substitute::HostedText;
 use toyproof_diagnostic::{Deadline, Files};
 use toyproof_glsl::Checked;
+use toyproof_glsl::tree::{BuiltInVariable, VariableId, VariableKind};
 
 use self::language::{Language, Words};
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
-use crate::lower::{branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values};
+use crate::lower::{
+    GlobalConflict, branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values,
+    orient_derivatives, pass_globals,
+};
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -78,7 +83,7 @@ pub fn write(
     if language == Language::Godot {
         chain_switches(&mut cx);
     }
-    let passed = globals::pass(&mut cx, host)?;
+    let passed = passed_globals(&mut cx, host)?;
     writer::shorten_generated_names(&mut cx, language);
     let order = Order::new(&cx, CaseLabels::Values);
     deadline.check()?;
@@ -90,4 +95,32 @@ pub fn write(
     // An expired deadline also makes the writer fail.
     deadline.check()?;
     Ok(written?)
+}
+
+/// Passes global variables as arguments, if functions see none in the language of the host; returns what
+/// `mainImage` gets from the host's entry point.
+fn passed_globals(cx: &mut LoweringContext, host: CHost) -> Result<Vec<VariableId>, Unprintable> {
+    if !host.language().passes_globals() {
+        return Ok(Vec::new());
+    }
+    if host.orients_derivatives(cx.stage) {
+        orient_derivatives(cx);
+    }
+    for id in cx.tree.variables.ids() {
+        let variable = &mut cx.tree[id];
+        // Names that begin with `gl_` are reserved.
+        if variable.kind == VariableKind::BuiltIn(BuiltInVariable::FragCoord)
+            && variable.name.starts_with("gl_")
+        {
+            "position".clone_into(&mut variable.name);
+        }
+    }
+    pass_globals(cx).map_err(|conflict| {
+        Unprintable::Construct(match conflict {
+            GlobalConflict::Aliased => {
+                "a global variable that is an `out` argument of a function that uses it"
+            }
+            GlobalConflict::CalledEntry => "a call of `mainImage`",
+        })
+    })
 }

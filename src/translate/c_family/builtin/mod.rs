@@ -80,8 +80,8 @@ impl Writer<'_> {
     }
 }
 
-/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways before and
-/// since its version of 2021.
+/// The body of `mix(x, y, a)` of a `bool` for each component. HLSL selects components in different ways
+/// before and since its version of 2021.
 fn mix_of_bool(ty: &str, size: u8) -> String {
     if size == 1 {
         return "return a ? y : x;".to_owned();

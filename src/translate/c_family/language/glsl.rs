@@ -4,8 +4,8 @@ use toyproof_glsl::tree::{Scalar, Type};
 
 use crate::print::keyword;
 
-/// Whether nothing may have the name. Words of later versions of GLSL count: other compilers read the file as one
-/// of these.
+/// Whether nothing may have the name. Words of later versions of GLSL count: other compilers read the file as
+/// one of these.
 pub(super) fn is_reserved(word: &str) -> bool {
     keyword::is_reserved(word)
 }

@@ -3,6 +3,7 @@
 use toyproof_glsl::tree::{Constructor, ExprId, Scalar, Type};
 
 use crate::c_family::Unprintable;
+use crate::c_family::construct::first;
 use crate::c_family::expression::{Part, Parts, level};
 use crate::c_family::writer::{PrintResult, Writer};
 
@@ -29,7 +30,7 @@ impl Writer<'_> {
             }
             Constructor::Vector => self.vector_in_metal(arguments, ty),
             Constructor::Matrix => self.matrix_in_metal(arguments, ty),
-            Constructor::Resize => self.resize_in_metal(only, from, ty),
+            Constructor::Resize => self.resize(only, from, ty),
         }
     }
 
@@ -121,43 +122,4 @@ impl Writer<'_> {
         parts.push(Part::token(")"));
         Ok((parts, level::POSTFIX))
     }
-
-    /// The first columns and rows of a matrix; a larger matrix is completed by the identity's components.
-    fn resize_in_metal(&mut self, matrix: ExprId, from: Type, ty: Type) -> PrintResult<Parts> {
-        let (
-            Type::Matrix { columns, rows },
-            Type::Matrix {
-                columns: has,
-                rows: long,
-            },
-        ) = (ty, from)
-        else {
-            return Err(Unprintable::Construct("this matrix constructor"));
-        };
-        let vector = self.type_name(Type::vector(Scalar::Float, rows))?;
-        let column = |column: u8| {
-            let own = if column < has { rows.min(long) } else { 0 };
-            let mut components = Vec::new();
-            if own > 0 {
-                let part = if own < long { first(own) } else { "" };
-                components.push(format!("x[{column}]{part}"));
-            }
-            let identity = (own..rows).map(|row| if row == column { "1.0" } else { "0.0" });
-            components.extend(identity.map(str::to_owned));
-            match components.as_slice() {
-                [only] => only.clone(),
-                _ => format!("{vector}({})", components.join(", ")),
-            }
-        };
-        let columns: Vec<String> = (0..columns).map(column).collect();
-        let name = self.type_name(ty)?;
-        let body = format!("return {name}({});", columns.join(", "));
-        let function = self.helper_function(&format!("to_{name}"), &[from], ty, "", &body)?;
-        Ok((Self::call(function, &[matrix]), level::POSTFIX))
-    }
-}
-
-/// The swizzle of a vector's first components.
-fn first(size: u8) -> &'static str {
-    [".x", ".xy", ".xyz", ".xyzw"][usize::from(size.clamp(1, 4)) - 1]
 }

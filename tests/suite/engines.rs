@@ -255,3 +255,67 @@ fn proofs_need_no_driver() {
         assert!(written.contains("and run on toyproof's evaluator"), "{written}");
     }
 }
+
+#[test]
+fn what_naga_misreads_is_not_a_difference_of_the_conversion() {
+    if !require_program("glslangValidator") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) {\n    float a = 0.0;\n    switch (int(p.x) % 4) {\n        case 0: a += 0.1;\n        \
+        case 1: a += 0.2; break;\n        default: a += 0.3;\n        case 2: a += 0.4;\n    }\n    c = vec4(a);\n}\n";
+    fs::write(folder.path().join("fall.glsl"), text).unwrap();
+    let convert = |device| {
+        let options = [
+            "convert",
+            "fall.glsl",
+            "-o",
+            "fall.frag",
+            "--verify",
+            "--device",
+            device,
+        ];
+        toyproof(folder.path(), &options)
+    };
+    let run = convert("cpu");
+    assert!(
+        run.stdout
+            .contains("as naga reads glslang's SPIR-V, which it may misread"),
+        "{}",
+        run.stdout
+    );
+    if require_driver() {
+        let run = convert("auto");
+        assert!(
+            run.code == 0 && !run.stdout.contains("naga"),
+            "{}{}",
+            run.stdout,
+            run.stderr
+        );
+    }
+}
+
+#[test]
+fn the_extension_of_an_engine_names_its_style() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p, 0, 1); }";
+    fs::write(folder.path().join("a.glsl"), text).unwrap();
+    for (output, style) in [
+        ("a.gdshader", "godot"),
+        ("a.shader", "unity"),
+        ("a.slang", "slang"),
+    ] {
+        let run = toyproof(folder.path(), &["convert", "a.glsl", "-o", output]);
+        assert_eq!(run.code, 2, "{}", run.stderr);
+        assert!(
+            run.stderr.contains(&format!("add --style {style}")),
+            "{}",
+            run.stderr
+        );
+        let run = toyproof(
+            folder.path(),
+            &["convert", "a.glsl", "-o", output, "--style", style],
+        );
+        assert_eq!(run.code, 0, "{}", run.stderr);
+    }
+}
