@@ -4,49 +4,43 @@ use std::collections::HashSet;
 
 use toyproof_glsl::tree::{Direction, ExprId, ExprKind, FunctionId, StatementKind, Tree, VariableKind, walk};
 
+use crate::lower::callees_first;
+
 /// The functions that write a global variable or a parameter of their caller, or discard the pixel,
-/// themselves
-/// or by a function that they call.
+/// themselves or by a function that they call.
 pub(super) fn impure_functions(tree: &Tree) -> HashSet<FunctionId> {
     let mut impure = HashSet::new();
-    let mut callers: Vec<(FunctionId, FunctionId)> = Vec::new();
-    for (id, function) in tree.functions.iter() {
-        let Some(body) = &function.body else { continue };
-        walk::each(body, &mut |statement| {
-            if matches!(statement.kind, StatementKind::Discard) {
-                impure.insert(id);
-            }
+    for (function, callees) in callees_first(tree) {
+        if callees.iter().any(|callee| impure.contains(callee)) || has_effect(tree, function) {
+            impure.insert(function);
+        }
+    }
+    impure
+}
+
+/// Whether a function itself writes what is not its own, or discards the pixel.
+fn has_effect(tree: &Tree, function: FunctionId) -> bool {
+    let Some(body) = &tree[function].body else {
+        return false;
+    };
+    let mut found = false;
+    walk::each(body, &mut |statement| {
+        found |= matches!(statement.kind, StatementKind::Discard)
+    });
+    for expr in walk::roots(tree, body)
+        .into_iter()
+        .flat_map(|root| tree.postorder(root))
+    {
+        tree.each_write(expr, |target, _| {
+            found |= !tree.root_variable(target).is_some_and(|variable| {
+                matches!(
+                    tree[variable].kind,
+                    VariableKind::Local | VariableKind::Parameter(Direction::In | Direction::ConstIn)
+                )
+            });
         });
-        for root in walk::roots(tree, body) {
-            for expr in tree.postorder(root) {
-                if let ExprKind::Call { function, .. } = tree[expr].kind {
-                    callers.push((id, function));
-                }
-                tree.each_write(expr, |target, _| {
-                    let is_own = tree.root_variable(target).is_some_and(|variable| {
-                        matches!(
-                            tree[variable].kind,
-                            VariableKind::Local | VariableKind::Parameter(Direction::In | Direction::ConstIn)
-                        )
-                    });
-                    if !is_own {
-                        impure.insert(id);
-                    }
-                });
-            }
-        }
     }
-    loop {
-        let count = impure.len();
-        for &(caller, called) in &callers {
-            if impure.contains(&called) {
-                impure.insert(caller);
-            }
-        }
-        if impure.len() == count {
-            return impure;
-        }
-    }
+    found
 }
 
 /// Whether the value of an expression is all that its evaluation results in.

@@ -1,6 +1,5 @@
-use super::WriteFailure;
 use super::host::CHost;
-use super::tests::converted;
+use super::tests::{self, converted};
 
 /// The file for Godot of a shader with these items and this image function, without its head.
 fn for_godot(items: &str, statements: &str) -> String {
@@ -9,15 +8,10 @@ fn for_godot(items: &str, statements: &str) -> String {
     written.split_once(";\n").map_or("", |(_, rest)| rest).to_owned()
 }
 
-/// Asserts that a shader cannot be written for Godot, and why.
 #[track_caller]
 fn assert_refused(items: &str, statements: &str, why: &str) {
     let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
-    let error = converted(CHost::Godot, &text).unwrap_err();
-    let WriteFailure::Unprintable(error) = error else {
-        panic!("{error:?}");
-    };
-    assert!(error.to_string().contains(why), "{error}");
+    tests::assert_refused(CHost::Godot, &text, why);
 }
 
 #[test]

@@ -41,8 +41,17 @@ fn with_items(items: &str, statements: &str) -> String {
         .to_owned()
 }
 
+/// Asserts that a shader cannot be written for a host, for this reason.
 #[track_caller]
-fn assert_lines(written: &str, lines: &[&str]) {
+pub(super) fn assert_refused(host: CHost, text: &str, why: &str) {
+    match converted(host, text) {
+        Err(WriteFailure::Unprintable(error)) => assert!(error.to_string().contains(why), "{error}"),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[track_caller]
+pub(super) fn assert_lines(written: &str, lines: &[&str]) {
     let own: Vec<&str> = written.lines().map(str::trim).collect();
     assert_eq!(own, lines, "{written}");
 }

@@ -1,12 +1,13 @@
 //! Global variables as parameters, for languages whose functions see none that changes.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 
 use toyproof_glsl::tree::{
     BinaryOp, BuiltIn, BuiltInVariable, Direction, ExprId, ExprKind, FunctionId, Input, Item, Statement,
     StatementKind, Tree, Type, Variable, VariableId, VariableKind, walk,
 };
 
+use super::call_order::callees_first;
 use crate::lower::context::LoweringContext;
 
 /// The variable that [`orient_derivatives`] adds. Like the position of the pixel, only the entry point of the
@@ -116,41 +117,18 @@ fn is_passed(tree: &Tree, id: VariableId) -> bool {
 /// The variables that each function uses.
 fn uses(cx: &LoweringContext) -> BTreeMap<FunctionId, Uses> {
     let tree = &cx.tree;
-    let mut own: BTreeMap<FunctionId, (Uses, BTreeSet<FunctionId>)> = BTreeMap::new();
-    for (id, function) in tree.functions.iter() {
-        let Some(body) = &function.body else { continue };
-        let (used, called) = own.entry(id).or_default();
-        for expr in walk::roots(tree, body)
-            .into_iter()
-            .flat_map(|root| tree.postorder(root))
-        {
-            add(tree, expr, used);
-            if let ExprKind::Call { function, .. } = tree[expr].kind {
-                called.insert(function);
-            }
-        }
-    }
-    // Functions that are called precede their callers: there is no recursion.
     let mut uses: BTreeMap<FunctionId, Uses> = BTreeMap::new();
-    let mut started = BTreeSet::new();
-    for &root in own.keys() {
-        let mut pending = vec![(root, false)];
-        while let Some((function, callees_done)) = pending.pop() {
-            let Some((used, called)) = own.get(&function) else {
-                continue;
-            };
-            if callees_done {
-                let mut all = used.clone();
-                for of_call in called.iter().filter_map(|callee| uses.get(callee)) {
-                    merge(&mut all, of_call);
-                }
-                if !all.is_empty() {
-                    uses.insert(function, all);
-                }
-            } else if started.insert(function) {
-                pending.push((function, true));
-                pending.extend(called.iter().map(|&callee| (callee, false)));
-            }
+    for (function, callees) in callees_first(tree) {
+        let mut used = Uses::new();
+        let body = tree[function].body.as_ref().map(|body| walk::roots(tree, body));
+        for expr in body.into_iter().flatten().flat_map(|root| tree.postorder(root)) {
+            add(tree, expr, &mut used);
+        }
+        for of_call in callees.iter().filter_map(|callee| uses.get(callee)) {
+            merge(&mut used, of_call);
+        }
+        if !used.is_empty() {
+            uses.insert(function, used);
         }
     }
     uses

@@ -9,6 +9,7 @@ use toyproof_glsl::tree::{
     Direction, ExprId, ExprKind, FunctionId, Swizzle, Tree, Type, Value, VariableId, VariableKind, walk,
 };
 
+use super::call_order::callees_first;
 use crate::lower::context::LoweringContext;
 
 /// The nodes of a path, from the part that it denotes down to the variable.
@@ -346,35 +347,18 @@ fn is_out(direction: Direction) -> bool {
 /// The variables outside functions that each function names, or a function that it calls.
 fn globals_of_functions(tree: &Tree) -> HashMap<FunctionId, HashSet<VariableId>> {
     let mut globals: HashMap<FunctionId, HashSet<VariableId>> = HashMap::new();
-    let mut calls = Vec::new();
-    for (caller, function) in tree.functions.iter() {
-        let Some(body) = &function.body else { continue };
-        let roots = walk::roots(tree, body).into_iter();
-        for id in roots.flat_map(|root| tree.postorder(root)) {
-            match tree[id].kind {
-                ExprKind::Call { function, .. } => calls.push((caller, function)),
-                ExprKind::Variable(variable) if tree[variable].kind == VariableKind::Global => {
-                    globals.entry(caller).or_default().insert(variable);
-                }
-                _ => {}
-            }
-        }
+    for (function, callees) in callees_first(tree) {
+        let body = tree[function].body.as_ref().map(|body| walk::roots(tree, body));
+        let nodes = body.into_iter().flatten().flat_map(|root| tree.postorder(root));
+        let own = nodes.filter_map(|id| match tree[id].kind {
+            ExprKind::Variable(variable) if tree[variable].kind == VariableKind::Global => Some(variable),
+            _ => None,
+        });
+        let of_callees = callees.iter().filter_map(|callee| globals.get(callee)).flatten();
+        let named: HashSet<VariableId> = own.chain(of_callees.copied()).collect();
+        globals.insert(function, named);
     }
-    loop {
-        let mut is_complete = true;
-        for (caller, called) in &calls {
-            let Some(named) = globals.get(called).cloned() else {
-                continue;
-            };
-            let known = globals.entry(*caller).or_default();
-            let count = known.len();
-            known.extend(named);
-            is_complete &= known.len() == count;
-        }
-        if is_complete {
-            return globals;
-        }
-    }
+    globals
 }
 
 /// Whether a reference can be bound to a place: a variable, a member, an element, or a column of a matrix.

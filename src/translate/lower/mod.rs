@@ -8,6 +8,7 @@
 mod array_value;
 mod branch;
 mod builtin;
+mod call_order;
 mod conditional;
 mod constant;
 pub(crate) mod context;
@@ -36,6 +37,7 @@ mod tests;
 mod uniform_block;
 
 pub(crate) use array_value::name_array_values;
+pub(crate) use call_order::callees_first;
 pub(crate) use conditional::branch_for_effects;
 pub(crate) use folding::{fold_by_precision, fold_except};
 pub(crate) use global_parameter::{GlobalConflict, UPWARD, orient_derivatives, pass_globals};

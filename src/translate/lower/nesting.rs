@@ -10,10 +10,11 @@ use std::collections::{HashMap, HashSet};
 
 use toyproof_diagnostic::Code;
 use toyproof_glsl::tree::{
-    BinaryOp, Block, ExprId, ExprKind, FunctionId, Place, Scalar, Statement, StatementKind, Tree, Type,
-    UnaryOp, VariableId, walk,
+    BinaryOp, ExprId, ExprKind, FunctionId, Place, Scalar, Statement, StatementKind, Tree, Type, UnaryOp,
+    VariableId, walk,
 };
 
+use super::call_order::callees_first;
 use crate::lower::context::LoweringContext;
 use crate::lower::{flatten, initializer, lvalue};
 
@@ -144,29 +145,20 @@ impl Depths {
             own: HashMap::new(),
             whole: HashMap::new(),
         };
-        let mut seen = HashSet::new();
-        for root in cx.tree.functions.ids() {
-            let mut pending = vec![(root, false)];
-            while let Some((function, callees_done)) = pending.pop() {
-                let Some(body) = &cx.tree[function].body else {
-                    continue;
-                };
-                if callees_done {
-                    let mut visitor = DepthVisitor {
-                        cx,
-                        depths: &depths,
-                        own: 0,
-                        whole: MaxDepths::shallow(cx.tree[function].at),
-                    };
-                    visitor.block(body, Depth::default());
-                    let (own, whole) = (visitor.own, visitor.whole);
-                    depths.own.insert(function, own);
-                    depths.whole.insert(function, whole);
-                } else if seen.insert(function) {
-                    pending.push((function, true));
-                    pending.extend(callees(cx, body).into_iter().map(|callee| (callee, false)));
-                }
-            }
+        for (function, _) in callees_first(&cx.tree) {
+            let Some(body) = &cx.tree[function].body else {
+                continue;
+            };
+            let mut visitor = DepthVisitor {
+                cx,
+                depths: &depths,
+                own: 0,
+                whole: MaxDepths::shallow(cx.tree[function].at),
+            };
+            visitor.block(body, Depth::default());
+            let (own, whole) = (visitor.own, visitor.whole);
+            depths.own.insert(function, own);
+            depths.whole.insert(function, whole);
         }
         depths
     }
@@ -179,17 +171,6 @@ impl Depths {
         }
         Some(all)
     }
-}
-
-fn callees(cx: &LoweringContext, body: &Block) -> HashSet<FunctionId> {
-    let roots = walk::roots(&cx.tree, body);
-    let nodes = roots.into_iter().flat_map(|root| cx.tree.postorder(root));
-    nodes
-        .filter_map(|id| match cx.tree[id].kind {
-            ExprKind::Call { function, .. } => Some(function),
-            _ => None,
-        })
-        .collect()
 }
 
 /// Finds the deepest places of one function.

@@ -1,22 +1,9 @@
-use toyproof_diagnostic::{Deadline, File, Files};
-use toyproof_glsl::{self as glsl, Options};
-
+use crate::c_family::WriteFailure;
 use crate::c_family::host::CHost;
-use crate::c_family::{Title, WriteFailure, write};
+use crate::c_family::tests::{self, assert_lines};
 
-/// Converts a shader to Metal.
 fn converted(text: &str) -> Result<String, WriteFailure> {
-    let mut files = Files::default();
-    let file = files.add(File::new("shader", text));
-    let checked =
-        glsl::check(&files, file, &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"));
-    write(
-        &checked,
-        &files,
-        CHost::Metal,
-        Title::of_shader("shader"),
-        &Deadline::default(),
-    )
+    tests::converted(CHost::Metal, text)
 }
 
 fn shader(items: &str, statements: &str) -> String {
@@ -35,23 +22,13 @@ fn with_items(items: &str, statements: &str) -> String {
     body.to_owned()
 }
 
-fn body(statements: &str) -> String {
-    with_items("", statements)
-}
-
-#[track_caller]
-fn assert_lines(written: &str, lines: &[&str]) {
-    let own: Vec<&str> = written.lines().map(str::trim).collect();
-    assert_eq!(own, lines, "{written}");
-}
-
-/// Asserts that a shader is left to naga, for this reason.
 #[track_caller]
 fn assert_refused(items: &str, statements: &str, why: &str) {
-    match converted(&shader(items, statements)) {
-        Err(WriteFailure::Unprintable(error)) => assert!(error.to_string().contains(why), "{error}"),
-        other => panic!("{other:?}"),
-    }
+    tests::assert_refused(CHost::Metal, &shader(items, statements), why);
+}
+
+fn body(statements: &str) -> String {
+    with_items("", statements)
 }
 
 #[test]
