@@ -7,7 +7,7 @@ use toyproof_glsl::{Checked, Options};
 use toyproof_lint::Lints;
 use toyproof_media::MediaFolder;
 
-use crate::check::check_with_includes;
+use crate::check::{CheckedProject, check_with_includes};
 use crate::files::{IncludeFolders, project_image};
 use crate::graph::{Rendering, UnsupportedPass};
 use crate::pass::PassKind;
@@ -39,7 +39,14 @@ impl CompiledProject {
         let file = |name: &str| folder.map(|folder| project_image(folder, name)).transpose();
         let read = LoadedMedia::read(project.inputs(), file, media);
         project.media = read.map_err(|errors| Diagnostics::new(errors, files))?;
-        let passes = check_with_includes(&project, includes, files, options)?;
+        let checked = check_with_includes(&project, includes, files, options)?;
+        Ok(Self::of_checked(project, checked))
+    }
+
+    /// A project with the trees of its passes. The lints are those of the image, with the warnings about all
+    /// tabs.
+    #[must_use]
+    pub fn of_checked(project: Project, passes: CheckedProject) -> (Self, Lints) {
         let mut lints = Lints::default();
         let mut checked = Vec::with_capacity(passes.passes.len());
         for pass in passes.passes {
@@ -49,7 +56,7 @@ impl CompiledProject {
             checked.push(pass.checked);
         }
         lints.warnings = passes.warnings;
-        Ok((Self { project, checked }, lints))
+        (Self { project, checked }, lints)
     }
 
     /// What renders the image and another pass. Media that are missing are those that the passes name.

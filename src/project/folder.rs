@@ -81,6 +81,14 @@ impl Project {
                 _ => {}
             }
         }
+        if !self.uniforms.is_empty() {
+            text += "\n[uniforms]\n";
+            text.extend(
+                self.uniforms.iter().map(|UniformValue { name, components }| {
+                    format!("{} = {components:?}\n", toml_key(name))
+                }),
+            );
+        }
         text
     }
 }

@@ -32,6 +32,7 @@
 //! - `check`: compiles every tab with Common in front, and Common alone.
 //! - `lint`: warnings about inputs.
 //! - `graph`: what renders the image; `textures`: what inputs read, from files or computed.
+//! - `subset`: a project with some of its passes and inputs.
 //! - `script`: files that describe the mouse and the keyboard over the frames of a run.
 
 pub mod archive;
@@ -50,6 +51,7 @@ mod pass;
 mod project;
 mod read;
 mod script;
+mod subset;
 mod textures;
 
 pub use toyproof_glsl::{Filter, Wrap};

@@ -635,3 +635,47 @@ fn inputs_are_linted_where_they_are_used() {
         none
     );
 }
+
+#[test]
+fn a_subset_has_the_texts_and_inputs_that_are_kept() {
+    let mut files = Files::default();
+    let toml = files.add(File::new(
+        PROJECT_FILE,
+        "[[pass]]\ntab = \"common\"\n[[pass]]\ntab = \"buffer-a\"\n[[pass]]\ntab = \"buffer-b\"\n\
+         [[pass]]\ntab = \"image\"\ninputs = [{ channel = 0, source = \"buffer-a\" }, \
+         { channel = 1, source = \"buffer-b\" }, { channel = 2, source = \"keyboard\" }]\n\
+         [uniforms]\nspeed = 2.0\ntint = [1.0, 0.5]\n",
+    ));
+    let tabs = Tab::ALL.into_iter().filter(|tab| {
+        let name = tab.name();
+        ["common", "buffer-a", "buffer-b", "image"].contains(&name)
+    });
+    let tabs: Vec<_> = tabs
+        .map(|tab| (tab, files.add(File::new(tab.file_name(), ""))))
+        .collect();
+    let project = Project::from_folder(&files, Some(toml), &tabs).unwrap();
+    let [image, buffer] = ["void f() {}", "void g() {}"].map(|text| files.add(File::new("a.glsl", text)));
+    let texts = [(PassKind::Image, image), (PassKind::Buffer(Buffer::B), buffer)];
+    let subset = project.subset(&texts, |_, channel| channel != 2);
+    for project in [&subset, &through_folder(&subset, &mut files)] {
+        assert!(project.common.is_none());
+        let kinds: Vec<_> = project.passes.iter().map(|pass| pass.kind.to_string()).collect();
+        assert_eq!(kinds, ["Buffer B", "Image"]);
+        assert_eq!(files.get(project.image().file).text(), "void f() {}");
+        let sources = project
+            .image()
+            .inputs
+            .each_ref()
+            .map(|input| input.as_ref()?.source.pass());
+        assert_eq!(sources, [None, Some(PassKind::Buffer(Buffer::B)), None, None]);
+        assert!(project.image().inputs[2].is_none());
+        let uniforms = project
+            .uniforms
+            .iter()
+            .map(|uniform| (&*uniform.name, &*uniform.components));
+        assert_eq!(
+            uniforms.collect::<Vec<_>>(),
+            [("speed", &[2.0][..]), ("tint", &[1.0, 0.5])]
+        );
+    }
+}

@@ -41,6 +41,7 @@
 //! - `rewrites`: what is tried, by kind: declarations, functions, statements, variables, expressions, tokens.
 //! - `outline`: declarations and statements of a text by its brackets; `rewrite`: edits that apply together.
 //! - `search`: tries candidates on several threads; `size`: which of two texts is smaller.
+//! - `parts`: several texts that show a fault together, such as the passes of a project.
 //! - [`fault`]: the faults of naga, drivers, toyproof and commands, and how they are found and compared.
 //! - [`report`]: the text of an issue for the project whose fault it is; `khronos`: what glslang and
 //!   spirv-val say about its shader.
@@ -48,6 +49,7 @@
 pub mod fault;
 mod khronos;
 mod outline;
+mod parts;
 pub mod report;
 mod rewrite;
 mod rewrites;
@@ -61,6 +63,7 @@ use thiserror::Error;
 use toyproof_diagnostic::Deadline;
 use toyproof_glsl as glsl;
 
+pub use self::parts::{Part, PartsReduction, PartsTester, Texts, reduce_parts};
 pub use self::size::Size;
 
 /// Decides whether a text shows the fault. Each thread has its own.

@@ -18,7 +18,9 @@ const MAX_LISTING_LINES: usize = 300;
 pub struct Report<'a> {
     /// The reduced shader.
     pub shader: &'a str,
-    /// The name of its file.
+    /// The files of the reduced project, by their names; `None` for a single shader.
+    pub folder: Option<&'a [(String, String)]>,
+    /// The name of its file or folder.
     pub file_name: &'a str,
     /// What it shows.
     pub finding: &'a Finding,
@@ -102,6 +104,19 @@ impl Report<'_> {
 
     /// The shader as the reducer left it.
     fn list_shader(&self, out: &mut String) {
+        if let Some(files) = self.folder {
+            paragraph(
+                out,
+                "This is a project of several passes, in GLSL ES 3.00 as shadertoy.com runs it: in each frame, the \
+                 buffers render images that passes read as textures, also their own of the frame before. It was \
+                 reduced automatically from a larger one.",
+            );
+            for (name, text) in files {
+                paragraph(out, &format!("`{name}`:"));
+                listing(out, if name.ends_with(".toml") { "toml" } else { "glsl" }, text);
+            }
+            return;
+        }
         paragraph(
             out,
             if self.shader.contains("mainImage") {
@@ -253,6 +268,16 @@ impl Report<'_> {
     }
 
     fn steps(&self, assembly: Option<&str>) -> String {
+        if self.folder.is_some() {
+            let command = match &self.finding.fault {
+                Fault::Command { command, .. } => command.shown(),
+                _ => self.command.to_owned(),
+            };
+            return format!(
+                "Save the files in a folder `{}`, and run `{command}`.",
+                self.file_name
+            );
+        }
         let translate = |extension: &str| {
             format!(
                 "With naga's command line (`cargo install naga-cli`): save the shader as `shader.frag`, and \
@@ -397,6 +422,7 @@ mod tests {
     fn report<'a>(finding: &'a Finding, frame: &'a Frame) -> Report<'a> {
         Report {
             shader: "void mainImage(out vec4 c, in vec2 p) {}\n",
+            folder: None,
             file_name: "small.glsl",
             finding,
             frame,
@@ -428,7 +454,10 @@ mod tests {
         let finding = Finding {
             pixel: Some(pixel),
             differing: Some([2, 144]),
-            ..finding(Fault::Toolchain { is_finite: false })
+            ..finding(Fault::Toolchain {
+                pass: toyproof_player::Target::Image,
+                is_finite: false,
+            })
         };
         let frame = Frame {
             size: [16, 9],

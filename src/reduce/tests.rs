@@ -168,3 +168,71 @@ fn every_smaller_text_is_reported_until_the_caller_stops() {
     assert!(!reduction.is_complete && reduction.tries <= 4);
     assert_eq!(reduction.text, last);
 }
+
+/// A part with a text.
+fn part(text: &str, is_required: bool) -> Part {
+    Part {
+        text: text.to_owned(),
+        language: glsl::Options::default(),
+        is_required,
+    }
+}
+
+#[test]
+fn parts_that_the_fault_does_not_need_are_left_out() {
+    let parts = [
+        part(
+            "void mainImage(out vec4 c, in vec2 p) { float x = 1.; c = vec4(x); }",
+            true,
+        ),
+        part(
+            "void mainImage(out vec4 c, in vec2 p) { c = vec4(dFdx(p.x)) + 1.; }",
+            false,
+        ),
+        part("void mainImage(out vec4 c, in vec2 p) { c = vec4(0); }", false),
+        part("", false),
+        part("", false),
+    ];
+    let shows = |texts: &[Option<String>]| {
+        let all_compile = texts[..3].iter().flatten().all(|text| compiles(text));
+        all_compile && texts[1].as_ref().is_some_and(|text| text.contains("dFdx(")) && texts[4].is_some()
+    };
+    let reductions = [1, 2].map(|threads| {
+        let limits = Limits {
+            threads,
+            ..Limits::default()
+        };
+        let mut sizes = Vec::new();
+        let reduction = reduce_parts(&parts, &limits, &|| shows, &mut |texts, progress| {
+            if progress.is_smaller {
+                sizes.push(
+                    texts
+                        .iter()
+                        .flatten()
+                        .map(|text| Size::of(text).weight)
+                        .sum::<usize>(),
+                );
+            }
+            ControlFlow::Continue(())
+        });
+        assert!(sizes.is_sorted_by(|a, b| a >= b), "{sizes:?}");
+        reduction.unwrap()
+    });
+    let [reduction, other] = reductions;
+    assert_eq!(reduction, other);
+    let empty = "void mainImage(out vec4 c, in vec2 p) {\n}\n";
+    let derivative = "void mainImage(out vec4 c, in vec2 p) {\n    dFdx(0.);\n}\n";
+    let texts: Vec<Option<&str>> = reduction.texts.iter().map(Option::as_deref).collect();
+    assert_eq!(texts, [Some(empty), Some(derivative), None, None, Some("")]);
+    assert!(reduction.is_complete);
+}
+
+#[test]
+fn parts_without_the_fault_are_an_error() {
+    let parts = [part("void f() {}", true)];
+    let never = |_: &[Option<String>]| false;
+    let reduction = reduce_parts(&parts, &Limits::default(), &|| never, &mut |_, _| {
+        ControlFlow::Continue(())
+    });
+    assert_eq!(reduction, Err(NoFault));
+}

@@ -61,8 +61,7 @@ fn reduced(folder: &Path, text: &str, arguments: &[&str]) -> (Run, String) {
 }
 
 /// Asserts that a shader is reduced to at most that many tokens (names count twice), the same with one and
-/// with
-/// two threads, and that reducing the result changes nothing.
+/// with two threads, and that reducing the result changes nothing.
 fn is_reduced_to(text: &str, weight: usize, arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let [one, two] = ["1", "2"].map(|jobs| {
@@ -328,4 +327,155 @@ fn an_interrupt_keeps_the_smallest_shader_so_far() {
     assert_eq!(run(command(folder.path()).args(go_on)).code, 0);
     let end = fs::read_to_string(folder.path().join("end.glsl")).unwrap();
     assert!(end.len() < 80, "{end}");
+}
+
+/// A project whose Buffer A fades waves and whose Buffer B is noise; the image shows one of both.
+fn waves(folder: &Path, [noise, choice]: [&str; 2]) {
+    let folder = folder.join("waves");
+    fs::create_dir(&folder).unwrap();
+    let common = "// Shared.\n#define TAU 6.28\nfloat unused(float x) { return x * x; }\n\
+                  float hash(vec2 p) { return fract(p.x * 0.37 + p.y * 0.71); }\n";
+    let fading = "void mainImage(out vec4 color, in vec2 position) {\n\
+                  vec4 old = texelFetch(iChannel0, ivec2(position), 0);\n\
+                  float wave = sin(position.x * TAU + iTime) * 0.5 + 0.5;\n\
+                  if (iFrame == 0) { old = vec4(0.0); }\n\
+                  color = mix(old, vec4(wave, hash(position), 0.0, 1.0), 0.5);\n}\n";
+    let noise =
+        format!("void mainImage(out vec4 color, in vec2 p) {{ float x = {noise}; color = vec4(x); }}\n");
+    let image = format!(
+        "void mainImage(out vec4 color, in vec2 position) {{\n\
+         vec4 a = texelFetch(iChannel0, ivec2(position), 0);\n\
+         vec4 b = texelFetch(iChannel1, ivec2(position), 0);\n\
+         color = {choice} ? a : b;\n}}\n"
+    );
+    let toml = "[[pass]]\ntab = \"common\"\n\
+                [[pass]]\ntab = \"buffer-a\"\ninputs = [{ channel = 0, source = \"buffer-a\" }]\n\
+                [[pass]]\ntab = \"buffer-b\"\ninputs = []\n\
+                [[pass]]\ntab = \"image\"\ninputs = [{ channel = 0, source = \"buffer-a\" }, \
+                { channel = 1, source = \"buffer-b\" }, { channel = 2, source = \"keyboard\" }]\n";
+    let files = [
+        ("common.glsl", common),
+        ("buffer-a.glsl", fading),
+        ("buffer-b.glsl", &noise),
+        ("image.glsl", &image),
+        ("project.toml", toml),
+    ];
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
+}
+
+#[test]
+fn a_pass_that_shows_the_fault_alone_is_reduced_to_a_shader() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = "fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453)";
+    waves(folder.path(), [noise, "a.x > 0.6"]);
+    let run = toyproof(folder.path(), &["reduce", "waves", "--fault", "warning=W0005"]);
+    assert!(
+        run.code == 0 && run.stderr.contains("fault of Buffer B alone: warning W0005"),
+        "{run:?}"
+    );
+    let small = fs::read_to_string(folder.path().join("waves.reduced.glsl")).unwrap();
+    assert!(small.contains("sin(") && Size::of(&small).weight < 60, "{small}");
+    let run = toyproof(
+        folder.path(),
+        &["reduce", "waves", "--fault", "warning=W0005", "-o", "waves"],
+    );
+    assert!(
+        run.code == 2 && run.stderr.contains("the result is one shader"),
+        "{run:?}"
+    );
+}
+
+#[test]
+fn a_tab_that_does_not_compile_is_reduced() {
+    let folder = tempfile::tempdir().unwrap();
+    waves(folder.path(), ["hash(p) + p", "a.x > 0.6"]);
+    let run = toyproof(folder.path(), &["reduce", "waves"]);
+    assert!(
+        run.code == 0 && run.stderr.contains("fault of Buffer B alone: error E0"),
+        "{run:?}"
+    );
+    let small = fs::read_to_string(folder.path().join("waves.reduced.glsl")).unwrap();
+    assert!(Size::of(&small).weight < 30, "{small}");
+}
+
+#[test]
+fn a_wrong_image_is_reduced_to_the_passes_that_it_needs() {
+    let folder = tempfile::tempdir().unwrap();
+    waves(folder.path(), ["hash(p)", "hash(position) > 2.0 && b.x < 2.0"]);
+    fs::write(
+        folder.path().join("black.glsl"),
+        "void mainImage(out vec4 color, in vec2 position) { color = vec4(0.0, 0.0, 0.0, 1.0); }\n",
+    )
+    .unwrap();
+    let reference = ["--reference", "black.glsl", "--size", "8x8", "--frame", "2"];
+    let arguments = [
+        "reduce",
+        "waves",
+        "--fault",
+        "verdict=wrong",
+        "--report",
+        "issue.md",
+    ];
+    let run = toyproof(folder.path(), &[&arguments[..], &reference].concat());
+    assert_eq!(run.code, 0, "{run:?}");
+    let small = folder.path().join("waves.reduced");
+    let names = [
+        "common.glsl",
+        "buffer-a.glsl",
+        "buffer-b.glsl",
+        "image.glsl",
+        "project.toml",
+    ];
+    let left = names.map(|name| small.join(name).is_file());
+    assert_eq!(left, [false, false, true, true, true]);
+    let toml = fs::read_to_string(small.join("project.toml")).unwrap();
+    assert!(toml.contains("buffer-b") && !toml.contains("keyboard"), "{toml}");
+    let report = fs::read_to_string(folder.path().join("issue.md")).unwrap();
+    for part in [
+        "`buffer-b.glsl`:\n\n```glsl\nvoid mainImage(",
+        "Save the files in a folder `waves.reduced`, and run `toyproof check waves.reduced ",
+    ] {
+        assert!(report.contains(part), "{part}\n{report}");
+    }
+    let check = [&["check", "waves.reduced", "--device", "cpu"][..], &reference].concat();
+    assert_eq!(toyproof(folder.path(), &check).code, 1);
+    // Reducing the result changes nothing.
+    let before = names.map(|name| fs::read(small.join(name)).ok());
+    let again = [
+        &["reduce", "waves.reduced", "--fault", "verdict=wrong"][..],
+        &reference,
+    ]
+    .concat();
+    let run = toyproof(folder.path(), &again);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert_eq!(names.map(|name| fs::read(small.join(name)).ok()), before);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_command_gets_the_folder_of_a_project() {
+    let folder = tempfile::tempdir().unwrap();
+    waves(folder.path(), ["hash(p)", "a.x > 0.6"]);
+    let command = "grep -q 'sin(' {}/buffer-a.glsl";
+    let run = toyproof(
+        folder.path(),
+        &["reduce", "waves", "--command", command, "-o", "small"],
+    );
+    assert_eq!(run.code, 0, "{run:?}");
+    let small = |name: &str| fs::read_to_string(folder.path().join("small").join(name)).ok();
+    assert_eq!(
+        small("buffer-a.glsl").as_deref(),
+        Some("void mainImage(out vec4 color, in vec2 position) {\n    sin(0.);\n}\n")
+    );
+    assert_eq!(small("buffer-b.glsl"), None);
+    let run = toyproof(
+        folder.path(),
+        &["reduce", "waves", "--command", command, "-o", "small"],
+    );
+    assert!(
+        run.code == 2 && run.stderr.contains("small has a project already"),
+        "{run:?}"
+    );
 }

@@ -136,8 +136,7 @@ async fn render(module: Module, uniforms: &[u8]) -> Result<Vec<f32>, Box<dyn Err
 }
 
 /// Numbers of a uniform, and the parts into which std140 divides it: each begins a multiple of 16 bytes after
-/// the
-/// first.
+/// the first.
 struct Given {
     name: &'static str,
     parts: &'static [&'static [f64]],
@@ -243,8 +242,7 @@ fn uniforms_are_what_the_host_writes_into_the_block() {
     let evaluated = Program::new(&checked).unwrap();
     let evaluated = evaluated.render(&frame, &Settings::<f32>::default()).unwrap();
     // Sums and products of small integers and halves are exact, whatever the driver does with them. The
-    // evaluator
-    // shows alpha as 1.
+    // evaluator shows alpha as 1.
     let expected = evaluated.framebuffer.image();
     for (x, pixel) in rendered.chunks_exact(4).enumerate() {
         assert_eq!(pixel[..3], expected.get(x as u32, 0)[..3], "pixel {x}");

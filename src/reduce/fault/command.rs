@@ -21,11 +21,38 @@ const FILE: &str = "{}";
 /// The time between two checks whether a command has ended.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// A command of the shell in which `{}` stands for a file with the shader.
+/// A command of the shell in which `{}` stands for the file of a shader, or the folder of a project.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CommandLine {
     text: String,
     file_name: String,
+}
+
+/// What a command gets.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CommandInput {
+    /// A file with this text.
+    File(String),
+    /// A folder with these files, by their names.
+    Folder(Vec<(String, String)>),
+}
+
+impl CommandInput {
+    /// Writes the file or the folder, in place of what a path names.
+    fn write(&self, path: &Path) -> io::Result<()> {
+        match self {
+            Self::File(text) => fs::write(path, text),
+            Self::Folder(files) => {
+                if path.exists() {
+                    fs::remove_dir_all(path)?;
+                }
+                fs::create_dir(path)?;
+                files
+                    .iter()
+                    .try_for_each(|(name, text)| fs::write(path.join(name), text))
+            }
+        }
+    }
 }
 
 /// How a command ends.
@@ -81,23 +108,33 @@ impl CommandLine {
         self.text.replace(FILE, &self.file_name)
     }
 
-    /// Runs the command on a text, in a folder of its own for temporary files.
+    /// Runs the command on an input, in a folder of its own for temporary files.
     ///
     /// # Errors
     /// If it does not start.
-    pub fn run(&self, folder: &TempDir, text: &str, limit: Duration) -> Result<Ending, CommandError> {
-        self.run_into(folder, text, limit, [Stdio::null(), Stdio::null()])
+    pub fn run(
+        &self,
+        folder: &TempDir,
+        input: &CommandInput,
+        limit: Duration,
+    ) -> Result<Ending, CommandError> {
+        self.run_into(folder, input, limit, [Stdio::null(), Stdio::null()])
     }
 
     /// Runs the command like [`run`](Self::run), and returns the first lines that it prints, without colors.
     ///
     /// # Errors
     /// If it does not start.
-    pub fn output(&self, folder: &TempDir, text: &str, limit: Duration) -> Result<String, CommandError> {
+    pub fn output(
+        &self,
+        folder: &TempDir,
+        input: &CommandInput,
+        limit: Duration,
+    ) -> Result<String, CommandError> {
         let mut printed = tempfile::tempfile()?;
         // Both write at the end of one file, in their order.
         let streams = [printed.try_clone()?.into(), printed.try_clone()?.into()];
-        self.run_into(folder, text, limit, streams)?;
+        self.run_into(folder, input, limit, streams)?;
         printed.rewind()?;
         let mut bytes = Vec::new();
         printed.take(MAX_OUTPUT_BYTES).read_to_end(&mut bytes)?;
@@ -111,12 +148,12 @@ impl CommandLine {
     fn run_into(
         &self,
         folder: &TempDir,
-        text: &str,
+        input: &CommandInput,
         limit: Duration,
         [stdout, stderr]: [Stdio; 2],
     ) -> Result<Ending, CommandError> {
         let file = folder.path().join(&self.file_name);
-        fs::write(&file, text)?;
+        input.write(&file)?;
         let mut command = shell(&self.text, &file);
         command.stdin(Stdio::null()).stdout(stdout).stderr(stderr);
         #[cfg(unix)]
@@ -201,10 +238,14 @@ fn ending(status: ExitStatus) -> Ending {
 mod tests {
     use super::*;
 
+    fn input() -> CommandInput {
+        CommandInput::File("void f();".to_owned())
+    }
+
     fn run(text: &str, limit: Duration) -> Ending {
         let folder = tempfile::tempdir().unwrap();
         let command = CommandLine::new(text, "it's a.glsl").unwrap();
-        command.run(&folder, "void f();", limit).unwrap()
+        command.run(&folder, &input(), limit).unwrap()
     }
 
     #[test]
@@ -221,11 +262,23 @@ mod tests {
         let text = "echo {}; printf '\\033[1;31merror\\033[0m\\n' >&2; seq 100; exit 3";
         let command = CommandLine::new(text, "a.frag").unwrap();
         let output = command
-            .output(&folder, "void f();", Duration::from_secs(10))
+            .output(&folder, &input(), Duration::from_secs(10))
             .unwrap();
         assert!(output.starts_with("a.frag\nerror\n1\n2\n"), "{output}");
         assert_eq!(output.lines().count(), MAX_OUTPUT_LINES);
         assert!(command.shown().starts_with("echo a.frag; "));
+    }
+
+    #[test]
+    fn a_command_gets_the_files_of_a_project() {
+        let folder = tempfile::tempdir().unwrap();
+        let command = CommandLine::new("ls {}", "waves").unwrap();
+        for names in [&["image.glsl", "buffer-a.glsl"][..], &["image.glsl"]] {
+            let files = names.iter().map(|&name| (name.to_owned(), String::new()));
+            let input = CommandInput::Folder(files.collect());
+            let output = command.output(&folder, &input, Duration::from_secs(10)).unwrap();
+            assert_eq!(output.lines().count(), names.len(), "{output}");
+        }
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! Faults that a shader may show, how they are found, and when two are the same.
 //!
 //! A candidate must show the same fault, not just any: reducers slip from one fault to a simpler one
-//! otherwise.
-//! So a fault has what distinguishes it: naga's message up to names and numbers, how the driver died, whether
-//! differing pixels are numbers, which pixels are wrong.
+//! otherwise. So a fault has what distinguishes it: naga's message up to names and numbers, how the driver
+//! died, whether differing pixels are numbers, which pixels are wrong.
 
 mod command;
+mod compiled;
 mod message;
 mod observe;
 
@@ -14,14 +14,17 @@ use std::fmt;
 use thiserror::Error;
 use toyproof_diagnostic::{Code, Diagnostic, Severity};
 use toyproof_image::Rgb8Image;
-use toyproof_translate::backend::Target;
+use toyproof_player::Target;
+use toyproof_translate::backend;
 use toyproof_verify::Verdict;
 use toyproof_verify::compare::Pixel;
 
-pub use self::command::{CommandError, CommandLine, Ending};
+pub use self::command::{CommandError, CommandInput, CommandLine, Ending};
+pub use self::compiled::ProjectParts;
 pub use self::message::pattern;
 pub use self::observe::{Session, Subject, Tools, WorkerFactory};
 use crate::Tester;
+use crate::parts::PartsTester;
 use crate::report::language;
 
 /// A fault of a shader, or of a tool that processes it.
@@ -39,7 +42,7 @@ pub enum Fault {
     /// naga refuses the lowered shader, or panics.
     Naga {
         /// The language that naga was to write.
-        target: Target,
+        target: backend::Target,
         /// The [`pattern`] of its message.
         message: String,
     },
@@ -50,6 +53,8 @@ pub enum Fault {
     },
     /// The driver's image differs from the evaluator's in pixels that depend on no undefined operation.
     Toolchain {
+        /// The first pass that differs.
+        pass: Target,
         /// Whether both colors are numbers in a differing pixel; otherwise one is infinite or NaN.
         is_finite: bool,
     },
@@ -170,11 +175,17 @@ impl fmt::Display for Finding {
             Fault::Diagnostic { code, .. } => write!(f, "warning {code}: {message}"),
             Fault::Naga { target, .. } => write!(f, "naga does not write {}: {message}", language(*target)),
             Fault::Driver { .. } => write!(f, "the driver fails: {message}"),
-            Fault::Toolchain { .. } => match self.differing {
-                Some([differing, pixels]) => write!(
-                    f,
-                    "{differing} of {pixels} pixels differ between the driver and the evaluator"
-                ),
+            Fault::Toolchain { pass, .. } => match self.differing {
+                Some([differing, pixels]) => {
+                    let of_pass = match pass {
+                        Target::Image => String::new(),
+                        pass => format!(" of {pass}"),
+                    };
+                    write!(
+                        f,
+                        "{differing} of {pixels} pixels{of_pass} differ between the driver and the evaluator"
+                    )
+                }
                 None => f.write_str("the driver and the evaluator differ"),
             },
             Fault::Verdict { verdict, .. } => write!(f, "the verdict `{verdict}`"),
@@ -183,27 +194,27 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Finds a fault of a text. Of several frames, which differ in their size, the first one counts in which the
+/// Finds a fault of texts: one text of a shader, or those of the parts of a project. Of several frames, which differ in their size, the first one counts in which the
 /// shader shows it; the subject then has this size.
 ///
 /// # Errors
-/// If the text does not show the fault, or cannot be tested for it.
+/// If the texts do not show the fault, or cannot be tested for it.
 pub fn find(
     subject: &mut Subject,
     sizes: &[[u32; 2]],
     wanted: &Wanted,
-    text: &str,
+    texts: &[Option<String>],
 ) -> Result<Finding, NotFound> {
     let mut last = None;
     for &size in sizes {
         subject.frame.size = size;
-        match Session::new(subject).find(wanted, text) {
+        match Session::new(subject).find(wanted, texts) {
             Err(error @ NotFound::Absent(_)) => last = Some(error),
             result => return result,
         }
     }
     if *wanted == Wanted::Any
-        && let Some(found) = Session::new(subject).first_warning(text)
+        && let Some(found) = Session::new(subject).first_warning(texts)
     {
         return Ok(found);
     }
@@ -216,26 +227,47 @@ pub struct FaultTester<'a> {
     fault: &'a Fault,
     /// Whether a command gets candidates that compile only, since the original does.
     must_compile: bool,
+    /// The largest number of reads without a value, which is that of the original, if the fault is a value: one
+    /// that is open is not a fault. `None` if values do not matter.
+    max_uninitialized: Option<usize>,
 }
 
 impl<'a> FaultTester<'a> {
-    /// A tester for a fault of a text.
-    pub fn new(subject: &'a Subject, fault: &'a Fault, original: &str) -> Self {
+    /// A tester for a fault of texts.
+    pub fn new(subject: &'a Subject, fault: &'a Fault, original: &[Option<String>]) -> Self {
         let session = Session::new(subject);
         let must_compile = matches!(fault, Fault::Command { .. }) && session.compiles(original);
+        let max_uninitialized = match fault {
+            Fault::Toolchain { .. } => session.uninitialized_reads(original),
+            _ => None,
+        };
         Self {
             session,
             fault,
             must_compile,
+            max_uninitialized,
         }
+    }
+}
+
+impl PartsTester for FaultTester<'_> {
+    fn show_fault(&mut self, texts: &[Option<String>]) -> bool {
+        if self.must_compile && !self.session.compiles(texts) {
+            return false;
+        }
+        let reads = || self.session.uninitialized_reads(texts);
+        if self
+            .max_uninitialized
+            .is_some_and(|max| reads().is_none_or(|reads| reads > max))
+        {
+            return false;
+        }
+        self.session.shows(self.fault, texts)
     }
 }
 
 impl Tester for FaultTester<'_> {
     fn shows_fault(&mut self, text: &str) -> bool {
-        if self.must_compile && !self.session.compiles(text) {
-            return false;
-        }
-        self.session.shows(self.fault, text)
+        self.show_fault(&[Some(text.to_owned())])
     }
 }

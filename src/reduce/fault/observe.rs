@@ -1,31 +1,32 @@
 //! Tests shaders for faults, with a worker process for naga and the driver.
 
 use std::cell::OnceCell;
+use std::mem;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
-use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, Files, Severity};
+use toyproof_diagnostic::{Code, Deadline, Diagnostic, Diagnostics, Severity};
 use toyproof_eval_native::Program;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::Worker;
 use toyproof_gpu::quirks::with_workarounds;
 use toyproof_image::{Frame, Image};
-use toyproof_lint::lint;
-use toyproof_player::{DriverFailure, Phase};
-use toyproof_translate::backend::{Target, spirv};
+use toyproof_player::{DriverFailure, Phase, Target};
+use toyproof_translate::backend::{self, spirv};
 use toyproof_translate::lower::{Pass, Passes, lower_within};
 use toyproof_translate::{FloatMode, Lowered};
 use toyproof_verify::compare::{CheckSummary, toolchain};
 use toyproof_verify::contain::{Part, contain};
 use toyproof_verify::evaluator::{Evaluation, Evaluator};
+use toyproof_verify::project::bind::PassDifference;
 use toyproof_verify::{
     Case, EVALUATOR_TIME_FACTOR, Evidence, Expected, Failure, Verdict, Verified, decide, verify_within,
 };
 
-use super::command::{CommandError, CommandLine, Ending};
+use super::command::{CommandError, CommandInput, CommandLine, Ending};
+use super::compiled::{Compiled, ProjectParts};
 use super::{Fault, Finding, NotFound, Wanted, pattern};
-use crate::outline::file;
 
 /// Makes the worker process that a thread owns; `None` without a driver.
 pub type WorkerFactory<'a> = dyn Fn() -> Option<Worker> + Sync + 'a;
@@ -34,6 +35,8 @@ pub type WorkerFactory<'a> = dyn Fn() -> Option<Worker> + Sync + 'a;
 pub struct Subject<'a> {
     /// How it is checked.
     pub language: glsl::Options,
+    /// The project whose parts are tested; `None` if one text is the shader.
+    pub project: Option<ProjectParts>,
     /// The frame that is rendered.
     pub frame: Frame,
     /// The reference, rendered in that frame.
@@ -50,6 +53,15 @@ pub struct Subject<'a> {
     /// Makes worker processes.
     pub make_worker: &'a WorkerFactory<'a>,
 }
+
+/// The languages that naga is expected to write for every shader: its writer of GLSL refuses what its version of
+/// the language lacks.
+const NAGA_TARGETS: [backend::Target; 4] = [
+    backend::Target::Spirv,
+    backend::Target::Wgsl,
+    backend::Target::Msl,
+    backend::Target::Hlsl,
+];
 
 /// The tests of one thread.
 pub struct Session<'a> {
@@ -73,10 +85,12 @@ pub struct Tools {
     pub output: Option<String>,
 }
 
-/// A shader that compiles.
-struct Compiled {
-    files: Files,
-    checked: Checked,
+/// What the driver renders.
+struct Drawn {
+    image: Image,
+    device: String,
+    /// The first pass of a project that differs before the image.
+    earlier: Option<PassDifference>,
 }
 
 impl<'a> Session<'a> {
@@ -89,17 +103,23 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Whether a text compiles.
-    pub fn compiles(&self, text: &str) -> bool {
-        self.compile(text).is_ok()
+    /// Whether the texts compile.
+    pub fn compiles(&self, texts: &[Option<String>]) -> bool {
+        self.compile(texts).is_ok()
     }
 
-    /// Whether a text shows a fault.
-    pub fn shows(&mut self, fault: &Fault, text: &str) -> bool {
+    /// The number of variables that are read without a value, if the texts compile.
+    pub fn uninitialized_reads(&self, texts: &[Option<String>]) -> Option<usize> {
+        let compiled = self.compile(texts).ok()?;
+        Some(compiled.uninitialized_reads(self.subject.timeout))
+    }
+
+    /// Whether the texts show a fault: one text of a shader, or those of the parts of a project.
+    pub fn shows(&mut self, fault: &Fault, texts: &[Option<String>]) -> bool {
         if let Fault::Naga { target, .. } = fault {
             // Only the language of the original counts.
             let found = self
-                .compile(text)
+                .compile(texts)
                 .ok()
                 .and_then(|compiled| self.naga(&compiled, *target));
             return found.is_some_and(|found| found.fault == *fault);
@@ -110,31 +130,33 @@ impl<'a> Session<'a> {
                 code,
                 message,
                 errors,
-            } => self.has_diagnostic(text, (*code, message), errors),
+            } => self.has_diagnostic(texts, (*code, message), errors),
             _ => self
-                .find(&fault.wanted(), text)
+                .find(&fault.wanted(), texts)
                 .is_ok_and(|found| is_same(fault, &found.fault)),
         });
         shows.unwrap_or(false)
     }
 
-    /// Finds a fault of a text.
+    /// Finds a fault of texts.
     ///
     /// # Errors
-    /// If the text does not show it, or cannot be tested for it.
-    pub fn find(&mut self, wanted: &Wanted, text: &str) -> Result<Finding, NotFound> {
+    /// If the texts do not show it, or cannot be tested for it.
+    pub fn find(&mut self, wanted: &Wanted, texts: &[Option<String>]) -> Result<Finding, NotFound> {
         if let Wanted::Command(command) = wanted {
-            let ending = self.run(command, text)?;
+            let ending = self.run(command, texts)?;
             let command = command.clone();
             return Ok(Finding::new(Fault::Command { command, ending }));
         }
-        let compiled = match self.compile(text) {
+        let compiled = match self.compile(texts) {
             Ok(compiled) => compiled,
             Err(errors) => return invalid(&errors, wanted),
         };
         let found = match wanted {
             Wanted::Diagnostic(code) => self.warning(&compiled, Some(*code)),
-            Wanted::Naga => self.any_naga(&compiled),
+            Wanted::Naga => self
+                .any_naga(&compiled, &NAGA_TARGETS)
+                .or_else(|| self.naga(&compiled, backend::Target::Glsl)),
             Wanted::Driver => self.driver(&compiled)?.0,
             Wanted::Toolchain => self.toolchain(&compiled)?,
             Wanted::Verdict(verdict) => self.verdict(&compiled, *verdict),
@@ -146,7 +168,7 @@ impl<'a> Session<'a> {
 
     /// The first fault of a shader, of any kind but warnings.
     fn any(&mut self, compiled: &Compiled) -> Result<Option<Finding>, NotFound> {
-        if let Some(found) = self.any_naga(compiled) {
+        if let Some(found) = self.any_naga(compiled, &NAGA_TARGETS) {
             return Ok(Some(found));
         }
         if self.worker().is_some() {
@@ -155,8 +177,7 @@ impl<'a> Session<'a> {
                 return Ok(found);
             }
             if let (Some(drawn), FloatMode::Strict) = (drawn, self.subject.float)
-                && let Some(evaluated) = self.evaluated(compiled)
-                && let Some(found) = difference(&evaluated, &drawn)
+                && let Some(found) = self.difference(compiled, drawn)
             {
                 return Ok(Some(found));
             }
@@ -164,9 +185,9 @@ impl<'a> Session<'a> {
         Ok(self.subject.expected.and_then(|_| self.verdict(compiled, None)))
     }
 
-    /// The first warning about a text, if it compiles.
-    pub fn first_warning(&mut self, text: &str) -> Option<Finding> {
-        let compiled = self.compile(text).ok()?;
+    /// The first warning about texts, if they compile.
+    pub fn first_warning(&mut self, texts: &[Option<String>]) -> Option<Finding> {
+        let compiled = self.compile(texts).ok()?;
         self.warning(&compiled, None)
     }
 
@@ -175,24 +196,32 @@ impl<'a> Session<'a> {
         self.worker.get_mut()?.as_mut()
     }
 
-    fn compile(&self, text: &str) -> Result<Compiled, Diagnostics> {
-        let (files, file) = file(text);
-        let mut options = self.subject.language.clone();
-        options.deadline = Deadline::after(self.subject.timeout);
-        let checked = glsl::check(&files, file, &options)?;
-        Ok(Compiled { files, checked })
+    fn compile(&self, texts: &[Option<String>]) -> Result<Compiled, Diagnostics> {
+        Compiled::new(texts, self.subject)
     }
 
     /// What the tools at fault get, for a report.
-    pub fn tools(&mut self, fault: &Fault, text: &str) -> Tools {
+    pub fn tools(&mut self, fault: &Fault, texts: &[Option<String>]) -> Tools {
         let mut tools = Tools::default();
         if let Fault::Command { command, .. } = fault {
             let folder = tempfile::tempdir().ok();
             let timeout = self.subject.timeout;
-            tools.output = folder.and_then(|folder| command.output(&folder, text, timeout).ok());
+            let input = self.command_input(texts);
+            tools.output = folder.and_then(|folder| command.output(&folder, &input, timeout).ok());
             return tools;
         }
-        let Some(lowered) = self.compile(text).ok().and_then(|compiled| self.lower(&compiled)) else {
+        if self.subject.project.is_some() {
+            tools.device = self.worker().and_then(|worker| {
+                let drivers = worker.probe().unwrap_or_default();
+                drivers.first().map(|driver| driver.version.clone())
+            });
+            return tools;
+        }
+        let Some(lowered) = self
+            .compile(texts)
+            .ok()
+            .and_then(|compiled| self.lower(compiled.image()))
+        else {
             return tools;
         };
         let float = self.subject.float;
@@ -203,7 +232,7 @@ impl<'a> Session<'a> {
                     tools.lowered = Some(lowered.text().to_owned());
                 }
                 if let Some(worker) = self.worker() {
-                    let module = worker.translate(lowered, Target::Spirv, float).ok();
+                    let module = worker.translate(lowered, backend::Target::Spirv, float).ok();
                     let drivers = worker.probe().unwrap_or_default();
                     let adapter = drivers.first().map_or("", |driver| driver.name.as_str());
                     tools.spirv = module.as_deref().and_then(spirv::of_bytes).map(|words| {
@@ -218,7 +247,7 @@ impl<'a> Session<'a> {
         tools
     }
 
-    fn lower(&self, compiled: &Compiled) -> Option<Lowered> {
+    fn lower(&self, checked: &Checked) -> Option<Lowered> {
         let passes = match self.subject.float {
             FloatMode::Strict => Passes::strict(),
             FloatMode::Fast => Passes::required(),
@@ -227,24 +256,17 @@ impl<'a> Session<'a> {
             Some(pass) => passes.without(pass),
             None => passes,
         };
-        lower_within(&compiled.checked, passes, &Deadline::after(self.subject.timeout)).ok()
+        lower_within(checked, passes, &Deadline::after(self.subject.timeout)).ok()
     }
 
-    /// naga's fault in the first language that it does not write.
-    fn any_naga(&mut self, compiled: &Compiled) -> Option<Finding> {
-        let targets = [
-            Target::Spirv,
-            Target::Wgsl,
-            Target::Msl,
-            Target::Hlsl,
-            Target::Glsl,
-        ];
-        targets.into_iter().find_map(|target| self.naga(compiled, target))
+    /// naga's fault in the first of some languages that it does not write.
+    fn any_naga(&mut self, compiled: &Compiled, targets: &[backend::Target]) -> Option<Finding> {
+        targets.iter().find_map(|&target| self.naga(compiled, target))
     }
 
     /// naga's fault when it is to write a language.
-    fn naga(&mut self, compiled: &Compiled, target: Target) -> Option<Finding> {
-        let lowered = self.lower(compiled)?;
+    fn naga(&mut self, compiled: &Compiled, target: backend::Target) -> Option<Finding> {
+        let lowered = self.lower(compiled.image())?;
         let float = self.subject.float;
         let failure = self.worker()?.translate(lowered, target, float).err()?;
         let message = match &failure {
@@ -267,24 +289,28 @@ impl<'a> Session<'a> {
     }
 
     /// The driver's fault, or its image.
-    #[expect(clippy::type_complexity, reason = "one of both")]
-    fn driver(
-        &mut self,
-        compiled: &Compiled,
-    ) -> Result<(Option<Finding>, Option<(Image, String)>), NotFound> {
-        let Some(lowered) = self.lower(compiled) else {
+    fn driver(&mut self, compiled: &Compiled) -> Result<(Option<Finding>, Option<Drawn>), NotFound> {
+        let Some(lowered) = self.lower(compiled.image()) else {
             return Ok((None, None));
         };
-        let (frame, float) = (self.subject.frame.clone(), self.subject.float);
+        let subject = self.subject;
         let Some(worker) = self.worker() else {
             let error = "there is no driver, which the fault needs".to_owned();
             return Err(NotFound::Untested(error));
         };
-        let failure = match worker.draw_unwatched(lowered, frame, float) {
-            Ok(drawn) => {
-                let device = drawn.device.clone();
-                return Ok((None, Some((drawn.image(), device))));
-            }
+        let drawn = match compiled.bind(subject, Some(worker)) {
+            Ok(bound) => worker
+                .draw_unwatched(lowered, bound.frame, subject.float)
+                .map(|drawn| Drawn {
+                    device: drawn.device.clone(),
+                    image: drawn.image(),
+                    earlier: bound.history.and_then(|history| history.difference),
+                }),
+            Err(Failure::Gpu(failure)) => Err(failure),
+            Err(_) => return Ok((None, None)),
+        };
+        let failure = match drawn {
+            Ok(drawn) => return Ok((None, Some(drawn))),
             Err(failure) => failure,
         };
         if failure.is_without_driver() || matches!(failure, DriverFailure::Worker(_)) {
@@ -304,23 +330,39 @@ impl<'a> Session<'a> {
         Ok((found, None))
     }
 
-    /// The difference between the driver's image and the evaluator's, which comes first: it rejects loops
-    /// without an end.
+    /// The difference between the driver and the evaluator, which comes first: it rejects loops without an end.
     fn toolchain(&mut self, compiled: &Compiled) -> Result<Option<Finding>, NotFound> {
-        let evaluated = self
-            .evaluated(compiled)
-            .filter(|_| self.subject.float == FloatMode::Strict);
-        let Some(evaluated) = evaluated else {
+        if self.subject.float != FloatMode::Strict || self.evaluated_image(compiled).is_none() {
             return Ok(None);
-        };
+        }
         let (_, drawn) = self.driver(compiled)?;
-        Ok(drawn.and_then(|drawn| difference(&evaluated, &drawn)))
+        Ok(drawn.and_then(|drawn| self.difference(compiled, drawn)))
+    }
+
+    /// The difference of what the driver renders to the evaluator's image.
+    fn difference(&mut self, compiled: &Compiled, drawn: Drawn) -> Option<Finding> {
+        let Some(earlier) = drawn.earlier else {
+            let evaluated = self.evaluated_image(compiled)?;
+            return difference(Target::Image, &evaluated, &drawn.image, drawn.device);
+        };
+        // What the pass reads is the same for both, since it is the first that differs.
+        let (checked, frame) = compiled.inputs_of(self.subject, earlier)?;
+        let evaluated = self.evaluated(checked, &frame)?;
+        let (lowered, float) = (self.lower(checked)?, self.subject.float);
+        let drawn = self.worker()?.draw_unwatched(lowered, frame, float).ok()?;
+        let device = drawn.device.clone();
+        difference(earlier.pass, &evaluated, &drawn.image(), device)
     }
 
     /// The image on the CPU, if it can be evaluated within the limits.
-    fn evaluated(&self, compiled: &Compiled) -> Option<Evaluation> {
-        let (timeout, frame) = (self.subject.timeout, &self.subject.frame);
-        let program = Program::within(&compiled.checked, timeout).ok()?;
+    fn evaluated_image(&self, compiled: &Compiled) -> Option<Evaluation> {
+        let bound = compiled.bind(self.subject, None).ok()?;
+        self.evaluated(compiled.image(), &bound.frame)
+    }
+
+    fn evaluated(&self, checked: &Checked, frame: &Frame) -> Option<Evaluation> {
+        let timeout = self.subject.timeout;
+        let program = Program::within(checked, timeout).ok()?;
         let stop = AtomicBool::new(false);
         let evaluator = Evaluator::new(&program, frame, timeout, &stop);
         let evaluator = evaluator.with_max_iterations(self.subject.max_iterations);
@@ -335,22 +377,18 @@ impl<'a> Session<'a> {
 
     /// The verdict, if it is the wanted one, or else any that is a fault.
     fn verdict(&mut self, compiled: &Compiled, wanted: Option<Verdict>) -> Option<Finding> {
-        let timeout = self.subject.timeout;
-        let lints = lint(&compiled.files, &compiled.checked, &Deadline::after(timeout));
-        let mut case = Case::new(&compiled.checked, &lints, &self.subject.frame).with_timeout(timeout);
-        case.expected = self.subject.expected;
-        let (verdict, image, pixel) = match self.verify(&case) {
-            Ok(verified) => {
-                let verdict = verified.ruling().verdict;
-                let pixel = verified.results.algorithm.and_then(|check| check.summary.first);
-                (
-                    verdict,
-                    (verdict == Verdict::Wrong).then_some(verified.results.actual),
-                    pixel,
-                )
-            }
-            Err(failure) => (decide(Evidence::NoImage(failure)).verdict, None, None),
-        };
+        let lints = compiled.lints(self.subject.timeout);
+        let bound = compiled.bind(self.subject, None);
+        let verified = bound.as_ref().map_err(Clone::clone).and_then(|bound| {
+            let case = bound.case(compiled.image(), &lints, self.subject);
+            let verified = self.verify(&case)?;
+            let verdict = verified.ruling().verdict;
+            let pixel = verified.results.algorithm.and_then(|check| check.summary.first);
+            let image = (verdict == Verdict::Wrong).then_some(verified.results.actual);
+            Ok((verdict, image, pixel))
+        });
+        let (verdict, image, pixel) =
+            verified.unwrap_or_else(|failure| (decide(Evidence::NoImage(failure)).verdict, None, None));
         let is_wanted = wanted.map_or(!verdict.is_good(), |wanted| verdict == wanted);
         is_wanted.then(|| Finding {
             pixel,
@@ -370,14 +408,19 @@ impl<'a> Session<'a> {
     /// The warnings about a shader; those about its runs only where a warning with the code may be among
     /// them.
     fn warnings(&self, compiled: &Compiled, code: Option<Code>) -> Vec<Diagnostic> {
-        let timeout = self.subject.timeout;
-        let lints = lint(&compiled.files, &compiled.checked, &Deadline::after(timeout));
+        let lints = compiled.lints(self.subject.timeout);
         let mut warnings = lints.warnings.clone();
         let is_of_text = |warning: &Diagnostic| code.is_none_or(|code| warning.code == code);
-        if code.is_none_or(Code::is_of_runs) && !warnings.iter().any(is_of_text) {
-            let mut case = Case::new(&compiled.checked, &lints, &self.subject.frame).with_timeout(timeout);
-            case.expected = self.subject.expected;
-            if let Ok(verified) = self.verify(&case) {
+        if code.is_none_or(Code::is_of_runs)
+            && !warnings.iter().any(is_of_text)
+            && let Ok(mut bound) = compiled.bind(self.subject, None)
+        {
+            let notes = bound
+                .history
+                .as_mut()
+                .map(|history| mem::take(&mut history.notes));
+            warnings.extend(notes.unwrap_or_default());
+            if let Ok(verified) = self.verify(&bound.case(compiled.image(), &lints, self.subject)) {
                 warnings.extend(verified.results.notes);
             }
         }
@@ -385,9 +428,14 @@ impl<'a> Session<'a> {
         warnings
     }
 
-    /// Whether a text has an error or a warning, without errors that are not `accepted`.
-    fn has_diagnostic(&self, text: &str, (code, message): (Code, &str), accepted: &[Code]) -> bool {
-        let all = match self.compile(text) {
+    /// Whether texts have an error or a warning, without errors that are not `accepted`.
+    fn has_diagnostic(
+        &self,
+        texts: &[Option<String>],
+        (code, message): (Code, &str),
+        accepted: &[Code],
+    ) -> bool {
+        let all = match self.compile(texts) {
             Ok(compiled) => self.warnings(&compiled, Some(code)),
             Err(errors) => errors.into(),
         };
@@ -396,19 +444,27 @@ impl<'a> Session<'a> {
         all.iter().all(is_accepted) && all.iter().any(is_wanted)
     }
 
-    fn run(&mut self, command: &CommandLine, text: &str) -> Result<Ending, CommandError> {
+    fn run(&mut self, command: &CommandLine, texts: &[Option<String>]) -> Result<Ending, CommandError> {
         let folder = match self.folder.take() {
             Some(folder) => folder,
             None => tempfile::tempdir()?,
         };
-        let ending = command.run(&folder, text, self.subject.timeout);
+        let ending = command.run(&folder, &self.command_input(texts), self.subject.timeout);
         self.folder = Some(folder);
         ending
     }
+
+    /// What a command gets.
+    fn command_input(&self, texts: &[Option<String>]) -> CommandInput {
+        match &self.subject.project {
+            Some(parts) => CommandInput::Folder(parts.folder(texts)),
+            None => CommandInput::File(texts.first().cloned().flatten().unwrap_or_default()),
+        }
+    }
 }
 
-/// The difference between two images of a shader.
-fn difference(evaluated: &Evaluation, (drawn, device): &(Image, String)) -> Option<Finding> {
+/// The difference between two images of a pass.
+fn difference(pass: Target, evaluated: &Evaluation, drawn: &Image, device: String) -> Option<Finding> {
     let statuses = toolchain(&evaluated.image, drawn, &evaluated.undefined);
     let summary = CheckSummary::new(&evaluated.image, drawn, &statuses);
     let pixel = summary
@@ -417,12 +473,13 @@ fn difference(evaluated: &Evaluation, (drawn, device): &(Image, String)) -> Opti
         .filter(|_| summary.differing > 0)?;
     let mut components = pixel.expected.iter().chain(&pixel.actual);
     let fault = Fault::Toolchain {
+        pass,
         is_finite: components.all(|component| component.is_finite()),
     };
     Some(Finding {
         pixel: Some(pixel),
         differing: Some([summary.differing, summary.pixels]),
-        device: Some(device.clone()),
+        device: Some(device),
         ..Finding::new(fault)
     })
 }

@@ -1,6 +1,5 @@
 //! Deletes tokens that no other rewrite reaches, such as qualifiers, declarators and parentheses. Texts that
-//! do
-//! not compile are reduced by this.
+//! do not compile are reduced by this.
 
 use std::ops::Range;
 
