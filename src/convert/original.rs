@@ -6,20 +6,20 @@ use std::time::Duration;
 
 use rayon::ThreadPool;
 use toyproof_diagnostic::Deadline;
-use toyproof_eval::{Observed, bound};
+use toyproof_eval::{Observed, Settings, bound};
 use toyproof_eval_native::Program;
 use toyproof_glsl::Sampling;
 use toyproof_gpu::browser::Chromium;
 use toyproof_gpu::{PassCode, ShaderArtifact, Worker};
-use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, Texture, cube};
+use toyproof_image::{FRAME_RATE, Frame, IDLE_MOUSE, Image, MovingTextures, Texture, cube};
 use toyproof_player::{Channel, Clock, Graph, Player, Renderer, State, Storage, Target};
 use toyproof_translate::FloatMode;
 use toyproof_verify::evaluator::{Evaluation, Evaluator};
-use toyproof_verify::project::playback::DevicePlayback;
+use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader};
 use toyproof_verify::{EVALUATOR_TIME_FACTOR, Failure, within};
 
 use super::passes::{GraphContent, PASS_FRAMES, PASS_SIZES, PassComparison, PassSources};
-use super::proof::Rgb8Comparison;
+use super::proof::{EVALUATOR, Rgb8Comparison, Runner};
 use super::prover::{ProofError, in_browser};
 use super::{Source, TargetCode};
 
@@ -43,15 +43,42 @@ pub(super) struct PlayedFrame {
 }
 
 impl Original {
-    /// Renders the original strictly in frames that `adapt` changes, with the driver's filters, and finds its
-    /// undefined pixels.
+    /// Renders the original in frames that `adapt` changes, and finds its undefined pixels. A driver renders it
+    /// strictly, with its own filters.
     pub(super) fn play(
         passes: &PassSources,
-        worker: &mut Worker,
+        runner: &mut Runner,
         adapt: fn(Frame) -> Frame,
         timeout: Duration,
         pool: Option<&ThreadPool>,
     ) -> Result<Self, ProofError> {
+        let (device, frames, observations) = match runner {
+            Runner::Driver(worker) => {
+                let (device, mut frames) = Self::play_strictly(passes, worker, adapt, timeout)?;
+                let observations = within(pool, || observe(passes, &mut frames, timeout))?;
+                (device, frames, observations)
+            }
+            Runner::Evaluator(_) => {
+                let (frames, observations) = within(pool, || evaluate(passes, adapt, timeout))?;
+                (EVALUATOR.to_owned(), frames, observations)
+            }
+        };
+        let Observations { drawn, undefined_by } = observations;
+        Ok(Self {
+            frames,
+            device,
+            drawn,
+            undefined_by,
+        })
+    }
+
+    /// Renders the original strictly by a driver, whose name is returned with the frames.
+    fn play_strictly(
+        passes: &PassSources,
+        worker: &mut Worker,
+        adapt: fn(Frame) -> Frame,
+        timeout: Duration,
+    ) -> Result<(String, Vec<PlayedFrame>), ProofError> {
         let deadline = Deadline::after(timeout);
         let lowered = passes.sources.iter();
         let lowered = lowered.map(|source| FloatMode::Strict.lower_for_host(source.checked, &deadline));
@@ -78,14 +105,7 @@ impl Original {
                 });
             }
         }
-        let observe = || observe(passes, &mut frames, timeout);
-        let Observations { drawn, undefined_by } = within(pool, observe)?;
-        Ok(Self {
-            frames,
-            device,
-            drawn,
-            undefined_by,
-        })
+        Ok((device, frames))
     }
 
     /// The frames, and the pixels of the image that depend on undefined behavior in each.
@@ -120,18 +140,63 @@ impl Original {
         Ok(all)
     }
 
-    /// Renders the passes that were read from a conversion, and compares each.
+    /// Plays the passes that were read from a conversion, and compares each.
     pub(super) fn compare(
         &self,
         passes: &PassSources,
-        worker: &mut Worker,
+        runner: &mut Runner,
         artifacts: Vec<ShaderArtifact>,
         graph: &GraphContent,
-    ) -> Result<Vec<PassComparison>, Failure> {
+        (timeout, pool): (Duration, Option<&ThreadPool>),
+    ) -> Result<Vec<PassComparison>, ProofError> {
         let upside_down = artifacts.iter().any(ShaderArtifact::is_upside_down);
-        let code = PassCode::Converted(artifacts);
-        let sampling = graph.sampling.iter().copied();
-        let mut playback = open(worker, code, sampling, &graph.graph, passes.media)?;
+        let written = match runner {
+            Runner::Driver(worker) => {
+                let sampling = graph.sampling.iter().copied();
+                let code = PassCode::Converted(artifacts);
+                let mut playback = open(worker, code, sampling, &graph.graph, passes.media)?;
+                return Ok(self.compare_played(passes, &mut playback, upside_down)?);
+            }
+            Runner::Evaluator(_) => passes.sources.iter().zip(artifacts).zip(&graph.sampling),
+        };
+        let written = written.map(|((source, artifact), sampling)| {
+            let mut written = runner.read(artifact, source.checked, timeout)?;
+            written.sampling = *sampling;
+            Ok(written)
+        });
+        let written = written.collect::<Result<Vec<_>, ProofError>>()?;
+        let shader = PassShader {
+            checked: written.iter().collect(),
+            graph: &graph.graph,
+            media: passes.media,
+            films: MovingTextures::default(),
+        };
+        Ok(within(pool, || {
+            let programs = shader.programs(timeout * EVALUATOR_TIME_FACTOR);
+            let programs = programs.map_err(|(_, refusal)| super::proof::refused(refusal))?;
+            let start = |state: &State| {
+                CpuPlayback::<f32>::new(
+                    &shader,
+                    &programs,
+                    Some(state),
+                    timeout * EVALUATOR_TIME_FACTOR,
+                    Settings::plain(),
+                )
+            };
+            let mut playback = Evaluated {
+                start: &start,
+                playback: None,
+            };
+            self.compare_played(passes, &mut playback, upside_down)
+        })?)
+    }
+
+    fn compare_played(
+        &self,
+        passes: &PassSources,
+        playback: &mut impl Playback,
+        upside_down: bool,
+    ) -> Result<Vec<PassComparison>, Failure> {
         let targets: Vec<Target> = passes.graph.passes().iter().map(|pass| pass.target).collect();
         let mut comparisons: Vec<_> = targets.iter().copied().map(PassComparison::new).collect();
         // No frame has been rendered.
@@ -139,11 +204,9 @@ impl Original {
         for frame in &self.frames {
             if frame.inputs.size != size {
                 size = frame.inputs.size;
-                playback
-                    .restore(&start(passes.graph, size))
-                    .map_err(Failure::Gpu)?;
+                playback.restart(&start(passes.graph, size))?;
             }
-            let images = playback.render(&frame.inputs, &targets).map_err(Failure::Gpu)?;
+            let images = playback.images(&frame.inputs, &targets)?;
             let mut has_same_bits = true;
             for ((comparison, image), undefined) in comparisons.iter_mut().zip(images).zip(&frame.undefined) {
                 let image = if upside_down && comparison.target == Target::Image {
@@ -154,11 +217,56 @@ impl Original {
                 has_same_bits &= comparison.add(frame, &image, undefined);
             }
             if !has_same_bits {
-                playback.restore(&frame.state).map_err(Failure::Gpu)?;
+                playback.restart(&frame.state)?;
             }
         }
         Ok(comparisons)
     }
+}
+
+/// Plays converted passes.
+trait Playback {
+    /// Continues from a state.
+    fn restart(&mut self, state: &State) -> Result<(), Failure>;
+
+    /// Renders the next frame; returns the images of passes.
+    fn images(&mut self, frame: &Frame, targets: &[Target]) -> Result<Vec<Image>, Failure>;
+}
+
+impl Playback for DevicePlayback<'_> {
+    fn restart(&mut self, state: &State) -> Result<(), Failure> {
+        Ok(self.restore(state)?)
+    }
+
+    fn images(&mut self, frame: &Frame, targets: &[Target]) -> Result<Vec<Image>, Failure> {
+        Ok(self.render(frame, targets)?)
+    }
+}
+
+/// Plays passes on the evaluator.
+struct Evaluated<'a, 's> {
+    start: &'s (dyn Fn(&State) -> CpuPlayback<'a, f32> + Sync),
+    /// `None` before the first frame.
+    playback: Option<CpuPlayback<'a, f32>>,
+}
+
+impl Playback for Evaluated<'_, '_> {
+    fn restart(&mut self, state: &State) -> Result<(), Failure> {
+        self.playback = Some((self.start)(state));
+        Ok(())
+    }
+
+    fn images(&mut self, frame: &Frame, targets: &[Target]) -> Result<Vec<Image>, Failure> {
+        let playback = self.playback.as_mut().expect("a comparison starts from a state");
+        playback.render(frame).map_err(|error| error.failure)?;
+        let image = |&target: &Target| Image::clone(&stack_of(playback.texture(target)));
+        Ok(targets.iter().map(image).collect())
+    }
+}
+
+/// The image of a texture, which the graph has.
+fn stack_of(texture: Option<&Texture>) -> Arc<Image> {
+    texture.expect("the state has every texture of the graph").stack()
 }
 
 impl PlayedFrame {
@@ -168,8 +276,7 @@ impl PlayedFrame {
             Target::Image => self.state.image.as_ref(),
             Target::Buffer(number) => self.state.buffers[number].as_ref().map(|[last, _]| last),
         };
-        let texture = texture.expect("the state has every texture of the graph");
-        texture.stack()
+        stack_of(texture)
     }
 }
 
@@ -238,26 +345,8 @@ fn observe(
     frames: &mut [PlayedFrame],
     timeout: Duration,
 ) -> Result<Observations, Failure> {
-    let limit = timeout * EVALUATOR_TIME_FACTOR;
-    let programs = passes
-        .sources
-        .iter()
-        .map(|source| Program::within(source.checked, limit));
-    let programs: Vec<Program> = programs
-        .collect::<Result<_, _>>()
-        .map_err(super::proof::refused)?;
-    let observer = Observer {
-        programs: &programs,
-        media: passes.media,
-        limit,
-        rendered: Vec::new(),
-        undefined: Vec::new(),
-        observations: Observations {
-            drawn: vec![Vec::new(); programs.len()],
-            undefined_by: None,
-        },
-    };
-    let mut player = Player::new(passes.graph.clone(), observer);
+    let programs = programs(passes, timeout)?;
+    let mut player = observer(passes, &programs, timeout);
     for frame in frames {
         // The textures of another size are zeros.
         let rendered = passes
@@ -265,22 +354,69 @@ fn observe(
             .passes()
             .iter()
             .map(|pass| frame.texture(pass.target));
-        player.renderer_mut().rendered = rendered.collect();
+        player.renderer_mut().rendered = Some(rendered.collect());
         player.render(&frame.inputs)?;
         frame.undefined = std::mem::take(&mut player.renderer_mut().undefined);
     }
     Ok(player.into_renderer().observations)
 }
 
-/// Finds the undefined pixels of passes; their textures are those that the driver rendered, so that it and
-/// the evaluator never diverge.
+/// Renders the passes on the evaluator, and finds their undefined pixels.
+fn evaluate(
+    passes: &PassSources,
+    adapt: fn(Frame) -> Frame,
+    timeout: Duration,
+) -> Result<(Vec<PlayedFrame>, Observations), Failure> {
+    let programs = programs(passes, timeout)?;
+    let mut frames = Vec::new();
+    let mut player = observer(passes, &programs, timeout);
+    for inputs in PASS_SIZES.into_iter().flat_map(inputs).map(adapt) {
+        player.render(&inputs)?;
+        let copy = |texture: &Texture| Ok(texture.clone().without_mipmaps());
+        let Ok::<State, std::convert::Infallible>(state) = player.state(inputs.frame, copy);
+        frames.push(PlayedFrame {
+            inputs,
+            state,
+            undefined: std::mem::take(&mut player.renderer_mut().undefined),
+        });
+    }
+    Ok((frames, player.into_renderer().observations))
+}
+
+fn programs(passes: &PassSources, timeout: Duration) -> Result<Vec<Program>, Failure> {
+    let sources = passes.sources.iter();
+    let programs = sources.map(|source| Program::within(source.checked, timeout * EVALUATOR_TIME_FACTOR));
+    programs.collect::<Result<_, _>>().map_err(super::proof::refused)
+}
+
+fn observer<'a>(
+    passes: &PassSources<'a>,
+    programs: &'a [Program],
+    timeout: Duration,
+) -> Player<Observer<'a>> {
+    let observer = Observer {
+        programs,
+        media: passes.media,
+        limit: timeout * EVALUATOR_TIME_FACTOR,
+        rendered: None,
+        undefined: Vec::new(),
+        observations: Observations {
+            drawn: vec![Vec::new(); programs.len()],
+            undefined_by: None,
+        },
+    };
+    Player::new(passes.graph.clone(), observer)
+}
+
+/// Finds the undefined pixels of passes. If a driver rendered their textures, these are read, so that it and the
+/// evaluator never diverge.
 struct Observer<'a> {
     programs: &'a [Program],
     media: &'a [Texture],
     /// The time limit of an image.
     limit: Duration,
-    /// The images of the driver in this frame, for each pass.
-    rendered: Vec<Arc<Image>>,
+    /// The images of the driver in this frame, for each pass; `None` without a driver.
+    rendered: Option<Vec<Arc<Image>>>,
     /// The undefined pixels of each pass of this frame.
     undefined: Vec<Vec<bool>>,
     observations: Observations,
@@ -309,7 +445,10 @@ impl Renderer for Observer<'_> {
         let stop = AtomicBool::new(false);
         let evaluator = Evaluator::new(&self.programs[pass], &frame, self.limit, &stop);
         let Evaluation {
-            undefined, observed, ..
+            image,
+            undefined,
+            observed,
+            ..
         } = evaluator.single(&frame.rows())?;
         if observed.beyond_cap > 0 {
             return Err(Failure::LoopTruncated(observed.beyond_cap));
@@ -324,7 +463,11 @@ impl Renderer for Observer<'_> {
             .map(|&observed| (pass, observed))
             .chain(self.observations.undefined_by);
         self.observations.undefined_by = most.max_by_key(|(_, observed)| observed.pixels);
-        let texture = Texture::from(Image::clone(&self.rendered[pass])).shaped_as(&over);
+        let image = match &self.rendered {
+            Some(rendered) => Image::clone(&rendered[pass]),
+            None => image,
+        };
+        let texture = Texture::from(image).shaped_as(&over);
         Ok(if over.levels() > 1 {
             texture.with_mipmaps()
         } else {

@@ -177,16 +177,21 @@ impl Prover<'_> {
                 }
             }
         }
-        let Runner::Driver(worker) = &mut self.runner else {
-            return Err(ProofError::PassesWithoutDriver);
-        };
-        let original = Original::play(passes, worker, adapt, self.timeout, self.pool)?;
+        let original = Original::play(passes, &mut self.runner, adapt, self.timeout, self.pool)?;
         let mut proofs = Vec::new();
         let mut readers = Vec::new();
         for (reader, artifacts) in readings {
-            let proof = original.compare(passes, worker, artifacts, graph)?;
-            if proof.iter().any(|pass| pass.differing > 0) {
-                return Err(ProofError::PassesDiffer(proof));
+            let limits = (self.timeout, self.pool);
+            let proof = original.compare(passes, &mut self.runner, artifacts, graph, limits)?;
+            let differing = proof.iter().map(|pass| pass.differing).sum();
+            if differing > 0 {
+                return Err(match (&self.runner, &reader) {
+                    (Runner::Evaluator(_), Reader::Compiler(_)) => ProofError::DiffersAsRead {
+                        differing,
+                        pixels: proof.iter().map(|pass| pass.pixels).sum(),
+                    },
+                    _ => ProofError::PassesDiffer(proof),
+                });
             }
             proofs.push(proof);
             readers.push(reader);

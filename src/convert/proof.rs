@@ -285,6 +285,9 @@ fn difference(a: f32, b: f32) -> f32 {
     }
 }
 
+/// The name of the evaluator as a device.
+pub(super) const EVALUATOR: &str = "toyproof's evaluator";
+
 impl Runner<'_> {
     /// Renders the frames of a converted shader; returns the images and the name of the device.
     fn render(
@@ -299,14 +302,9 @@ impl Runner<'_> {
                 let rendered = worker.render(artifact, original.sampling, frames.to_vec());
                 Ok(rendered.map_err(Failure::Gpu)?)
             }
-            Self::Evaluator(reader) => {
+            Self::Evaluator(_) => {
                 let upside_down = artifact.is_upside_down();
-                let text = match reader {
-                    Some(worker) => worker.rewrite(artifact),
-                    None => artifact.as_shadertoy(),
-                };
-                let text = text.map_err(Failure::Gpu)?;
-                let written = read_shadertoy(&text, original, Stage::Image, timeout)?;
+                let written = self.read(artifact, original, timeout)?;
                 let stop = AtomicBool::new(false);
                 let singles = within(pool, || evaluate(&written, frames, timeout, &stop))?;
                 let images = singles.into_iter().map(|single| {
@@ -316,9 +314,23 @@ impl Runner<'_> {
                         single.image
                     }
                 });
-                Ok((images.collect(), "toyproof's evaluator".to_owned()))
+                Ok((images.collect(), EVALUATOR.to_owned()))
             }
         }
+    }
+
+    /// Reads the artifact of a converted shader for the evaluator.
+    pub(super) fn read(
+        &mut self,
+        artifact: ShaderArtifact,
+        original: &Checked,
+        timeout: Duration,
+    ) -> Result<Checked, ProofError> {
+        let text = match self {
+            Self::Driver(worker) | Self::Evaluator(Some(worker)) => worker.rewrite(artifact),
+            Self::Evaluator(None) => artifact.as_shadertoy(),
+        };
+        read_shadertoy(&text.map_err(Failure::Gpu)?, original, original.stage, timeout)
     }
 }
 

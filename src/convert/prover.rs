@@ -114,9 +114,6 @@ pub enum ProofError {
     /// No compiler that runs here reads the language.
     #[error("only Apple's compiler reads {0}, so the readable text cannot be proved")]
     AppleOnly(&'static str),
-    /// The evaluator does not play converted passes.
-    #[error("several passes can be verified only with a Vulkan driver")]
-    PassesWithoutDriver,
     /// There is no driver to run it.
     #[error("a proof requires a Vulkan driver: {0}")]
     NoDriver(gpu::Failure),

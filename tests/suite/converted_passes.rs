@@ -82,6 +82,15 @@ impl Converted {
     /// Proves it; none without a driver.
     fn prove(&self) -> Option<Result<PassesProof, ProofError>> {
         let mut worker = require_worker()?;
+        Some(self.prove_with(Runner::Driver(&mut worker)))
+    }
+
+    /// Proves it without a driver.
+    fn prove_on_evaluator(&self) -> Result<PassesProof, ProofError> {
+        self.prove_with(Runner::Evaluator(None))
+    }
+
+    fn prove_with(&self, runner: Runner) -> Result<PassesProof, ProofError> {
         let files = &self.files;
         let sources: Vec<_> = self
             .passes
@@ -98,12 +107,12 @@ impl Converted {
             .map(|text| TargetCode::Wgsl(text.clone(), Style::Plain))
             .collect();
         let mut prover = Prover {
-            runner: Runner::Driver(&mut worker),
+            runner,
             browser: None,
             timeout: TIMEOUT,
             pool: None,
         };
-        Some(prover.prove_passes(&passes, &written, &self.graph))
+        prover.prove_passes(&passes, &written, &self.graph)
     }
 
     /// What the proof says of the first pass that differs.
@@ -118,12 +127,18 @@ impl Converted {
 
 #[test]
 fn projects_are_proved() {
-    if !require_driver() {
-        return;
-    }
     let folder = tempfile::tempdir().unwrap();
-    for name in ["ring", "alpha", "mipmap-feedback", "discard-two-frames-back"] {
-        let run = convert(name, folder.path(), &["--verify"]);
+    let names = ["ring", "alpha", "mipmap-feedback", "discard-two-frames-back"];
+    let devices: &[&str] = if require_driver() {
+        &["lavapipe", "cpu"]
+    } else {
+        &["cpu"]
+    };
+    for (name, device) in names
+        .iter()
+        .flat_map(|name| devices.iter().map(move |device| (name, device)))
+    {
+        let run = convert(name, folder.path(), &["--verify", "--device", device]);
         assert_eq!(run.code, 0, "{name}: {}{}", run.stdout, run.stderr);
         assert!(
             run.stdout.contains("equal, bit for bit"),
@@ -262,6 +277,19 @@ fn faults_in_the_code_are_found() {
         why.starts_with("Buffer B differs from frame 0 on, first at pixel (0, 0) of 96×54, which is ["),
         "{why}"
     );
+}
+
+#[test]
+fn faults_are_found_without_a_driver() {
+    let mut ring = Converted::new("ring");
+    ring.prove_on_evaluator().unwrap();
+    let mut swapped = Converted::new("ring");
+    swapped.edit(|passes| passes[2].inputs[0] = passes[1].inputs[0]);
+    let why = swapped.prove_on_evaluator().unwrap_err().to_string();
+    assert!(why.starts_with("Buffer C differs from frame "), "{why}");
+    ring.texts[1] = ring.texts[1].replace("+ 1.0", "+ 1.0001");
+    let why = ring.prove_on_evaluator().unwrap_err().to_string();
+    assert!(why.starts_with("Buffer B differs from frame 0 on, "), "{why}");
 }
 
 #[test]

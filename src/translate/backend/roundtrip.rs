@@ -64,6 +64,8 @@ pub fn as_shadertoy(text: &str) -> String {
 /// naga's message if it cannot write the module, or if its uniform block is not the one that
 /// [`crate::backend`] documents.
 pub fn shadertoy(module: &ValidModule) -> Result<String, TranslateError> {
+    // The evaluator returns zeros for a level that a texture does not have.
+    let module = &module.with_most_levels();
     let text = write_glsl(module)?;
     let naga = module.module();
     let mut values = Vec::new();

@@ -40,6 +40,9 @@ pub(crate) enum Fetches {
     Edge,
 }
 
+/// The number of levels of a texture whose sides are 2³⁰ texels: no texture has more.
+const MOST_LEVELS: u32 = 31;
+
 impl ValidModule {
     /// naga's module.
     pub fn module(&self) -> &Module {
@@ -59,6 +62,30 @@ impl ValidModule {
     /// The result of fetching a texel beyond its texture.
     pub(crate) fn fetches(&self) -> Fetches {
         self.fetches
+    }
+
+    /// The module with the largest number of levels in place of those of its textures, for readers whose language
+    /// does not have that number, and that check the levels of lookups themselves.
+    pub(crate) fn with_most_levels(&self) -> Self {
+        let mut module = self.module.clone();
+        let functions = module.functions.iter_mut().map(|(_, function)| function);
+        let entry_points = module.entry_points.iter_mut().map(|entry| &mut entry.function);
+        for function in functions.chain(entry_points) {
+            for (_, expr) in function.expressions.iter_mut() {
+                if let naga::Expression::ImageQuery {
+                    query: naga::ImageQuery::NumLevels,
+                    ..
+                } = expr
+                {
+                    *expr = naga::Expression::Literal(naga::Literal::U32(MOST_LEVELS));
+                }
+            }
+        }
+        Self {
+            module,
+            info: self.info.clone(),
+            fetches: self.fetches,
+        }
     }
 
     /// Parses and validates a lowered shader and removes unused items.
