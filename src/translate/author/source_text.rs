@@ -3,6 +3,8 @@
 use toyproof_diagnostic::{Files, Span};
 use toyproof_glsl::tree::{Place, Swizzle};
 
+use super::comment_text::is_block_comment;
+
 /// The texts of the author's files.
 pub(crate) struct SourceText<'a> {
     files: &'a Files,
@@ -58,6 +60,7 @@ impl<'a> SourceText<'a> {
         };
         let before = before.rsplit('\n').next().unwrap_or_default();
         let after = after.lines().next().unwrap_or_default().trim();
+        let is_end = after.is_empty() || after.starts_with("//") || is_block_comment(after);
         let mut words = before.split_whitespace();
         let directive = words.next().unwrap_or_default();
         let named = match directive {
@@ -68,6 +71,6 @@ impl<'a> SourceText<'a> {
                 .and_then(|_| words.next()),
             _ => None,
         };
-        named == Some(name) && words.next().is_none() && (after.is_empty() || after.starts_with("//"))
+        named == Some(name) && words.next().is_none() && is_end
     }
 }

@@ -489,9 +489,7 @@ impl Writer<'_> {
         };
         let word = self.language().constant();
         let declaration = format!("{word} {ty} {name} = {code};");
-        let known = self.macros.entry(name.to_owned());
-        // A macro may be redefined; its first definition keeps the name.
-        if *known.or_insert_with(|| declaration.clone()) == declaration {
+        if self.macros.declare(name, declaration, at) {
             name.to_owned()
         } else {
             code
