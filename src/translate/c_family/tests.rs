@@ -332,7 +332,8 @@ fn hosts_code_is_complete() {
         ),
         (
             CHost::Unity,
-            "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse + upward * ddy(p.y);",
+            "                c = iChannel0.Sample(iChannel0_sampler, p / iResolution.xy) + iMouse\n                    \
+             + upward * ddy(p.y);",
         ),
     ] {
         let written = converted(host, text).unwrap();
@@ -466,7 +467,7 @@ fn glsl_stays_as_its_author_wrote_it() {
         "vec4 tap(sampler2D image, vec2 uv) {\n    return textureLod(image, uv, 0.0);\n} // A tap\n",
         "    mat2x3 m = mat2x3(1);\n",
         "    for (int i = 0, j = 1; i < COUNT; i++, j += 2) {\n        sum += W[i & 1];\n    }\n",
-        "    color = tap(iChannel0, at / iResolution.xy) * (sum += 1.0, sum) + vec4(m[0] * size(at), dFdy(at.y));\n",
+        "    color = tap(iChannel0, at / iResolution.xy) * (sum += 1.0, sum)\n        + vec4(m[0] * size(at), dFdy(at.y));\n",
         "void main() {\n    vec4 color;\n    mainImage(color, gl_FragCoord.xy);\n    outputColor = vec4(color.rgb, 1.0);\n}\n",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");

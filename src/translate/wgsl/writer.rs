@@ -13,7 +13,7 @@ use super::names::Names;
 use super::style::Style;
 use crate::author::{Comments, MacroConstants, SourceText};
 use crate::lower::context::LoweringContext;
-use crate::print::Order;
+use crate::print::{Order, wrap};
 
 /// Prints a lowered shader.
 pub(super) struct Writer<'a> {
@@ -201,7 +201,7 @@ impl<'a> Writer<'a> {
             text.push_str(helper);
             text.push('\n');
         }
-        text.push_str(items.trim_start_matches('\n'));
+        text.push_str(&wrap(items.trim_start_matches('\n'), 1));
         text.push_str(&self.comments.rest());
         text.push_str(&end);
         Ok(text)
