@@ -25,7 +25,7 @@ fn has_effect(tree: &Tree, function: FunctionId) -> bool {
     };
     let mut found = false;
     walk::each(body, &mut |statement| {
-        found |= matches!(statement.kind, StatementKind::Discard)
+        found |= matches!(statement.kind, StatementKind::Discard);
     });
     for expr in walk::roots(tree, body)
         .into_iter()

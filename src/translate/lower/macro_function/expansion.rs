@@ -1,6 +1,6 @@
 //! One use of a macro, as the call of a function.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use toyproof_diagnostic::Span;
 use toyproof_glsl::Lexeme;
@@ -26,7 +26,7 @@ pub(super) struct Expansion<'a> {
     /// The expressions outside of the arguments, users before operands.
     nodes: Vec<ExprId>,
     /// The occurrences of the arguments.
-    parameters: HashMap<ExprId, usize>,
+    parameters: BTreeMap<ExprId, usize>,
     /// The first occurrence of each argument.
     arguments: Vec<ExprId>,
 }
@@ -45,7 +45,7 @@ impl<'a> Expansion<'a> {
             used,
             root,
             nodes: Vec::new(),
-            parameters: HashMap::new(),
+            parameters: BTreeMap::new(),
             arguments: Vec::new(),
         };
         let occurrences = expansion.occurrences(tree)?;
@@ -167,37 +167,22 @@ impl<'a> Expansion<'a> {
             if let Some(&parameter) = self.parameters.get(&id) {
                 return self.parameter_named(text) == Some(parameter);
             }
+            let kind = &tree[id].kind;
+            if let Some(operand) = operand_at(kind, end) {
+                id = operand;
+                continue;
+            }
             // The places of operators are not in the tree.
-            id = match (&tree[id].kind, end) {
-                (&ExprKind::Binary { left: operand, .. }, End::First)
-                | (
-                    &ExprKind::Conditional {
-                        condition: operand, ..
-                    },
-                    End::First,
-                )
-                | (&ExprKind::Sequence { first: operand, .. }, End::First)
-                | (&ExprKind::Index { base: operand, .. }, End::First)
-                | (&ExprKind::Swizzle { vector: operand, .. }, End::First)
-                | (
-                    &ExprKind::Member {
-                        structure: operand, ..
-                    },
-                    End::First,
-                )
-                | (&ExprKind::Unary { operand, .. }, End::Last)
-                | (&ExprKind::Binary { right: operand, .. }, End::Last)
-                | (&ExprKind::Conditional { no: operand, .. }, End::Last)
-                | (&ExprKind::Sequence { second: operand, .. }, End::Last) => operand,
-                (ExprKind::Unary { op, .. }, End::First) => return text == op.symbol(),
-                (ExprKind::Index { .. }, End::Last) => return text == "]",
+            return match (kind, end) {
+                (ExprKind::Unary { op, .. }, End::First) => text == op.symbol(),
+                (ExprKind::Index { .. }, End::Last) => text == "]",
                 (ExprKind::Swizzle { .. } | ExprKind::Member { .. }, End::Last) => {
                     let before = body.len().checked_sub(2).and_then(|at| body.get(at));
-                    return before.is_some_and(|dot| self.source.text(dot.span) == ".");
+                    before.is_some_and(|dot| self.source.text(dot.span) == ".")
                 }
                 // Text of another macro.
-                (_, End::First) => return is_name(text) && !BEFORE_EXPRESSIONS.contains(&text),
-                (_, End::Last) => return is_name(text) || text == ")",
+                (_, End::First) => is_name(text) && !BEFORE_EXPRESSIONS.contains(&text),
+                (_, End::Last) => is_name(text) || text == ")",
             };
         }
     }
@@ -263,7 +248,8 @@ impl<'a> Expansion<'a> {
         let parameters = definition.parameters.iter().zip(&self.arguments);
         let parameters: Vec<VariableId> = parameters
             .map(|(&name, &argument)| {
-                let kind = VariableKind::Parameter(Direction::In);
+                // Arguments are read in the order of the replacement, like operands.
+                let kind = VariableKind::Parameter(Direction::ConstIn);
                 let (ty, at) = (tree[argument].ty, Place::plain(name));
                 tree.variables
                     .push(Variable::new(self.source.text(name), ty, kind, Some(at)))
@@ -328,6 +314,26 @@ struct Occurrence {
 enum End {
     First,
     Last,
+}
+
+/// The operand that an expression begins or ends with.
+fn operand_at(kind: &ExprKind, end: End) -> Option<ExprId> {
+    let (first, last) = match *kind {
+        ExprKind::Unary { operand, .. } => (None, Some(operand)),
+        ExprKind::Binary { left, right, .. } => (Some(left), Some(right)),
+        ExprKind::Conditional { condition, no, .. } => (Some(condition), Some(no)),
+        ExprKind::Sequence { first, second } => (Some(first), Some(second)),
+        ExprKind::Index { base: operand, .. }
+        | ExprKind::Swizzle { vector: operand, .. }
+        | ExprKind::Member {
+            structure: operand, ..
+        } => (Some(operand), None),
+        _ => (None, None),
+    };
+    match end {
+        End::First => first,
+        End::Last => last,
+    }
 }
 
 fn is_name(text: &str) -> bool {

@@ -167,6 +167,13 @@ fn arguments_with_side_effects_stay_expanded() {
 }
 
 #[test]
+fn arguments_stay_in_their_call() {
+    let items = "#define MUL(a, b) ((a) * (b))\nfloat n = 0.;\nfloat next(float x) { return x + 1.; }";
+    let written = wgsl(&shader(items, "n += at.y;\ncolor.x = MUL(n, next(at.x));"));
+    assert!(written.contains(" = MUL(n, next(at.x));"), "{written}");
+}
+
+#[test]
 fn arguments_under_a_condition_have_a_value_without_it() {
     let either = "#define F(c, x) ((c) ? (x) : 1.)\nconst float table[2] = float[](.5, .25);";
     assert_expanded(
