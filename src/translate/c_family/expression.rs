@@ -7,10 +7,10 @@ use toyproof_glsl::tree::{
 };
 
 use super::Unprintable;
-use super::effect::is_pure;
 use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::author::{float, is_hexadecimal};
+use crate::lower::is_pure;
 
 /// Precedence levels, from the weakest binding to the strongest.
 pub(super) mod level {
@@ -437,6 +437,8 @@ impl Writer<'_> {
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
             Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
+            // glslang may make infinities of the integer.
+            Type::Matrix { .. } => format!("({})0.0", self.type_name(ty)?),
             _ => format!("({})0", self.type_name(ty)?),
         })
     }

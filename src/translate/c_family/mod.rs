@@ -7,7 +7,6 @@
 
 mod builtin;
 mod construct;
-mod effect;
 mod expression;
 #[cfg(test)]
 mod godot_tests;
@@ -32,8 +31,8 @@ use self::language::{Language, Words};
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
 use crate::lower::{
-    GlobalConflict, branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values,
-    orient_derivatives, pass_globals,
+    GlobalConflict, branch_for_effects, call_macros, chain_switches, fold_by_precision, fold_except,
+    name_array_values, orient_derivatives, pass_globals,
 };
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
@@ -67,6 +66,7 @@ pub fn write(
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
+    call_macros(&mut cx, checked, files, deadline)?;
     fold_except(&mut cx, |_| false);
     fold_by_precision(&mut cx);
     let language = host.language();
