@@ -8,4 +8,4 @@ mod source_text;
 
 pub(crate) use comment::Comments;
 pub(crate) use literal::{float, is_hexadecimal};
-pub(crate) use source_text::SourceText;
+pub(crate) use source_text::{MacroConstants, SourceText};

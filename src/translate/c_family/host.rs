@@ -448,7 +448,7 @@ impl Writer<'_> {
             Item::Struct(id) => Some(self.structure_name(id)),
             Item::Prototype(_) => None,
         });
-        items.chain(self.macros.keys().map(String::as_str)).collect()
+        items.chain(self.macros.names()).collect()
     }
 
     /// Whether `mainImage` gets this from the host's entry point.

@@ -94,8 +94,29 @@ pub fn write(
     let written = writer.write(&order, title);
     // An expired deadline also makes the writer fail.
     deadline.check()?;
-    Ok(written?)
+    let written = written?;
+    Ok(if language == Language::Godot {
+        with_tabs(&written)
+    } else {
+        written
+    })
 }
+
+/// A text whose lines are indented by tabs, as Godot's style guide asks.
+fn with_tabs(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let code = line.trim_start_matches(' ');
+        let indent = line.len() - code.len();
+        out.extend(std::iter::repeat_n('\t', indent / INDENT));
+        out.push_str(&line[indent - indent % INDENT..]);
+        out.push('\n');
+    }
+    out
+}
+
+/// The spaces of a level of indentation.
+const INDENT: usize = 4;
 
 /// Passes global variables as arguments, if functions see none in the language of the host; returns what
 /// `mainImage` gets from the host's entry point.

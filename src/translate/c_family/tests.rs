@@ -64,10 +64,11 @@ fn names_comments_macros_and_loops_stay() {
         for (int i = 0; i < STEPS; i++) ray.t += height(ray.origin); // on\n    color = vec4(ray.t);\n}";
     let written = converted(CHost::Hlsl, text).unwrap();
     for expected in [
-        "// Waves\n\nstatic const float SCALE = 0.5;\nstatic const int STEPS = 8;\n\nstruct Ray {",
+        "// Waves\n\nstatic const int STEPS = 8;\nstatic const float SCALE = 0.5;\n\nstruct Ray {",
         "// Height\nfloat height(float3 p) {\n    return p.y - SCALE;\n}\n",
         "    Ray ray = { float3(at, 1), 0.0 };\n    // March\n    for (int i = 0; i < STEPS; i++) {\n",
-        "float4 main(float4 position : SV_Position) : SV_Target0 {\n    float4 color;\n    mainImage(color, position.xy);\n",
+        "float4 main(float4 position : SV_Position) : SV_Target0 {\n    float4 color;\n    \
+         // Row 0 of the target is the bottom of the image, as in ShaderToy.\n    mainImage(color, position.xy);\n",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");
     }

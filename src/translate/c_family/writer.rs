@@ -9,7 +9,7 @@ use toyproof_glsl::tree::{BuiltIn, ExprId, FunctionId, Item, Place, StructId, Ty
 use super::host::CHost;
 use super::language::{Language, Words};
 use super::{Title, Unprintable};
-use crate::author::{Comments, SourceText};
+use crate::author::{Comments, MacroConstants, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::lower::impure_functions;
 use crate::print::{Names, Order, Vocabulary};
@@ -26,8 +26,8 @@ pub(super) struct Writer<'a> {
     pub(super) deadline: &'a Deadline,
     pub(super) out: String,
     pub(super) indent: usize,
-    /// The constant declarations for macros that expand to a literal, by name.
-    pub(super) macros: BTreeMap<String, String>,
+    /// The constants of macros that expand to a literal.
+    pub(super) macros: MacroConstants,
     /// Functions that replace built-in ones, by name and the types of their arguments.
     pub(super) helpers: BTreeMap<(String, String), String>,
     /// The structures that need a function that makes them: these languages list values in declarations only.
@@ -71,7 +71,7 @@ impl<'a> Writer<'a> {
             deadline,
             out: String::new(),
             indent: 0,
-            macros: BTreeMap::new(),
+            macros: MacroConstants::default(),
             helpers: BTreeMap::new(),
             made: BTreeSet::new(),
             members: HashSet::new(),
@@ -206,7 +206,7 @@ impl<'a> Writer<'a> {
     /// A name that nothing else has.
     pub(super) fn free(&self, stem: &str) -> String {
         let mut name = stem.to_owned();
-        while self.taken.contains(name.as_str()) || self.macros.contains_key(&name) {
+        while self.taken.contains(name.as_str()) || self.macros.names().any(|known| known == name) {
             name.push('_');
         }
         name
@@ -256,7 +256,7 @@ impl<'a> Writer<'a> {
             makers.insert(id, std::mem::take(&mut self.out));
         }
         let mut text = String::new();
-        for declaration in self.macros.values() {
+        for declaration in self.macros.declarations() {
             text += declaration;
             text.push('\n');
         }

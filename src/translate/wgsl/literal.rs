@@ -85,12 +85,7 @@ impl Writer<'_> {
         let suffixed = std::mem::take(&mut self.suffixed);
         let declaration = format!("const {name}: {ty} = {};", self.number(literal));
         self.suffixed = suffixed;
-        let known = self
-            .macros
-            .entry(name.clone())
-            .or_insert_with(|| declaration.clone());
-        // A macro may be redefined; its first definition keeps the name.
-        (*known == declaration).then_some(name)
+        self.macros.declare(&name, at, declaration).then_some(name)
     }
 
     /// Whether a literal is printed as the name of a macro.

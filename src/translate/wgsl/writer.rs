@@ -11,7 +11,7 @@ use toyproof_glsl::tree::{
 use super::Unprintable;
 use super::names::Names;
 use super::style::Style;
-use crate::author::{Comments, SourceText};
+use crate::author::{Comments, MacroConstants, SourceText};
 use crate::lower::context::LoweringContext;
 use crate::print::Order;
 
@@ -36,8 +36,8 @@ pub(super) struct Writer<'a> {
     pub(super) deferred_steps: HashSet<ExprId>,
     /// Whether expressions need lines before their value, as far as determined.
     pub(super) hoisting: HashMap<ExprId, bool>,
-    /// The constant declarations for macros that expand to a literal, by name.
-    pub(super) macros: BTreeMap<String, String>,
+    /// The constants of macros that expand to a literal.
+    pub(super) macros: MacroConstants,
     /// Helper functions that are called, by name.
     pub(super) helpers: BTreeMap<String, String>,
     /// The innermost expression that could not be printed.
@@ -74,7 +74,7 @@ impl<'a> Writer<'a> {
             suffixed: false,
             deferred_steps: HashSet::new(),
             hoisting: HashMap::new(),
-            macros: BTreeMap::new(),
+            macros: MacroConstants::default(),
             helpers: BTreeMap::new(),
             failed_at: None,
             uniforms: Vec::new(),
@@ -188,8 +188,9 @@ impl<'a> Writer<'a> {
         let items = std::mem::take(&mut self.out);
         let [head, end] = self.style_code(order)?;
         let mut text = first + &head;
-        if !self.macros.is_empty() {
-            for declaration in self.macros.values() {
+        let constants = self.macros.declarations();
+        if !constants.is_empty() {
+            for declaration in constants {
                 text.push_str(declaration);
                 text.push('\n');
             }
