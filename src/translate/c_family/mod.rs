@@ -32,7 +32,7 @@ use self::writer::Writer;
 use crate::lower::context::LoweringContext;
 use crate::lower::{
     GlobalConflict, branch_for_effects, call_macros, chain_switches, fold_by_precision, fold_except,
-    name_array_values, orient_derivatives, pass_globals,
+    name_array_values, orient_derivatives, pass_globals, unwrap_case_jumps,
 };
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
@@ -80,6 +80,7 @@ pub fn write(
         name_array_values(&mut cx);
     }
     late.run(&mut cx, deadline)?;
+    unwrap_case_jumps(&mut cx);
     if language == Language::Godot {
         chain_switches(&mut cx);
     }

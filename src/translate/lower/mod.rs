@@ -39,6 +39,7 @@ mod tests;
 mod uniform_block;
 
 pub(crate) use array_value::name_array_values;
+pub(crate) use branch::{unwrap_case_jumps, unwrap_jump};
 pub(crate) use conditional::branch_for_effects;
 pub(crate) use effect::{impure_functions, is_pure};
 pub(crate) use folding::{fold_by_precision, fold_except};
