@@ -1,40 +1,9 @@
 //! The author's text where the tree does not have it: the letters of swizzles, literals and macros.
 
-use std::collections::BTreeMap;
-
 use toyproof_diagnostic::{Files, Span};
 use toyproof_glsl::tree::{Place, Swizzle};
 
-/// The declarations of constants for macros whose replacement is a literal.
-#[derive(Default)]
-pub(crate) struct MacroConstants {
-    /// The place of each macro's replacement in the author's text, and the declaration, by the name.
-    declared: BTreeMap<String, (u32, String)>,
-}
-
-impl MacroConstants {
-    /// Declares the constant of the macro that a literal comes from, and returns whether its name has this value: a
-    /// macro may be redefined, and its first definition keeps the name.
-    pub(crate) fn declare(&mut self, name: &str, at: Place, declaration: String) -> bool {
-        let declared = self.declared.entry(name.to_owned());
-        let (_, known) = declared.or_insert_with(|| (at.spelling.start, declaration.clone()));
-        *known == declaration
-    }
-
-    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
-        self.declared.keys().map(String::as_str)
-    }
-
-    /// The declarations in the order of the macros.
-    pub(crate) fn declarations(&self) -> Vec<&str> {
-        let mut declared: Vec<_> = self.declared.values().collect();
-        declared.sort_unstable();
-        declared
-            .into_iter()
-            .map(|(_, declaration)| declaration.as_str())
-            .collect()
-    }
-}
+use super::comment_text::is_block_comment;
 
 /// The texts of the author's files.
 pub(crate) struct SourceText<'a> {
@@ -84,7 +53,7 @@ impl<'a> SourceText<'a> {
             "#" if words.next() == Some("define") => words.next()?,
             _ => return None,
         };
-        let is_whole = words.next().is_none() && (after.is_empty() || after.starts_with("//"));
+        let is_whole = words.next().is_none() && (after.is_empty() || after.starts_with("//") || is_block_comment(after));
         let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && name.starts_with(|c: char| c.is_ascii_alphabetic());
         (is_whole && is_name).then_some(name)

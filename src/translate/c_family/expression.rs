@@ -499,7 +499,7 @@ impl Writer<'_> {
         };
         let word = self.language().constant();
         let declaration = format!("{word} {ty} {name} = {code};");
-        if self.macros.declare(name, at, declaration) {
+        if self.macros.declare(name, declaration, at) {
             name.to_owned()
         } else {
             code

@@ -20,7 +20,7 @@ use super::writer::{PrintResult, Writer};
 use super::{Title, Unprintable};
 use crate::backend::Target;
 use crate::lower::UPWARD;
-use crate::print::Order;
+use crate::print::{Order, wrap};
 use crate::template::{around_shader, channel_number, fill};
 
 /// A host of a language with the syntax of C.
@@ -419,7 +419,9 @@ impl Writer<'_> {
         values.push(("$passed", passed.collect()));
         // The last, since a name may contain those of other values.
         values.push(("$name", name_of(title)));
-        values.push(("$outside", outside.trim_end().to_owned()));
+        // Godot's style indents continuations by two levels.
+        let levels = if self.language() == Language::Godot { 2 } else { 1 };
+        values.push(("$outside", wrap(outside, levels).trim_end().to_owned()));
         let template = self.host.template();
         // The text is indented as its place in the template.
         let at = template.find("$shader\n").unwrap_or(0);
@@ -432,6 +434,7 @@ impl Writer<'_> {
             let _ = writeln!(text, "{indent}{line}");
             text
         });
+        let text = wrap(&text, levels);
         // The version comes first.
         let (version, before) = match before.split_once('\n') {
             Some((version, rest)) if version.starts_with("#version") => (format!("{version}\n"), rest),

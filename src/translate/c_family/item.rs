@@ -28,18 +28,21 @@ impl Writer<'_> {
     fn structure(&mut self, id: StructId) -> PrintResult {
         let tree = &self.cx.tree;
         self.line("");
-        self.comment(tree[id].at);
+        let comments = self.comments.before_item(tree[id].at);
+        self.comment_lines(&comments);
         self.line(&format!("struct {} {{", self.structure_name(id)));
         for (at, member) in tree[id].members.iter().enumerate() {
             let declared = self.declarator(member.ty, self.member_name(id, at))?;
             self.indented(|writer| {
-                writer.comment(member.at);
+                let comments = writer.comments.before(member.at, Some(member.at));
+                writer.comment_lines(&comments);
                 writer.line(&format!("{declared};"));
-                writer.trailing_comment(member.at);
+                let comment = writer.comments.behind(member.at, Some(member.at));
+                writer.trailing_comment(comment);
                 Ok(())
             })?;
         }
-        self.line("};");
+        self.end_of_item("};")?;
         Ok(())
     }
 
@@ -76,12 +79,9 @@ impl Writer<'_> {
 
     fn global(&mut self, id: VariableId) -> PrintResult {
         let variable = &self.cx.tree[id];
-        let follows_blank_line = variable.at.is_some_and(|at| self.comments.follows_blank_line(at));
-        if follows_blank_line {
-            self.line("");
-        }
         if let Some(at) = variable.at {
-            self.comment(at);
+            let comments = self.comments.before_item(at);
+            self.comment_lines(&comments);
         }
         // A uniform that nothing sets is zero.
         let is_constant = matches!(variable.kind, VariableKind::Const | VariableKind::Uniform);
@@ -104,7 +104,8 @@ impl Writer<'_> {
         };
         self.line(&format!("{word}{declared}{value};"));
         if let Some(at) = variable.at {
-            self.trailing_comment(at);
+            let comment = self.comments.behind(at, Some(at));
+            self.trailing_comment(comment);
         }
         Ok(())
     }
@@ -129,7 +130,8 @@ impl Writer<'_> {
             return Err(Unprintable::Construct("a function that returns an array"));
         }
         self.line("");
-        self.comment(function.at);
+        let comments = self.comments.before_item(function.at);
+        self.comment_lines(&comments);
         let parameters = function.parameters.iter().map(|&parameter| {
             let variable = &self.cx.tree[parameter];
             let direction = match variable.kind {
@@ -144,7 +146,19 @@ impl Writer<'_> {
         self.line(&format!("{returned} {}({parameters}) {{", self.function(id)));
         self.returned = function.return_type;
         self.indented(|writer| writer.statements(body))?;
-        self.line("}");
+        self.end_of_item("}")
+    }
+
+    /// Prints the comments at the end of an item, its end, and the comment behind it.
+    fn end_of_item(&mut self, end: &str) -> PrintResult {
+        let comments = self.comments.at_end_of_item();
+        self.indented(|writer| {
+            writer.comment_lines(&comments);
+            Ok(())
+        })?;
+        self.line(end);
+        let comment = self.comments.behind_item();
+        self.trailing_comment(comment);
         Ok(())
     }
 
@@ -164,7 +178,7 @@ impl Writer<'_> {
         };
         let mut names = Names::new(&cx, &order, &Words::new(self.host));
         names.functions.insert(first, self.function(id).to_owned());
-        let mut writer = Writer::new(&cx, &names, self.host, &files, self.deadline);
+        let mut writer = Writer::new(&cx, &names, &order, self.host, &files, self.deadline);
         writer.definition(first)?;
         self.helpers.append(&mut writer.helpers);
         self.takes_derivatives |= writer.takes_derivatives;

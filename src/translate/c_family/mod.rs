@@ -90,7 +90,7 @@ pub fn write(
     deadline.check()?;
     let names = Names::new(&cx, &order, &Words::new(host));
     deadline.check()?;
-    let mut writer = Writer::new(&cx, &names, host, files, deadline);
+    let mut writer = Writer::new(&cx, &names, &order, host, files, deadline);
     writer.passed = &passed;
     let written = writer.write(&order, title);
     // An expired deadline also makes the writer fail.

@@ -14,21 +14,38 @@ use super::writer::{PrintResult, Writer};
 use crate::lower::{has_inner_jump, is_written_first};
 
 impl Writer<'_> {
+    /// Prints the statements of a block and the comments in it; the line printed last is its head.
     pub(super) fn statements(&mut self, block: &[Statement]) -> PrintResult {
+        let Some(first) = block.first() else {
+            return Ok(());
+        };
+        let (outer, comment) = self.comments.enter(first.at);
+        self.trailing_comment(comment);
+        self.each_statement(block)?;
+        let comments = self.comments.leave(outer);
+        self.comment_lines(&comments);
+        Ok(())
+    }
+
+    fn each_statement(&mut self, block: &[Statement]) -> PrintResult {
         for (number, statement) in block.iter().enumerate() {
             // Structures are printed at global scope.
             if matches!(statement.kind, StatementKind::Struct(_)) {
                 continue;
             }
             self.check_deadline()?;
-            if self.comments.follows_blank_line(statement.at) && number > 0 {
-                self.line("");
-            }
-            self.comment(statement.at);
+            let name = walk::declared(statement).and_then(|variable| self.cx.tree[variable].at);
+            let comments = self.comments.before(statement.at, name);
+            // The blank line above the first statement belongs to nothing.
+            let skipped = usize::from(number == 0 && comments.first().is_some_and(String::is_empty));
+            self.comment_lines(&comments[skipped..]);
             self.statement(statement, &block[number + 1..])?;
-            if !statement.kind.is_compound() {
-                self.trailing_comment(statement.at);
-            }
+            let comment = if statement.kind.is_compound() {
+                self.comments.behind_block(statement.at)
+            } else {
+                self.comments.behind(statement.at, name)
+            };
+            self.trailing_comment(comment);
         }
         Ok(())
     }
@@ -253,8 +270,16 @@ impl Writer<'_> {
             ));
         }
         self.line(&format!("switch ({selector}) {{"));
+        let Some(first) = cases.first() else {
+            self.line("}");
+            return Ok(());
+        };
+        let (outer, comment) = self.comments.enter(first.at);
+        self.trailing_comment(comment);
         self.indent += 1;
         for case in cases {
+            let comments = self.comments.before(case.at, None);
+            self.comment_lines(&comments);
             for label in &case.labels {
                 let label = match *label {
                     Label::Default => "default:".to_owned(),
@@ -277,6 +302,8 @@ impl Writer<'_> {
                 self.indented(|writer| writer.statements(&case.body))?;
             }
         }
+        let comments = self.comments.leave(outer);
+        self.comment_lines(&comments);
         self.indent -= 1;
         self.line("}");
         Ok(())

@@ -26,7 +26,7 @@ pub(super) struct Writer<'a> {
     pub(super) deadline: &'a Deadline,
     pub(super) out: String,
     pub(super) indent: usize,
-    /// The constants of macros that expand to a literal.
+    /// The constants that macros become.
     pub(super) macros: MacroConstants,
     /// Functions that replace built-in ones, by name and the types of their arguments.
     pub(super) helpers: BTreeMap<(String, String), String>,
@@ -56,6 +56,7 @@ impl<'a> Writer<'a> {
     pub(super) fn new(
         cx: &'a LoweringContext,
         names: &'a Names,
+        order: &Order,
         host: CHost,
         files: &'a Files,
         deadline: &'a Deadline,
@@ -66,7 +67,7 @@ impl<'a> Writer<'a> {
             cx,
             names,
             host,
-            comments: Comments::new(files),
+            comments: Comments::new(files, &cx.tree, &order.items),
             source: SourceText::new(files),
             deadline,
             out: String::new(),
@@ -120,16 +121,20 @@ impl<'a> Writer<'a> {
         value
     }
 
-    /// Prints the comment lines above a place, unless printed already.
-    pub(super) fn comment(&mut self, at: Place) {
-        for line in self.comments.above(at) {
-            self.line(&line);
+    /// Prints comments and blank lines, which are empty. A block does not begin with a blank line, and none
+    /// follows another.
+    pub(super) fn comment_lines(&mut self, lines: &[String]) {
+        for line in lines {
+            let is_repeated = self.out == "\n" || self.out.ends_with("\n\n") || self.out.ends_with("{\n");
+            if !(line.is_empty() && is_repeated) {
+                self.line(line);
+            }
         }
     }
 
-    /// Prints the author's comment at the end of a place's line after the line printed last.
-    pub(super) fn trailing_comment(&mut self, at: Place) {
-        if let Some(comment) = self.comments.trailing(at) {
+    /// Prints a comment at the end of the line printed last.
+    pub(super) fn trailing_comment(&mut self, comment: Option<String>) {
+        if let Some(comment) = comment {
             self.out.pop();
             self.out.push(' ');
             self.out.push_str(&comment);
@@ -206,7 +211,7 @@ impl<'a> Writer<'a> {
     /// A name that nothing else has.
     pub(super) fn free(&self, stem: &str) -> String {
         let mut name = stem.to_owned();
-        while self.taken.contains(name.as_str()) || self.macros.names().any(|known| known == name) {
+        while self.taken.contains(name.as_str()) || self.macros.contains(&name) {
             name.push('_');
         }
         name
@@ -255,11 +260,7 @@ impl<'a> Writer<'a> {
             self.maker(id)?;
             makers.insert(id, std::mem::take(&mut self.out));
         }
-        let mut text = String::new();
-        for declaration in self.macros.declarations() {
-            text += declaration;
-            text.push('\n');
-        }
+        let mut text = self.macros.declarations(&mut self.comments);
         if !text.is_empty() {
             text.push('\n');
         }
@@ -278,6 +279,12 @@ impl<'a> Writer<'a> {
                 shader += makers.get(&id).map_or("", String::as_str);
             }
         }
+        let end = if self.language() == Language::Msl {
+            &mut members
+        } else {
+            &mut shader
+        };
+        *end += &self.comments.rest();
         text += shader.trim_start_matches('\n');
         if self.language() == Language::Msl {
             return self.embed(order, &first, &text, members.trim_start_matches('\n'), title);

@@ -9,6 +9,7 @@ pub(crate) mod keyword;
 mod names;
 mod order;
 mod statement;
+mod wrap;
 
 use std::ops::Range;
 
@@ -20,6 +21,7 @@ use toyproof_glsl::tree::{
     FunctionId, Input, InputType, Place, Sampler, SamplerShape, Type, VariableId, VariableKind,
 };
 use toyproof_glsl::{Sampling, Stage};
+pub(super) use wrap::wrap;
 
 use self::names::NagasGlsl;
 use crate::lower::context::LoweringContext;

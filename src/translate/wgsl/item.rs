@@ -31,7 +31,8 @@ impl Writer<'_> {
     fn structure(&mut self, id: StructId) -> Result<(), Unprintable> {
         let tree = &self.cx.tree;
         self.line("");
-        self.comment(tree[id].at);
+        let comments = self.comments.before_item(tree[id].at);
+        self.comment_lines(&comments);
         let name = self.names.structs.get(&id).cloned().unwrap_or_default();
         self.line(&format!("struct {name} {{"));
         for (at, member) in tree[id].members.iter().enumerate() {
@@ -41,13 +42,15 @@ impl Writer<'_> {
             let name = self.names.members.get(&(id, at)).cloned().unwrap_or_default();
             let ty = self.type_name(member.ty);
             self.indented(|writer| {
-                writer.comment(member.at);
+                let comments = writer.comments.before(member.at, Some(member.at));
+                writer.comment_lines(&comments);
                 let from = writer.out.len();
                 writer.line(&format!("{name}: {ty},"));
-                writer.trailing_comment(member.at, from);
+                let comment = writer.comments.behind(member.at, Some(member.at));
+                writer.trailing_comment(comment, from);
             });
         }
-        self.line("}");
+        self.end_of_item();
         Ok(())
     }
 
@@ -59,12 +62,12 @@ impl Writer<'_> {
         if self.is_in_block(id) {
             return self.add_uniform(id);
         }
-        let follows_blank_line = variable.at.is_some_and(|at| self.comments.follows_blank_line(at));
-        if follows_blank_line || self.out.ends_with("}\n") {
+        if self.out.ends_with("}\n") {
             self.line("");
         }
         if let Some(at) = variable.at {
-            self.comment(at);
+            let comments = self.comments.before_item(at);
+            self.comment_lines(&comments);
         }
         let from = self.out.len();
         let name = self.variable(id);
@@ -83,7 +86,8 @@ impl Writer<'_> {
         };
         self.line(&line);
         if let Some(at) = variable.at {
-            self.trailing_comment(at, from);
+            let comment = self.comments.behind(at, Some(at));
+            self.trailing_comment(comment, from);
         }
         Ok(())
     }
@@ -94,7 +98,8 @@ impl Writer<'_> {
             return Err(Unprintable::Construct("a function without a body"));
         };
         self.line("");
-        self.comment(function.at);
+        let comments = self.comments.before_item(function.at);
+        self.comment_lines(&comments);
         self.head(id)?;
         self.indent += 1;
         for &parameter in &function.parameters {
@@ -120,8 +125,18 @@ impl Writer<'_> {
             self.line(&format!("return {zero};"));
         }
         self.indent -= 1;
-        self.line("}");
+        self.end_of_item();
         Ok(())
+    }
+
+    /// Prints the comments at the end of an item, its end, and the comment behind it.
+    fn end_of_item(&mut self) {
+        let comments = self.comments.at_end_of_item();
+        self.indented(|writer| writer.comment_lines(&comments));
+        let from = self.out.len();
+        self.line("}");
+        let comment = self.comments.behind_item();
+        self.trailing_comment(comment, from);
     }
 
     fn head(&mut self, id: FunctionId) -> Result<(), Unprintable> {
@@ -204,7 +219,7 @@ impl Writer<'_> {
         let mut names = Names::new(&cx, &order, self.style);
         names.functions.insert(first, self.function(id).to_owned());
         let facts = Facts::new(&cx);
-        let mut writer = Writer::new(&cx, &names, &facts, self.style, &files, self.deadline);
+        let mut writer = Writer::new(&cx, &names, &facts, &order, self.style, &files, self.deadline);
         writer.definition(first)?;
         self.uses_derivatives |= writer.uses_derivatives;
         self.helpers.append(&mut writer.helpers);

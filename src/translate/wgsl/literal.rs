@@ -85,7 +85,7 @@ impl Writer<'_> {
         let suffixed = std::mem::take(&mut self.suffixed);
         let declaration = format!("const {name}: {ty} = {};", self.number(literal));
         self.suffixed = suffixed;
-        self.macros.declare(&name, at, declaration).then_some(name)
+        self.macros.declare(&name, declaration, at).then_some(name)
     }
 
     /// Whether a literal is printed as the name of a macro.

@@ -47,7 +47,7 @@ pub fn wgsl(
     let names = names::Names::new(&cx, &order, style);
     deadline.check()?;
     let facts = writer::Facts::new(&cx);
-    let writer = writer::Writer::new(&cx, &names, &facts, style, files, deadline);
+    let writer = writer::Writer::new(&cx, &names, &facts, &order, style, files, deadline);
     let written = writer.write(&order);
     // An expired deadline also makes the writer fail.
     deadline.check()?;

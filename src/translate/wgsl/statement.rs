@@ -1,34 +1,69 @@
 //! Prints statements, one per line.
 
 use toyproof_glsl::tree::{
-    Arm, Block, Case, Condition, ExprId, ExprKind, Label, Scalar, Statement, StatementKind, Tree, Type,
-    VariableId, VariableKind, walk,
+    Arm, Block, Case, Condition, ExprId, ExprKind, Label, Place, Scalar, Statement, StatementKind, Tree,
+    Type, VariableId, VariableKind, walk,
 };
 
 use super::Unprintable;
 use super::writer::Writer;
+use crate::author::OuterBlock;
 use crate::lower::unwrap_jump;
 
 type PrintResult = Result<(), Unprintable>;
 
 impl Writer<'_> {
+    /// Prints the statements of a block and the comments in it; the line printed last is its head.
     pub(super) fn statements(&mut self, block: &Block) -> PrintResult {
+        let Some(first) = block.first() else {
+            return Ok(());
+        };
+        let outer = self.enter(first.at);
+        self.each_statement(block)?;
+        self.leave(outer);
+        Ok(())
+    }
+
+    /// Enters a block behind its head; prints the comment there.
+    fn enter(&mut self, inside: Place) -> OuterBlock {
+        let (outer, comment) = self.comments.enter(inside);
+        let last_line = self.out.trim_end().rfind('\n').map_or(0, |end| end + 1);
+        self.trailing_comment(comment, last_line);
+        outer
+    }
+
+    /// Leaves a block; prints the comments at its end.
+    fn leave(&mut self, outer: OuterBlock) {
+        let comments = self.comments.leave(outer);
+        self.comment_lines(&comments);
+    }
+
+    fn each_statement(&mut self, block: &Block) -> PrintResult {
         for (number, statement) in block.iter().enumerate() {
             if matches!(statement.kind, StatementKind::Struct(_)) {
                 continue;
             }
             self.check_deadline()?;
+            let name = walk::declared(statement).and_then(|variable| self.cx.tree[variable].at);
+            let comments = self.comments.before(statement.at, name);
+            // The blank line above the first statement belongs to nothing.
+            let skipped = usize::from(number == 0 && comments.first().is_some_and(String::is_empty));
             let begin = self.out.len();
-            if self.comments.follows_blank_line(statement.at) && number > 0 {
-                self.line("");
-            }
-            self.comment(statement.at);
+            self.comment_lines(&comments[skipped..]);
             let from = self.out.len();
             self.statement(statement)?;
             if self.out.len() == from {
-                self.out.truncate(begin);
-            } else if !statement.kind.is_compound() {
-                self.trailing_comment(statement.at, from);
+                // Without a statement, a blank line is not needed.
+                if comments.iter().all(String::is_empty) {
+                    self.out.truncate(begin);
+                }
+            } else if statement.kind.is_compound() {
+                let comment = self.comments.behind_block(statement.at);
+                let last_line = self.out.trim_end().rfind('\n').map_or(0, |end| end + 1);
+                self.trailing_comment(comment, last_line);
+            } else {
+                let comment = self.comments.behind(statement.at, name);
+                self.trailing_comment(comment, from);
             }
         }
         Ok(())
@@ -208,9 +243,12 @@ impl Writer<'_> {
         let unsigned = self.cx.tree[selector].ty.scalar() == Some(Scalar::Uint);
         let selector = self.value(selector)?;
         self.line(&format!("switch {} {{", selector.code));
+        let outer = cases.first().map(|first| self.enter(first.at));
         self.indent += 1;
         let mut has_default = false;
         for case in cases {
+            let comments = self.comments.before(case.at, None);
+            self.comment_lines(&comments);
             let labels: Vec<String> = case
                 .labels
                 .iter()
@@ -235,6 +273,9 @@ impl Writer<'_> {
         }
         if !has_default {
             self.line("default: {}");
+        }
+        if let Some(outer) = outer {
+            self.leave(outer);
         }
         self.indent -= 1;
         self.line("}");

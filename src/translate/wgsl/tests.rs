@@ -28,7 +28,7 @@ fn printing_stops_after_the_deadline() {
     let order = Order::new(&cx, CaseLabels::AsWritten);
     let names = Names::new(&cx, &order, Style::Plain);
     let facts = Facts::new(&cx);
-    let mut writer = Writer::new(&cx, &names, &facts, Style::Plain, &files, &over);
+    let mut writer = Writer::new(&cx, &names, &facts, &order, Style::Plain, &files, &over);
     let body = checked.tree[checked.main_image].body.as_ref().unwrap();
     let value = checked.tree.exprs.ids().next().unwrap();
     assert!(writer.value(value).is_err());
@@ -418,8 +418,8 @@ fn letters_bits_blank_lines_and_comments_are_preserved() {
                 // The other way.
                 let bg = color.rb;
                 color = vec4f(color.r, bg.g, bg.r, color.a);
-                let distance = length(p); // hidden
-                let length_1 = 0.1;
+                let distance = length(p);
+                let length_1 = 0.1; // hidden
                 var bits = 2;
                 bits = 0x0fF & ((i32(p.x) << 3u) >> u32(bits));
                 let xz = color.xz * (modulo(p.x * 2.0, length_1) * modulo_vec2f(p, vec2f(2.0)).x);

@@ -13,7 +13,7 @@ use super::names::Names;
 use super::style::Style;
 use crate::author::{Comments, MacroConstants, SourceText};
 use crate::lower::context::LoweringContext;
-use crate::print::Order;
+use crate::print::{Order, wrap};
 
 /// Prints a lowered shader.
 pub(super) struct Writer<'a> {
@@ -36,7 +36,7 @@ pub(super) struct Writer<'a> {
     pub(super) deferred_steps: HashSet<ExprId>,
     /// Whether expressions need lines before their value, as far as determined.
     pub(super) hoisting: HashMap<ExprId, bool>,
-    /// The constants of macros that expand to a literal.
+    /// The constants that macros become.
     pub(super) macros: MacroConstants,
     /// Helper functions that are called, by name.
     pub(super) helpers: BTreeMap<String, String>,
@@ -55,6 +55,7 @@ impl<'a> Writer<'a> {
         cx: &'a LoweringContext,
         names: &'a Names,
         facts: &'a Facts,
+        order: &Order,
         style: Style,
         files: &'a Files,
         deadline: &'a Deadline,
@@ -64,7 +65,7 @@ impl<'a> Writer<'a> {
             names,
             facts,
             style,
-            comments: Comments::new(files),
+            comments: Comments::new(files, &cx.tree, &order.items),
             source: SourceText::new(files),
             deadline,
             out: String::new(),
@@ -108,17 +109,20 @@ impl<'a> Writer<'a> {
         value
     }
 
-    /// Prints the comment lines above a place, unless printed already.
-    pub(super) fn comment(&mut self, at: Place) {
-        for line in self.comments.above(at) {
-            self.line(&line);
+    /// Prints comments and blank lines, which are empty. A block does not begin with a blank line, and none
+    /// follows another.
+    pub(super) fn comment_lines(&mut self, lines: &[String]) {
+        for line in lines {
+            let is_repeated = self.out == "\n" || self.out.ends_with("\n\n") || self.out.ends_with("{\n");
+            if !(line.is_empty() && is_repeated) {
+                self.line(line);
+            }
         }
     }
 
-    /// Prints the author's comment at the end of a place's line: after the line printed since `from`, or
-    /// above it if there are several.
-    pub(super) fn trailing_comment(&mut self, at: Place, from: usize) {
-        let Some(comment) = self.comments.trailing(at) else {
+    /// Prints a comment at the end of the line printed since `from`, or above it if there are several.
+    pub(super) fn trailing_comment(&mut self, comment: Option<String>, from: usize) {
+        let Some(comment) = comment else {
             return;
         };
         let is_one_line = self.out[from..].matches('\n').count() == 1;
@@ -188,19 +192,17 @@ impl<'a> Writer<'a> {
         let items = std::mem::take(&mut self.out);
         let [head, end] = self.style_code(order)?;
         let mut text = first + &head;
-        let constants = self.macros.declarations();
+        let constants = self.macros.declarations(&mut self.comments);
         if !constants.is_empty() {
-            for declaration in constants {
-                text.push_str(declaration);
-                text.push('\n');
-            }
+            text.push_str(&constants);
             text.push('\n');
         }
         for helper in self.helpers.values() {
             text.push_str(helper);
             text.push('\n');
         }
-        text.push_str(items.trim_start_matches('\n'));
+        text.push_str(&wrap(items.trim_start_matches('\n'), 1));
+        text.push_str(&self.comments.rest());
         text.push_str(&end);
         Ok(text)
     }
