@@ -23,6 +23,15 @@ pub enum ProofStatus {
     NotProved(String),
 }
 
+/// What a file was made from.
+#[derive(Debug, Clone, Copy)]
+pub struct Origin<'a> {
+    /// The name of the shader or the pass.
+    pub name: &'a str,
+    /// Its title, author and address, if they are known.
+    pub credit: Option<&'a str>,
+}
+
 impl ProofStatus {
     /// Returns whether it is proved, or no proof was requested.
     #[must_use]
@@ -33,11 +42,11 @@ impl ProofStatus {
 
 /// Inserts the comment before a text, or after the `#version` line, which must come first. In SPIR-V it is a
 /// string that nothing refers to.
-pub fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofStatus) {
+pub fn insert(bytes: &mut Vec<u8>, target: Target, origin: Origin, status: &ProofStatus) {
     let at = match target {
         Target::Spirv => {
             if let Some(words) = spirv::of_bytes(bytes) {
-                *bytes = spirv::bytes(&spirv::with_note(&words, &header_text(name, status)));
+                *bytes = spirv::bytes(&spirv::with_note(&words, &header_text(origin, status)));
             }
             return;
         }
@@ -47,14 +56,14 @@ pub fn insert(bytes: &mut Vec<u8>, target: Target, name: &str, status: &ProofSta
             .map_or(0, |end| end + 1),
         Target::Glsl | Target::Wgsl | Target::Msl | Target::Hlsl => 0,
     };
-    let head = header_text(name, status);
+    let head = header_text(origin, status);
     bytes.splice(at..at, head.into_bytes());
 }
 
 /// The text of a host's file with the comment.
 #[must_use]
-pub fn insert_in_hosted(text: &str, host: Host, name: &str, status: &ProofStatus) -> String {
-    let head = header_text(name, status);
+pub fn insert_in_hosted(text: &str, host: Host, origin: Origin, status: &ProofStatus) -> String {
+    let head = header_text(origin, status);
     match host {
         Host::Three => head + text,
         // The header of ISF comes first.
@@ -65,14 +74,19 @@ pub fn insert_in_hosted(text: &str, host: Host, name: &str, status: &ProofStatus
     }
 }
 
-fn header_text(name: &str, status: &ProofStatus) -> String {
+fn header_text(origin: Origin, status: &ProofStatus) -> String {
     // A name may contain anything, even a line break, which would end the comment.
-    let name: String = name
-        .chars()
-        .map(|c| if c.is_control() { '?' } else { c })
-        .collect();
+    let in_comment = |name: &str| -> String {
+        let shown = name.chars().map(|c| if c.is_control() { '?' } else { c });
+        shown.collect()
+    };
     let version = env!("CARGO_PKG_VERSION");
-    let mut head = format!("// {name}, converted by toyproof {version} (naga {NAGA}).\n");
+    let mut head = String::new();
+    if let Some(credit) = origin.credit {
+        let _ = writeln!(head, "// {}", in_comment(credit));
+    }
+    let name = in_comment(origin.name);
+    let _ = writeln!(head, "// {name}, converted by toyproof {version} (naga {NAGA}).");
     match status {
         ProofStatus::NotRequested => {}
         ProofStatus::Proved(ShaderProof::File(proof, readers)) => {
@@ -263,15 +277,25 @@ mod tests {
     #[test]
     fn names_cannot_end_the_comment_and_the_version_stays_first() {
         let mut bytes = b"#version 300 es\nvoid main() {}\n".to_vec();
-        insert(&mut bytes, Target::Glsl, "a\nb.glsl", &ProofStatus::NotRequested);
+        let origin = Origin {
+            name: "a\nb.glsl",
+            credit: Some("\"Waves\" by so\nmeone"),
+        };
+        insert(&mut bytes, Target::Glsl, origin, &ProofStatus::NotRequested);
         let text = String::from_utf8(bytes).unwrap();
         assert!(
-            text.starts_with("#version 300 es\n// a?b.glsl, converted by toyproof "),
+            text.starts_with(
+                "#version 300 es\n// \"Waves\" by so?meone\n// a?b.glsl, converted by toyproof "
+            ),
             "{text}"
         );
         // A SPIR-V header, and `OpCapability Shader`.
         let mut words = spirv::bytes(&[0x0723_0203, 0x0001_0000, 0, 7, 0, 0x0002_0011, 1]);
-        insert(&mut words, Target::Spirv, "a", &ProofStatus::NotRequested);
+        let origin = Origin {
+            name: "a",
+            credit: None,
+        };
+        insert(&mut words, Target::Spirv, origin, &ProofStatus::NotRequested);
         let words = spirv::of_bytes(&words).unwrap();
         // The string has the next id, and follows the capability.
         assert_eq!((words[3], words[7] & 0xffff, words[8]), (8, 7, 7));

@@ -52,18 +52,22 @@ impl Original {
         timeout: Duration,
         pool: Option<&ThreadPool>,
     ) -> Result<Self, ProofError> {
-        let (device, frames, observations) = match runner {
-            Runner::Driver(worker) => {
-                let (device, mut frames) = Self::play_strictly(passes, worker, adapt, timeout)?;
-                let observations = within(pool, || observe(passes, &mut frames, timeout))?;
-                (device, frames, observations)
-            }
+        let (device, mut frames) = match runner {
+            Runner::Driver(worker) => Self::play_strictly(passes, worker, adapt, timeout)?,
             Runner::Evaluator(_) => {
-                let (frames, observations) = within(pool, || evaluate(passes, adapt, timeout))?;
-                (EVALUATOR.to_owned(), frames, observations)
+                let shader = PassShader {
+                    checked: passes.sources.iter().map(|source| source.checked).collect(),
+                    graph: passes.graph,
+                    media: passes.media,
+                    films: MovingTextures::default(),
+                };
+                let frames = within(pool, || {
+                    Evaluated::with(&shader, timeout, |playback| played(passes, playback, adapt))
+                })?;
+                (EVALUATOR.to_owned(), frames)
             }
         };
-        let Observations { drawn, undefined_by } = observations;
+        let Observations { drawn, undefined_by } = within(pool, || observe(passes, &mut frames, timeout))?;
         Ok(Self {
             frames,
             device,
@@ -90,22 +94,7 @@ impl Original {
         let sampling = passes.sources.iter().map(|source| source.checked.sampling);
         let mut playback = open(worker, code, sampling, passes.graph, passes.media)?;
         let device = playback.device().to_owned();
-        let mut frames = Vec::new();
-        for size in PASS_SIZES {
-            playback
-                .restore(&start(passes.graph, size))
-                .map_err(Failure::Gpu)?;
-            for inputs in inputs(size).map(adapt) {
-                playback.render(&inputs, &[]).map_err(Failure::Gpu)?;
-                let state = playback.state(&inputs).map_err(Failure::Gpu)?;
-                frames.push(PlayedFrame {
-                    inputs,
-                    state,
-                    undefined: Vec::new(),
-                });
-            }
-        }
-        Ok((device, frames))
+        Ok((device, played(passes, &mut playback, adapt)?))
     }
 
     /// The frames, and the pixels of the image that depend on undefined behavior in each.
@@ -172,22 +161,9 @@ impl Original {
             films: MovingTextures::default(),
         };
         Ok(within(pool, || {
-            let programs = shader.programs(timeout * EVALUATOR_TIME_FACTOR);
-            let programs = programs.map_err(|(_, refusal)| super::proof::refused(refusal))?;
-            let start = |state: &State| {
-                CpuPlayback::<f32>::new(
-                    &shader,
-                    &programs,
-                    Some(state),
-                    timeout * EVALUATOR_TIME_FACTOR,
-                    Settings::plain(),
-                )
-            };
-            let mut playback = Evaluated {
-                start: &start,
-                playback: None,
-            };
-            self.compare_played(passes, &mut playback, upside_down)
+            Evaluated::with(&shader, timeout, |playback| {
+                self.compare_played(passes, playback, upside_down)
+            })
         })?)
     }
 
@@ -224,13 +200,16 @@ impl Original {
     }
 }
 
-/// Plays converted passes.
+/// Plays passes frame by frame.
 trait Playback {
     /// Continues from a state.
     fn restart(&mut self, state: &State) -> Result<(), Failure>;
 
     /// Renders the next frame; returns the images of passes.
     fn images(&mut self, frame: &Frame, targets: &[Target]) -> Result<Vec<Image>, Failure>;
+
+    /// The state after a frame, which was rendered last.
+    fn state_after(&mut self, frame: &Frame) -> Result<State, Failure>;
 }
 
 impl Playback for DevicePlayback<'_> {
@@ -241,27 +220,86 @@ impl Playback for DevicePlayback<'_> {
     fn images(&mut self, frame: &Frame, targets: &[Target]) -> Result<Vec<Image>, Failure> {
         Ok(self.render(frame, targets)?)
     }
+
+    fn state_after(&mut self, frame: &Frame) -> Result<State, Failure> {
+        Ok(self.state(frame)?)
+    }
 }
 
 /// Plays passes on the evaluator.
-struct Evaluated<'a, 's> {
-    start: &'s (dyn Fn(&State) -> CpuPlayback<'a, f32> + Sync),
-    /// `None` before the first frame.
-    playback: Option<CpuPlayback<'a, f32>>,
+struct Evaluated<'a> {
+    shader: &'a PassShader<'a>,
+    programs: &'a [Program],
+    /// The time limit of a frame.
+    timeout: Duration,
+    playback: CpuPlayback<'a, f32>,
 }
 
-impl Playback for Evaluated<'_, '_> {
+impl<'a> Evaluated<'a> {
+    /// Compiles a shader, and plays it from before the first frame.
+    fn with<T>(
+        shader: &PassShader,
+        timeout: Duration,
+        play: impl FnOnce(&mut Evaluated) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let timeout = timeout * EVALUATOR_TIME_FACTOR;
+        let programs = shader.programs(timeout);
+        let programs = programs.map_err(|(_, refusal)| super::proof::refused(refusal))?;
+        play(&mut Evaluated {
+            shader,
+            programs: &programs,
+            timeout,
+            playback: Evaluated::from(shader, &programs, timeout, None),
+        })
+    }
+
+    fn from(
+        shader: &'a PassShader<'a>,
+        programs: &'a [Program],
+        timeout: Duration,
+        state: Option<&State>,
+    ) -> CpuPlayback<'a, f32> {
+        CpuPlayback::new(shader, programs, state, timeout, Settings::plain())
+    }
+}
+
+impl Playback for Evaluated<'_> {
     fn restart(&mut self, state: &State) -> Result<(), Failure> {
-        self.playback = Some((self.start)(state));
+        self.playback = Self::from(self.shader, self.programs, self.timeout, Some(state));
         Ok(())
     }
 
     fn images(&mut self, frame: &Frame, targets: &[Target]) -> Result<Vec<Image>, Failure> {
-        let playback = self.playback.as_mut().expect("a comparison starts from a state");
-        playback.render(frame).map_err(|error| error.failure)?;
-        let image = |&target: &Target| Image::clone(&stack_of(playback.texture(target)));
+        self.playback.render(frame).map_err(|error| error.failure)?;
+        let image = |&target: &Target| Image::clone(&stack_of(self.playback.texture(target)));
         Ok(targets.iter().map(image).collect())
     }
+
+    fn state_after(&mut self, frame: &Frame) -> Result<State, Failure> {
+        Ok(self.playback.state(frame.frame))
+    }
+}
+
+/// The frames of the original in all sizes, without their undefined pixels.
+fn played(
+    passes: &PassSources,
+    playback: &mut impl Playback,
+    adapt: fn(Frame) -> Frame,
+) -> Result<Vec<PlayedFrame>, Failure> {
+    let mut frames = Vec::new();
+    for size in PASS_SIZES {
+        playback.restart(&start(passes.graph, size))?;
+        for inputs in inputs(size).map(adapt) {
+            playback.images(&inputs, &[])?;
+            let state = playback.state_after(&inputs)?;
+            frames.push(PlayedFrame {
+                inputs,
+                state,
+                undefined: Vec::new(),
+            });
+        }
+    }
+    Ok(frames)
 }
 
 /// The image of a texture, which the graph has.
@@ -345,8 +383,26 @@ fn observe(
     frames: &mut [PlayedFrame],
     timeout: Duration,
 ) -> Result<Observations, Failure> {
-    let programs = programs(passes, timeout)?;
-    let mut player = observer(passes, &programs, timeout);
+    let limit = timeout * EVALUATOR_TIME_FACTOR;
+    let programs = passes
+        .sources
+        .iter()
+        .map(|source| Program::within(source.checked, limit));
+    let programs: Vec<Program> = programs
+        .collect::<Result<_, _>>()
+        .map_err(super::proof::refused)?;
+    let observer = Observer {
+        programs: &programs,
+        media: passes.media,
+        limit,
+        rendered: Vec::new(),
+        undefined: Vec::new(),
+        observations: Observations {
+            drawn: vec![Vec::new(); programs.len()],
+            undefined_by: None,
+        },
+    };
+    let mut player = Player::new(passes.graph.clone(), observer);
     for frame in frames {
         // The textures of another size are zeros.
         let rendered = passes
@@ -354,69 +410,22 @@ fn observe(
             .passes()
             .iter()
             .map(|pass| frame.texture(pass.target));
-        player.renderer_mut().rendered = Some(rendered.collect());
+        player.renderer_mut().rendered = rendered.collect();
         player.render(&frame.inputs)?;
         frame.undefined = std::mem::take(&mut player.renderer_mut().undefined);
     }
     Ok(player.into_renderer().observations)
 }
 
-/// Renders the passes on the evaluator, and finds their undefined pixels.
-fn evaluate(
-    passes: &PassSources,
-    adapt: fn(Frame) -> Frame,
-    timeout: Duration,
-) -> Result<(Vec<PlayedFrame>, Observations), Failure> {
-    let programs = programs(passes, timeout)?;
-    let mut frames = Vec::new();
-    let mut player = observer(passes, &programs, timeout);
-    for inputs in PASS_SIZES.into_iter().flat_map(inputs).map(adapt) {
-        player.render(&inputs)?;
-        let copy = |texture: &Texture| Ok(texture.clone().without_mipmaps());
-        let Ok::<State, std::convert::Infallible>(state) = player.state(inputs.frame, copy);
-        frames.push(PlayedFrame {
-            inputs,
-            state,
-            undefined: std::mem::take(&mut player.renderer_mut().undefined),
-        });
-    }
-    Ok((frames, player.into_renderer().observations))
-}
-
-fn programs(passes: &PassSources, timeout: Duration) -> Result<Vec<Program>, Failure> {
-    let sources = passes.sources.iter();
-    let programs = sources.map(|source| Program::within(source.checked, timeout * EVALUATOR_TIME_FACTOR));
-    programs.collect::<Result<_, _>>().map_err(super::proof::refused)
-}
-
-fn observer<'a>(
-    passes: &PassSources<'a>,
-    programs: &'a [Program],
-    timeout: Duration,
-) -> Player<Observer<'a>> {
-    let observer = Observer {
-        programs,
-        media: passes.media,
-        limit: timeout * EVALUATOR_TIME_FACTOR,
-        rendered: None,
-        undefined: Vec::new(),
-        observations: Observations {
-            drawn: vec![Vec::new(); programs.len()],
-            undefined_by: None,
-        },
-    };
-    Player::new(passes.graph.clone(), observer)
-}
-
-/// Finds the undefined pixels of passes. If a driver rendered their textures, these are read, so that it and the
-/// evaluator never diverge.
+/// Finds the undefined pixels of passes; their textures are those that the driver rendered, so that it and
+/// the evaluator never diverge.
 struct Observer<'a> {
     programs: &'a [Program],
     media: &'a [Texture],
     /// The time limit of an image.
     limit: Duration,
-    /// The images of the driver in this frame, for each pass; `None` without a driver.
-    rendered: Option<Vec<Arc<Image>>>,
+    /// The images of this frame, for each pass.
+    rendered: Vec<Arc<Image>>,
     /// The undefined pixels of each pass of this frame.
     undefined: Vec<Vec<bool>>,
     observations: Observations,
@@ -445,10 +454,7 @@ impl Renderer for Observer<'_> {
         let stop = AtomicBool::new(false);
         let evaluator = Evaluator::new(&self.programs[pass], &frame, self.limit, &stop);
         let Evaluation {
-            image,
-            undefined,
-            observed,
-            ..
+            undefined, observed, ..
         } = evaluator.single(&frame.rows())?;
         if observed.beyond_cap > 0 {
             return Err(Failure::LoopTruncated(observed.beyond_cap));
@@ -463,11 +469,7 @@ impl Renderer for Observer<'_> {
             .map(|&observed| (pass, observed))
             .chain(self.observations.undefined_by);
         self.observations.undefined_by = most.max_by_key(|(_, observed)| observed.pixels);
-        let image = match &self.rendered {
-            Some(rendered) => Image::clone(&rendered[pass]),
-            None => image,
-        };
-        let texture = Texture::from(image).shaped_as(&over);
+        let texture = Texture::from(Image::clone(&self.rendered[pass])).shaped_as(&over);
         Ok(if over.levels() > 1 {
             texture.with_mipmaps()
         } else {

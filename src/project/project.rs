@@ -43,6 +43,20 @@ impl Project {
         self.document.root.get("info")?.get("name")?.as_str()
     }
 
+    /// Who made the shader and where it is, such as `"Waves" by someone, https://www.shadertoy.com/view/XsBXWt`;
+    /// `None` without a name or an author.
+    #[must_use]
+    pub fn credit(&self) -> Option<String> {
+        let text = |key: &str| self.document.root.get("info")?.get(key)?.as_str();
+        let is_given = |text: &&str| !text.trim().is_empty();
+        let name = text("name").filter(is_given)?;
+        let author = text("username").filter(is_given)?;
+        // The editor's export of a shader that has not been saved has the id -1.
+        let id = text("id").filter(|id| id.len() == 6 && id.chars().all(|c| c.is_ascii_alphanumeric()));
+        let place = id.map_or_else(String::new, |id| format!(", https://www.shadertoy.com/view/{id}"));
+        Some(format!("\"{name}\" by {author}{place}"))
+    }
+
     /// The pass that renders the image.
     ///
     /// # Panics

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use rayon::ThreadPool;
-use toyproof_convert::header::{self, ProofStatus};
+use toyproof_convert::header::{self, Origin, ProofStatus};
 use toyproof_convert::{
     self as convert, ConvertError, Converter, FRAMES, FallbackReason, Host, HostedConversion, HostedSource,
     ProjectConversion, ProjectError, ProjectSource, ProofError, Prover, Runner, Source, TargetCode,
@@ -187,8 +187,17 @@ impl Settings<'_> {
             fallback,
         } = converted.map_err(refusal)?;
         let status = status_of(proof.map(|proof| proof.map(ProofStatus::Proved)));
+        let credit = credit(shader);
         Ok(Conversion {
-            files: vec![self.output_file(None, code, &shader.name, &status)],
+            files: vec![self.output_file(
+                None,
+                code,
+                Origin {
+                    name: &shader.name,
+                    credit: credit.as_deref(),
+                },
+                &status,
+            )],
             status,
             fallback,
         })
@@ -219,7 +228,17 @@ impl Settings<'_> {
             error => Refusal::Message(error.to_string(), Exit::Error),
         })?;
         let status = status_of(proof);
-        let bytes = header::insert_in_hosted(&text, host, &shader.name, &status).into_bytes();
+        let credit = credit(shader);
+        let bytes = header::insert_in_hosted(
+            &text,
+            host,
+            Origin {
+                name: &shader.name,
+                credit: credit.as_deref(),
+            },
+            &status,
+        );
+        let bytes = bytes.into_bytes();
         Ok(Conversion {
             files: vec![OutputFile { name: None, bytes }],
             status,
@@ -259,9 +278,14 @@ impl Settings<'_> {
             error => Refusal::Message(error.to_string(), Exit::Error),
         })?;
         let status = status_of(proof.map(|proof| proof.map(ProofStatus::ProvedPasses)));
+        let credit = project.project.credit();
         let passes = passes.into_iter().map(|pass| {
             let name = format!("{}, {}", shader.name, pass.kind);
-            self.output_file(Some(pass.name), pass.code, &name, &status)
+            let origin = Origin {
+                name: &name,
+                credit: credit.as_deref(),
+            };
+            self.output_file(Some(pass.name), pass.code, origin, &status)
         });
         // It is complete when the host's files are there: its passes precede them.
         let host = host.into_iter().map(|file| OutputFile {
@@ -280,15 +304,20 @@ impl Settings<'_> {
         &self,
         name: Option<String>,
         code: TargetCode,
-        source: &str,
+        origin: Origin,
         status: &ProofStatus,
     ) -> OutputFile {
         let mut bytes = code.into_bytes();
         if let Some(target) = self.converter.target {
-            header::insert(&mut bytes, target, source, status);
+            header::insert(&mut bytes, target, origin, status);
         }
         OutputFile { name, bytes }
     }
+}
+
+/// Who made a shader of the site.
+fn credit(shader: &Shader) -> Option<String> {
+    shader.project()?.project.credit()
 }
 
 /// The status of a proof, if one was requested.

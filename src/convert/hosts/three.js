@@ -342,8 +342,8 @@ export class Shader {
     const resolution = this.inputs.iResolution.value;
     if (resolution.x === width && resolution.y === height) return;
     resolution.set(width, height, 1);
-    const before = this.renderer.getRenderTarget();
     // #if copies
+    const before = this.renderer.getRenderTarget();
     const copy = (from, to) => this.copy(from, to);
     // #endif
     // #if buffers
@@ -358,24 +358,26 @@ export class Shader {
     if (old) copy(old.texture, this.image);
     old?.dispose();
     // #endif
+    // #if copies
     this.renderer.setRenderTarget(before);
+    // #endif
   }
   // #if channels
 
   /** Sets the textures of a pass. */
   bind({ channels, material: { uniforms } }) {
     for (const name in channels) {
-      const { buffer, texture, keyboard } = channels[name];
+      const channel = channels[name];
       let read = this.black;
       let size = [0, 0];
       // #if buffers
-      if (buffer) read = this.buffers[buffer].texture(channels[name]);
+      if (channel.buffer) read = this.buffers[channel.buffer].texture(channel);
       // #endif
       // #if textures
-      if (texture) read = this.textures[texture] ?? read;
+      if (channel.texture) read = this.textures[channel.texture] ?? read;
       // #endif
       // #if keyboard
-      if (keyboard) read = this.keyboard.texture;
+      if (channel.keyboard) read = this.keyboard.texture;
       // #endif
       if (read !== this.black) size = sizeOf(read);
       uniforms[name].value = read;
@@ -385,8 +387,8 @@ export class Shader {
   }
   // #endif
 
+  // #if buffers
   renderPass({ name, material }, target) {
-    // #if buffers
     if (name !== "image") {
       const buffer = this.buffers[name];
       const [first, ...copies] = buffer.sides[1 - buffer.last];
@@ -395,6 +397,9 @@ export class Shader {
       buffer.last = 1 - buffer.last;
       return;
     }
+    // #endif
+    // #if !buffers
+  renderPass({ material }, target) {
     // #endif
     // #if discards
     // Discarded pixels keep the color of the last frame, so the image is a texture of its own.

@@ -43,6 +43,14 @@ impl Expansions {
         self.uses.keys().copied()
     }
 
+    /// The definition of the outermost macro that is used at a span, from its name to the end of the
+    /// replacement.
+    pub fn definition_at(&self, used: Span) -> Option<Span> {
+        self.uses
+            .get(&used)
+            .map(|&definition| self.definitions[definition].extent)
+    }
+
     /// The macro that a diagnostic concerns: the one that contains its text, or else the one that is used at
     /// its place, such as where an operator of the macro joins an argument with text of the macro.
     fn definition(&self, diagnostic: &Diagnostic) -> Option<&Definition> {

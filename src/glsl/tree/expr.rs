@@ -21,7 +21,7 @@ pub struct Expr {
 }
 
 /// The kind of an expression. Operands are evaluated from left to right; `&&`, `||` and `?:` short-circuit.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum ExprKind {
     /// A number, or `true` or `false`.
     Literal(Literal),

@@ -38,39 +38,24 @@ impl<'a> SourceText<'a> {
             .get(span.start as usize..span.end as usize)
     }
 
-    /// The macro whose entire replacement text is the literal at a place, which it expands to.
+    /// The macro whose entire replacement text is the literal at a place.
     pub(crate) fn macro_name(&self, at: Place) -> Option<&'a str> {
         if !at.is_expanded() {
             return None;
         }
-        let text = self.text(at.span)?;
-        let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-            && text.starts_with(|c: char| c.is_ascii_alphabetic());
-        (is_name && self.is_whole_macro(text, at)).then_some(text)
-    }
-
-    /// Whether a place is the entire replacement text of `#define NAME`.
-    fn is_whole_macro(&self, name: &str, at: Place) -> bool {
         let text = self.files.get(at.spelling.file).text();
-        let (Some(before), Some(after)) = (
-            text.get(..at.spelling.start as usize),
-            text.get(at.spelling.end as usize..),
-        ) else {
-            return false;
-        };
-        let before = before.rsplit('\n').next().unwrap_or_default();
-        let after = after.lines().next().unwrap_or_default().trim();
-        let is_end = after.is_empty() || after.starts_with("//") || is_block_comment(after);
+        let before = text.get(..at.spelling.start as usize)?.rsplit('\n').next()?;
+        let after = text.get(at.spelling.end as usize..)?.lines().next();
+        let after = after.unwrap_or_default().trim();
         let mut words = before.split_whitespace();
-        let directive = words.next().unwrap_or_default();
-        let named = match directive {
-            "#define" => words.next(),
-            "#" => words
-                .next()
-                .filter(|&word| word == "define")
-                .and_then(|_| words.next()),
-            _ => None,
+        let name = match words.next()? {
+            "#define" => words.next()?,
+            "#" if words.next() == Some("define") => words.next()?,
+            _ => return None,
         };
-        named == Some(name) && words.next().is_none() && is_end
+        let is_whole = words.next().is_none() && (after.is_empty() || after.starts_with("//") || is_block_comment(after));
+        let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            && name.starts_with(|c: char| c.is_ascii_alphabetic());
+        (is_whole && is_name).then_some(name)
     }
 }

@@ -1,16 +1,18 @@
 //! Prints expressions with the fewest parentheses that preserve their meaning. An explicit stack keeps chains
 //! of any length off the call stack.
 
+use std::f32::consts;
+
 use toyproof_glsl::tree::{
     BinaryOp, BuiltInVariable, Constructor, ExprId, ExprKind, Literal, Place, Scalar, Type, UnaryOp, Value,
     VariableId, VariableKind, walk,
 };
 
 use super::Unprintable;
-use super::effect::is_pure;
 use super::language::Language;
 use super::writer::{PrintResult, Writer};
 use crate::author::{float, is_hexadecimal};
+use crate::lower::is_pure;
 
 /// Precedence levels, from the weakest binding to the strongest.
 pub(super) mod level {
@@ -437,6 +439,8 @@ impl Writer<'_> {
             }
             Type::Struct(id) => format!("({})0", self.structure_name(id)),
             Type::Scalar(scalar) => number(&Literal::from(zero_of(Some(scalar)))),
+            // glslang may make infinities of the integer.
+            Type::Matrix { .. } => format!("({})0.0", self.type_name(ty)?),
             _ => format!("({})0", self.type_name(ty)?),
         })
     }
@@ -478,9 +482,15 @@ impl Writer<'_> {
             Language::Godot => number_in_godot(literal),
             _ => number(literal),
         };
-        let Some(name) = self.source.macro_name(at).filter(|name| self.is_free(name)) else {
+        let Some(name) = self.source.macro_name(at) else {
             return code;
         };
+        if self.language() == Language::Godot && is_constant_of_godot(name, literal) {
+            return name.to_owned();
+        }
+        if !self.is_free(name) {
+            return code;
+        }
         let ty = match literal.value {
             Value::Float(_) => "float",
             Value::Int(_) => "int",
@@ -519,6 +529,17 @@ fn is_matrix(ty: Type) -> bool {
 fn is_product(left: Type, right: Type) -> bool {
     let is_operand = |ty| matches!(ty, Type::Matrix { .. } | Type::Vector(..));
     (is_matrix(left) || is_matrix(right)) && is_operand(left) && is_operand(right)
+}
+
+/// Whether a name is that of Godot's own constant with a value.
+fn is_constant_of_godot(name: &str, literal: &Literal) -> bool {
+    let constant = match name {
+        "PI" => consts::PI,
+        "TAU" => consts::TAU,
+        "E" => consts::E,
+        _ => return false,
+    };
+    matches!(literal.value, Value::Float(value) if value as f32 == constant)
 }
 
 /// Godot prints the literals of its code with 14 decimals: smaller numbers are made of their bits.

@@ -5,7 +5,9 @@ use super::tests::{self, converted};
 fn for_godot(items: &str, statements: &str) -> String {
     let text = format!("{items}\nvoid mainImage(out vec4 color, in vec2 at) {{\n{statements}\n}}");
     let written = converted(CHost::Godot, &text).unwrap();
-    written.split_once(";\n").map_or("", |(_, rest)| rest).to_owned()
+    let rest = written.split_once(";\n").map_or("", |(_, rest)| rest);
+    assert!(!rest.contains("\n  "), "{rest}");
+    rest.replace('\t', "    ")
 }
 
 #[track_caller]
@@ -216,4 +218,16 @@ fn a_long_chain_of_calls_passes_globals_in_time() {
     let (_, after) = written.split_once("float f500(").unwrap();
     let (parameters, _) = after.split_once(") {").unwrap();
     assert_eq!(parameters.matches("inout float").count(), 100);
+}
+
+#[test]
+fn godot_has_its_own_constants() {
+    let written = for_godot(
+        "#define PI 3.14159265359\n#define TAU 6.3\n",
+        "color = vec4(sin(PI * at.x), cos(TAU * at.y), 0.0, 1.0);",
+    );
+    assert!(
+        written.contains("vec4(sin(PI * at.x), cos(6.3 * at.y), 0.0, 1.0)"),
+        "{written}"
+    );
 }

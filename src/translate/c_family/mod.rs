@@ -7,7 +7,6 @@
 
 mod builtin;
 mod construct;
-mod effect;
 mod expression;
 #[cfg(test)]
 mod godot_tests;
@@ -32,8 +31,8 @@ use self::language::{Language, Words};
 use self::writer::Writer;
 use crate::lower::context::LoweringContext;
 use crate::lower::{
-    GlobalConflict, branch_for_effects, chain_switches, fold_by_precision, fold_except, name_array_values,
-    orient_derivatives, pass_globals,
+    GlobalConflict, branch_for_effects, call_macros, chain_switches, fold_by_precision, fold_except,
+    name_array_values, orient_derivatives, pass_globals, unwrap_case_jumps,
 };
 use crate::print::{CaseLabels, Names, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
@@ -67,6 +66,7 @@ pub fn write(
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
+    call_macros(&mut cx, checked, files, deadline)?;
     fold_except(&mut cx, |_| false);
     fold_by_precision(&mut cx);
     let language = host.language();
@@ -80,6 +80,7 @@ pub fn write(
         name_array_values(&mut cx);
     }
     late.run(&mut cx, deadline)?;
+    unwrap_case_jumps(&mut cx);
     if language == Language::Godot {
         chain_switches(&mut cx);
     }
@@ -94,8 +95,29 @@ pub fn write(
     let written = writer.write(&order, title);
     // An expired deadline also makes the writer fail.
     deadline.check()?;
-    Ok(written?)
+    let written = written?;
+    Ok(if language == Language::Godot {
+        with_tabs(&written)
+    } else {
+        written
+    })
 }
+
+/// A text whose lines are indented by tabs, as Godot's style guide asks.
+fn with_tabs(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let code = line.trim_start_matches(' ');
+        let indent = line.len() - code.len();
+        out.extend(std::iter::repeat_n('\t', indent / INDENT));
+        out.push_str(&line[indent - indent % INDENT..]);
+        out.push('\n');
+    }
+    out
+}
+
+/// The spaces of a level of indentation.
+const INDENT: usize = 4;
 
 /// Passes global variables as arguments, if functions see none in the language of the host; returns what
 /// `mainImage` gets from the host's entry point.

@@ -77,7 +77,8 @@ fn names_comments_macros_and_loops_stay() {
         "// Waves\n\nstatic const int STEPS = 8;\nstatic const float SCALE = 0.5; // of all\n\nstruct Ray {",
         "// Height\nfloat height(float3 p) {\n    return p.y - SCALE;\n}\n",
         "    Ray ray = { float3(at, 1), 0.0 };\n    // March\n    for (int i = 0; i < STEPS; i++) {\n",
-        "float4 main(float4 position : SV_Position) : SV_Target0 {\n    float4 color;\n    mainImage(color, position.xy);\n",
+        "float4 main(float4 position : SV_Position) : SV_Target0 {\n    float4 color;\n    \
+         // Row 0 of the target is the bottom of the image, as in ShaderToy.\n    mainImage(color, position.xy);\n",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");
     }
@@ -501,4 +502,21 @@ fn glsl_is_read_again_with_bindings() {
     ] {
         assert!(hosted.contains(expected), "{expected}\n---\n{hosted}");
     }
+}
+
+#[test]
+fn a_case_that_ends_in_a_jump_stays_as_it_is() {
+    let text = "float f(int n) {\n    switch (n) {\n        case 1: return 0.1;\n        \
+                case 2: { float x = float(n); return x; }\n        case 3: discard;\n        default: break;\n    }\n    \
+                return 0.5;\n}\nvoid mainImage(out vec4 color, in vec2 at) { color = vec4(f(int(at.x))); }";
+    let written = converted(CHost::Hlsl, text).unwrap();
+    // Execution goes on after `discard` in HLSL.
+    let expected = "        case 1:\n            return 0.1;\n        case 2: {\n            float x = float(n);\n            \
+                    return x;\n        }\n        case 3:\n            discard;\n            break;\n";
+    assert!(written.contains(expected), "{written}");
+    let written = converted(CHost::Godot, text).unwrap().replace('\t', "    ");
+    assert!(
+        written.contains("switch (n) {\n        case 1:\n            return 0.1;\n"),
+        "{written}"
+    );
 }

@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 use toyproof_diagnostic::{Code, Deadline, Diagnostic, Files};
 use toyproof_glsl::tree::{BuiltIn, ExprId, FunctionId, Item, Place, StructId, Type, VariableId};
 
-use super::effect::impure_functions;
 use super::host::CHost;
 use super::language::{Language, Words};
 use super::{Title, Unprintable};
 use crate::author::{Comments, MacroConstants, SourceText};
 use crate::lower::context::LoweringContext;
+use crate::lower::impure_functions;
 use crate::print::{Names, Order, Vocabulary};
 
 pub(super) type PrintResult<T = ()> = Result<T, Unprintable>;
@@ -244,11 +244,16 @@ impl<'a> Writer<'a> {
             self.members = self.members_in_metal(order);
             self.discarded = self.cx.discarded_values();
         }
-        let mut items = Vec::new();
+        let mut items: Vec<(Item, String)> = Vec::new();
         for &item in &order.items {
             let printed = self.item(item);
             printed.map_err(|why| self.placed(why))?;
-            items.push((item, std::mem::take(&mut self.out)));
+            let mut printed = std::mem::take(&mut self.out);
+            let follows_function = matches!(items.last(), Some((Item::Function(_), _)));
+            if follows_function && !printed.starts_with('\n') {
+                printed.insert(0, '\n');
+            }
+            items.push((item, printed));
         }
         let mut makers = HashMap::new();
         for id in self.made.clone() {

@@ -1,8 +1,8 @@
 //! Branches: `switch`, long `else if` chains and unreachable statements.
 
 use toyproof_glsl::tree::{
-    Arm, BinaryOp, Block, Case, ExprId, Label, Place, Statement, StatementKind, Type, UnaryOp, Value,
-    VariableId, VariableKind, walk,
+    Arm, BinaryOp, Block, Case, ExprId, ExprKind, Label, Place, Statement, StatementKind, Tree, Type,
+    UnaryOp, Value, VariableId, VariableKind, walk,
 };
 
 use crate::lower::context::LoweringContext;
@@ -248,6 +248,52 @@ fn rewrite_trailing_jump(cx: &mut LoweringContext, mut inner: Block, at: Place, 
 fn if_true(cx: &mut LoweringContext, body: Block, at: Place) -> Statement {
     let condition = cx.build(at).literal(Value::Bool(true));
     Statement::new(StatementKind::when(condition, body), at)
+}
+
+/// Removes the `if (true)` around the last jumps of cases, which only naga's reader of GLSL needs.
+pub(crate) fn unwrap_case_jumps(cx: &mut LoweringContext) {
+    cx.each_statement(|cx, mut statement, out| {
+        if let StatementKind::Switch { cases, .. } = &mut statement.kind {
+            for case in cases {
+                unwrap_jump(&cx.tree, &mut case.body);
+            }
+        }
+        out.push(statement);
+    });
+}
+
+/// Replaces `if (true) { …; return; } break;` at the end of a case by what is inside, unless its variables could
+/// hide those of the case.
+pub(crate) fn unwrap_jump(tree: &Tree, body: &mut Block) {
+    let [before @ .., last, end] = body.as_slice() else {
+        return;
+    };
+    let declares = |block: &[Statement]| block.iter().any(|statement| walk::declared(statement).is_some());
+    let inner = match (&last.kind, &end.kind) {
+        (
+            StatementKind::If {
+                arms,
+                otherwise: None,
+            },
+            StatementKind::Break,
+        ) => match arms.as_slice() {
+            [arm] if is_true(tree, arm.condition) && !(declares(before) && declares(&arm.body)) => &arm.body,
+            _ => return,
+        },
+        _ => return,
+    };
+    let (inner, end) = (inner.clone(), end.clone());
+    body.truncate(before.len());
+    body.extend(inner);
+    // In HLSL, execution goes on after `discard`.
+    if !matches!(body.last(), Some(last) if matches!(last.kind, StatementKind::Return(_) | StatementKind::Continue))
+    {
+        body.push(end);
+    }
+}
+
+fn is_true(tree: &Tree, condition: ExprId) -> bool {
+    matches!(&tree[condition].kind, ExprKind::Literal(literal) if literal.value == Value::Bool(true))
 }
 
 /// Maximum number of conditions in one `else if` chain.

@@ -2,7 +2,7 @@
 
 use toyproof_glsl::tree::{
     Arm, BinaryOp, Block, Case, Condition, ExprId, ExprKind, Label, Place, Statement, StatementKind, StepOp,
-    Tree, Type, Value, walk,
+    Type, Value, walk,
 };
 
 use super::branch::selector_matches;
@@ -72,7 +72,6 @@ fn chain(cx: &mut LoweringContext, selector: ExprId, cases: Vec<Case>, at: Place
     for mut case in cases {
         if matches!(case.body.last(), Some(last) if matches!(last.kind, StatementKind::Break)) {
             case.body.pop();
-            unwrap_last(&cx.tree, &mut case.body);
         }
         is_left |= leaves(&case.body);
         if case.labels.contains(&Label::Default) {
@@ -91,24 +90,6 @@ fn chain(cx: &mut LoweringContext, selector: ExprId, cases: Vec<Case>, at: Place
     };
     let chain = Statement::new(chain, at);
     if is_left { once(cx, chain, at) } else { chain }
-}
-
-/// Replaces `if (true) { … }` at the end, which [`Pass::Switches`](super::Pass::Switches) adds around a jump.
-fn unwrap_last(tree: &Tree, body: &mut Block) {
-    let Some(StatementKind::If {
-        arms,
-        otherwise: None,
-    }) = body.last_mut().map(|last| &mut last.kind)
-    else {
-        return;
-    };
-    if let [arm] = &mut arms[..]
-        && matches!(&tree[arm.condition].kind, ExprKind::Literal(literal) if literal.value == Value::Bool(true))
-    {
-        let inner = std::mem::take(&mut arm.body);
-        body.pop();
-        body.extend(inner);
-    }
 }
 
 /// Whether a block has a `break` that is not of a loop or `switch` inside it.

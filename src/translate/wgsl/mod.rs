@@ -24,7 +24,7 @@ use toyproof_glsl::Checked;
 use toyproof_glsl::tree::BuiltIn;
 
 use crate::lower::context::LoweringContext;
-use crate::lower::{Pass, Passes, fold_except};
+use crate::lower::{Pass, Passes, call_macros, fold_except};
 use crate::print::{CaseLabels, Order};
 pub use crate::unprintable::{Unprintable, WriteFailure};
 
@@ -39,6 +39,7 @@ pub fn wgsl(
     deadline: &Deadline,
 ) -> Result<String, WriteFailure> {
     let mut cx = LoweringContext::new(checked);
+    call_macros(&mut cx, checked, files, deadline)?;
     fold_except(&mut cx, is_computed_alike);
     passes().run(&mut cx, deadline)?;
     let order = Order::new(&cx, CaseLabels::AsWritten);

@@ -2,12 +2,13 @@
 
 use toyproof_glsl::tree::{
     Arm, Block, Case, Condition, ExprId, ExprKind, Label, Place, Scalar, Statement, StatementKind, Tree,
-    Type, Value, VariableId, VariableKind, walk,
+    Type, VariableId, VariableKind, walk,
 };
 
 use super::Unprintable;
 use super::writer::Writer;
 use crate::author::OuterBlock;
+use crate::lower::unwrap_jump;
 
 type PrintResult = Result<(), Unprintable>;
 
@@ -313,25 +314,11 @@ fn is_switch(block: &Block) -> bool {
     matches!(block.as_slice(), [only] if matches!(only.kind, StatementKind::Switch { .. }))
 }
 
-/// The body of a case: in WGSL it ends by itself, and a jump at its end does not need the `if (true)` for
-/// naga's GLSL.
+/// The body of a case, which ends by itself in WGSL.
 fn body_of(tree: &Tree, case: &Case) -> Block {
     let mut body = case.body.clone();
+    unwrap_jump(tree, &mut body);
     body.pop_if(|last| matches!(last.kind, StatementKind::Break));
-    let always = body.pop_if(|last| match &last.kind {
-        StatementKind::If { arms, otherwise: None } => match arms.as_slice() {
-            [arm] => {
-                let declares = arm.body.iter().any(|statement| walk::declared(statement).is_some());
-                let is_true = matches!(&tree[arm.condition].kind, ExprKind::Literal(literal) if literal.value == Value::Bool(true));
-                is_true && !declares
-            }
-            _ => false,
-        },
-        _ => false,
-    });
-    if let Some(StatementKind::If { arms, .. }) = always.map(|statement| statement.kind) {
-        body.extend(arms.into_iter().flat_map(|arm| arm.body));
-    }
     body
 }
 

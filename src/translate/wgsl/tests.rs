@@ -61,7 +61,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
     fragColor = vec4(far(fragCoord), iMouse.xy, 1.);
 }
 ";
-    expect![[r"
+    expect![[r#"
         // A license.
 
         struct Inputs {
@@ -89,10 +89,11 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
         @fragment
         fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
             var color: vec4f;
+            // Row 0 of the target is the bottom of the image, as in ShaderToy.
             mainImage(&color, position.xy);
             return vec4f(color.xyz, 1.0);
         }
-    "]]
+    "#]]
     .assert_eq(&print(shader, Style::Plain));
 }
 

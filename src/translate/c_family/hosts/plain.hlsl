@@ -28,6 +28,7 @@ float4 main(float4 position : SV_Position) : SV_Target0 {
     gl_FragCoord = position; //? position
     float4 color; //? out
     float4 color = float4(0.0, 0.0, 0.0, 1.0); //? inout
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     $main_image(color, position.xy);
     return float4(color.xyz, 1.0); //? image
     return color; //? buffer

@@ -78,6 +78,7 @@ fragment float4 main_(
     Shader shader; //? stateless
     float4 color; //? out
     float4 color = float4(0.0, 0.0, 0.0, 1.0); //? inout
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.$main_image(color, position.xy);
     return float4(color.xyz, 1.0); //? image
     return color; //? buffer

@@ -49,7 +49,8 @@ fn only_what_has_state_is_in_the_structure() {
         "    void mainImage(thread float4& color, float2 at) {\n",
         "struct Inputs {\n    packed_float3 iResolution;\n    float iTime;\n",
         "fragment float4 main_(\n    constant Inputs& inputs [[buffer(0)]],\n    float4 position [[position]]\n) {\n    \
-         Shader shader = {\n        inputs.iTime,\n    };\n    float4 color;\n    shader.mainImage(color, position.xy);\n    \
+         Shader shader = {\n        inputs.iTime,\n    };\n    float4 color;\n    \
+         // Row 0 of the target is the bottom of the image, as in ShaderToy.\n    shader.mainImage(color, position.xy);\n    \
          return float4(color.xyz, 1.0);\n}\n",
     ] {
         assert!(written.contains(expected), "{expected}\n---\n{written}");

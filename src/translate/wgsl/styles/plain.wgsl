@@ -30,6 +30,7 @@ fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     $startup(); //? startup
     var color: vec4f; //? out
     var color: vec4f = vec4f(0.0, 0.0, 0.0, 1.0); //? inout
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     $main_image(&color, position.xy);
     return vec4f(color.xyz, 1.0); //? image
     return color; //? buffer

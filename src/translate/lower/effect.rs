@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use toyproof_glsl::tree::{Direction, ExprId, ExprKind, FunctionId, StatementKind, Tree, VariableKind, walk};
 
-use crate::lower::callees_first;
+use super::call_order::callees_first;
 
 /// The functions that write a global variable or a parameter of their caller, or discard the pixel,
 /// themselves or by a function that they call.
-pub(super) fn impure_functions(tree: &Tree) -> HashSet<FunctionId> {
+pub(crate) fn impure_functions(tree: &Tree) -> HashSet<FunctionId> {
     let mut impure = HashSet::new();
     for (function, callees) in callees_first(tree) {
         if callees.iter().any(|callee| impure.contains(callee)) || has_effect(tree, function) {
@@ -44,7 +44,7 @@ fn has_effect(tree: &Tree, function: FunctionId) -> bool {
 }
 
 /// Whether the value of an expression is all that its evaluation results in.
-pub(super) fn is_pure(tree: &Tree, impure: &HashSet<FunctionId>, root: ExprId) -> bool {
+pub(crate) fn is_pure(tree: &Tree, impure: &HashSet<FunctionId>, root: ExprId) -> bool {
     tree.postorder(root).into_iter().all(|id| match tree[id].kind {
         ExprKind::Assign { .. } | ExprKind::Step { .. } => false,
         ExprKind::Call { function, .. } => !impure.contains(&function),
