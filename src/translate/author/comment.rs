@@ -107,19 +107,23 @@ impl<'a> Comments<'a> {
         let source = SourceText::new(files);
         let expressions = items.iter().flat_map(|&item| expressions(tree, item));
         let literals = expressions.filter(|&id| matches!(tree[id].kind, ExprKind::Literal(_)));
-        let macros = literals
+        let constants = literals
             .map(|id| tree[id].at)
             .filter(|&at| source.macro_name(at).is_some());
-        let spellings = macros.map(|at| (at.spelling.file, at.spelling.start as usize));
-        for (file, start) in spellings.collect::<BTreeSet<_>>() {
+        let constants: BTreeSet<_> = constants
+            .map(|at| (at.spelling.file, at.spelling.start as usize))
+            .collect();
+        for (file, start) in constants {
             if let Some(layout) = comments.files.get_mut(&file) {
-                for index in layout.of_macro(start) {
-                    layout.comments[index].fate = Fate::OfMacro;
-                }
+                layout.mark_macro(start);
             }
         }
         for (file, places) in written {
             if let Some(layout) = comments.files.get_mut(&file) {
+                let (functions, places): (Vec<_>, Vec<_>) = places
+                    .into_iter()
+                    .partition(|&place| layout.is_in_directive(place));
+                functions.into_iter().for_each(|name| layout.mark_macro(name));
                 layout.leave_out_others(&places);
             }
         }
@@ -158,7 +162,13 @@ impl<'a> Comments<'a> {
             self.cursor = Cursor::outside();
             return Vec::new();
         };
-        let token = layout.index_at(name.span.start as usize);
+        let start = name.span.start as usize;
+        if layout.is_in_directive(start) {
+            // A function that was a macro.
+            self.cursor = Cursor::outside();
+            return self.of_macro(name.span.file, start, false);
+        }
+        let token = layout.index_at(start);
         let declaration = layout.declarations.partition_point(|&[_, last]| last < token);
         if (self.cursor.file, self.cursor.declaration) != (Some(name.span.file), declaration) {
             self.cursor = Cursor::new(layout, name.span.file, declaration);
@@ -208,6 +218,10 @@ impl<'a> Comments<'a> {
 
     /// Returns the comment that ends the line of a statement, of a declarator or of a member.
     pub(crate) fn behind(&mut self, at: Place, name: Option<Place>) -> Option<String> {
+        let start = at.span.start as usize;
+        if self.files.get(&at.span.file)?.is_in_directive(start) {
+            return self.of_macro(at.span.file, start, true).into_iter().next();
+        }
         let last = self.current(at)?.last_token(at, name);
         self.files.get_mut(&at.span.file)?.write_behind(last)
     }
@@ -259,19 +273,25 @@ impl<'a> Comments<'a> {
         lines
     }
 
-    /// Returns the comments above the macro of a literal, and the one that ends its line.
-    pub(crate) fn of_constant(&mut self, literal: Place) -> (Vec<String>, Option<String>) {
-        let (mut above, mut behind) = (Vec::new(), Vec::new());
-        if let Some(layout) = self.files.get_mut(&literal.spelling.file) {
-            for index in layout.of_macro(literal.spelling.start as usize) {
-                if layout.comments[index].fate == Fate::OfMacro {
-                    let is_behind = layout.comments[index].is_trailing;
-                    layout.write(index, if is_behind { &mut behind } else { &mut above });
+    /// Returns the comments above the macro of a literal, and those that end its line.
+    pub(crate) fn of_constant(&mut self, literal: Place) -> [Vec<String>; 2] {
+        let (file, start) = (literal.spelling.file, literal.spelling.start as usize);
+        [false, true].map(|is_behind| self.of_macro(file, start, is_behind))
+    }
+
+    /// Takes the comments above the `#define` at a byte, or those that end its line.
+    fn of_macro(&mut self, file: FileId, byte: usize, is_behind: bool) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(layout) = self.files.get_mut(&file) {
+            for index in layout.of_macro(byte) {
+                let comment = &layout.comments[index];
+                if comment.fate == Fate::OfMacro && comment.is_trailing == is_behind {
+                    layout.write(index, &mut lines);
                 }
             }
         }
-        trim_blank_lines(&mut above);
-        (above, behind.into_iter().find(|line| !line.is_empty()))
+        trim_blank_lines(&mut lines);
+        lines
     }
 
     /// Returns the comments that are not written yet, behind a blank line.
@@ -528,6 +548,15 @@ mod tests {
              float f(vec2 p) { return A + B; }\n",
             "// a\n\nstatic const float B = 2.0; // b\n// c\n// d\nstatic const float A = 1.0; // e\n\n\
              // f\n\nfloat f(float2 p) {\n    return A + B;\n}\n\n",
+        );
+    }
+
+    #[test]
+    fn comments_of_a_macro_stay_with_its_function() {
+        assert_items(
+            "// a\n\n// b\n#define S(x) ((x) * (x)) // c\n// d\nfloat g;\n// e\nfloat f(vec2 p) {\n  // f\n  return S(p.x);\n}\n",
+            "// a\n\n// b\nfloat S(float x) {\n    return x * x; // c\n}\n\n// e\nfloat f(float2 p) {\n    // f\n    \
+             return S(p.x);\n}\n\n",
         );
     }
 

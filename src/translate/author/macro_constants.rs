@@ -35,13 +35,13 @@ impl MacroConstants {
         constants.sort_by_key(|(literal, _)| (literal.spelling.file, literal.spelling.start));
         let mut text = String::new();
         for (literal, declaration) in constants {
-            let (above, behind) = comments.of_constant(*literal);
+            let [above, behind] = comments.of_constant(*literal);
             for line in above {
                 text += &line;
                 text.push('\n');
             }
             text += declaration;
-            if let Some(comment) = behind {
+            for comment in behind {
                 text.push(' ');
                 text += &comment;
             }

@@ -11,7 +11,7 @@ use super::comment_text::comment_lines;
 pub(super) enum Fate {
     /// It is written before what follows it.
     Pending,
-    /// It is written with the constant that its macro becomes.
+    /// It is written with the constant or the function that its macro becomes.
     OfMacro,
     /// It is written, or belongs to code that is not.
     Done,
@@ -162,6 +162,18 @@ impl<'a> SourceLayout<'a> {
         let behind = self.comments_before(next);
         let behind = behind.filter(|&index| self.comments[index].is_trailing);
         self.adjacent_comments(hash).chain(behind).collect()
+    }
+
+    /// Marks the comments of the macro that is defined at a byte, which becomes a constant or a function.
+    pub(super) fn mark_macro(&mut self, byte: usize) {
+        for index in self.of_macro(byte) {
+            self.comments[index].fate = Fate::OfMacro;
+        }
+    }
+
+    pub(super) fn is_in_directive(&self, byte: usize) -> bool {
+        let token = self.tokens.get(self.index_at(byte));
+        token.is_some_and(|token| token.is_in_directive)
     }
 
     /// Leaves out the comments of the declarations that contain none of the `written` places.
