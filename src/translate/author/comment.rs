@@ -123,7 +123,9 @@ impl<'a> Comments<'a> {
                 let (functions, places): (Vec<_>, Vec<_>) = places
                     .into_iter()
                     .partition(|&place| layout.is_in_directive(place));
-                functions.into_iter().for_each(|name| layout.mark_macro(name));
+                for name in functions {
+                    layout.mark_macro(name);
+                }
                 layout.leave_out_others(&places);
             }
         }
