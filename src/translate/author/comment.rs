@@ -120,6 +120,9 @@ impl<'a> Comments<'a> {
         }
         for (file, places) in written {
             if let Some(layout) = comments.files.get_mut(&file) {
+                for &place in &places {
+                    layout.declare_directive(place);
+                }
                 layout.leave_out_others(&places);
             }
         }
@@ -169,6 +172,7 @@ impl<'a> Comments<'a> {
             _ => after_name,
         };
         let end = match layout.token(after_list) {
+            _ if layout.tokens.get(token).is_some_and(|name| name.is_in_directive) => token,
             "{" => after_list,
             _ => layout.declarator_end(after_name),
         };

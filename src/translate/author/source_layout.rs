@@ -164,6 +164,27 @@ impl<'a> SourceLayout<'a> {
         self.adjacent_comments(hash).chain(behind).collect()
     }
 
+    /// Makes the directive around a byte, of a macro that becomes a function, one of the declarations.
+    pub(super) fn declare_directive(&mut self, byte: usize) {
+        let name = self.index_at(byte);
+        let Some(token) = self.tokens.get(name).filter(|token| token.is_in_directive) else {
+            return;
+        };
+        let line = token.line;
+        let first = self.tokens.partition_point(|token| token.line < line);
+        let next = self.tokens.partition_point(|token| token.line <= line);
+        let at = self.declarations.partition_point(|&[_, last]| last < first);
+        // A directive inside a declaration has the comments of that.
+        if self.declarations.get(at).is_none_or(|&[begin, _]| begin > first) {
+            self.declarations.insert(at, [first, next - 1]);
+            for index in self.comments_before(next) {
+                if self.comments[index].is_trailing {
+                    self.comments[index].fate = Fate::Pending;
+                }
+            }
+        }
+    }
+
     /// Leaves out the comments of the declarations that contain none of the `written` places.
     pub(super) fn leave_out_others(&mut self, written: &[usize]) {
         let mut is_written = vec![false; self.declarations.len()];

@@ -53,7 +53,8 @@ impl<'a> SourceText<'a> {
             "#" if words.next() == Some("define") => words.next()?,
             _ => return None,
         };
-        let is_whole = words.next().is_none() && (after.is_empty() || after.starts_with("//") || is_block_comment(after));
+        let is_whole = words.next().is_none()
+            && (after.is_empty() || after.starts_with("//") || is_block_comment(after));
         let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && name.starts_with(|c: char| c.is_ascii_alphabetic());
         (is_whole && is_name).then_some(name)
