@@ -216,18 +216,20 @@ impl<'a> Comments<'a> {
         self.files.get_mut(&at.span.file)?.write_behind(last)
     }
 
-    /// Returns the comment behind the `}` of a compound statement in the current block.
-    pub(crate) fn behind_block(&mut self, at: Place) -> Option<String> {
+    /// Returns the comment behind the end of a compound statement in the current block, before the `next`
+    /// statement.
+    pub(crate) fn behind_block(&mut self, at: Place, next: Option<Place>) -> Option<String> {
         let layout = self.current(at)?;
         let comment = layout.comments.get(self.cursor.comment)?;
-        let brace = comment.next.checked_sub(1)?;
-        let is_own = layout.token(brace) == "}"
-            && layout.start(brace) > at.span.start as usize
-            && layout.closing[brace] == self.cursor.closing;
+        let end = comment.next.checked_sub(1)?;
+        let next = next.map_or(layout.text.len(), |next| next.span.start as usize);
+        let is_own = matches!(layout.token(end), "}" | ";")
+            && (at.span.start as usize..next).contains(&layout.start(end))
+            && layout.closing[end] == self.cursor.closing;
         if !is_own {
             return None;
         }
-        self.files.get_mut(&at.span.file)?.write_behind(brace)
+        self.files.get_mut(&at.span.file)?.write_behind(end)
     }
 
     /// Enters the block of a statement or a label, if the author wrote it with braces; also returns the comment
@@ -464,6 +466,26 @@ mod tests {
                 "}",
                 "// h",
                 "c *= x;",
+            ],
+        );
+    }
+
+    #[test]
+    fn comments_behind_a_block_stay_behind_it() {
+        assert_body(
+            "c = p.xyxy;\nif (p.x > 0.) c.x = 1.;\ndo { c.x++; } while (c.x < 9.); // a\nif (p.y > 0.) c.y = 1.;\nc.z = 1.; // b",
+            &[
+                "c = p.xyxy;",
+                "if (p.x > 0.0) {",
+                "    c.x = 1.0;",
+                "}",
+                "do {",
+                "    c.x++;",
+                "} while (c.x < 9.0); // a",
+                "if (p.y > 0.0) {",
+                "    c.y = 1.0;",
+                "}",
+                "c.z = 1.0; // b",
             ],
         );
     }

@@ -34,6 +34,7 @@ impl Writer<'_> {
                 continue;
             }
             self.check_deadline()?;
+            let next = block.get(number + 1).map(|next| next.at);
             let name = walk::declared(statement).and_then(|variable| self.cx.tree[variable].at);
             let comments = self.comments.before(statement.at, name);
             // The blank line above the first statement belongs to nothing.
@@ -41,7 +42,7 @@ impl Writer<'_> {
             self.comment_lines(&comments[skipped..]);
             self.statement(statement, &block[number + 1..])?;
             let comment = if statement.kind.is_compound() {
-                self.comments.behind_block(statement.at)
+                self.comments.behind_block(statement.at, next)
             } else {
                 self.comments.behind(statement.at, name)
             };

@@ -274,6 +274,9 @@ impl<'a> Writer<'a> {
                 members += &printed;
                 continue;
             }
+            if shader.ends_with("}\n") && !printed.starts_with('\n') {
+                shader.push('\n');
+            }
             shader += &printed;
             if let Item::Struct(id) = item {
                 shader += makers.get(&id).map_or("", String::as_str);

@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn heads_continue_further_than_their_blocks() {
-        let ten = vec!["float argument"; 8].join(", ");
+        let ten = ["float argument"; 8].join(", ");
         assert_wrapped(
             &format!("void f({ten}) {{"),
             &[
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn types_are_not_broken() {
-        let values = vec!["array<vec2<bool>, 3>(true)"; 4].join(", ");
+        let values = ["array<vec2<bool>, 3>(true)"; 4].join(", ");
         assert_wrapped(
             &format!("let x = array<array<vec2<bool>, 3>, 4>({values});"),
             &[

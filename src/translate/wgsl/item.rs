@@ -60,6 +60,11 @@ impl Writer<'_> {
             return Err(Unprintable::Construct("a sampler that is not a channel"));
         }
         if self.is_in_block(id) {
+            if let Some(at) = variable.at {
+                let comments = self.comments.before_item(at).into_iter();
+                let comments = comments.chain(self.comments.behind(at, Some(at)));
+                self.uniforms.extend(comments.filter(|line| !line.is_empty()));
+            }
             return self.add_uniform(id);
         }
         if self.out.ends_with("}\n") {

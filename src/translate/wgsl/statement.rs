@@ -44,6 +44,7 @@ impl Writer<'_> {
                 continue;
             }
             self.check_deadline()?;
+            let next = block.get(number + 1).map(|next| next.at);
             let name = walk::declared(statement).and_then(|variable| self.cx.tree[variable].at);
             let comments = self.comments.before(statement.at, name);
             // The blank line above the first statement belongs to nothing.
@@ -58,7 +59,7 @@ impl Writer<'_> {
                     self.out.truncate(begin);
                 }
             } else if statement.kind.is_compound() {
-                let comment = self.comments.behind_block(statement.at);
+                let comment = self.comments.behind_block(statement.at, next);
                 let last_line = self.out.trim_end().rfind('\n').map_or(0, |end| end + 1);
                 self.trailing_comment(comment, last_line);
             } else {

@@ -415,6 +415,7 @@ fn with_values(text: &str) -> String {
         return text.to_owned();
     };
     let members = block.lines().take_while(|line| *line != "}");
+    let members = members.filter(|line| !line.trim_start().starts_with("//"));
     let values = members.filter_map(|line| Some(line.split_once(VALUE)?.1));
     let values: Vec<&str> = values.collect();
     let variable = format!(

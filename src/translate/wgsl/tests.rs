@@ -477,7 +477,7 @@ fn functions_of_constants_stay_where_every_compiler_computes_them_alike() {
 
 #[test]
 fn uniforms_of_the_author_are_a_block() {
-    let text = "#version 300 es\nprecision highp float;\nuniform float speed;\nuniform bool on;\nuniform vec2 size;\n\
+    let text = "#version 300 es\nprecision highp float;\nuniform float speed; // a // b\nuniform bool on;\nuniform vec2 size;\n\
                 out vec4 color;\nvoid main() { color = vec4(speed * size, on ? 1.0 : 0.0, 1.0); }\n";
     let mut files = Files::default();
     let file = files.add(File::new("a", text));
@@ -497,7 +497,7 @@ fn uniforms_of_the_author_are_a_block() {
     let checked = check(&files, file, &options).unwrap();
     let print = |style| wgsl(&checked, &files, style, &Deadline::default()).unwrap();
     let plain = print(Style::Plain);
-    let block = "struct Uniforms {\n    speed: f32, // 2.5\n    on: u32, // u32(true)\n    size: vec2f, // vec2f(1.0, -2.0)\n}\n";
+    let block = "struct Uniforms {\n    // a // b\n    speed: f32, // 2.5\n    on: u32, // u32(true)\n    size: vec2f, // vec2f(1.0, -2.0)\n}\n";
     assert!(plain.contains(block), "{plain}");
     assert!(
         plain.contains("uniforms.speed * uniforms.size") && plain.contains("uniforms.on != 0u"),

@@ -42,7 +42,8 @@ pub(super) struct Writer<'a> {
     pub(super) helpers: BTreeMap<String, String>,
     /// The innermost expression that could not be printed.
     pub(super) failed_at: Option<Place>,
-    /// The members of the block of the author's uniforms, each with its value as a comment.
+    /// The members of the block of the author's uniforms, each with its value as a comment, and the author's
+    /// comments.
     pub(super) uniforms: Vec<String>,
     /// Whether derivatives are used, explicitly or for implicit levels of detail.
     pub(super) uses_derivatives: bool,
