@@ -120,12 +120,14 @@ impl<'a> Comments<'a> {
         }
         for (file, places) in written {
             if let Some(layout) = comments.files.get_mut(&file) {
-                let (functions, places): (Vec<_>, Vec<_>) = places
+                let (macros, mut places): (Vec<_>, Vec<_>) = places
                     .into_iter()
                     .partition(|&place| layout.is_in_directive(place));
-                for name in functions {
-                    layout.mark_macro(name);
+                let (inside, outside) = layout.declare_macros(macros);
+                for place in inside {
+                    layout.mark_macro(place);
                 }
+                places.extend(outside);
                 layout.leave_out_others(&places);
             }
         }
@@ -142,10 +144,10 @@ impl<'a> Comments<'a> {
         let first_run = runs
             .position(|comment| comment.before_blank_line)
             .map_or(all.end, |last| last + 1);
-        let of_file = if layout.tokens.first().is_some_and(|token| token.is_in_directive) {
-            all.end
-        } else {
-            layout.adjacent_comments(0).start
+        let of_file = match layout.declarations.first() {
+            Some([0, _]) => layout.adjacent_comments(0).start,
+            // A directive.
+            _ => all.end,
         };
         let mut lines = Vec::new();
         for index in all {
@@ -165,13 +167,15 @@ impl<'a> Comments<'a> {
             return Vec::new();
         };
         let start = name.span.start as usize;
-        if layout.is_in_directive(start) {
-            // A function that was a macro.
+        let token = layout.index_at(start);
+        let declaration = layout.declarations.partition_point(|&[_, last]| last < token);
+        let own = layout.declarations.get(declaration);
+        let is_in_directive = layout.is_in_directive(start);
+        if is_in_directive && own.is_none_or(|&[first, _]| !layout.tokens[first].is_in_directive) {
+            // A function that was a macro inside of another declaration.
             self.cursor = Cursor::outside();
             return self.of_macro(name.span.file, start, false);
         }
-        let token = layout.index_at(start);
-        let declaration = layout.declarations.partition_point(|&[_, last]| last < token);
         if (self.cursor.file, self.cursor.declaration) != (Some(name.span.file), declaration) {
             self.cursor = Cursor::new(layout, name.span.file, declaration);
         }
@@ -181,6 +185,7 @@ impl<'a> Comments<'a> {
             _ => after_name,
         };
         let end = match layout.token(after_list) {
+            _ if is_in_directive => token,
             "{" => after_list,
             _ => layout.declarator_end(after_name),
         };
@@ -221,7 +226,7 @@ impl<'a> Comments<'a> {
     /// Returns the comment that ends the line of a statement, of a declarator or of a member.
     pub(crate) fn behind(&mut self, at: Place, name: Option<Place>) -> Option<String> {
         let start = at.span.start as usize;
-        if self.files.get(&at.span.file)?.is_in_directive(start) {
+        if self.cursor.file.is_none() && self.files.get(&at.span.file)?.is_in_directive(start) {
             return self.of_macro(at.span.file, start, true).into_iter().next();
         }
         let last = self.current(at)?.last_token(at, name);
@@ -556,9 +561,11 @@ mod tests {
     #[test]
     fn comments_of_a_macro_stay_with_its_function() {
         assert_items(
-            "// a\n\n// b\n#define S(x) ((x) * (x)) // c\n// d\nfloat g;\n// e\nfloat f(vec2 p) {\n  // f\n  return S(p.x);\n}\n",
-            "// a\n\n// b\nfloat S(float x) {\n    return x * x; // c\n}\n\n// e\nfloat f(float2 p) {\n    // f\n    \
-             return S(p.x);\n}\n\n",
+            "// a\n\n// b\n#define S(x) ((x) * (x)) // c\n// d\nfloat g;\n// e\nfloat f(vec2 p) {\n  // f\n\n  // g\n\
+             #define T(x) (2. * (x)) // h\n  // i\n  return T(p.y) + S(p.x);\n}\n",
+            "// a\n\n// b\nfloat S(float x) {\n    return x * x; // c\n}\n\n\
+             // g\nfloat T(float x) {\n    return 2.0 * x; // h\n}\n\n\
+             // e\nfloat f(float2 p) {\n    // f\n\n    // i\n    return T(p.y) + S(p.x);\n}\n\n",
         );
     }
 

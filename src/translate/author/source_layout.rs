@@ -11,7 +11,7 @@ use super::comment_text::comment_lines;
 pub(super) enum Fate {
     /// It is written before what follows it.
     Pending,
-    /// It is written with the constant or the function that its macro becomes.
+    /// It is written with the constant that its macro becomes.
     OfMacro,
     /// It is written, or belongs to code that is not.
     Done,
@@ -164,7 +164,7 @@ impl<'a> SourceLayout<'a> {
         self.adjacent_comments(hash).chain(behind).collect()
     }
 
-    /// Marks the comments of the macro that is defined at a byte, which becomes a constant or a function.
+    /// Marks the comments of the macro that is defined at a byte, which are written where the macro is.
     pub(super) fn mark_macro(&mut self, byte: usize) {
         for index in self.of_macro(byte) {
             self.comments[index].fate = Fate::OfMacro;
@@ -174,6 +174,32 @@ impl<'a> SourceLayout<'a> {
     pub(super) fn is_in_directive(&self, byte: usize) -> bool {
         let token = self.tokens.get(self.index_at(byte));
         token.is_some_and(|token| token.is_in_directive)
+    }
+
+    /// Makes the directives at these bytes, of macros that become functions, declarations; returns those inside
+    /// of other declarations, which stay parts of them, and the others.
+    pub(super) fn declare_macros(&mut self, bytes: Vec<usize>) -> (Vec<usize>, Vec<usize>) {
+        let is_inside = |&byte: &usize| {
+            let name = self.index_at(byte);
+            let at = self.declarations.partition_point(|&[_, last]| last < name);
+            self.declarations.get(at).is_some_and(|&[first, _]| first < name)
+        };
+        let (inside, outside): (Vec<_>, Vec<_>) = bytes.into_iter().partition(is_inside);
+        for &byte in &outside {
+            let line = self.tokens[self.index_at(byte)].line;
+            let first = self.tokens.partition_point(|token| token.line < line);
+            let next = self.tokens.partition_point(|token| token.line <= line);
+            self.declarations.push([first, next - 1]);
+            for index in self.comments_before(next) {
+                if self.comments[index].is_trailing {
+                    self.comments[index].fate = Fate::Pending;
+                }
+            }
+        }
+        // A macro may be several functions.
+        self.declarations.sort_unstable();
+        self.declarations.dedup();
+        (inside, outside)
     }
 
     /// Leaves out the comments of the declarations that contain none of the `written` places.
