@@ -208,7 +208,7 @@ fn passes_are_played_by_a_script() {
     // Buffers are not upside down, and keep their alpha.
     let buffer = fs::read_to_string(folder.path().join("godot/buffer-a.gdshader")).unwrap();
     assert!(buffer.contains("vec2 fragCoord = FRAGCOORD.xy;\n"), "{buffer}");
-    assert!(buffer.contains("    COLOR = color;\n"), "{buffer}");
+    assert!(buffer.contains("\tCOLOR = color;\n"), "{buffer}");
     assert!(
         buffer.contains("uniform sampler2D iChannel0 : filter_nearest, repeat_disable, hint_default_black;"),
         "{buffer}"

@@ -186,7 +186,10 @@ impl<'a> Comments<'a> {
         };
         let end = match layout.token(after_list) {
             _ if is_in_directive => token,
-            "{" => after_list,
+            "{" => {
+                self.cursor.closing = layout.partners[after_list];
+                after_list
+            }
             _ => layout.declarator_end(after_name),
         };
         let first = layout
@@ -566,6 +569,24 @@ mod tests {
             "// a\n\n// b\nfloat S(float x) {\n    return x * x; // c\n}\n\n\
              // g\nfloat T(float x) {\n    return 2.0 * x; // h\n}\n\n\
              // e\nfloat f(float2 p) {\n    // f\n\n    // i\n    return T(p.y) + S(p.x);\n}\n\n",
+        );
+    }
+
+    #[test]
+    fn branches_without_braces_have_no_comments_of_the_block_around_them() {
+        assert_body(
+            "if (p.x > 0.) c = p.xyxy;\nelse c = p.yxyx;\n// a\nc += 1.; // b\n// c",
+            &[
+                "c = float4(0.0, 0.0, 0.0, 0.0);",
+                "if (p.x > 0.0) {",
+                "    c = p.xyxy;",
+                "} else {",
+                "    c = p.yxyx;",
+                "}",
+                "// a",
+                "c += 1.0; // b",
+                "// c",
+            ],
         );
     }
 

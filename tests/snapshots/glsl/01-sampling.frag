@@ -25,7 +25,8 @@ const int SAMPLES = 10;
 float seed = 0.0;
 
 float random() {
-    return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
+    // toyproof: allow(W0005) the scene's sampler uses this hash
+    return fract(sin(seed++) * 43758.5453123);
 }
 
 float disk(vec2 p, vec2 center, float radius) {

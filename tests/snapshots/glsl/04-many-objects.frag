@@ -49,12 +49,16 @@ struct Intersection {
     vec3 normal;
 };
 
-Sphere spheres[7] = Sphere[7](Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)));
+Sphere spheres[7] = Sphere[7](Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, vec3(0.0)));
 Light light = Light(vec3(0.0), vec3(0.0));
 float seed = 0.0;
 
 float random() {
-    return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
+    // toyproof: allow(W0005) the scene's sampler uses this hash
+    return fract(sin(seed++) * 43758.5453123);
 }
 
 void makeScene() {

@@ -37,7 +37,8 @@ struct Sphere {
     vec3 color;
 };
 
-Sphere spheres[4] = Sphere[4](Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)));
+Sphere spheres[4] = Sphere[4](Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)));
 
 void makeScene() {
     spheres[0] = Sphere(vec3(-1.3, -0.4, -5.2), 0.6, vec3(0.9, 0.6, 0.6));

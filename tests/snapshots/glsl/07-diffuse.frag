@@ -47,7 +47,9 @@ struct Light {
     vec3 color;
 };
 
-Sphere spheres[4] = Sphere[4](Sphere(vec3(0.0), 0.0, Material(vec3(0.0))), Sphere(vec3(0.0), 0.0, Material(vec3(0.0))), Sphere(vec3(0.0), 0.0, Material(vec3(0.0))), Sphere(vec3(0.0), 0.0, Material(vec3(0.0))));
+Sphere spheres[4] = Sphere[4](Sphere(vec3(0.0), 0.0, Material(vec3(0.0))),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0))), Sphere(vec3(0.0), 0.0, Material(vec3(0.0))),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0))));
 Light lights[2] = Light[2](Light(vec3(0.0), vec3(0.0)), Light(vec3(0.0), vec3(0.0)));
 
 void makeScene() {

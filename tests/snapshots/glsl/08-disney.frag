@@ -53,29 +53,49 @@ struct Sphere {
     Material material;
 };
 
-Sphere spheres[10] = Sphere[10](Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)));
+Sphere spheres[10] = Sphere[10](Sphere(vec3(0.0), 0.0,
+        Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(vec3(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)));
 
 void makeScene() {
     // Rough plastic.
-    spheres[0] = Sphere(vec3(-2.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[0] = Sphere(vec3(-2.0, 1.3, -7.0), 0.58,
+        Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Plastic.
-    spheres[1] = Sphere(vec3(0.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[1] = Sphere(vec3(0.0, 1.3, -7.0), 0.58,
+        Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Smooth plastic with a tinted highlight.
-    spheres[2] = Sphere(vec3(2.0, 1.3, -7.0), 0.58, Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[2] = Sphere(vec3(2.0, 1.3, -7.0), 0.58,
+        Material(vec3(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Rough gold.
-    spheres[3] = Sphere(vec3(-2.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[3] = Sphere(vec3(-2.0, 0.0, -7.0), 0.58,
+        Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Brushed gold.
-    spheres[4] = Sphere(vec3(0.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
+    spheres[4] = Sphere(vec3(0.0, 0.0, -7.0), 0.58,
+        Material(vec3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
     // Half metal.
-    spheres[5] = Sphere(vec3(2.0, 0.0, -7.0), 0.58, Material(vec3(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[5] = Sphere(vec3(2.0, 0.0, -7.0), 0.58,
+        Material(vec3(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Cloth.
-    spheres[6] = Sphere(vec3(-2.0, -1.3, -7.0), 0.58, Material(vec3(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
+    spheres[6] = Sphere(vec3(-2.0, -1.3, -7.0), 0.58,
+        Material(vec3(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
     // Skin.
-    spheres[7] = Sphere(vec3(0.0, -1.3, -7.0), 0.58, Material(vec3(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[7] = Sphere(vec3(0.0, -1.3, -7.0), 0.58,
+        Material(vec3(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Lacquer.
-    spheres[8] = Sphere(vec3(2.0, -1.3, -7.0), 0.58, Material(vec3(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
+    spheres[8] = Sphere(vec3(2.0, -1.3, -7.0), 0.58,
+        Material(vec3(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
     // Ground.
-    spheres[9] = Sphere(vec3(0.0, -52.3, -8.0), 50.0, Material(vec3(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[9] = Sphere(vec3(0.0, -52.3, -8.0), 50.0,
+        Material(vec3(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
 }
 
 float intersectSphere(Ray ray, Sphere sphere) {
@@ -176,7 +196,8 @@ vec3 disney(Material m, vec3 light, vec3 view, vec3 normal) {
     float g = smith(nL, alpha) * smith(nV, alpha);
     vec3 f = mix(specularColor, vec3(1.0), fH);
 
-    float coat = 0.25 * m.clearcoat * berry(nH, mix(0.1, 0.001, m.clearcoatGloss)) * mix(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
+    float coat = 0.25 * m.clearcoat * berry(nH, mix(0.1, 0.001, m.clearcoatGloss))
+        * mix(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
     return (base + sheen) * (1.0 - m.metallic) + f * d * g + coat;
 }
 

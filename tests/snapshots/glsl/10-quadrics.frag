@@ -50,11 +50,16 @@ struct Intersection {
     vec3 color;
 };
 
-Quadric quadrics[5] = Quadric[5](Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)), Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)), Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)), Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)), Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)));
+Quadric quadrics[5] = Quadric[5](Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0,
+        vec3(0.0)), Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)),
+    Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)),
+    Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)),
+    Quadric(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0, vec3(0.0)));
 
 Quadric ellipsoid(vec3 center, vec3 radii, vec3 color) {
     // The ellipsoid's axes are the coordinate axes.
-    return Quadric(center, vec3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z, color);
+    return Quadric(center, vec3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z,
+        color);
 }
 
 Quadric cylinder(vec3 base, vec3 axis, float radius, float height, vec3 color) {
@@ -67,7 +72,8 @@ Quadric cone(vec3 apex, vec3 axis, float radius, float height, vec3 color) {
 }
 
 Quadric paraboloid(vec3 apex, vec3 axis, float radius, float height, vec3 color) {
-    return Quadric(apex, axis, vec3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height, color);
+    return Quadric(apex, axis, vec3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0,
+        height, color);
 }
 
 Quadric hyperboloid(vec3 center, vec3 axis, float waist, float radius, float height, vec3 color) {
@@ -78,10 +84,13 @@ Quadric hyperboloid(vec3 center, vec3 axis, float waist, float radius, float hei
 
 void makeScene() {
     quadrics[0] = ellipsoid(vec3(-2.0, 0.5, -7.0), vec3(0.9, 0.5, 0.6), vec3(0.9, 0.3, 0.3));
-    quadrics[1] = cylinder(vec3(-0.9, -1.0, -5.2), vec3(0.0, 1.0, 0.0), 0.4, 0.8, vec3(0.3, 0.7, 0.9));
+    quadrics[1] = cylinder(vec3(-0.9, -1.0, -5.2), vec3(0.0, 1.0, 0.0), 0.4, 0.8,
+        vec3(0.3, 0.7, 0.9));
     quadrics[2] = cone(vec3(0.3, 0.9, -6.5), vec3(0.0, -1.0, 0.0), 0.7, 1.9, vec3(0.9, 0.7, 0.2));
-    quadrics[3] = paraboloid(vec3(1.1, -0.9, -5.0), vec3(0.28, 0.96, 0.0), 0.5, 0.7, vec3(0.5, 0.9, 0.4));
-    quadrics[4] = hyperboloid(vec3(2.3, 0.0, -7.5), vec3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0, vec3(0.7, 0.5, 0.9));
+    quadrics[3] = paraboloid(vec3(1.1, -0.9, -5.0), vec3(0.28, 0.96, 0.0), 0.5, 0.7,
+        vec3(0.5, 0.9, 0.4));
+    quadrics[4] = hyperboloid(vec3(2.3, 0.0, -7.5), vec3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0,
+        vec3(0.7, 0.5, 0.9));
 }
 
 // The local coordinates of v: along two directions perpendicular to the axis, and along the axis.

@@ -61,7 +61,9 @@ struct Branch {
     int depth;
 };
 
-Sphere spheres[4] = Sphere[4](Sphere(vec3(0.0), 0.0, 0, vec3(0.0)), Sphere(vec3(0.0), 0.0, 0, vec3(0.0)), Sphere(vec3(0.0), 0.0, 0, vec3(0.0)), Sphere(vec3(0.0), 0.0, 0, vec3(0.0)));
+Sphere spheres[4] = Sphere[4](Sphere(vec3(0.0), 0.0, 0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, 0, vec3(0.0)), Sphere(vec3(0.0), 0.0, 0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, 0, vec3(0.0)));
 
 void makeScene() {
     spheres[0] = Sphere(vec3(-0.5, 0.0, -4.5), 0.9, GLASS, vec3(0.95, 1.0, 0.95));
@@ -140,7 +142,14 @@ float fresnel(float eta, float cosine, float beyond) {
 }
 
 vec3 trace(Ray first) {
-    Branch stack[8] = Branch[8](Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0), Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0));
+    Branch stack[8] = Branch[8](Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0),
+        Branch(Ray(vec3(0.0), vec3(0.0)), vec3(0.0), 0));
     stack[0] = Branch(first, vec3(1.0), 0);
     int top = 1;
     vec3 color = vec3(0.0);

@@ -60,7 +60,12 @@ struct Intersection {
     int sphere;
 };
 
-Sphere spheres[6] = Sphere[6](Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)), Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)));
+Sphere spheres[6] = Sphere[6](Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)),
+    Sphere(vec3(0.0), 0.0, Material(0, vec3(0.0), 0.0)));
 uint state = 0u;
 
 // The integer hash PCG (Jarzynski and Olano 2020), which gives the same numbers on every machine.
@@ -80,7 +85,8 @@ void startSample(vec2 fragCoord, int i) {
 }
 
 void makeScene() {
-    spheres[0] = Sphere(vec3(-2.5, 1.4, -6.5), 0.25, Material(EMITTER, vec3(80.0, 70.0, 55.0), 0.0));
+    spheres[0] = Sphere(vec3(-2.5, 1.4, -6.5), 0.25,
+        Material(EMITTER, vec3(80.0, 70.0, 55.0), 0.0));
     spheres[1] = Sphere(vec3(2.2, 1.4, -7.5), 0.8, Material(EMITTER, vec3(2.5, 3.0, 4.0), 0.0));
     spheres[2] = Sphere(vec3(-1.8, -0.3, -6.0), 0.7, Material(GLOSSY, vec3(0.9, 0.7, 0.3), 300.0));
     spheres[3] = Sphere(vec3(0.0, -0.3, -6.5), 0.7, Material(GLOSSY, vec3(0.8, 0.8, 0.8), 30.0));
@@ -213,7 +219,8 @@ vec3 sampleLight(Intersection hit, vec3 reflected) {
     }
     float density = lightDensity(hit.point, spheres[emitter]);
     float other = brdfDensity(hit.material, hit.normal, reflected, direction);
-    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
+    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing
+        * weight(density, other) / density;
 }
 
 vec3 trace(Ray ray) {

@@ -37,7 +37,9 @@ struct Sphere {
     vec3 color;
 };
 
-Sphere spheres[5] = Sphere[5](Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)));
+Sphere spheres[5] = Sphere[5](Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, vec3(0.0)), Sphere(vec3(0.0), 0.0, vec3(0.0)),
+    Sphere(vec3(0.0), 0.0, vec3(0.0)));
 
 void makeScene() {
     spheres[0] = Sphere(vec3(-2.0, 0.0, -4.0), 0.7, vec3(0.9, 0.3, 0.2));

@@ -11,7 +11,8 @@ static const int SAMPLES = 10;
 static float seed = 0.0;
 
 float random() {
-    return frac(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
+    // toyproof: allow(W0005) the scene's sampler uses this hash
+    return frac(sin(seed++) * 43758.5453123);
 }
 
 float disk(float2 p, float2 center, float radius) {
@@ -61,6 +62,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

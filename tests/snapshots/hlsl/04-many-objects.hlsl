@@ -57,12 +57,14 @@ struct Intersection {
     float3 normal;
 };
 
-static Sphere spheres[7] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
+static Sphere spheres[7] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0,
+    (Sphere)0 };
 static Light light = (Light)0;
 static float seed = 0.0;
 
 float random() {
-    return frac(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
+    // toyproof: allow(W0005) the scene's sampler uses this hash
+    return frac(sin(seed++) * 43758.5453123);
 }
 
 void makeScene() {
@@ -167,6 +169,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

@@ -132,13 +132,15 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
         float3 point_1 = ray.origin + hit.t * ray.direction;
         float3 normal = normalize(point_1 - hit.sphere.center);
         float3 toLight = normalize(LIGHT - point_1);
-        color = hit.sphere.color * (AMBIENT + float3(0.85, 0.85, 0.85) * max(dot(normal, toLight), 0.0));
+        color = hit.sphere.color * (AMBIENT
+            + float3(0.85, 0.85, 0.85) * max(dot(normal, toLight), 0.0));
     }
     fragColor = float4(color, 1.0);
 }
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

@@ -65,7 +65,8 @@ static Sphere spheres[4] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 static Light lights[2] = { (Light)0, (Light)0 };
 
 void makeScene() {
-    spheres[0] = make_Sphere(float3(0.0, -101.0, -7.0), 100.0, make_Material(float3(0.5, 0.5, 0.5)));
+    spheres[0] = make_Sphere(float3(0.0, -101.0, -7.0), 100.0,
+        make_Material(float3(0.5, 0.5, 0.5)));
     spheres[1] = make_Sphere(float3(-1.9, 0.0, -7.5), 1.0, make_Material(float3(0.8, 0.25, 0.2)));
     spheres[2] = make_Sphere(float3(0.2, -0.1, -6.5), 0.9, make_Material(float3(0.75, 0.75, 0.75)));
     spheres[3] = make_Sphere(float3(1.9, -0.3, -6.0), 0.7, make_Material(float3(0.2, 0.45, 0.8)));
@@ -162,6 +163,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

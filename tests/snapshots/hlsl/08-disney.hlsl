@@ -40,7 +40,9 @@ struct Material {
     float clearcoatGloss;
 };
 
-Material make_Material(float3 color, float metallic, float subsurface, float specular, float specularTint, float roughness, float anisotropic, float sheen, float sheenTint, float clearcoat, float clearcoatGloss) {
+Material make_Material(float3 color, float metallic, float subsurface, float specular,
+        float specularTint, float roughness, float anisotropic, float sheen, float sheenTint,
+        float clearcoat, float clearcoatGloss) {
     Material result;
     result.color = color;
     result.metallic = metallic;
@@ -70,29 +72,40 @@ Sphere make_Sphere(float3 center, float radius, Material material) {
     return result;
 }
 
-static Sphere spheres[10] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
+static Sphere spheres[10] = { (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0,
+    (Sphere)0, (Sphere)0, (Sphere)0, (Sphere)0 };
 
 void makeScene() {
     // Rough plastic.
-    spheres[0] = make_Sphere(float3(-2.0, 1.3, -7.0), 0.58, make_Material(float3(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[0] = make_Sphere(float3(-2.0, 1.3, -7.0), 0.58,
+        make_Material(float3(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Plastic.
-    spheres[1] = make_Sphere(float3(0.0, 1.3, -7.0), 0.58, make_Material(float3(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[1] = make_Sphere(float3(0.0, 1.3, -7.0), 0.58,
+        make_Material(float3(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Smooth plastic with a tinted highlight.
-    spheres[2] = make_Sphere(float3(2.0, 1.3, -7.0), 0.58, make_Material(float3(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[2] = make_Sphere(float3(2.0, 1.3, -7.0), 0.58,
+        make_Material(float3(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Rough gold.
-    spheres[3] = make_Sphere(float3(-2.0, 0.0, -7.0), 0.58, make_Material(float3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[3] = make_Sphere(float3(-2.0, 0.0, -7.0), 0.58,
+        make_Material(float3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Brushed gold.
-    spheres[4] = make_Sphere(float3(0.0, 0.0, -7.0), 0.58, make_Material(float3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
+    spheres[4] = make_Sphere(float3(0.0, 0.0, -7.0), 0.58,
+        make_Material(float3(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
     // Half metal.
-    spheres[5] = make_Sphere(float3(2.0, 0.0, -7.0), 0.58, make_Material(float3(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[5] = make_Sphere(float3(2.0, 0.0, -7.0), 0.58,
+        make_Material(float3(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Cloth.
-    spheres[6] = make_Sphere(float3(-2.0, -1.3, -7.0), 0.58, make_Material(float3(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
+    spheres[6] = make_Sphere(float3(-2.0, -1.3, -7.0), 0.58,
+        make_Material(float3(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
     // Skin.
-    spheres[7] = make_Sphere(float3(0.0, -1.3, -7.0), 0.58, make_Material(float3(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[7] = make_Sphere(float3(0.0, -1.3, -7.0), 0.58,
+        make_Material(float3(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Lacquer.
-    spheres[8] = make_Sphere(float3(2.0, -1.3, -7.0), 0.58, make_Material(float3(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
+    spheres[8] = make_Sphere(float3(2.0, -1.3, -7.0), 0.58,
+        make_Material(float3(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
     // Ground.
-    spheres[9] = make_Sphere(float3(0.0, -52.3, -8.0), 50.0, make_Material(float3(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[9] = make_Sphere(float3(0.0, -52.3, -8.0), 50.0,
+        make_Material(float3(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
 }
 
 float intersectSphere(Ray ray, Sphere sphere) {
@@ -193,7 +206,8 @@ float3 disney(Material m, float3 light, float3 view, float3 normal) {
     float g = smith(nL, alpha) * smith(nV, alpha);
     float3 f = lerp(specularColor, float3(1.0, 1.0, 1.0), fH);
 
-    float coat = 0.25 * m.clearcoat * berry(nH, lerp(0.1, 0.001, m.clearcoatGloss)) * lerp(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
+    float coat = 0.25 * m.clearcoat * berry(nH, lerp(0.1, 0.001, m.clearcoatGloss))
+        * lerp(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
     return (base + sheen) * (1.0 - m.metallic) + f * d * g + coat;
 }
 
@@ -245,6 +259,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

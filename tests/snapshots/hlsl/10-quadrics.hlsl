@@ -37,7 +37,8 @@ struct Quadric {
     float3 color;
 };
 
-Quadric make_Quadric(float3 origin, float3 axis, float3 q, float g, float k, float low, float high, float3 color) {
+Quadric make_Quadric(float3 origin, float3 axis, float3 q, float g, float k, float low, float high,
+        float3 color) {
     Quadric result;
     result.origin = origin;
     result.axis = axis;
@@ -68,11 +69,13 @@ static Quadric quadrics[5] = { (Quadric)0, (Quadric)0, (Quadric)0, (Quadric)0, (
 
 Quadric ellipsoid(float3 center, float3 radii, float3 color) {
     // The ellipsoid's axes are the coordinate axes.
-    return make_Quadric(center, float3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z, color);
+    return make_Quadric(center, float3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z,
+        radii.z, color);
 }
 
 Quadric cylinder(float3 base, float3 axis, float radius, float height, float3 color) {
-    return make_Quadric(base, axis, float3(1.0, 1.0, 0.0), 0.0, -radius * radius, 0.0, height, color);
+    return make_Quadric(base, axis, float3(1.0, 1.0, 0.0), 0.0, -radius * radius, 0.0, height,
+        color);
 }
 
 Quadric cone(float3 apex, float3 axis, float radius, float height, float3 color) {
@@ -81,10 +84,12 @@ Quadric cone(float3 apex, float3 axis, float radius, float height, float3 color)
 }
 
 Quadric paraboloid(float3 apex, float3 axis, float radius, float height, float3 color) {
-    return make_Quadric(apex, axis, float3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height, color);
+    return make_Quadric(apex, axis, float3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0,
+        0.0, height, color);
 }
 
-Quadric hyperboloid(float3 center, float3 axis, float waist, float radius, float height, float3 color) {
+Quadric hyperboloid(float3 center, float3 axis, float waist, float radius, float height,
+        float3 color) {
     float z = 0.5 * height;
     float slope2 = (radius * radius - waist * waist) / (z * z);
     return make_Quadric(center, axis, float3(1.0, 1.0, -slope2), 0.0, -waist * waist, -z, z, color);
@@ -92,15 +97,20 @@ Quadric hyperboloid(float3 center, float3 axis, float waist, float radius, float
 
 void makeScene() {
     quadrics[0] = ellipsoid(float3(-2.0, 0.5, -7.0), float3(0.9, 0.5, 0.6), float3(0.9, 0.3, 0.3));
-    quadrics[1] = cylinder(float3(-0.9, -1.0, -5.2), float3(0.0, 1.0, 0.0), 0.4, 0.8, float3(0.3, 0.7, 0.9));
-    quadrics[2] = cone(float3(0.3, 0.9, -6.5), float3(0.0, -1.0, 0.0), 0.7, 1.9, float3(0.9, 0.7, 0.2));
-    quadrics[3] = paraboloid(float3(1.1, -0.9, -5.0), float3(0.28, 0.96, 0.0), 0.5, 0.7, float3(0.5, 0.9, 0.4));
-    quadrics[4] = hyperboloid(float3(2.3, 0.0, -7.5), float3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0, float3(0.7, 0.5, 0.9));
+    quadrics[1] = cylinder(float3(-0.9, -1.0, -5.2), float3(0.0, 1.0, 0.0), 0.4, 0.8,
+        float3(0.3, 0.7, 0.9));
+    quadrics[2] = cone(float3(0.3, 0.9, -6.5), float3(0.0, -1.0, 0.0), 0.7, 1.9,
+        float3(0.9, 0.7, 0.2));
+    quadrics[3] = paraboloid(float3(1.1, -0.9, -5.0), float3(0.28, 0.96, 0.0), 0.5, 0.7,
+        float3(0.5, 0.9, 0.4));
+    quadrics[4] = hyperboloid(float3(2.3, 0.0, -7.5), float3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0,
+        float3(0.7, 0.5, 0.9));
 }
 
 // The local coordinates of v: along two directions perpendicular to the axis, and along the axis.
 float3x3 frame(float3 axis) {
-    float3 x = abs(axis.z) > 0.9 ? float3(1.0, 0.0, 0.0) : normalize(cross(axis, float3(0.0, 0.0, 1.0)));
+    float3 x = abs(axis.z) > 0.9 ? float3(1.0, 0.0, 0.0)
+        : normalize(cross(axis, float3(0.0, 0.0, 1.0)));
     return float3x3(x, cross(axis, x), axis);
 }
 
@@ -199,6 +209,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

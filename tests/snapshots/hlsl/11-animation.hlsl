@@ -66,7 +66,8 @@ float3 month(float3 p) {
 }
 
 float3 orbit(float3 p) {
-    return month(rotateAbout(p, float3(2.75, 0.2, -7.0), float3(1.0, 0.0, 0.0), float(iFrame) / 60.0));
+    return month(rotateAbout(p, float3(2.75, 0.2, -7.0), float3(1.0, 0.0, 0.0),
+            float(iFrame) / 60.0));
 }
 
 float3 retrograde(float3 p) {
@@ -154,6 +155,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

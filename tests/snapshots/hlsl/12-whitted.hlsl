@@ -125,7 +125,8 @@ float3 checker(float3 point_1) {
 }
 
 Intersection nearestHit(Ray ray) {
-    Intersection hit = { NO_HIT, float3(0.0, 0.0, 0.0), float3(0.0, 0.0, 0.0), MATTE, float3(0.0, 0.0, 0.0) };
+    Intersection hit = { NO_HIT, float3(0.0, 0.0, 0.0), float3(0.0, 0.0, 0.0), MATTE,
+        float3(0.0, 0.0, 0.0) };
     for (int i = 0; i < SPHERES; i++) {
         float t = intersectSphere(ray, spheres[i]);
         if (t < hit.t) {
@@ -165,7 +166,8 @@ float fresnel(float eta, float cosine, float beyond) {
 }
 
 float3 trace(Ray first) {
-    Branch stack[8] = { (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0 };
+    Branch stack[8] = { (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0, (Branch)0,
+        (Branch)0 };
     stack[0] = make_Branch(first, float3(1.0, 1.0, 1.0), 0);
     int top = 1;
     float3 color = float3(0.0, 0.0, 0.0);
@@ -206,7 +208,8 @@ float3 trace(Ray first) {
         float share = fresnel(eta, cosine, beyond);
         float3 refracted = eta * ray.direction + (eta * cosine - beyond) * normal;
         stack[top++] = make_Branch(mirrored, throughput * share, depth);
-        stack[top++] = make_Branch(make_Ray(hit.point_1, refracted), throughput * (1.0 - share), depth);
+        stack[top++] = make_Branch(make_Ray(hit.point_1, refracted), throughput * (1.0 - share),
+            depth);
     }
     return color;
 }
@@ -225,6 +228,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

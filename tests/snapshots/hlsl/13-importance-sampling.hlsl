@@ -89,12 +89,18 @@ void startSample(float2 fragCoord, int i) {
 }
 
 void makeScene() {
-    spheres[0] = make_Sphere(float3(-2.5, 1.4, -6.5), 0.25, make_Material(EMITTER, float3(80.0, 70.0, 55.0), 0.0));
-    spheres[1] = make_Sphere(float3(2.2, 1.4, -7.5), 0.8, make_Material(EMITTER, float3(2.5, 3.0, 4.0), 0.0));
-    spheres[2] = make_Sphere(float3(-1.8, -0.3, -6.0), 0.7, make_Material(GLOSSY, float3(0.9, 0.7, 0.3), 300.0));
-    spheres[3] = make_Sphere(float3(0.0, -0.3, -6.5), 0.7, make_Material(GLOSSY, float3(0.8, 0.8, 0.8), 30.0));
-    spheres[4] = make_Sphere(float3(1.7, -0.4, -5.5), 0.6, make_Material(DIFFUSE, float3(0.8, 0.25, 0.2), 0.0));
-    spheres[5] = make_Sphere(float3(0.6, -0.75, -4.2), 0.25, make_Material(DIFFUSE, float3(0.3, 0.7, 0.4), 0.0));
+    spheres[0] = make_Sphere(float3(-2.5, 1.4, -6.5), 0.25,
+        make_Material(EMITTER, float3(80.0, 70.0, 55.0), 0.0));
+    spheres[1] = make_Sphere(float3(2.2, 1.4, -7.5), 0.8,
+        make_Material(EMITTER, float3(2.5, 3.0, 4.0), 0.0));
+    spheres[2] = make_Sphere(float3(-1.8, -0.3, -6.0), 0.7,
+        make_Material(GLOSSY, float3(0.9, 0.7, 0.3), 300.0));
+    spheres[3] = make_Sphere(float3(0.0, -0.3, -6.5), 0.7,
+        make_Material(GLOSSY, float3(0.8, 0.8, 0.8), 30.0));
+    spheres[4] = make_Sphere(float3(1.7, -0.4, -5.5), 0.6,
+        make_Material(DIFFUSE, float3(0.8, 0.25, 0.2), 0.0));
+    spheres[5] = make_Sphere(float3(0.6, -0.75, -4.2), 0.25,
+        make_Material(DIFFUSE, float3(0.3, 0.7, 0.4), 0.0));
 }
 
 // Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
@@ -228,7 +234,8 @@ float3 sampleLight(Intersection hit, float3 reflected) {
     }
     float density = lightDensity(hit.point_1, spheres[emitter]);
     float other = brdfDensity(hit.material, hit.normal, reflected, direction);
-    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
+    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing
+        * weight(density, other) / density;
 }
 
 float3 trace(Ray ray) {
@@ -289,6 +296,7 @@ void mainImage(out float4 fragColor, float2 fragCoord) {
 
 float4 main(float4 position : SV_Position) : SV_Target0 {
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

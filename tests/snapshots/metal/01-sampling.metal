@@ -43,7 +43,8 @@ struct Shader {
     float seed = 0.0;
 
     float random() {
-        return fract(sin(seed++) * 43758.5453123); // toyproof: allow(W0005) the scene's sampler uses this hash
+        // toyproof: allow(W0005) the scene's sampler uses this hash
+        return fract(sin(seed++) * 43758.5453123);
     }
 
     void mainImage(thread float4& fragColor, float2 fragCoord) {
@@ -83,6 +84,7 @@ fragment float4 main_(
         float3(inputs.iResolution),
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

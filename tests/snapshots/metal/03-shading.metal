@@ -108,6 +108,7 @@ fragment float4 main_(
         float3(inputs.iResolution),
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

@@ -147,6 +147,7 @@ fragment float4 main_(
         inputs.iFrame,
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

@@ -37,7 +37,8 @@ struct Intersection {
 
 Quadric ellipsoid(float3 center, float3 radii, float3 color) {
     // The ellipsoid's axes are the coordinate axes.
-    return Quadric{ center, float3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z, color };
+    return Quadric{ center, float3(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z,
+        radii.z, color };
 }
 
 Quadric cylinder(float3 base, float3 axis, float radius, float height, float3 color) {
@@ -50,10 +51,12 @@ Quadric cone(float3 apex, float3 axis, float radius, float height, float3 color)
 }
 
 Quadric paraboloid(float3 apex, float3 axis, float radius, float height, float3 color) {
-    return Quadric{ apex, axis, float3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height, color };
+    return Quadric{ apex, axis, float3(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0,
+        height, color };
 }
 
-Quadric hyperboloid(float3 center, float3 axis, float waist, float radius, float height, float3 color) {
+Quadric hyperboloid(float3 center, float3 axis, float waist, float radius, float height,
+        float3 color) {
     float z = 0.5 * height;
     float slope2 = (radius * radius - waist * waist) / (z * z);
     return Quadric{ center, axis, float3(1.0, 1.0, -slope2), 0.0, -waist * waist, -z, z, color };
@@ -61,7 +64,8 @@ Quadric hyperboloid(float3 center, float3 axis, float waist, float radius, float
 
 // The local coordinates of v: along two directions perpendicular to the axis, and along the axis.
 float3x3 frame(float3 axis) {
-    float3 x = abs(axis.z) > 0.9 ? float3(1.0, 0.0, 0.0) : normalize(cross(axis, float3(0.0, 0.0, 1.0)));
+    float3 x = abs(axis.z) > 0.9 ? float3(1.0, 0.0, 0.0)
+        : normalize(cross(axis, float3(0.0, 0.0, 1.0)));
     return float3x3(x, cross(axis, x), axis);
 }
 
@@ -110,11 +114,16 @@ struct Shader {
     array<Quadric, 5> quadrics = {};
 
     void makeScene() {
-        quadrics[0] = ellipsoid(float3(-2.0, 0.5, -7.0), float3(0.9, 0.5, 0.6), float3(0.9, 0.3, 0.3));
-        quadrics[1] = cylinder(float3(-0.9, -1.0, -5.2), float3(0.0, 1.0, 0.0), 0.4, 0.8, float3(0.3, 0.7, 0.9));
-        quadrics[2] = cone(float3(0.3, 0.9, -6.5), float3(0.0, -1.0, 0.0), 0.7, 1.9, float3(0.9, 0.7, 0.2));
-        quadrics[3] = paraboloid(float3(1.1, -0.9, -5.0), float3(0.28, 0.96, 0.0), 0.5, 0.7, float3(0.5, 0.9, 0.4));
-        quadrics[4] = hyperboloid(float3(2.3, 0.0, -7.5), float3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0, float3(0.7, 0.5, 0.9));
+        quadrics[0] = ellipsoid(float3(-2.0, 0.5, -7.0), float3(0.9, 0.5, 0.6),
+            float3(0.9, 0.3, 0.3));
+        quadrics[1] = cylinder(float3(-0.9, -1.0, -5.2), float3(0.0, 1.0, 0.0), 0.4, 0.8,
+            float3(0.3, 0.7, 0.9));
+        quadrics[2] = cone(float3(0.3, 0.9, -6.5), float3(0.0, -1.0, 0.0), 0.7, 1.9,
+            float3(0.9, 0.7, 0.2));
+        quadrics[3] = paraboloid(float3(1.1, -0.9, -5.0), float3(0.28, 0.96, 0.0), 0.5, 0.7,
+            float3(0.5, 0.9, 0.4));
+        quadrics[4] = hyperboloid(float3(2.3, 0.0, -7.5), float3(0.0, 1.0, 0.0), 0.4, 0.8, 2.0,
+            float3(0.7, 0.5, 0.9));
     }
 
     Intersection nearestHit(Ray ray) {
@@ -193,6 +202,7 @@ fragment float4 main_(
         float3(inputs.iResolution),
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

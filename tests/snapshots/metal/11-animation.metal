@@ -72,7 +72,8 @@ struct Shader {
     }
 
     float3 orbit(float3 p) {
-        return month(rotateAbout(p, float3(2.75, 0.2, -7.0), float3(1.0, 0.0, 0.0), float(iFrame) / 60.0));
+        return month(rotateAbout(p, float3(2.75, 0.2, -7.0), float3(1.0, 0.0, 0.0),
+                float(iFrame) / 60.0));
     }
 
     float3 retrograde(float3 p) {
@@ -163,6 +164,7 @@ fragment float4 main_(
         inputs.iFrame,
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

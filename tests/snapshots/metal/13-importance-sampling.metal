@@ -131,12 +131,18 @@ struct Shader {
     }
 
     void makeScene() {
-        spheres[0] = Sphere{ float3(-2.5, 1.4, -6.5), 0.25, Material{ EMITTER, float3(80.0, 70.0, 55.0), 0.0 } };
-        spheres[1] = Sphere{ float3(2.2, 1.4, -7.5), 0.8, Material{ EMITTER, float3(2.5, 3.0, 4.0), 0.0 } };
-        spheres[2] = Sphere{ float3(-1.8, -0.3, -6.0), 0.7, Material{ GLOSSY, float3(0.9, 0.7, 0.3), 300.0 } };
-        spheres[3] = Sphere{ float3(0.0, -0.3, -6.5), 0.7, Material{ GLOSSY, float3(0.8, 0.8, 0.8), 30.0 } };
-        spheres[4] = Sphere{ float3(1.7, -0.4, -5.5), 0.6, Material{ DIFFUSE, float3(0.8, 0.25, 0.2), 0.0 } };
-        spheres[5] = Sphere{ float3(0.6, -0.75, -4.2), 0.25, Material{ DIFFUSE, float3(0.3, 0.7, 0.4), 0.0 } };
+        spheres[0] = Sphere{ float3(-2.5, 1.4, -6.5), 0.25,
+            Material{ EMITTER, float3(80.0, 70.0, 55.0), 0.0 } };
+        spheres[1] = Sphere{ float3(2.2, 1.4, -7.5), 0.8,
+            Material{ EMITTER, float3(2.5, 3.0, 4.0), 0.0 } };
+        spheres[2] = Sphere{ float3(-1.8, -0.3, -6.0), 0.7,
+            Material{ GLOSSY, float3(0.9, 0.7, 0.3), 300.0 } };
+        spheres[3] = Sphere{ float3(0.0, -0.3, -6.5), 0.7,
+            Material{ GLOSSY, float3(0.8, 0.8, 0.8), 30.0 } };
+        spheres[4] = Sphere{ float3(1.7, -0.4, -5.5), 0.6,
+            Material{ DIFFUSE, float3(0.8, 0.25, 0.2), 0.0 } };
+        spheres[5] = Sphere{ float3(0.6, -0.75, -4.2), 0.25,
+            Material{ DIFFUSE, float3(0.3, 0.7, 0.4), 0.0 } };
     }
 
     Intersection nearestHit(Ray ray) {
@@ -201,7 +207,8 @@ struct Shader {
         }
         float density = lightDensity(hit.point, spheres[emitter]);
         float other = brdfDensity(hit.material, hit.normal, reflected, direction);
-        return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
+        return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing
+            * weight(density, other) / density;
     }
 
     float3 trace(Ray ray) {
@@ -282,6 +289,7 @@ fragment float4 main_(
         float3(inputs.iResolution),
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

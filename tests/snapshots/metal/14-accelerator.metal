@@ -102,7 +102,8 @@ struct Shader {
         int3 stride = int3(sign(ray.direction));
         // For each axis: next is the t at which the ray leaves the cell (never, if the ray is perpendicular to the axis),
         // and step is the distance in t between two cell boundaries.
-        float3 next = (CORNER + SPACING * float3(cell + max(stride, 0)) - ray.origin) / ray.direction;
+        float3 next = (CORNER + SPACING * float3(cell + max(stride, 0)) - ray.origin)
+            / ray.direction;
         next = select(next, float3(NO_HIT), stride == int3(0));
         float3 step_1 = SPACING / abs(ray.direction);
         for (int i = 0; i < CELLS.x + CELLS.y + CELLS.z; i++) {
@@ -186,6 +187,7 @@ fragment float4 main_(
         float3(inputs.iResolution),
     };
     float4 color;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     shader.mainImage(color, position.xy);
     return float4(color.xyz, 1.0);
 }

@@ -97,6 +97,7 @@ fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
 @fragment
 fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(&color, position.xy);
     return vec4f(color.xyz, 1.0);
 }

@@ -45,25 +45,35 @@ var<private> spheres: array<Sphere, 10>;
 
 fn makeScene() {
     // Rough plastic.
-    spheres[0] = Sphere(vec3f(-2.0, 1.3, -7.0), 0.58, Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[0] = Sphere(vec3f(-2.0, 1.3, -7.0), 0.58,
+        Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 0.5, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Plastic.
-    spheres[1] = Sphere(vec3f(0.0, 1.3, -7.0), 0.58, Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[1] = Sphere(vec3f(0.0, 1.3, -7.0), 0.58,
+        Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 0.8, 0.0, 0.4, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Smooth plastic with a tinted highlight.
-    spheres[2] = Sphere(vec3f(2.0, 1.3, -7.0), 0.58, Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[2] = Sphere(vec3f(2.0, 1.3, -7.0), 0.58,
+        Material(vec3f(0.8, 0.2, 0.15), 0.0, 0.0, 1.0, 0.8, 0.25, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Rough gold.
-    spheres[3] = Sphere(vec3f(-2.0, 0.0, -7.0), 0.58, Material(vec3f(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[3] = Sphere(vec3f(-2.0, 0.0, -7.0), 0.58,
+        Material(vec3f(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Brushed gold.
-    spheres[4] = Sphere(vec3f(0.0, 0.0, -7.0), 0.58, Material(vec3f(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
+    spheres[4] = Sphere(vec3f(0.0, 0.0, -7.0), 0.58,
+        Material(vec3f(1.0, 0.75, 0.35), 1.0, 0.0, 0.5, 0.0, 0.45, 0.8, 0.0, 0.5, 0.0, 0.6));
     // Half metal.
-    spheres[5] = Sphere(vec3f(2.0, 0.0, -7.0), 0.58, Material(vec3f(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[5] = Sphere(vec3f(2.0, 0.0, -7.0), 0.58,
+        Material(vec3f(1.0, 0.75, 0.35), 0.5, 0.0, 0.5, 0.0, 0.3, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Cloth.
-    spheres[6] = Sphere(vec3f(-2.0, -1.3, -7.0), 0.58, Material(vec3f(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
+    spheres[6] = Sphere(vec3f(-2.0, -1.3, -7.0), 0.58,
+        Material(vec3f(0.25, 0.35, 0.8), 0.0, 0.0, 0.1, 0.0, 0.8, 0.0, 1.0, 0.3, 0.0, 0.6));
     // Skin.
-    spheres[7] = Sphere(vec3f(0.0, -1.3, -7.0), 0.58, Material(vec3f(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[7] = Sphere(vec3f(0.0, -1.3, -7.0), 0.58,
+        Material(vec3f(0.9, 0.6, 0.5), 0.0, 0.9, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 0.0, 0.6));
     // Lacquer.
-    spheres[8] = Sphere(vec3f(2.0, -1.3, -7.0), 0.58, Material(vec3f(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
+    spheres[8] = Sphere(vec3f(2.0, -1.3, -7.0), 0.58,
+        Material(vec3f(0.15, 0.5, 0.25), 0.0, 0.0, 0.5, 0.0, 0.6, 0.0, 0.0, 0.5, 1.0, 0.6));
     // Ground.
-    spheres[9] = Sphere(vec3f(0.0, -52.3, -8.0), 50.0, Material(vec3f(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
+    spheres[9] = Sphere(vec3f(0.0, -52.3, -8.0), 50.0,
+        Material(vec3f(0.4, 0.4, 0.4), 0.0, 0.0, 0.2, 0.0, 0.9, 0.0, 0.0, 0.5, 0.0, 0.6));
 }
 
 fn intersectSphere(ray: Ray, sphere: Sphere) -> f32 {
@@ -164,7 +174,8 @@ fn disney(m: Material, light: vec3f, view: vec3f, normal: vec3f) -> vec3f {
     let g = smith(nL, alpha) * smith(nV, alpha);
     let f = mix(specularColor, vec3f(1.0), fH);
 
-    let coat = 0.25 * m.clearcoat * berry(nH, mix(0.1, 0.001, m.clearcoatGloss)) * mix(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
+    let coat = 0.25 * m.clearcoat * berry(nH, mix(0.1, 0.001, m.clearcoatGloss))
+        * mix(0.04, 1.0, fH) * smith(nL, 0.25) * smith(nV, 0.25);
     return (base + sheen) * (1.0 - m.metallic) + f * d * g + coat;
 }
 
@@ -216,6 +227,7 @@ fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
 @fragment
 fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(&color, position.xy);
     return vec4f(color.xyz, 1.0);
 }

@@ -42,7 +42,8 @@ var<private> quadrics: array<Quadric, 5>;
 
 fn ellipsoid(center: vec3f, radii: vec3f, color: vec3f) -> Quadric {
     // The ellipsoid's axes are the coordinate axes.
-    return Quadric(center, vec3f(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z, radii.z, color);
+    return Quadric(center, vec3f(0.0, 0.0, 1.0), 1.0 / (radii * radii), 0.0, -1.0, -radii.z,
+        radii.z, color);
 }
 
 fn cylinder(base: vec3f, axis: vec3f, radius: f32, height: f32, color: vec3f) -> Quadric {
@@ -55,10 +56,12 @@ fn cone(apex: vec3f, axis: vec3f, radius: f32, height: f32, color: vec3f) -> Qua
 }
 
 fn paraboloid(apex: vec3f, axis: vec3f, radius: f32, height: f32, color: vec3f) -> Quadric {
-    return Quadric(apex, axis, vec3f(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0, height, color);
+    return Quadric(apex, axis, vec3f(1.0, 1.0, 0.0), -0.5 * radius * radius / height, 0.0, 0.0,
+        height, color);
 }
 
-fn hyperboloid(center: vec3f, axis: vec3f, waist: f32, radius: f32, height: f32, color: vec3f) -> Quadric {
+fn hyperboloid(center: vec3f, axis: vec3f, waist: f32, radius: f32, height: f32,
+        color: vec3f) -> Quadric {
     let z = 0.5 * height;
     let slope2 = (radius * radius - waist * waist) / (z * z);
     return Quadric(center, axis, vec3f(1.0, 1.0, -slope2), 0.0, -waist * waist, -z, z, color);
@@ -66,15 +69,20 @@ fn hyperboloid(center: vec3f, axis: vec3f, waist: f32, radius: f32, height: f32,
 
 fn makeScene() {
     quadrics[0] = ellipsoid(vec3f(-2.0, 0.5, -7.0), vec3f(0.9, 0.5, 0.6), vec3f(0.9, 0.3, 0.3));
-    quadrics[1] = cylinder(vec3f(-0.9, -1.0, -5.2), vec3f(0.0, 1.0, 0.0), 0.4, 0.8, vec3f(0.3, 0.7, 0.9));
-    quadrics[2] = cone(vec3f(0.3, 0.9, -6.5), vec3f(0.0, -1.0, 0.0), 0.7, 1.9, vec3f(0.9, 0.7, 0.2));
-    quadrics[3] = paraboloid(vec3f(1.1, -0.9, -5.0), vec3f(0.28, 0.96, 0.0), 0.5, 0.7, vec3f(0.5, 0.9, 0.4));
-    quadrics[4] = hyperboloid(vec3f(2.3, 0.0, -7.5), vec3f(0.0, 1.0, 0.0), 0.4, 0.8, 2.0, vec3f(0.7, 0.5, 0.9));
+    quadrics[1] = cylinder(vec3f(-0.9, -1.0, -5.2), vec3f(0.0, 1.0, 0.0), 0.4, 0.8,
+        vec3f(0.3, 0.7, 0.9));
+    quadrics[2] = cone(vec3f(0.3, 0.9, -6.5), vec3f(0.0, -1.0, 0.0), 0.7, 1.9,
+        vec3f(0.9, 0.7, 0.2));
+    quadrics[3] = paraboloid(vec3f(1.1, -0.9, -5.0), vec3f(0.28, 0.96, 0.0), 0.5, 0.7,
+        vec3f(0.5, 0.9, 0.4));
+    quadrics[4] = hyperboloid(vec3f(2.3, 0.0, -7.5), vec3f(0.0, 1.0, 0.0), 0.4, 0.8, 2.0,
+        vec3f(0.7, 0.5, 0.9));
 }
 
 // The local coordinates of v: along two directions perpendicular to the axis, and along the axis.
 fn frame(axis: vec3f) -> mat3x3f {
-    let x = select(normalize(cross(axis, vec3f(0.0, 0.0, 1.0))), vec3f(1.0, 0.0, 0.0), abs(axis.z) > 0.9);
+    let x = select(normalize(cross(axis, vec3f(0.0, 0.0, 1.0))), vec3f(1.0, 0.0, 0.0),
+        abs(axis.z) > 0.9);
     return mat3x3f(x, cross(axis, x), axis);
 }
 
@@ -173,6 +181,7 @@ fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
 @fragment
 fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(&color, position.xy);
     return vec4f(color.xyz, 1.0);
 }

@@ -54,7 +54,8 @@ fn month(p: vec3f) -> vec3f {
 }
 
 fn orbit(p: vec3f) -> vec3f {
-    return month(rotateAbout(p, vec3f(2.75, 0.2, -7.0), vec3f(1.0, 0.0, 0.0), f32(inputs.iFrame) / 60.0));
+    return month(rotateAbout(p, vec3f(2.75, 0.2, -7.0), vec3f(1.0, 0.0, 0.0),
+            f32(inputs.iFrame) / 60.0));
 }
 
 fn retrograde(p: vec3f) -> vec3f {
@@ -142,6 +143,7 @@ fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
 @fragment
 fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(&color, position.xy);
     return vec4f(color.xyz, 1.0);
 }

@@ -68,12 +68,15 @@ fn startSample(fragCoord: vec2f, i: i32) {
 }
 
 fn makeScene() {
-    spheres[0] = Sphere(vec3f(-2.5, 1.4, -6.5), 0.25, Material(EMITTER, vec3f(80.0, 70.0, 55.0), 0.0));
+    spheres[0] = Sphere(vec3f(-2.5, 1.4, -6.5), 0.25,
+        Material(EMITTER, vec3f(80.0, 70.0, 55.0), 0.0));
     spheres[1] = Sphere(vec3f(2.2, 1.4, -7.5), 0.8, Material(EMITTER, vec3f(2.5, 3.0, 4.0), 0.0));
-    spheres[2] = Sphere(vec3f(-1.8, -0.3, -6.0), 0.7, Material(GLOSSY, vec3f(0.9, 0.7, 0.3), 300.0));
+    spheres[2] = Sphere(vec3f(-1.8, -0.3, -6.0), 0.7,
+        Material(GLOSSY, vec3f(0.9, 0.7, 0.3), 300.0));
     spheres[3] = Sphere(vec3f(0.0, -0.3, -6.5), 0.7, Material(GLOSSY, vec3f(0.8, 0.8, 0.8), 30.0));
     spheres[4] = Sphere(vec3f(1.7, -0.4, -5.5), 0.6, Material(DIFFUSE, vec3f(0.8, 0.25, 0.2), 0.0));
-    spheres[5] = Sphere(vec3f(0.6, -0.75, -4.2), 0.25, Material(DIFFUSE, vec3f(0.3, 0.7, 0.4), 0.0));
+    spheres[5] = Sphere(vec3f(0.6, -0.75, -4.2), 0.25,
+        Material(DIFFUSE, vec3f(0.3, 0.7, 0.4), 0.0));
 }
 
 // Starts at the point of the ray closest to the center: smaller numbers have smaller rounding errors.
@@ -201,7 +204,8 @@ fn sampleLight(hit: Intersection, reflected: vec3f) -> vec3f {
     }
     let density = lightDensity(hit.point, spheres[emitter]);
     let other = brdfDensity(hit.material, hit.normal, reflected, direction);
-    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing * weight(density, other) / density;
+    return spheres[emitter].material.color * brdf(hit.material, reflected, direction) * facing
+        * weight(density, other) / density;
 }
 
 fn trace(ray_in: Ray) -> vec3f {
@@ -263,6 +267,7 @@ fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
 @fragment
 fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(&color, position.xy);
     return vec4f(color.xyz, 1.0);
 }

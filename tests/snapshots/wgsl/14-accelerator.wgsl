@@ -102,7 +102,8 @@ fn hitScene(ray: Ray) -> Intersection {
     let stride = vec3i(sign(ray.direction));
     // For each axis: next is the t at which the ray leaves the cell (never, if the ray is perpendicular to the axis),
     // and step is the distance in t between two cell boundaries.
-    var next = (CORNER + SPACING * vec3f(cell + max(stride, vec3i(0))) - ray.origin) / ray.direction;
+    var next = (CORNER + SPACING * vec3f(cell + max(stride, vec3i(0))) - ray.origin)
+        / ray.direction;
     next = select(next, vec3f(NO_HIT), stride == vec3i(0));
     let step = SPACING / abs(ray.direction);
     for (var i = 0; i < CELLS.x + CELLS.y + CELLS.z; i++) {
@@ -166,6 +167,7 @@ fn mainImage(fragColor: ptr<function, vec4f>, fragCoord: vec2f) {
 @fragment
 fn main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var color: vec4f;
+    // Row 0 of the target is the bottom of the image, as in ShaderToy.
     mainImage(&color, position.xy);
     return vec4f(color.xyz, 1.0);
 }
