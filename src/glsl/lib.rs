@@ -221,8 +221,7 @@ impl Checked {
     }
 
     /// Whether a uniform or varying that the shader declares has the value of an input, of a texture or of
-    /// the
-    /// options: no expression reads the variable itself.
+    /// the options: no expression reads the variable itself.
     pub fn is_bound(&self, variable: tree::VariableId) -> bool {
         self.bound.contains_key(&variable)
     }
@@ -244,8 +243,7 @@ impl Checked {
     }
 
     /// The names of functions, structures and global variables that the text declares, with the bytes where
-    /// they are
-    /// declared.
+    /// they are declared.
     pub fn global_names(&self) -> impl Iterator<Item = (&str, u32)> {
         let tree = &self.tree;
         tree.items.iter().filter_map(|item| match *item {
@@ -422,8 +420,7 @@ fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, Prep
     };
     if options.stage != Stage::Image {
         // The buffers of a project are ShaderToy's, but for those that a header of ISF declares, and those
-        // that were
-        // written for another host.
+        // that were written for another host.
         let other = options.dialect.filter(|&dialect| {
             matches!(dialect, Dialect::Isf | Dialect::WebGl) && options.stage == Stage::Buffer
         });

@@ -41,8 +41,7 @@ impl Rewrite {
 }
 
 /// The text after some rewrites. Of a range inside of another one that is replaced, nothing is left; `None`
-/// if
-/// ranges overlap in part.
+/// if ranges overlap in part.
 ///
 /// Tokens that get neighbors are separated by a blank where they would otherwise become one.
 pub(crate) fn apply<'r>(text: &str, rewrites: impl IntoIterator<Item = &'r Rewrite>) -> Option<String> {

@@ -111,8 +111,7 @@ impl std::error::Error for GlslError {}
 ///
 /// The module has one entry point, the fragment shader `main`, whose color is at location 0. Its position is
 /// that of the builtin `position`, and y is not flipped: what GLSL calls the bottom is row 0 of wgpu's
-/// target.
-/// All bindings are in group 0. A module declares only those that it reads, which
+/// target. All bindings are in group 0. A module declares only those that it reads, which
 /// [`Module::global_variables`] lists with their names; the members of a block have the author's names.
 ///
 /// | binding | |
@@ -124,16 +123,13 @@ impl std::error::Error for GlslError {}
 ///
 /// **Inputs of the host.** ShaderToy's are not declared. Other shaders declare inputs that are recognized by
 /// their names and types, such as `u_time`, and a `varying vec2` is the position from 0 to 1; both are
-/// computed
-/// from the block at binding 0. With [`ModuleOptions::own_uniforms`], all uniforms but textures are members
-/// of
-/// the block at binding 9 instead.
+/// computed from the block at binding 0. With [`ModuleOptions::own_uniforms`], all uniforms but textures are
+/// members of the block at binding 9 instead.
 ///
 /// **The author's uniforms.** The block has all that are declared, read or not, so that its layout depends on
 /// the declarations alone. A `bool` is a `uint` that is not 0, and the elements of an array are 16 bytes
-/// apart, as
-/// std140 requires. A value in the text (`uniform float speed = 2.0;`) is ignored, since the block always has
-/// one. A uniform with a value in [`uniforms`](toyproof_glsl::Options::uniforms) is a constant.
+/// apart, as std140 requires. A value in the text (`uniform float speed = 2.0;`) is ignored, since the block
+/// always has one. A uniform with a value in [`uniforms`](toyproof_glsl::Options::uniforms) is a constant.
 ///
 /// **Textures.** A `sampler2D` is the next free channel, or that of its number if its name has one, such as
 /// `u_tex0`. Both variables have its name, the sampler's with the suffix `_sampler`.
@@ -151,8 +147,7 @@ impl std::error::Error for GlslError {}
 ///
 /// # Errors
 /// The shader's, or that it reads what is not supported. If naga refuses the translated shader, the error
-/// says
-/// so ([`Code::NagaParse`], [`Code::NagaValidation`]).
+/// says so ([`Code::NagaParse`], [`Code::NagaValidation`]).
 ///
 /// # Panics
 /// For the [stage](toyproof_glsl::Stage::Common) without an entry point. If naga panics, which no shader of the

@@ -1,6 +1,5 @@
 //! `toyproof reduce`: each kind of fault on a shader of some length; what is left is small, and still shows
-//! the
-//! fault.
+//! the fault.
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,5 @@
 //! Modules of `glsl_to_module` in wgpu: it accepts them, and what a host writes into the block of uniforms is
-//! what
-//! the shader reads.
+//! what the shader reads.
 
 use std::borrow::Cow;
 use std::error::Error;

@@ -1,10 +1,8 @@
 //! ISF: one text for all passes behind a header in JSON, <https://docs.isf.video/ref_json.html>.
 //!
 //! Hosts render the `PASSES` in their order, each with the whole text and its number in `PASSINDEX`. A target
-//! that is
-//! `PERSISTENT` keeps its content, so that a pass that reads it before it is rendered gets that of the last
-//! frame. Hosts
-//! filter all images linearly, up to their edges.
+//! that is `PERSISTENT` keeps its content, so that a pass that reads it before it is rendered gets that of
+//! the last frame. Hosts filter all images linearly, up to their edges.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
@@ -553,8 +551,7 @@ pub(super) fn read(text: &str, passes: &Passes, timeout: Duration) -> Result<Rea
 }
 
 /// A frame with a mouse that the inputs of the header can describe to the bit: at an eighth of the image, and
-/// where it
-/// was clicked is where it is.
+/// where it was clicked is where it is.
 pub(super) fn with_its_mouse(frame: Frame) -> Frame {
     let [width, height] = frame.size.map(|side| side as f32);
     let eighth = |place: f32, side: f32| (place / side * 8.0).round() / 8.0 * side;

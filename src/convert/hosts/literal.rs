@@ -8,8 +8,7 @@ use serde_json::{Map, Value};
 const LINE_WIDTH: usize = 80;
 
 /// An object on one line, or with a line for each entry if it would be too long there. `column` is where it
-/// begins, and
-/// `after` the number of characters behind it.
+/// begins, and `after` the number of characters behind it.
 pub(super) fn object(entries: &[(String, String)], indent: usize, column: usize, after: usize) -> String {
     let entries: Vec<_> = entries
         .iter()

@@ -223,8 +223,7 @@ impl<'a> Passes<'a> {
 
 impl Converter {
     /// Converts a shader or a project for a host whose file has all passes. With a prover, the file is read
-    /// again, and
-    /// the conversion is proved.
+    /// again, and the conversion is proved.
     ///
     /// # Errors
     /// Returns why there is no conversion. One that is not proved is not an error.

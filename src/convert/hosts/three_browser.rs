@@ -60,8 +60,7 @@ pub(super) fn shader(
 }
 
 /// Plays the passes of a shader and its module in the frames of the original, and compares the images except
-/// in
-/// undefined pixels.
+/// in undefined pixels.
 pub(super) fn passes(
     passes: &Passes,
     module: &str,

@@ -53,8 +53,7 @@ pub(super) fn words(text: &str) -> HashSet<&str> {
 }
 
 /// A text with other words in place of some. Members are replaced like variables, with which they may share a
-/// macro,
-/// but not components.
+/// macro, but not components.
 pub(super) fn replaced(text: &str, replacements: &HashMap<String, String>) -> String {
     let is_swizzle = |word: &str| word.len() <= 4 && word.chars().all(|c| "xyzwrgbastpq".contains(c));
     let part = |part: &Part| match *part {

@@ -58,8 +58,7 @@ pub const THREE_VARIABLE: &str = "TOYPROOF_THREE";
 
 impl ThreeLibrary {
     /// Finds the package: in the folder that `TOYPROOF_THREE` names, else in `node_modules/three` in one of
-    /// these
-    /// folders, or in one that contains it.
+    /// these folders, or in one that contains it.
     pub fn find(folders: &[PathBuf]) -> Option<Self> {
         if let Some(named) = std::env::var_os(THREE_VARIABLE) {
             return Self::read(Path::new(&named));

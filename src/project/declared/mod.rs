@@ -27,8 +27,7 @@ pub fn with_declarations(
 ) -> Result<Declared, Diagnostics> {
     let text = files.get(file).text();
     // A shader of ShaderToy may have taken the header along; one of ISF may have kept its `mainImage`, which
-    // its
-    // `main` calls.
+    // its `main` calls.
     let may_be_isf = match options.dialect {
         None => !text.contains("mainImage") || text.contains("void main("),
         Some(dialect) => dialect == Dialect::Isf,

@@ -1,8 +1,7 @@
 //! Messages of tools, up to what depends on the shader.
 
 /// A message with names in quotes and numbers replaced by `_`, so that messages about shaders with other
-/// names
-/// and lines are equal. Only the first line counts: others show the source.
+/// names and lines are equal. Only the first line counts: others show the source.
 ///
 /// ```
 /// use toyproof_reduce::fault::pattern;

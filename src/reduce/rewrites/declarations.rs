@@ -113,8 +113,7 @@ impl<'a> Macro<'a> {
     }
 
     /// The deletion of the macro with the replacement of its uses outside of directives; `None` if an
-    /// argument
-    /// uses it, too.
+    /// argument uses it, too.
     fn expanded(&self, outline: &Outline) -> Option<Rewrite> {
         let mut rewrite = Rewrite::delete(self.directive.clone());
         let mut index = 0;

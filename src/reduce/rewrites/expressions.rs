@@ -10,8 +10,7 @@ use super::{Source, constant};
 use crate::rewrite::Rewrite;
 
 /// The expressions at a depth below those of statements, whose values may be replaced; `None` if nothing is
-/// so
-/// deep.
+/// so deep.
 fn values_at(tree: &Tree, depth: usize) -> Option<Vec<ExprId>> {
     let mut level: Vec<ExprId> = tree
         .global_variables()

@@ -209,8 +209,7 @@ struct Inlining<'a> {
 
 impl Inlining<'_> {
     /// The text in place of the call whose name is the token `call`. Names may get another meaning in it;
-    /// then
-    /// it does not show the fault.
+    /// then it does not show the fault.
     fn text(&self, definition: &Definition, call: usize) -> Option<String> {
         let (outline, tree) = (self.outline, self.tree);
         let function = &tree[definition.id];

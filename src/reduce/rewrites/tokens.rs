@@ -46,8 +46,7 @@ pub(super) fn deleted(source: &Source) -> Vec<Rewrite> {
 }
 
 /// The tokens of each declaration without the `;` that keeps it apart from the next one; all tokens if the
-/// text
-/// has no declarations.
+/// text has no declarations.
 fn top_level(outline: &Outline) -> Vec<Range<usize>> {
     let whole = outline.items.is_empty().then_some(0..outline.tokens.len());
     let lists = outline.items.iter().rev().map(|item| {

@@ -1,6 +1,5 @@
 //! Conditionals whose sides have side effects become branches, for languages that evaluate both sides of
-//! `?:`,
-//! as HLSL does before 2021. Such languages select no structures, arrays or matrices either.
+//! `?:`, as HLSL does before 2021. Such languages select no structures, arrays or matrices either.
 
 use toyproof_glsl::tree::{
     Arm, Block, Condition, ExprId, ExprKind, Place, Statement, StatementKind, Tree, Type, UnaryOp, Value,

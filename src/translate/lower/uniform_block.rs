@@ -12,9 +12,8 @@ use crate::lower::context::{Builder, LoweringContext};
 
 /// Collects the uniforms that are no inputs of the host in a block, in the order of their declarations; those
 /// with a given value become constants. Types that blocks do not have are replaced: `bool` by `uint`, and the
-/// elements
-/// of arrays by vectors of four components where std140 pads them to that size, because WGSL has no arrays
-/// with other strides.
+/// elements of arrays by vectors of four components where std140 pads them to that size, because WGSL has no
+/// arrays with other strides.
 ///
 /// # Errors
 /// A uniform has a type that no block can have, or the shader reads an input or a texture that it cannot

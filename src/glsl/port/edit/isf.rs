@@ -1,6 +1,5 @@
 //! Lookups of textures for ISF, whose hosts replace `IMG_NORM_PIXEL(image, at)` and the like in the text: the
-//! image is
-//! named in the lookup itself, and has neither mipmaps nor texels that are fetched.
+//! image is named in the lookup itself, and has neither mipmaps nor texels that are fetched.
 
 use std::collections::{BTreeSet, HashMap};
 

@@ -51,8 +51,7 @@ impl Writer<'_> {
     }
 
     /// Adds a function that replaces a built-in one, with parameters `x`, `y`, `a` of these types, and
-    /// returns its
-    /// name.
+    /// returns its name.
     pub(super) fn helper_function(
         &mut self,
         name: &str,
