@@ -63,7 +63,7 @@ use thiserror::Error;
 use toyproof_diagnostic::Deadline;
 use toyproof_glsl as glsl;
 
-pub use self::parts::{Part, PartsReduction, PartsTester, Texts, reduce_parts};
+pub use self::parts::{OnPartsProgress, Part, PartsReduction, PartsTester, Texts, reduce_parts};
 pub use self::size::Size;
 
 /// Decides whether a text shows the fault. Each thread has its own.

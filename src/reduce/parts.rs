@@ -32,6 +32,9 @@ impl<F: FnMut(&[Option<String>]) -> bool> PartsTester for F {
     }
 }
 
+/// Gets all texts, and the progress of the one that is being reduced; may end the reduction.
+pub type OnPartsProgress<'p> = dyn FnMut(&[Option<String>], &Progress) -> ControlFlow<()> + 'p;
+
 /// The result of a reduction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartsReduction {
@@ -53,7 +56,7 @@ pub fn reduce_parts<T: PartsTester>(
     parts: &[Part],
     limits: &Limits,
     make_tester: &(impl Fn() -> T + Sync),
-    on_progress: &mut dyn FnMut(&[Option<String>], &Progress) -> ControlFlow<()>,
+    on_progress: &mut OnPartsProgress,
 ) -> Result<PartsReduction, NoFault> {
     let texts: Texts = parts.iter().map(|part| Some(part.text.clone())).collect();
     let mut tester = make_tester();
@@ -91,7 +94,7 @@ struct Search<'a, 'p> {
     parts: &'a [Part],
     limits: &'a Limits<'a>,
     reduction: PartsReduction,
-    on_progress: &'p mut dyn FnMut(&[Option<String>], &Progress) -> ControlFlow<()>,
+    on_progress: &'p mut OnPartsProgress<'p>,
 }
 
 impl Search<'_, '_> {
@@ -105,7 +108,9 @@ impl Search<'_, '_> {
         let candidates = std::iter::once(all.clone()).chain(all.iter().map(|&at| vec![at]));
         for left_out in candidates {
             let mut texts = self.reduction.texts.clone();
-            left_out.iter().for_each(|&at| texts[at] = None);
+            for at in left_out {
+                texts[at] = None;
+            }
             if !self.reduction.is_complete || texts == self.reduction.texts {
                 continue;
             }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use toyproof_diagnostic::grouped;
 use toyproof_image::{Frame, Input, InputType};
+use toyproof_project::PROJECT_FILE;
 use toyproof_translate::backend::Target;
 
 use crate::fault::{Ending, Fault, Finding};
@@ -113,7 +114,8 @@ impl Report<'_> {
             );
             for (name, text) in files {
                 paragraph(out, &format!("`{name}`:"));
-                listing(out, if name.ends_with(".toml") { "toml" } else { "glsl" }, text);
+                let language = if name == PROJECT_FILE { "toml" } else { "glsl" };
+                listing(out, language, text);
             }
             return;
         }

@@ -179,7 +179,7 @@ impl fmt::Display for Finding {
                 Some([differing, pixels]) => {
                     let of_pass = match pass {
                         Target::Image => String::new(),
-                        pass => format!(" of {pass}"),
+                        Target::Buffer(_) => format!(" of {pass}"),
                     };
                     write!(
                         f,

@@ -61,7 +61,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
     fragColor = vec4(far(fragCoord), iMouse.xy, 1.);
 }
 ";
-    expect![[r#"
+    expect![[r"
         // A license.
 
         struct Inputs {
@@ -93,7 +93,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
             mainImage(&color, position.xy);
             return vec4f(color.xyz, 1.0);
         }
-    "#]]
+    "]]
     .assert_eq(&print(shader, Style::Plain));
 }
 
