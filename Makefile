@@ -1,6 +1,6 @@
 # Start with `make demo`, then `make test`.
 
-.PHONY: demo test setup check msrv lint bench fuzz accuracy platforms
+.PHONY: demo test setup check msrv lint bench fuzz accuracy platforms semver
 .DEFAULT_GOAL := demo
 
 # Builds, checks the course's shaders and writes images and reports to out/. Of the whole workspace the program alone is
@@ -51,3 +51,9 @@ fuzz:
 # Tests Windows under wine and aarch64 under qemu; type-checks for macOS and WebAssembly.
 platforms:
 	tests/platforms.sh
+
+# Compares the public interfaces of the crates with those of a revision, such as the tag of the last release. Needs
+# cargo-semver-checks.
+BASE ?= HEAD~1
+semver:
+	cargo semver-checks --workspace --exclude toyproof-testkit --exclude xtask --baseline-rev $(BASE)

@@ -14,7 +14,7 @@ const FLAGS: [&str; 7] = [
     "--device",
     "cpu",
     "--size",
-    "96x54",
+    "64x36",
     "--search",
     "0",
     "--format=json",
