@@ -74,18 +74,21 @@ pub fn insert_in_hosted(text: &str, host: Host, origin: Origin, status: &ProofSt
     }
 }
 
+/// A text on the line of a comment, which its line breaks would end: `replacement` takes their place. JavaScript has
+/// two more than other languages.
+fn in_comment(text: &str, replacement: char) -> String {
+    let ends_line = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
+    let shown = text.chars().map(|c| if ends_line(c) { replacement } else { c });
+    shown.collect()
+}
+
 fn header_text(origin: Origin, status: &ProofStatus) -> String {
-    // A name may contain anything, even a line break, which would end the comment.
-    let in_comment = |name: &str| -> String {
-        let shown = name.chars().map(|c| if c.is_control() { '?' } else { c });
-        shown.collect()
-    };
     let version = env!("CARGO_PKG_VERSION");
     let mut head = String::new();
     if let Some(credit) = origin.credit {
-        let _ = writeln!(head, "// {}", in_comment(credit));
+        let _ = writeln!(head, "// {}", in_comment(credit, '?'));
     }
-    let name = in_comment(origin.name);
+    let name = in_comment(origin.name, '?');
     let _ = writeln!(head, "// {name}, converted by toyproof {version} (naga {NAGA}).");
     match status {
         ProofStatus::NotRequested => {}
@@ -112,10 +115,7 @@ fn header_text(origin: Origin, status: &ProofStatus) -> String {
         }
         ProofStatus::ProvedPasses(proof) => passes(&mut head, proof),
         ProofStatus::NotProved(why) => {
-            let why: String = why
-                .chars()
-                .map(|c| if c.is_control() { ' ' } else { c })
-                .collect();
+            let why = in_comment(why, ' ');
             let _ = writeln!(head, "// NOT PROVED: {why}");
         }
     }
@@ -279,13 +279,13 @@ mod tests {
         let mut bytes = b"#version 300 es\nvoid main() {}\n".to_vec();
         let origin = Origin {
             name: "a\nb.glsl",
-            credit: Some("\"Waves\" by so\nmeone"),
+            credit: Some("\"Wa\u{2028}ves\" by so\nmeone"),
         };
         insert(&mut bytes, Target::Glsl, origin, &ProofStatus::NotRequested);
         let text = String::from_utf8(bytes).unwrap();
         assert!(
             text.starts_with(
-                "#version 300 es\n// \"Waves\" by so?meone\n// a?b.glsl, converted by toyproof "
+                "#version 300 es\n// \"Wa?ves\" by so?meone\n// a?b.glsl, converted by toyproof "
             ),
             "{text}"
         );
