@@ -75,6 +75,7 @@ impl Writer<'_> {
             Constructor::Vector => self.vector(arguments, ty),
             Constructor::Matrix => self.matrix(arguments, ty),
             Constructor::Diagonal => self.diagonal(only, ty),
+            Constructor::Resize if from == ty => primary(vec![Part::Print(only, level::POSTFIX)]),
             Constructor::Resize => self.resize(only, from, ty),
         }
     }

@@ -73,14 +73,17 @@ impl Writer<'_> {
     /// operators with two operands: a constructor of the same type stands for others.
     fn parenthesis(&self, id: ExprId) -> PrintResult<String> {
         let expr = &self.cx.tree[id];
-        let is_kept = matches!(expr.kind, ExprKind::Binary { .. } | ExprKind::Conditional { .. });
+        // A negated matrix is a product.
+        let is_kept = match expr.kind {
+            ExprKind::Binary { .. } | ExprKind::Conditional { .. } => true,
+            ExprKind::Unary { .. } => is_matrix(expr.ty),
+            _ => false,
+        };
         if self.language() != Language::Godot || is_kept {
             return Ok("(".to_owned());
         }
         match expr.ty {
-            Type::Scalar(_) | Type::Vector(..) | Type::Matrix { .. } => {
-                Ok(format!("{}(", self.type_name(expr.ty)?))
-            }
+            Type::Scalar(_) | Type::Vector(..) => Ok(format!("{}(", self.type_name(expr.ty)?)),
             _ => Err(Unprintable::Construct("an assignment in an expression")),
         }
     }

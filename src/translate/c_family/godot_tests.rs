@@ -152,6 +152,7 @@ fn godot_keeps_parentheses_of_binary_operators_only() {
         "",
         "float g = floor(at.x) + 1.0;\nfloat a = (g += 1.0) * 2.0;\nint i = 0;\n\
          while ((i += 1) < 5) a += 1.0;\nvec2 q = -(-at);\nfloat b = -(-a * 2.0) + - - a;\nuint u = 3u;\nu <<= 1;\n\
+         mat2 m = mat2(a);\nq = q * -m;\nm = mat2(-m);\n\
          for (int j = 0, k = 5; j < k; j++, k--) b += 1.0;\ncolor = vec4(a, b, q.x, float(u) + (a - b) * 2.0);",
     );
     for expected in [
@@ -160,6 +161,8 @@ fn godot_keeps_parentheses_of_binary_operators_only() {
         "vec2 q = -vec2(-at);",
         "float b = -float(-a * 2.0) + -float(-a);",
         "u <<= uint(1);",
+        "q = q * (-1.0 * m);",
+        "m = (-1.0 * m);",
         "for (int j = 0, k = 5; j < k; j++, k--) {",
         "float(u) + (a - b) * 2.0);",
     ] {
