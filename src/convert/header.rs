@@ -74,8 +74,8 @@ pub fn insert_in_hosted(text: &str, host: Host, origin: Origin, status: &ProofSt
     }
 }
 
-/// A text on the line of a comment, which its line breaks would end: `replacement` takes their place. JavaScript has
-/// two more than other languages.
+/// A text on the line of a comment, which its line breaks would end: `replacement` takes their place. JavaScript
+/// has two more than other languages.
 fn in_comment(text: &str, replacement: char) -> String {
     let ends_line = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
     let shown = text.chars().map(|c| if ends_line(c) { replacement } else { c });

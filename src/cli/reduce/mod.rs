@@ -69,8 +69,8 @@ pub(super) struct Args {
     fault: Option<Wanted>,
     /// A command that shows the fault by its exit status; `{}` stands for the shader's file
     ///
-    /// For a project, `{}` is its folder. The command runs in the shell, and not in the sandbox. The status is that
-    /// for the original.
+    /// For a project, `{}` is its folder. The command runs in the shell, and not in the sandbox. The status
+    /// is that for the original.
     #[arg(long, value_name = "COMMAND", conflicts_with = "fault")]
     command: Option<String>,
     /// Write the text of an issue for the project at fault, as Markdown

@@ -17,8 +17,8 @@ use toyproof_verify::{Case, Failure, FromStart};
 use super::Subject;
 use crate::parts::Part;
 
-/// A project whose passes are reduced. Its parts are the texts of its passes, with Common in front of each, and
-/// after them its inputs, whose texts are empty.
+/// A project whose passes are reduced. Its parts are the texts of its passes, with Common in front of each,
+/// and after them its inputs, whose texts are empty.
 #[derive(Debug, Clone)]
 pub struct ProjectParts {
     project: Project,
@@ -27,8 +27,8 @@ pub struct ProjectParts {
 }
 
 impl ProjectParts {
-    /// The parts of a project. `text` returns the text of a pass with Common and included files, and how it is
-    /// checked.
+    /// The parts of a project. `text` returns the text of a pass with Common and included files, and how
+    /// it is checked.
     pub fn new(
         project: &Project,
         mut text: impl FnMut(PassKind) -> (String, glsl::Options),
@@ -60,11 +60,6 @@ impl ProjectParts {
             inputs,
         };
         (own, parts)
-    }
-
-    /// The pass whose text is the part of that number.
-    pub fn pass(&self, part: usize) -> Option<PassKind> {
-        self.passes.get(part).copied()
     }
 
     /// The project with the texts of parts, which are added to `files`.
@@ -188,8 +183,8 @@ impl Compiled {
         }
     }
 
-    /// The frame of a subject with what the image reads in it. A driver renders the other passes, too, if there
-    /// is one.
+    /// The frame of a subject with what the image reads in it. A driver renders the other passes, too, if
+    /// there is one.
     pub(super) fn bind(&self, subject: &Subject, driver: Option<&mut Worker>) -> Result<Bound, Failure> {
         let mut frame = subject.frame.clone();
         let Content::Project(project) = &self.content else {

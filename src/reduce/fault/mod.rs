@@ -194,8 +194,8 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Finds a fault of texts: one text of a shader, or those of the parts of a project. Of several frames, which differ in their size, the first one counts in which the
-/// shader shows it; the subject then has this size.
+/// Finds a fault of texts: one text of a shader, or those of the parts of a project. Of several frames, which
+/// differ in their size, the first one counts in which the shader shows it; the subject then has this size.
 ///
 /// # Errors
 /// If the texts do not show the fault, or cannot be tested for it.

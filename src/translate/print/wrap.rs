@@ -1,8 +1,8 @@
 //! Breaks long lines of written code: after `,` and `;`, and before binary operators, outside of as many
 //! brackets as possible.
 //!
-//! It works on text, since only the text is as long as it is: names and types differ by language. Lines are
-//! broken at spaces only, so tokens stay. Writers put spaces around binary operators, but not within `array<f32, 4>`.
+//! It works on text, whose length depends on the language: names and types differ. Lines are broken at spaces
+//! only, so tokens stay. Writers put spaces around binary operators, but not around the `<` and `>` of types.
 
 /// Maximum number of columns of a line.
 const MAX_COLUMNS: usize = 100;
