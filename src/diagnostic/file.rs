@@ -80,10 +80,10 @@ impl File {
         while !self.text.is_char_boundary(byte) {
             byte -= 1;
         }
-        let line = self.line_starts.partition_point(|&start| start <= byte);
-        let start = self.line_starts[line - 1];
+        let line = self.line(byte);
+        let start = self.line_starts[line];
         Position {
-            line,
+            line: line + 1,
             column: self.text[start..byte].chars().count() + 1,
         }
     }
@@ -98,7 +98,13 @@ impl File {
             .unwrap_or(0)
     }
 
-    fn line_range(&self, index: usize) -> Option<Range<usize>> {
+    /// The index of the line, from 0, in which a byte is; bytes past the end are in the last line.
+    pub fn line(&self, byte: usize) -> usize {
+        self.line_starts.partition_point(|&start| start <= byte) - 1
+    }
+
+    /// The bytes of a line by its index from 0, with its line ending; `None` after the last line.
+    pub fn line_range(&self, index: usize) -> Option<Range<usize>> {
         let start = *self.line_starts.get(index)?;
         let end = self
             .line_starts
@@ -168,6 +174,38 @@ impl Files {
         let within = |byte: u32| (source.start + (byte - start)).min(source.end);
         // A part may come from a joined file, too.
         self.origin(Span::new(source.file, within(span.start), within(span.end)))
+    }
+
+    /// The byte of a joined file at which a byte of another file first is: the inverse of
+    /// [`origin`](Self::origin). `None` if the joined file does not have that byte.
+    pub fn in_joined(&self, joined: FileId, file: FileId, byte: u32) -> Option<u32> {
+        if joined == file {
+            return Some(byte);
+        }
+        self.get(joined).parts.iter().find_map(|Part { start, source }| {
+            let inner = self.in_joined(source.file, file, byte)?;
+            (source.start..=source.end)
+                .contains(&inner)
+                .then(|| start + (inner - source.start))
+        })
+    }
+
+    /// The files that a joined file consists of, directly or not; a file that is not joined is its own only
+    /// part.
+    pub fn parts(&self, joined: FileId) -> Vec<FileId> {
+        let parts = &self.get(joined).parts;
+        if parts.is_empty() {
+            return vec![joined];
+        }
+        let mut found = Vec::new();
+        for part in parts {
+            for file in self.parts(part.source.file) {
+                if !found.contains(&file) {
+                    found.push(file);
+                }
+            }
+        }
+        found
     }
 
     /// The name of the file that a span is in.
@@ -355,6 +393,10 @@ mod tests {
         assert_eq!(files.origin(Span::new(nested, 0, 2)), Span::new(first, 2, 4));
         assert_eq!(files.origin(Span::new(nested, 3, 4)), Span::new(second, 0, 1));
         assert_eq!(files.origin(Span::new(nested, 4, 5)), Span::new(first, 0, 1));
+        let inverse = |file, byte| files.in_joined(nested, file, byte);
+        assert_eq!([inverse(first, 2), inverse(second, 0)], [Some(0), Some(3)]);
+        assert_eq!([inverse(first, 0), inverse(second, 3)], [Some(4), None]);
+        assert_eq!(files.parts(nested), [first, second]);
         let empty = files.join("empty", &[]);
         assert_eq!(files.origin(Span::new(empty, 0, 0)), Span::new(empty, 0, 0));
     }

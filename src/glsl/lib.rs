@@ -60,10 +60,13 @@
 //! - `parse`: matches brackets, then parses the grammar; continues after errors.
 //! - `check`: scopes, types, rules and built-in functions; called by the parser for each construct.
 //! - `constant`: the values of constant expressions.
+//! - `analysis`: a text for an editor, also with errors: what names denote, and where they are visible.
 //! - [`tree`]: the typed tree in arenas, and its visitors ([`tree::walk`]).
 //! - `single_edit`: one edit after which an invalid shader compiles; `source`: the tokens of a text as it is
 //!   written.
 //! - `port`: the text of a shader for another host.
+//! - [`documentation`]: what the words of the language mean; `vocabulary`: which words a text may use;
+//!   `expanded`: the text to which a macro expands. For editors.
 //! - `dialect`: the hosts of shaders with their inputs, and the versions of the language.
 //! - `codes`: the stable codes of diagnostics; `foreign`: names from other languages and versions.
 //! - `stage`, `sampling`: the tabs of a project, and how channels are sampled.
@@ -73,10 +76,13 @@
 #[doc = include_str!("README.md")]
 struct Readme;
 
+mod analysis;
 mod built_in;
 mod check;
 mod constant;
 mod dialect;
+pub mod documentation;
+mod expanded;
 mod foreign;
 mod keywords;
 mod parse;
@@ -88,12 +94,15 @@ mod source;
 mod stage;
 mod token;
 pub mod tree;
+mod vocabulary;
 
 use std::collections::{HashMap, HashSet};
 
+pub use analysis::{Analysis, Resolution, ResolvedName, Visibility, analyze};
 pub use dialect::{Dialect, Version};
+pub use expanded::expanded;
 pub use port::{PortError, Refusal, port, port_in_versions};
-pub use preprocess::{ControlComment, Expansions, ReadInclude};
+pub use preprocess::{ControlComment, Expansions, MacroDefinition, ReadInclude};
 pub use reporting::{MAX_REPORTED, overdue};
 pub use single_edit::{single_edit, with_single_edit};
 pub use source::{Lexeme, lexemes};
@@ -102,6 +111,7 @@ use toyproof_diagnostic::{Deadline, Diagnostic, Diagnostics, FileId, Files, Seve
 pub use toyproof_image::{Filter, Sampling, UniformValue, Wrap};
 use tree::{FunctionId, SamplerShape, Tree, VariableId};
 
+use self::analysis::{Content, NameIndex, Partial};
 use self::check::{Channels, Checker};
 use self::dialect::{Bound, Wrapping};
 use self::parse::Parser;
@@ -351,27 +361,10 @@ pub fn with_includes(
 /// # Panics
 /// For [`Stage::Common`], which has no entry point: see [`check_declarations`].
 pub fn check(files: &Files, file: FileId, options: &Options) -> Result<Checked, Diagnostics> {
-    let text = parse(files, file, options)?;
-    Ok(Checked {
-        tree: text.tree,
-        main_image: text.entry.expect("every stage but Common has an entry point"),
-        dialect: text.wrapping.dialect,
-        version: text.wrapping.language.version,
-        lenient: options.lenient,
-        uniforms: options.uniforms.clone(),
-        uniform_mode: options.uniform_mode,
-        channels: text.channels,
-        sampling: options.sampling,
-        stage: options.stage,
-        warnings: text.warnings,
-        control_comments: text.control_comments,
-        expansions: text.expansions,
-        unexpanded_names: text.unexpanded_names,
-        values_read: text.values_read,
-        enables_derivatives: text.enables_derivatives,
-        bound: text.bound,
-        output: text.output,
-    })
+    let text = read(files, file, options, false).valid(files)?;
+    Ok(text
+        .into_checked(options)
+        .unwrap_or_else(|_| panic!("every stage but Common has an entry point")))
 }
 
 /// Checks a text without an entry point, such as Common of a project, which ShaderToy compiles alone
@@ -384,22 +377,27 @@ pub fn check_declarations(
     file: FileId,
     options: &Options,
 ) -> Result<Vec<Diagnostic>, Diagnostics> {
-    parse(files, file, options).map(|text| {
-        let warnings = text.warnings.into_iter();
-        warnings
-            .map(|warning| text.expansions.named(warning, files))
-            .collect()
-    })
+    let text = read(files, file, options, false).valid(files)?;
+    let warnings = text.diagnostics.into_iter();
+    Ok(warnings
+        .map(|warning| text.expansions.named(warning, files))
+        .collect())
 }
 
-/// A text without errors.
+/// A text, with or without errors.
 struct Text {
     tree: Tree,
-    /// The entry point, unless the stage has none.
+    /// The entry point, unless the stage has none or there are errors.
     entry: Option<FunctionId>,
     wrapping: Wrapping,
     channels: [SamplerShape; 4],
-    warnings: Vec<Diagnostic>,
+    /// What is reported. Without errors, the warnings do not name macros: lints filter them first.
+    diagnostics: Vec<Diagnostic>,
+    is_valid: bool,
+    /// What names denote, if that was to be recorded.
+    names: Option<Box<NameIndex>>,
+    /// The length of the text in bytes.
+    length: u32,
     control_comments: Vec<ControlComment>,
     expansions: Expansions,
     unexpanded_names: HashSet<String>,
@@ -444,33 +442,36 @@ fn preprocess(files: &Files, file: FileId, options: &Options) -> (Wrapping, Prep
     }
 }
 
-fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnostics> {
+/// Reads a text. With `records_names`, also what names denote, and what can be parsed of a text whose extent
+/// is unknown.
+fn read(files: &Files, file: FileId, options: &Options, records_names: bool) -> Text {
     let deadline = &options.deadline;
-    let too_slow = |late| Diagnostics::from(vec![overdue(late)]);
     let (wrapping, mut text) = preprocess(files, file, options);
-    deadline.check().map_err(too_slow)?;
-    if text.incomplete {
-        let named = text.diagnostics.into_iter();
-        let named = named
-            .map(|diagnostic| text.expansions.named(diagnostic, files))
-            .collect();
-        return Err(Diagnostics::new(named, files));
-    }
     let source = files.get(file);
+    let mut channels = Channels::new(options);
+    if let Err(late) = deadline.check() {
+        return Text::of_preprocessed(text, wrapping, &channels, vec![overdue(late)]);
+    }
+    if text.incomplete && !records_names {
+        let reported = text.named_diagnostics(files);
+        return Text::of_preprocessed(text, wrapping, &channels, reported);
+    }
+    // What follows from text whose extent is unknown is not reported.
+    let only_reported = text.incomplete.then(|| text.named_diagnostics(files));
     parse::balance(&mut text, source);
     let reported = std::mem::take(&mut text.diagnostics);
-    let mut channels = Channels::new(options);
     // A use may determine the shape of a channel; the shader is then parsed again with it, at most twice for
     // each of the four channels.
     loop {
         channels.changed = false;
-        let mut checker = Parser::new(
-            &text,
-            source,
-            Checker::new(&text, options, wrapping, channels.clone()),
-        )
-        .parse();
-        deadline.check().map_err(too_slow)?;
+        let mut checker = Checker::new(&text, options, wrapping, channels.clone());
+        if records_names {
+            checker.record_names();
+        }
+        let mut checker = Parser::new(&text, source, checker).parse();
+        if let Err(late) = deadline.check() {
+            return Text::of_preprocessed(text, wrapping, &channels, vec![overdue(late)]);
+        }
         if checker.channels().changed {
             channels = checker.channels().clone();
             continue;
@@ -481,38 +482,149 @@ fn parse(files: &Files, file: FileId, options: &Options) -> Result<Text, Diagnos
         all.append(&mut checker.errors);
         let is_error = |diagnostic: &Diagnostic| diagnostic.severity == Severity::Error;
         all.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
-        if (entry.is_some() || options.stage.entry().is_none()) && !all.iter().any(is_error) {
-            let names = text.unexpanded_names.iter();
-            return Ok(Text {
-                values_read: checker.values_read,
-                enables_derivatives: text.enables_derivatives,
-                bound: checker.bound,
-                output: checker.output,
-                tree: checker.tree,
-                entry,
-                wrapping,
-                channels: channels.shapes,
-                warnings: all,
+        let has_entry = entry.is_some() || options.stage.entry().is_none();
+        let is_valid = has_entry && only_reported.is_none() && !all.iter().any(is_error);
+        let diagnostics = match only_reported {
+            Some(only) => only,
+            None if is_valid => all,
+            None => named_once(all, &text.expansions, files),
+        };
+        let names = checker.take_names();
+        let Checker {
+            tree,
+            values_read,
+            bound,
+            output,
+            ..
+        } = checker;
+        let unexpanded_names = text.unexpanded_names.iter();
+        return Text {
+            tree,
+            entry: entry.filter(|_| is_valid),
+            wrapping,
+            channels: channels.shapes,
+            diagnostics,
+            is_valid,
+            names,
+            length: source.text().len() as u32,
+            control_comments: text.control_comments,
+            unexpanded_names: unexpanded_names
+                .map(|&name| text.interner.text(name).to_owned())
+                .collect(),
+            expansions: text.expansions,
+            values_read,
+            enables_derivatives: text.enables_derivatives,
+            bound,
+            output,
+        };
+    }
+}
+
+/// The diagnostics of a text with errors, with the names of macros: an error in a macro is reported at its
+/// first use only.
+fn named_once(all: Vec<Diagnostic>, expansions: &Expansions, files: &Files) -> Vec<Diagnostic> {
+    let mut reported = Vec::new();
+    for diagnostic in all {
+        let notes = diagnostic.notes.len();
+        let diagnostic = expansions.named(diagnostic, files);
+        let is_in_macro = diagnostic.notes.len() > notes;
+        let again = |other: &Diagnostic| {
+            (&other.message, &other.notes, &other.related)
+                == (&diagnostic.message, &diagnostic.notes, &diagnostic.related)
+        };
+        if !(is_in_macro && reported.iter().any(again)) {
+            reporting::push_limited(&mut reported, diagnostic);
+        }
+    }
+    reported
+}
+
+impl Text {
+    /// A text that was not parsed, with the errors that are the reason.
+    fn of_preprocessed(
+        text: PreprocessorOutput,
+        wrapping: Wrapping,
+        channels: &Channels,
+        errors: Vec<Diagnostic>,
+    ) -> Self {
+        Self {
+            tree: Tree::default(),
+            entry: None,
+            wrapping,
+            channels: channels.shapes,
+            diagnostics: errors,
+            is_valid: false,
+            names: None,
+            length: 0,
+            control_comments: text.control_comments,
+            expansions: text.expansions,
+            unexpanded_names: HashSet::new(),
+            values_read: HashSet::new(),
+            enables_derivatives: text.enables_derivatives,
+            bound: HashMap::new(),
+            output: None,
+        }
+    }
+
+    /// The text, if it is valid.
+    fn valid(self, files: &Files) -> Result<Self, Diagnostics> {
+        if self.is_valid {
+            Ok(self)
+        } else {
+            Err(Diagnostics::new(self.diagnostics, files))
+        }
+    }
+
+    /// The shader, if the text has an entry point.
+    fn into_checked(self, options: &Options) -> Result<Checked, Box<Self>> {
+        let Some(main_image) = self.entry else {
+            return Err(Box::new(self));
+        };
+        Ok(Checked {
+            tree: self.tree,
+            main_image,
+            dialect: self.wrapping.dialect,
+            version: self.wrapping.language.version,
+            lenient: options.lenient,
+            uniforms: options.uniforms.clone(),
+            uniform_mode: options.uniform_mode,
+            channels: self.channels,
+            sampling: options.sampling,
+            stage: options.stage,
+            warnings: self.diagnostics,
+            control_comments: self.control_comments,
+            expansions: self.expansions,
+            unexpanded_names: self.unexpanded_names,
+            values_read: self.values_read,
+            enables_derivatives: self.enables_derivatives,
+            bound: self.bound,
+            output: self.output,
+        })
+    }
+
+    fn into_analysis(mut self, options: &Options) -> Analysis {
+        let names = self.names.take().unwrap_or_default();
+        let (names, visibilities) = names.finish(self.length);
+        let Wrapping { dialect, language } = self.wrapping;
+        let (diagnostics, channels) = (self.diagnostics.clone(), self.channels);
+        let content = match self.into_checked(options) {
+            Ok(checked) => Content::Checked(Box::new(checked)),
+            Err(text) => Content::Partial(Box::new(Partial {
+                tree: text.tree,
                 control_comments: text.control_comments,
-                unexpanded_names: names.map(|&name| text.interner.text(name).to_owned()).collect(),
                 expansions: text.expansions,
-            });
+            })),
+        };
+        Analysis {
+            diagnostics,
+            dialect,
+            version: language.version,
+            stage: options.stage,
+            channels,
+            names,
+            visibilities,
+            content,
         }
-        let mut reported = Vec::new();
-        for diagnostic in all {
-            let notes = diagnostic.notes.len();
-            let diagnostic = text.expansions.named(diagnostic, files);
-            let is_in_macro = diagnostic.notes.len() > notes;
-            // An error in a macro is reported at its first use only.
-            let again = |other: &Diagnostic| {
-                (&other.message, &other.notes, &other.related)
-                    == (&diagnostic.message, &diagnostic.notes, &diagnostic.related)
-            };
-            if !(is_in_macro && reported.iter().any(again)) {
-                reporting::push_limited(&mut reported, diagnostic);
-            }
-        }
-        return Err(Diagnostics::new(reported, files));
     }
 }
 

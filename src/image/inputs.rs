@@ -35,11 +35,11 @@ impl InputType {
 }
 
 macro_rules! inputs {
-    ($($(#[doc = $doc:literal])* $variant:ident $name:literal $ty:ident $([$length:literal])?,)*) => {
+    ($($variant:ident $name:literal $ty:ident $([$length:literal])?: $documentation:literal,)*) => {
         /// A uniform that ShaderToy sets, other than the samplers of channels. In the order of the block.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Input {
-            $($(#[doc = $doc])* $variant,)*
+            $(#[doc = $documentation] $variant,)*
         }
 
         impl Input {
@@ -60,6 +60,11 @@ macro_rules! inputs {
             pub const fn length(self) -> Option<usize> {
                 match self { $(Self::$variant => inputs!(@length $($length)?),)* }
             }
+
+            /// What the input is, with its unit and range, in Markdown.
+            pub const fn documentation(self) -> &'static str {
+                match self { $(Self::$variant => $documentation,)* }
+            }
         }
     };
     (@length) => { None };
@@ -67,26 +72,22 @@ macro_rules! inputs {
 }
 
 inputs! {
-    /// Pixels, pixels, pixel aspect (1).
-    Resolution "iResolution" Vec3,
-    /// Seconds.
-    Time "iTime" Float,
-    /// Seconds since the previous frame.
-    TimeDelta "iTimeDelta" Float,
-    /// From 0.
-    Frame "iFrame" Int,
-    /// Frames per second.
-    FrameRate "iFrameRate" Float,
-    /// Seconds.
-    ChannelTime "iChannelTime" Float [4],
-    /// Texels, texels, depth.
-    ChannelResolution "iChannelResolution" Vec3 [4],
-    /// Pixels: xy is the last drag position, zw the click.
-    Mouse "iMouse" Vec4,
-    /// Year, month from 0, day, seconds since midnight.
-    Date "iDate" Vec4,
-    /// Hertz.
-    SampleRate "iSampleRate" Float,
+    Resolution "iResolution" Vec3:
+        "The size of the image: width and height in pixels, and the aspect ratio of a pixel, which is 1.",
+    Time "iTime" Float: "The time since the start, in seconds.",
+    TimeDelta "iTimeDelta" Float: "The time since the previous frame, in seconds.",
+    Frame "iFrame" Int: "The number of the frame, from 0.",
+    FrameRate "iFrameRate" Float: "The number of frames per second.",
+    ChannelTime "iChannelTime" Float [4]: "The playing time of each channel's film or sound, in seconds.",
+    ChannelResolution "iChannelResolution" Vec3 [4]:
+        "The size of the texture of each channel: width and height in texels, and depth, which is 1 unless \
+        it is a volume.",
+    Mouse "iMouse" Vec4:
+        "The mouse, in pixels from the lower left: `xy` is its position while the button was last down, \
+        `abs(zw)` is where it was pressed. `z` is positive while the button is down, `w` only in the frame \
+        in which it was pressed.",
+    Date "iDate" Vec4: "The date: year, month from 0, day from 1, and seconds since midnight.",
+    SampleRate "iSampleRate" Float: "The rate of the samples of sounds, in hertz.",
 }
 
 /// The alignment of vectors and arrays in std140, and the distance of array elements, in bytes.

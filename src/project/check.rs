@@ -31,7 +31,7 @@ pub struct CheckedPass {
 }
 
 /// The lints may take one part in this many of the time limit.
-const LINT_TIME_SHARE: u32 = 4;
+pub(crate) const LINT_TIME_SHARE: u32 = 4;
 
 /// Checks all tabs of a project, and adds the texts that the compiler sees to `files`. The stage and the
 /// shapes of channels in `options` are those of the passes.
@@ -59,10 +59,7 @@ pub(crate) fn check_with_includes(
         None => Ok(file),
     };
     if let Some(common) = project.common {
-        let options = Options {
-            stage: Stage::Common,
-            ..options.clone()
-        };
+        let options = common_options(options);
         let common = include(files, common, &options);
         if let Err(errors) = common.and_then(|common| glsl::check_declarations(files, common, &options)) {
             is_valid = false;
@@ -71,12 +68,7 @@ pub(crate) fn check_with_includes(
     }
     let mut passes = Vec::new();
     for pass in &project.passes {
-        let options = Options {
-            stage: stage(pass.kind),
-            channels: channels(project, pass),
-            sampling: project.sampling(pass),
-            ..options.clone()
-        };
+        let options = pass_options(project, pass, options);
         let file = joined(project, pass, None, files);
         let file = match include(files, file, &options) {
             Ok(file) => file,
@@ -115,39 +107,38 @@ pub(crate) fn check_with_includes(
     if !is_valid {
         return Err(Diagnostics::new(reported.0, files));
     }
-    let common = project.common;
-    let warnings = passes.iter().map(|pass| in_origin(files, &pass.lints.warnings));
-    let warnings: Vec<_> = warnings.collect();
-    // An `allow` in Common may serve the warning of one pass only.
-    let is_used_elsewhere = |warning: &Diagnostic| {
-        let is_in_common = warning.span.is_some_and(|span| Some(span.file) == common);
-        let is_unused = warning.code == Code::UnusedAllow;
-        is_unused && is_in_common && !warnings.iter().all(|of_pass| of_pass.contains(warning))
-    };
-    for warning in warnings
-        .iter()
-        .flatten()
-        .filter(|warning| !is_used_elsewhere(warning))
-    {
-        reported.add(files, [warning.clone()]);
-    }
-    reported.add(files, crate::lint::lint(project, &passes));
+    let checked: Vec<_> = passes.iter().map(|pass| (&pass.checked, &pass.lints)).collect();
+    reported.add_warnings(project, files, &checked);
     Ok(CheckedProject {
         passes,
         warnings: reported.0,
     })
 }
 
-fn in_origin(files: &Files, diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
-    diagnostics.iter().map(|one| one.in_origin(files)).collect()
+/// The options with which Common is compiled alone.
+pub(crate) fn common_options(options: &Options) -> Options {
+    Options {
+        stage: Stage::Common,
+        ..options.clone()
+    }
+}
+
+/// The options with which a pass is compiled.
+pub(crate) fn pass_options(project: &Project, pass: &Pass, options: &Options) -> Options {
+    Options {
+        stage: stage(pass.kind),
+        channels: channels(project, pass),
+        sampling: project.sampling(pass),
+        ..options.clone()
+    }
 }
 
 /// Diagnostics, each once for all passes.
 #[derive(Default)]
-struct UniqueDiagnostics(Vec<Diagnostic>);
+pub(crate) struct UniqueDiagnostics(pub(crate) Vec<Diagnostic>);
 
 impl UniqueDiagnostics {
-    fn add(&mut self, files: &Files, diagnostics: impl IntoIterator<Item = Diagnostic>) {
+    pub(crate) fn add(&mut self, files: &Files, diagnostics: impl IntoIterator<Item = Diagnostic>) {
         for diagnostic in diagnostics {
             let diagnostic = diagnostic.in_origin(files);
             // Another pass may suggest another fix, or name the tab.
@@ -158,6 +149,32 @@ impl UniqueDiagnostics {
             }
         }
     }
+
+    /// Adds the warnings about the passes of a valid project, which are given in its order.
+    pub(crate) fn add_warnings(&mut self, project: &Project, files: &Files, passes: &[(&Checked, &Lints)]) {
+        let common = project.common;
+        let warnings = passes.iter().map(|(_, lints)| in_origin(files, &lints.warnings));
+        let warnings: Vec<_> = warnings.collect();
+        // An `allow` in Common may serve the warning of one pass only.
+        let is_used_elsewhere = |warning: &Diagnostic| {
+            let is_in_common = warning.span.is_some_and(|span| Some(span.file) == common);
+            let is_unused = warning.code == Code::UnusedAllow;
+            is_unused && is_in_common && !warnings.iter().all(|of_pass| of_pass.contains(warning))
+        };
+        for warning in warnings
+            .iter()
+            .flatten()
+            .filter(|warning| !is_used_elsewhere(warning))
+        {
+            self.add(files, [warning.clone()]);
+        }
+        let trees: Vec<_> = passes.iter().map(|&(checked, _)| checked).collect();
+        self.add(files, crate::lint::lint(project, &trees));
+    }
+}
+
+fn in_origin(files: &Files, diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
+    diagnostics.iter().map(|one| one.in_origin(files)).collect()
 }
 
 fn stage(kind: PassKind) -> Stage {
@@ -214,7 +231,7 @@ fn added_main(checked: &Checked) -> Option<String> {
 }
 
 /// Adds the text that is compiled for a pass: Common, a line feed, the tab, and perhaps a text after it.
-fn joined(project: &Project, pass: &Pass, added: Option<String>, files: &mut Files) -> FileId {
+pub(crate) fn joined(project: &Project, pass: &Pass, added: Option<String>, files: &mut Files) -> FileId {
     let mut parts: Vec<_> = project.common.into_iter().chain([pass.file]).collect();
     parts.extend(added.map(|text| files.add(File::new("<main>", text))));
     let uses_assertions = |part: &FileId| files.get(*part).text().contains("st_assert");

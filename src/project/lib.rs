@@ -30,11 +30,13 @@
 //! - `media`: the ids of the site's built-in media.
 //! - `declared`: what hosts declare outside of the language: headers of ISF, `#iUniform`.
 //! - `check`: compiles every tab with Common in front, and Common alone.
+//! - `analyze`: the same for an editor, which also needs the trees of tabs with errors.
 //! - `lint`: warnings about inputs.
 //! - `graph`: what renders the image; `textures`: what inputs read, from files or computed.
 //! - `subset`: a project with some of its passes and inputs.
 //! - `script`: files that describe the mouse and the keyboard over the frames of a run.
 
+mod analyze;
 pub mod archive;
 mod check;
 mod compiled;
@@ -56,6 +58,7 @@ mod textures;
 
 pub use toyproof_glsl::{Filter, Wrap};
 
+pub use self::analyze::{AnalyzedProject, AnalyzedTab, analyze};
 pub use self::check::{CheckedPass, CheckedProject, check};
 pub use self::compiled::CompiledProject;
 pub use self::declared::{Declared, with_declarations};

@@ -4,7 +4,6 @@ use toyproof_diagnostic::{Code, Diagnostic};
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{ExprKind, VariableKind};
 
-use crate::check::CheckedPass;
 use crate::pass::{Buffer, Input, PassKind, Source};
 use crate::project::Project;
 
@@ -18,11 +17,11 @@ struct Read<'p> {
     input: &'p Input,
 }
 
-/// Warns about the inputs of a project; `passes` are its passes, in the same order.
-pub(crate) fn lint(project: &Project, passes: &[CheckedPass]) -> Vec<Diagnostic> {
+/// Warns about the inputs of a project; `passes` are the trees of its passes, in the same order.
+pub(crate) fn lint(project: &Project, passes: &[&Checked]) -> Vec<Diagnostic> {
     let mut reads = Vec::new();
     for (index, (pass, checked)) in project.passes.iter().zip(passes).enumerate() {
-        let used = used_channels(&checked.checked);
+        let used = used_channels(checked);
         for (channel, input) in pass.inputs.iter().enumerate() {
             if let Some(input) = input.as_ref().filter(|_| used[channel]) {
                 let by = pass.kind;

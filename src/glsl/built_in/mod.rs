@@ -2,11 +2,13 @@
 //! know about it. Only the evaluator's implementation is elsewhere.
 
 mod constant;
+mod documentation;
 mod table;
 
 use toyproof_math::FloatTerm;
 
 use self::constant::ConstantFunction;
+pub use self::documentation::{Documentation, Overload};
 pub use self::table::BuiltIn;
 use crate::tree::{BinaryOp, Constant, Type, Value};
 

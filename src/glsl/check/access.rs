@@ -4,6 +4,7 @@ use toyproof_diagnostic::{Code, nearest, plural};
 
 use super::Checker;
 use super::scope::{Entity, did_you_mean};
+use crate::analysis::Resolution;
 use crate::dialect::Bound;
 use crate::token::Symbol;
 use crate::tree::{
@@ -19,6 +20,7 @@ impl Checker<'_> {
         let text = self.text(name);
         match self.scopes.find(name) {
             Some(&Entity::Variable(variable)) => {
+                self.resolved(at, Resolution::Variable(variable));
                 if let Some(bound) = self.bound.get(&variable).cloned() {
                     if matches!(bound, Bound::Value(..)) {
                         self.values_read.insert(variable);
@@ -82,6 +84,13 @@ impl Checker<'_> {
         }
     }
 
+    /// Records that the structure of a type is named at a place.
+    pub(crate) fn named_type(&mut self, ty: Type, at: Place) {
+        if let Type::Struct(id) = ty {
+            self.resolved(at, Resolution::Struct(id));
+        }
+    }
+
     /// Checks `base.name`: a member or a swizzle.
     pub(crate) fn field(&mut self, base: ExprId, name: Symbol, at: Place) -> ExprId {
         let (ty, constant) = (self.ty(base), self.tree[base].constant);
@@ -106,6 +115,7 @@ impl Checker<'_> {
                     return self.refuse_with(diagnostic, at);
                 };
                 let ty = members[member].ty;
+                self.resolved(at, Resolution::Member(id, member));
                 let kind = ExprKind::Member {
                     structure: base,
                     member,

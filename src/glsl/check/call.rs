@@ -6,6 +6,7 @@ use super::prelude::TEXEL_OFFSETS;
 use super::scope::Entity;
 use super::signature::{self, Match};
 use super::{Call, Checker, Specifier, is_desktop_conversion};
+use crate::analysis::Resolution;
 use crate::reporting::given;
 use crate::token::Symbol;
 use crate::tree::{
@@ -60,6 +61,7 @@ impl Checker<'_> {
     ) -> ExprId {
         let types = self.types(&arguments);
         if types.contains(&Type::Error) {
+            self.resolved(name_at, Resolution::Function(overloads[0]));
             return self.error_expr(at);
         }
         let Some(function) = self.find_overload(overloads, &types) else {
@@ -68,12 +70,14 @@ impl Checker<'_> {
             if let Some(built_in) = self.built_in_function(&name, &arguments) {
                 return self.call_built_in(built_in, arguments, name_at, at);
             }
+            self.resolved(name_at, Resolution::Function(overloads[0]));
             let resolves = |checker: &Self, types: &[Type]| checker.find_overload(overloads, types).is_some();
             if self.infer_channel(&arguments, resolves) || self.has_unparsed_parameter(overloads) {
                 return self.error_expr(at);
             }
             return self.no_overload(overloads, &arguments, name_at, at);
         };
+        self.resolved(name_at, Resolution::Function(function));
         if let Some(context) = &self.function {
             self.calls.push(Call {
                 caller: context.function,
@@ -142,6 +146,7 @@ impl Checker<'_> {
         name_at: Place,
         at: Place,
     ) -> ExprId {
+        self.resolved(name_at, Resolution::BuiltIn(function));
         let types = self.types(&arguments);
         if types.contains(&Type::Error) {
             return self.error_expr(at);

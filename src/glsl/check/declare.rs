@@ -4,6 +4,7 @@ use toyproof_diagnostic::Code;
 
 use super::scope::Entity;
 use super::{Checker, Size, Specifier, is_desktop_conversion};
+use crate::analysis::Resolution;
 use crate::keywords::Keyword;
 use crate::reporting::push_limited;
 use crate::token::Symbol;
@@ -73,8 +74,11 @@ impl Checker<'_> {
             value,
             at: Some(at),
         });
+        self.declared(at, Resolution::Variable(variable));
         if allowed {
             self.scopes.declare(name, Entity::Variable(variable));
+            let end = initializer.map_or(at.span.end, |value| self.tree[value].at.span.end);
+            self.visible_after(end.max(at.span.end), Resolution::Variable(variable));
         }
         if kind == VariableKind::Uniform {
             let default = self.tree[variable].initializer.take();
@@ -90,6 +94,8 @@ impl Checker<'_> {
             let variable = Variable::new(self.text(name), Type::Error, VariableKind::Local, Some(at));
             let variable = self.tree.variables.push(variable);
             self.scopes.declare(name, Entity::Variable(variable));
+            self.declared(at, Resolution::Variable(variable));
+            self.visible_after(at.span.end, Resolution::Variable(variable));
         }
     }
 
@@ -247,10 +253,17 @@ impl Checker<'_> {
 
     pub(crate) fn open_scope(&mut self) {
         self.scopes.open();
+        if let Some(names) = &mut self.names {
+            names.open_scope();
+        }
     }
 
-    pub(crate) fn close_scope(&mut self) {
+    /// Closes a scope whose text ends at a byte.
+    pub(crate) fn close_scope(&mut self, end: u32) {
         self.scopes.close();
+        if let Some(names) = &mut self.names {
+            names.close_scope(end);
+        }
     }
 }
 

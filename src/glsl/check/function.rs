@@ -7,6 +7,7 @@ use toyproof_diagnostic::Code;
 use super::scope::Entity;
 use super::{Call, Checker, Specifier};
 use crate::Stage;
+use crate::analysis::Resolution;
 use crate::stage::{Entry, added_entry};
 use crate::token::Symbol;
 use crate::tree::{
@@ -77,6 +78,7 @@ impl Checker<'_> {
         for &old in &overloads {
             if self.takes_exactly(old, parameters) {
                 if self.same_header(old, return_type, parameters, at) {
+                    self.declared(at, Resolution::Function(old));
                     return old;
                 }
                 allowed = false;
@@ -99,8 +101,10 @@ impl Checker<'_> {
             at,
         });
         overloads.push(function);
+        self.declared(at, Resolution::Function(function));
         if allowed {
             self.scopes.declare(name, Entity::Functions(overloads));
+            self.visible_after(at.span.end, Resolution::Function(function));
         }
         function
     }
@@ -172,8 +176,15 @@ impl Checker<'_> {
     }
 
     /// Records a prototype.
-    pub(crate) fn prototype(&mut self, function: FunctionId) {
+    pub(crate) fn prototype(&mut self, function: FunctionId, parameters: &[Parameter]) {
         self.tree.items.push(Item::Prototype(function));
+        if self.names.is_some() {
+            // The parameters of each header are names of their own, which nothing refers to.
+            for parameter in parameters.iter().filter(|parameter| parameter.name.is_some()) {
+                let id = self.parameter(parameter);
+                self.declared(parameter.at, Resolution::Variable(id));
+            }
+        }
     }
 
     /// Opens the body of a function: parameters and body share one scope (§4.2.2).
@@ -186,15 +197,16 @@ impl Checker<'_> {
             self.report(diagnostic);
         }
         self.tree[function].at = at;
-        self.scopes.open();
+        self.open_scope();
         let mut ids = Vec::with_capacity(parameters.len());
         for parameter in parameters {
             let id = self.parameter(parameter);
             ids.push(id);
-            if let Some(name) = parameter.name
-                && self.check_declarable(name, parameter.at)
-            {
+            let Some(name) = parameter.name else { continue };
+            self.declared(parameter.at, Resolution::Variable(id));
+            if self.check_declarable(name, parameter.at) {
                 self.scopes.declare(name, Entity::Variable(id));
+                self.visible_after(parameter.at.span.end, Resolution::Variable(id));
             }
         }
         self.tree[function].parameters = ids;
@@ -209,8 +221,9 @@ impl Checker<'_> {
         });
     }
 
-    pub(crate) fn close_body(&mut self, function: FunctionId, body: Block) {
-        self.scopes.close();
+    /// Closes the body of a function, whose text ends at a byte.
+    pub(crate) fn close_body(&mut self, function: FunctionId, body: Block, end: u32) {
+        self.close_scope(end);
         let context = self.function.take();
         let Function { return_type, at, .. } = self.tree[function];
         // As in WebGL, some paths may lack a `return`, but not all.

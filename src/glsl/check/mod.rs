@@ -32,6 +32,7 @@ use self::scope::{Entity, Scopes, UnknownName};
 pub(crate) use self::statement::Labels;
 use self::types::Extent;
 pub(crate) use self::types::{Members, Size, Specifier};
+use crate::analysis::{NameIndex, Resolution};
 use crate::dialect::{Bound, Dialect, Language, Wrapping};
 use crate::keywords::Interner;
 use crate::parse::LiteralError;
@@ -64,6 +65,8 @@ pub(crate) struct Checker<'a> {
     pub(crate) tree: Tree,
     scopes: Scopes,
     channels: Channels,
+    /// What names denote, if an editor needs it.
+    names: Option<Box<NameIndex>>,
     /// The extent of each structure of the tree, by index.
     struct_extents: Vec<Extent>,
     /// The function whose body is being parsed.
@@ -120,6 +123,7 @@ impl<'a> Checker<'a> {
             tree: Tree::default(),
             scopes: Scopes::default(),
             channels,
+            names: None,
             struct_extents: Vec::new(),
             function: None,
             calls: Vec::new(),
@@ -129,6 +133,40 @@ impl<'a> Checker<'a> {
         };
         checker.declare_prelude();
         checker
+    }
+
+    /// Records from here on what names denote.
+    pub(crate) fn record_names(&mut self) {
+        let mut names = Box::<NameIndex>::default();
+        names.open_scope();
+        self.names = Some(names);
+    }
+
+    /// The recorded names.
+    pub(crate) fn take_names(&mut self) -> Option<Box<NameIndex>> {
+        self.names.take()
+    }
+
+    /// Records that a name at a place denotes an entity.
+    fn resolved(&mut self, at: Place, resolution: Resolution) {
+        if let Some(names) = &mut self.names {
+            names.resolve(at, resolution, false);
+        }
+    }
+
+    /// Records that a name is declared at a place.
+    fn declared(&mut self, at: Place, resolution: Resolution) {
+        if let Some(names) = &mut self.names {
+            names.resolve(at, resolution, true);
+        }
+    }
+
+    /// Records that an entity is visible after its declarator, which ends at a byte, to the end of the current
+    /// scope. At the end itself, an author may still be writing the declarator.
+    fn visible_after(&mut self, end: u32, resolution: Resolution) {
+        if let Some(names) = &mut self.names {
+            names.declare(resolution, end + 1);
+        }
     }
 
     /// Whether the limit on reported errors is reached.

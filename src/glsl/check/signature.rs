@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use crate::keywords::{Interner, Word};
-use crate::tree::{BuiltIn, Sampler, SamplerShape, Scalar, Type};
+use crate::tree::{BuiltIn, Overload, Sampler, SamplerShape, Scalar, Tree, Type};
 
 /// A signature that accepts given arguments.
 pub(super) struct Match {
@@ -18,6 +18,15 @@ impl BuiltIn {
     /// The built-in function with that name.
     pub fn named(name: &str) -> Option<Self> {
         NAMES.get(name).copied()
+    }
+
+    /// The signatures in the order of the table, with the types that arguments of these types determine; of a
+    /// call that is not complete, [`Type::Error`] is an unknown one.
+    pub fn overloads(self, given: &[Type]) -> Vec<Overload> {
+        let signatures = SIGNATURES.get(&self).into_iter().flatten();
+        signatures
+            .map(|signature| signature.overload(self, given))
+            .collect()
     }
 
     /// The type of its value for arguments of these types; `None` if no signature accepts exactly them.
@@ -144,6 +153,21 @@ impl Pattern {
         }
     }
 
+    /// The type, or the notation of the specification if it is not determined.
+    fn name(self, bindings: &Bindings) -> String {
+        let generic = |prefix: &str, scalar: Scalar, suffix: &str| {
+            format!("{prefix}{}{suffix}", scalar.vector_prefix().to_uppercase())
+        };
+        match (self.resolve(bindings), self) {
+            (Some(ty), _) => Tree::default().type_name(ty),
+            (None, Self::Gen(scalar)) => generic("gen", scalar, "Type"),
+            (None, Self::Vec(scalar)) => format!("{}vec", scalar.vector_prefix()),
+            (None, Self::Sampler(shape)) => format!("g{}", Sampler::float(shape).name()),
+            (None, Self::Texel) => "gvec4".to_owned(),
+            (None, Self::Matrix | Self::Exactly(_)) => "mat".to_owned(),
+        }
+    }
+
     fn parse(word: &str, interner: &Interner) -> Option<Self> {
         Some(match word {
             "genType" => Self::Gen(Scalar::Float),
@@ -196,6 +220,42 @@ impl Signature {
         }
         Some(signature)
     }
+
+    fn overload(&self, function: BuiltIn, given: &[Type]) -> Overload {
+        let mut bindings = Bindings::default();
+        let mut fits = given.len() <= self.parameters.len();
+        for (&parameter, &given) in self.parameters.iter().zip(given) {
+            let wanted = parameter.for_argument(given, &mut bindings);
+            fits &= given == Type::Error || wanted == Some(given);
+        }
+        if !fits {
+            bindings = Bindings::default();
+        }
+        let parameter = |(index, (pattern, name)): (usize, (&Pattern, &&str))| {
+            let declared = format!("{} {name}", pattern.name(&bindings));
+            if index >= self.required {
+                format!("[{declared}]")
+            } else if self.constant == Some(index) {
+                format!("const {declared}")
+            } else if function.out_parameter() == Some(index) {
+                format!("out {declared}")
+            } else {
+                declared
+            }
+        };
+        let names = function.documentation().parameters;
+        Overload {
+            result: self.result.name(&bindings),
+            parameters: self
+                .parameters
+                .iter()
+                .zip(names)
+                .enumerate()
+                .map(parameter)
+                .collect(),
+            fits,
+        }
+    }
 }
 
 static NAMES: LazyLock<HashMap<&str, BuiltIn>> = LazyLock::new(|| {
@@ -225,6 +285,48 @@ mod tests {
             let signatures = function.signatures();
             assert_eq!(SIGNATURES[function].len(), signatures.len(), "{signatures:?}");
         }
+    }
+
+    #[test]
+    fn every_parameter_has_a_name() {
+        for &function in BuiltIn::ALL {
+            let names = function.documentation().parameters;
+            let counts = SIGNATURES[&function]
+                .iter()
+                .map(|signature| signature.parameters.len());
+            assert_eq!(counts.max(), Some(names.len()), "{}", function.name());
+            let unique: std::collections::HashSet<_> = names.iter().collect();
+            assert_eq!(unique.len(), names.len(), "{}", function.name());
+        }
+    }
+
+    #[test]
+    fn overloads_have_the_types_of_the_arguments() {
+        let vec3 = Type::vector(Scalar::Float, 3);
+        let shown = |function: BuiltIn, given: &[Type]| {
+            let overloads = function.overloads(given).into_iter();
+            let fitting = overloads.filter(|overload| overload.fits);
+            let shown = fitting.map(|it| format!("{} {}", it.result, it.parameters.join(", ")));
+            shown.collect::<Vec<_>>().join("; ")
+        };
+        assert_eq!(shown(BuiltIn::Sin, &[]), "genType genType angle");
+        assert_eq!(
+            shown(BuiltIn::Mix, &[vec3, Type::Error, Type::FLOAT]),
+            "vec3 vec3 x, vec3 y, float a"
+        );
+        let channel = Type::Sampler(Sampler::D2);
+        assert_eq!(
+            shown(BuiltIn::TextureOffset, &[channel]),
+            "vec4 sampler2D channel, vec2 p, const ivec2 offset, [float bias]"
+        );
+        assert_eq!(
+            shown(BuiltIn::Modf, &[Type::FLOAT]),
+            "float float x, out float whole"
+        );
+        assert_eq!(
+            shown(BuiltIn::LessThan, &[]),
+            "bvec vec x, vec y; bvec ivec x, ivec y; bvec uvec x, uvec y"
+        );
     }
 
     #[test]

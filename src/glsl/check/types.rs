@@ -7,6 +7,7 @@ use toyproof_diagnostic::{Code, grouped};
 use super::Checker;
 use super::scope::Entity;
 use crate::MAX_NESTING;
+use crate::analysis::Resolution;
 use crate::token::Symbol;
 use crate::tree::{ExprId, ExprKind, Member, Place, Struct, StructId, Type, VariableKind};
 
@@ -151,10 +152,15 @@ impl Checker<'_> {
             at,
         });
         self.struct_extents.push(extent);
-        if let Some(name) = name
-            && self.check_declarable(name, at)
-        {
-            self.scopes.declare(name, Entity::Struct(id));
+        if let Some(name) = name {
+            self.declared(at, Resolution::Struct(id));
+            for index in 0..self.tree[id].members.len() {
+                self.declared(self.tree[id].members[index].at, Resolution::Member(id, index));
+            }
+            if self.check_declarable(name, at) {
+                self.scopes.declare(name, Entity::Struct(id));
+                self.visible_after(at.span.end, Resolution::Struct(id));
+            }
         }
         id
     }

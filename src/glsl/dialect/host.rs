@@ -391,6 +391,12 @@ impl Dialect {
         self.inputs().filter(of_value).map(|(name, _)| *name)
     }
 
+    /// The names of the host's own inputs, which ShaderToy does not have.
+    pub fn own_inputs(self) -> impl Iterator<Item = &'static str> {
+        let inputs = self.host().inputs.iter();
+        inputs.map(|(name, _)| *name)
+    }
+
     /// The inputs that the host sets, its own first.
     fn inputs(self) -> impl Iterator<Item = &'static (&'static str, &'static [InputValue])> {
         let own = self.host().inputs.iter();

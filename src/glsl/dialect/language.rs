@@ -39,7 +39,7 @@ const NO_OLD_TEXTURE_FUNCTIONS: u16 = 420;
 const ARRAYS_OF_ARRAYS: u16 = 430;
 
 /// The functions for one shape of textures (§8.7 of GLSL ES 1.00, with its extensions), and what replaces them.
-const OLD_TEXTURE_FUNCTIONS: [(&str, BuiltIn, SamplerShape); 15] = [
+pub(crate) const OLD_TEXTURE_FUNCTIONS: [(&str, BuiltIn, SamplerShape); 15] = [
     ("texture2D", BuiltIn::Texture, SamplerShape::D2),
     ("texture2DProj", BuiltIn::TextureProj, SamplerShape::D2),
     ("texture2DLod", BuiltIn::TextureLod, SamplerShape::D2),

@@ -7,8 +7,8 @@ mod language;
 
 pub use self::host::Dialect;
 pub(crate) use self::host::{Bound, InputValue};
-pub(crate) use self::language::Language;
 pub use self::language::Version;
+pub(crate) use self::language::{Language, OLD_TEXTURE_FUNCTIONS};
 
 /// The host of a text, and its language.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

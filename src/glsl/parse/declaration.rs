@@ -154,6 +154,7 @@ impl Parser<'_> {
         let Some(base) = base.or_else(|| self.unknown_type()) else {
             return self.unexpected("a type");
         };
+        self.check.named_type(base, at);
         self.next();
         let sizes = self.sizes()?;
         Ok(Specifier { base, sizes, at })
@@ -424,7 +425,7 @@ impl Parser<'_> {
         let parameters = self.parameters()?;
         let function = self.check.declare_function(result, name, at, &parameters);
         if self.eat(Punctuator::Semicolon) {
-            self.check.prototype(function);
+            self.check.prototype(function, &parameters);
             return Ok(());
         }
         if !self.is(Punctuator::LeftBrace) {
@@ -432,7 +433,8 @@ impl Parser<'_> {
         }
         self.check.open_body(function, at, &parameters);
         let body = self.block();
-        self.check.close_body(function, body?);
+        let end = self.scope_end();
+        self.check.close_body(function, body?, end);
         Ok(())
     }
 

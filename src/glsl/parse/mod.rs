@@ -99,6 +99,18 @@ impl<'a> Parser<'a> {
         start.to(self.tokens[self.at.saturating_sub(1).min(self.tokens.len() - 1)].at)
     }
 
+    /// The byte at which a scope ends that ends here: after its `}` or `;`. Where neither is, the text up to
+    /// the next token belongs to it, which an author may be writing.
+    fn scope_end(&self) -> u32 {
+        let last = self.tokens[self.at.saturating_sub(1).min(self.tokens.len() - 1)];
+        match last.kind {
+            TokenKind::Punctuator(Punctuator::RightBrace | Punctuator::Semicolon) if !last.reported => {
+                last.at.span.end
+            }
+            _ => self.token().at.span.start,
+        }
+    }
+
     fn is(&self, punctuator: Punctuator) -> bool {
         self.kind() == TokenKind::Punctuator(punctuator)
     }

@@ -190,7 +190,8 @@ impl Parser<'_> {
     fn scoped<T>(&mut self, read: impl FnOnce(&mut Self) -> ParseResult<T>) -> ParseResult<T> {
         self.check.open_scope();
         let result = read(self);
-        self.check.close_scope();
+        let end = self.scope_end();
+        self.check.close_scope(end);
         result
     }
 

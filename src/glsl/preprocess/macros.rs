@@ -147,9 +147,12 @@ impl Preprocessor<'_> {
         }
         // Redefining a macro identically changes nothing, even during its expansion.
         if let Entry::Vacant(entry) = self.macros.entry(name) {
+            let names = parameters.iter().flatten();
+            let names = names.map(|&name| self.interner.text(name).to_owned()).collect();
+            let names = parameters.as_ref().map(|_| names);
             let definition = self
                 .expansions
-                .define(self.interner.text(name), name_at.span, rest);
+                .define(self.interner.text(name), name_at.span, names, rest);
             entry.insert(Macro {
                 definition: Some(definition),
                 ..Macro::new(parameters, new, name_at)

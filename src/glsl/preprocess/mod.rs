@@ -19,7 +19,7 @@ use toyproof_diagnostic::{Code, Deadline, Diagnostic, FileId, Files, Fix, groupe
 use self::condition::Group;
 pub(crate) use self::directive::DIRECTIVES;
 use self::expand::Stream;
-pub use self::expansions::Expansions;
+pub use self::expansions::{Expansions, MacroDefinition};
 use self::include::Inclusion;
 pub use self::include::ReadInclude;
 pub(crate) use self::include::with_includes;
@@ -154,6 +154,13 @@ pub(crate) fn preprocess(
 }
 
 impl PreprocessorOutput {
+    /// The diagnostics, with the names of macros.
+    pub(crate) fn named_diagnostics(&self, files: &Files) -> Vec<Diagnostic> {
+        let diagnostics = self.diagnostics.iter();
+        let named = |diagnostic: &Diagnostic| self.expansions.named(diagnostic.clone(), files);
+        diagnostics.map(named).collect()
+    }
+
     /// Whether it defines or declares a function `void main(`.
     pub(crate) fn defines_main(&self) -> bool {
         let Some(main) = self.interner.find("main") else {
@@ -336,6 +343,7 @@ impl<'a> Preprocessor<'a> {
             match token.kind {
                 TokenKind::Newline => self.line_start = true,
                 TokenKind::Punctuator(Punctuator::Hash) if self.line_start => {
+                    self.expansions.end_skipped();
                     self.directive(token.at);
                     self.seen = self.seen.max(Prefix::Directive);
                 }
@@ -353,6 +361,7 @@ impl<'a> Preprocessor<'a> {
                     if self.is_active() {
                         return token;
                     }
+                    self.expansions.skip(token.at.span);
                     self.note_unexpanded(&[token]);
                 }
             }

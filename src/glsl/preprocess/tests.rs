@@ -1,4 +1,4 @@
-use toyproof_diagnostic::File;
+use toyproof_diagnostic::{File, Span};
 
 use super::*;
 use crate::dialect::Dialect;
@@ -220,4 +220,38 @@ fn tokens_keep_their_use_and_spelling() {
             ("G", "b"),
         ]
     );
+}
+
+#[test]
+fn uses_of_macros_can_be_shown_expanded() {
+    let shown = |text: &str, used: &str| {
+        let mut files = Files::default();
+        let file = files.add(File::new("a.glsl", text));
+        let start = text.rfind(used).unwrap() as u32;
+        let used = Span::new(file, start, start + used.len() as u32);
+        crate::expanded(&files, file, &crate::Options::default(), used)
+    };
+    let text = "#define PI 3.14\n#define ROT(a) mat2(cos(a), -sin(a), sin(a), cos(a))\n\
+                #define TURN(p) p *= ROT(PI*2.);\nvoid f(inout vec2 q) { TURN(q.xy) }";
+    let expanded = "q.xy *= mat2(cos(3.14 * 2.), -sin(3.14 * 2.), sin(3.14 * 2.), cos(3.14 * 2.));";
+    assert_eq!(shown(text, "TURN(q.xy)").as_deref(), Some(expanded));
+    assert_eq!(shown(text, "q.xy"), None);
+    let doubling = "#define A x+x+x+x+x+x+x+x\n#define B A+A+A+A+A+A+A+A\n#define C B+B+B\nfloat y = C;";
+    let long = shown(doubling, "C").unwrap();
+    assert!(long.ends_with('…') && long.len() < 410, "{long}");
+}
+
+#[test]
+fn skipped_text_is_recorded_without_directives() {
+    let text = "#if 0\nint a;\nint b;\n#elif 1\nint c;\n#else\nint d;\n#endif\nint e;";
+    let mut files = Files::default();
+    let file = files.add(File::new("a.glsl", text));
+    let shader = format!("{text} void mainImage(out vec4 c, in vec2 p) {{ c = vec4(0.); }}");
+    let shader = files.add(File::new("b.glsl", shader));
+    let checked = crate::check(&files, shader, &crate::Options::default()).unwrap();
+    let skipped = checked.expansions.skipped().iter();
+    let skipped: Vec<_> = skipped
+        .map(|span| files.text(Span::new(file, span.start, span.end)))
+        .collect();
+    assert_eq!(skipped, ["int a;\nint b;", "int d;"]);
 }

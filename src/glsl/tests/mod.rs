@@ -1,5 +1,6 @@
 //! Tests of the specification's rules: for each, code that keeps it and code that breaks it.
 
+mod analysis;
 mod dialects;
 mod fixes;
 mod limits;

@@ -35,7 +35,7 @@ pub use self::item::{
 pub use self::types::{
     ArrayId, ArrayType, Constant, Member, Sampler, SamplerShape, Scalar, Struct, StructId, Type, Value,
 };
-pub use crate::built_in::{BuiltIn, Definition, ExactDefinition, Instruction, Wgsl};
+pub use crate::built_in::{BuiltIn, Definition, Documentation, ExactDefinition, Instruction, Overload, Wgsl};
 
 /// A type-checked shader.
 #[derive(Debug, Clone, Default)]

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use toyproof_diagnostic::{Diagnostics, File, FileId, Files, path_name};
 use toyproof_glsl::{self as glsl, Options};
@@ -15,6 +16,19 @@ pub struct IncludeFolders {
     own: PathBuf,
     /// Further folders, in the order in which they are searched.
     others: Vec<PathBuf>,
+    open_texts: OpenTexts,
+}
+
+/// The texts of files that are open in an editor, by canonical path.
+pub type OpenTexts = Arc<BTreeMap<PathBuf, String>>;
+
+/// A file that was included.
+#[derive(Debug, Clone)]
+pub struct IncludedFile {
+    /// Its canonical path.
+    pub path: PathBuf,
+    /// Its text.
+    pub file: FileId,
 }
 
 /// An included file.
@@ -35,7 +49,15 @@ impl IncludeFolders {
         Self {
             own: or_current(own),
             others: others.to_vec(),
+            open_texts: OpenTexts::default(),
         }
+    }
+
+    /// The same folders with texts in place of those of files, such as the unsaved ones of an editor, by
+    /// canonical path.
+    #[must_use]
+    pub fn with_open_texts(self, open_texts: OpenTexts) -> Self {
+        Self { open_texts, ..self }
     }
 
     /// Adds the text in which included files replace their directives, see [`glsl::with_includes`].
@@ -43,7 +65,23 @@ impl IncludeFolders {
     /// # Errors
     /// A file cannot be read, lies outside the folders, or a limit is exceeded.
     pub fn include(&self, files: &mut Files, file: FileId, options: &Options) -> Result<FileId, Diagnostics> {
-        self.read(files, file, options).0
+        self.include_files(files, file, options).0
+    }
+
+    /// Includes files as [`include`](Self::include) does, and also returns those that were read.
+    pub fn include_files(
+        &self,
+        files: &mut Files,
+        file: FileId,
+        options: &Options,
+    ) -> (Result<FileId, Diagnostics>, Vec<IncludedFile>) {
+        let (complete, found) = self.read(files, file, options);
+        let found = found.into_iter();
+        let found = found.map(|(canonical, found)| IncludedFile {
+            path: canonical,
+            file: found.file,
+        });
+        (complete, found.collect())
     }
 
     /// The texts that a shader includes, directly or not, also where a condition skips the directive.
@@ -78,7 +116,10 @@ impl IncludeFolders {
             if let Some(found) = found.get(&canonical) {
                 return Ok(found.file);
             }
-            let text = read_text(&path).map_err(|error| error.to_string())?;
+            let text = match self.open_texts.get(&canonical) {
+                Some(text) => File::new(path_name(&path), text),
+                None => read_text(&path).map_err(|error| error.to_string())?,
+            };
             // Submissions often lie in one folder, and a solution beside them.
             if has_entry_point(text.text()) && !is_in_one_of(&self.others, &canonical) {
                 let way_out = "name its folder with --include-dir to include it";

@@ -15,7 +15,7 @@ use toyproof_diagnostic::{File, path_name};
 use toyproof_image::input;
 
 pub use self::error::{NOT_UTF8, ReadError, TOO_LARGE, content_diagnostic};
-pub use self::include::{IncludeFolders, drop_included};
+pub use self::include::{IncludeFolders, IncludedFile, OpenTexts, drop_included};
 pub use self::read::{project_image, read, read_bytes, read_named, read_text};
 pub use self::search::{OutsideLink, Search, find, search};
 use crate::archive::Archive;
