@@ -38,6 +38,9 @@ impl Allows {
         let extents = StatementExtents::new(tree);
         let mut all = Vec::new();
         for comment in control_comments {
+            if is_for_formatter(files, *comment) {
+                continue;
+            }
             let scope = extents.scope_of(files, *comment);
             for name in code_spans(files, *comment, diagnostics) {
                 match Code::ALL.iter().find(|code| code.as_str() == files.text(name)) {
@@ -109,6 +112,12 @@ fn invalid_comment(at: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::new(Code::BadAllow, message)
         .at(at)
         .help("write `// toyproof: allow(W0005)`, with commas between several codes")
+}
+
+/// Whether a comment is `// toyproof: no-format`.
+fn is_for_formatter(files: &Files, comment: ControlComment) -> bool {
+    let text = files.text(comment.at).split_once(':');
+    text.is_some_and(|(_, control)| control.split_whitespace().next() == Some("no-format"))
 }
 
 /// The spans of the codes between the parentheses.
