@@ -309,7 +309,7 @@ pub(super) fn compare(input: &Path, limit: usize, seed: u64) {
 }
 
 /// The shaders of a folder, with their names.
-fn of_folder(folder: &Path) -> Vec<(String, String)> {
+pub(super) fn of_folder(folder: &Path) -> Vec<(String, String)> {
     let entries = fs::read_dir(folder).expect("the folder is readable");
     let paths = entries.map(|entry| entry.expect("it is readable").path());
     let mut paths: Vec<_> = paths
