@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use toyproof_diagnostic::Deadline;
+use toyproof_diagnostic::{Deadline, Diagnostic};
 use toyproof_eval::Failure;
 use toyproof_eval_native::Program;
 use toyproof_explain::departure;
-use toyproof_explain::trail::follow_back;
+use toyproof_explain::trail::{Trail, follow_back};
 use toyproof_glsl::Checked;
 use toyproof_image::{FRAME_RATE, Frame, FrameInputs};
 use toyproof_project::files::{Input, ReadError};
@@ -64,106 +64,167 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliError> {
-    let input = find_one(&args.shader, "debug", terminal)?;
-    let beside = || {
-        input
-            .as_ref()
-            .ok()
-            .filter(|_| !args.reference.is_given())
-            .and_then(assignment_beside)
-    };
-    let assignment = match args.assignment.clone().or_else(beside) {
-        Some(path) => Some(read_assignment(&path)?.1),
-        None => None,
-    };
-    let frames = assignment.as_ref().filter(|_| !args.frame.is_given());
-    let inputs = match frames {
-        Some(assignment) => resized(&assignment.frames, args.frame.size).swap_remove(0),
-        None => args.frame.inputs(),
-    };
-    let uniforms = assignment.as_ref().map(|assignment| &assignment.uniforms[..]);
-    let language = args.language.with_uniforms(&inputs.uniforms);
-    let language = language.with_uniforms(uniforms.unwrap_or_default());
-    let reference = match &assignment {
-        Some(assignment) => ReferenceArgs::of(assignment),
-        None => args.reference.clone(),
-    };
-    let given = GivenReference::read(&reference, &language, args.timeout)?;
-    let (frame, scene) = frame_and_scene(&inputs, &reference, &input, given.as_ref())?;
-    let shader = Shader::load(&input, &language, Deadline::after(args.timeout));
-    terminal.diagnostics(&shader.lints.warnings, &shader.files);
-    let kind = args.pass.unwrap_or(PassKind::Image);
-    if kind == PassKind::Image {
-        check_pixel(args.pixel, kind, frame.size)?;
+    let read = PixelInput::read(args, terminal)?;
+    terminal.diagnostics(&read.shader.lints.warnings, &read.shader.files);
+    match read.pass(args, terminal)? {
+        Some(pass) => {
+            let subject = (&read.shader, pass.checked);
+            let (trace, _) = traced(args, subject, &pass.trail.frame, pass.expected, terminal)?;
+            print(args, &trace.after(&pass.trail), terminal)
+        }
+        None => print_trace(args, &read, terminal),
     }
-    let image = shader.require_image()?;
-    if let Some(passes) = shader.project()
-        && (shader.has_passes || kind != PassKind::Image)
-    {
-        return print_pass(args, (&shader, passes), kind, frame, scene, terminal);
-    }
-    if kind != PassKind::Image {
-        return Err(CliError::new(format_args!(
-            "{} is no project with buffers",
-            shader.name
-        )));
-    }
-    print_trace(
-        args,
-        (&shader, image),
-        &frame,
-        Reference { scene, given },
-        terminal,
-    )
 }
 
-/// Prints the trace of the pixel of a pass of a project, and the origin of its difference.
-fn print_pass(
-    args: &Args,
-    (shader, passes): (&Shader, &CompiledProject),
-    kind: PassKind,
-    mut frame: Frame,
+/// What the arguments name.
+struct PixelInput {
+    shader: Shader,
+    frame: Frame,
+    /// The scene that is the reference, if there is one.
     scene: Option<Scene>,
-    terminal: &Terminal,
-) -> Result<Exit, CliError> {
-    let Some(at) = passes.project.passes.iter().position(|pass| pass.kind == kind) else {
-        let error = CliError::new(format_args!("{}: there is no {kind}", shader.name));
-        return Err(error.with_help("name one of its passes with --pass"));
-    };
-    if !args.frame.is_moment_given() && args.assignment.is_none() {
-        let number = default_frame(scene.as_ref());
-        frame = frame.at(number, number as f32 / FRAME_RATE);
-    }
-    let failed = |failure| match failure {
-        verify::Failure::Cpu(failure) => evaluation_error(&failure, shader),
-        other => CliError::new(format_args!("{}: {other}", shader.name)),
-    };
-    let rendering = rendering(passes, kind, frame.size).map_err(failed)?;
-    check_pixel(args.pixel, kind, rendering.graph.size(kind.target(), frame.size))?;
-    let spinner = terminal.spinner(&shader.name);
-    let pass_shader = pass_shader(passes, &rendering);
-    let trail = follow_back(&pass_shader, kind.target(), args.pixel, &frame, args.timeout);
-    spinner.finish_and_clear();
-    let trail = trail.map_err(failed)?;
-    let scene = scene.filter(|_| kind == PassKind::Image).map(|mut scene| {
-        accumulate(&mut scene, frame.frame);
-        scene
-    });
-    let expected = scene.map(|scene| expected_color(scene, &frame, args.pixel));
-    let (trace, _) = traced(
-        args,
-        (shader, &passes.checked[at]),
-        &trail.frame,
-        expected,
-        terminal,
-    )?;
-    print(args, &trace.after(&trail), terminal)
-}
-
-/// The source of the expected color.
-struct Reference {
-    scene: Option<Scene>,
+    /// The shader or the image that is the reference, if there is one.
     given: Option<GivenReference>,
+}
+
+/// A pass of a project whose pixel is traced.
+struct PassInput<'a> {
+    checked: &'a Checked,
+    /// The origin of the difference of its pixel, with the inputs of the pass.
+    trail: Trail,
+    expected: Option<[f64; 3]>,
+}
+
+impl PixelInput {
+    fn read(args: &Args, terminal: &Terminal) -> Result<Self, CliError> {
+        let input = find_one(&args.shader, "debug", terminal)?;
+        let beside = || {
+            input
+                .as_ref()
+                .ok()
+                .filter(|_| !args.reference.is_given())
+                .and_then(assignment_beside)
+        };
+        let assignment = match args.assignment.clone().or_else(beside) {
+            Some(path) => Some(read_assignment(&path)?.1),
+            None => None,
+        };
+        let frames = assignment.as_ref().filter(|_| !args.frame.is_given());
+        let inputs = match frames {
+            Some(assignment) => resized(&assignment.frames, args.frame.size).swap_remove(0),
+            None => args.frame.inputs(),
+        };
+        let uniforms = assignment.as_ref().map(|assignment| &assignment.uniforms[..]);
+        let language = args.language.with_uniforms(&inputs.uniforms);
+        let language = language.with_uniforms(uniforms.unwrap_or_default());
+        let reference = match &assignment {
+            Some(assignment) => ReferenceArgs::of(assignment),
+            None => args.reference.clone(),
+        };
+        let given = GivenReference::read(&reference, &language, args.timeout)?;
+        let (frame, scene) = frame_and_scene(&inputs, &reference, &input, given.as_ref())?;
+        Ok(Self {
+            shader: Shader::load(&input, &language, Deadline::after(args.timeout)),
+            frame,
+            scene,
+            given,
+        })
+    }
+
+    /// The pass that is traced, if the image depends on passes, or another one is named.
+    fn pass(&self, args: &Args, terminal: &Terminal) -> Result<Option<PassInput<'_>>, CliError> {
+        let shader = &self.shader;
+        let kind = args.pass.unwrap_or(PassKind::Image);
+        if kind == PassKind::Image {
+            check_pixel(args.pixel, kind, self.frame.size)?;
+        }
+        shader.require_image()?;
+        let needs_passes = shader.has_passes || kind != PassKind::Image;
+        match shader.project().filter(|_| needs_passes) {
+            Some(passes) => self.pass_of(passes, kind, args, terminal).map(Some),
+            None if kind == PassKind::Image => Ok(None),
+            None => Err(CliError::new(format_args!(
+                "{} is no project with buffers",
+                shader.name
+            ))),
+        }
+    }
+
+    fn pass_of<'a>(
+        &'a self,
+        passes: &'a CompiledProject,
+        kind: PassKind,
+        args: &Args,
+        terminal: &Terminal,
+    ) -> Result<PassInput<'a>, CliError> {
+        let shader = &self.shader;
+        let mut frame = self.frame.clone();
+        let Some(at) = passes.project.passes.iter().position(|pass| pass.kind == kind) else {
+            let error = CliError::new(format_args!("{}: there is no {kind}", shader.name));
+            return Err(error.with_help("name one of its passes with --pass"));
+        };
+        if !args.frame.is_moment_given() && args.assignment.is_none() {
+            let number = default_frame(self.scene.as_ref());
+            frame = frame.at(number, number as f32 / FRAME_RATE);
+        }
+        let failed = |failure| match failure {
+            verify::Failure::Cpu(failure) => evaluation_error(&failure, shader),
+            other => CliError::new(format_args!("{}: {other}", shader.name)),
+        };
+        let rendering = rendering(passes, kind, frame.size).map_err(failed)?;
+        check_pixel(args.pixel, kind, rendering.graph.size(kind.target(), frame.size))?;
+        let spinner = terminal.spinner(&shader.name);
+        let pass_shader = pass_shader(passes, &rendering);
+        let trail = follow_back(&pass_shader, kind.target(), args.pixel, &frame, args.timeout);
+        spinner.finish_and_clear();
+        let trail = trail.map_err(failed)?;
+        let scene = self.scene.clone().filter(|_| kind == PassKind::Image);
+        let expected = scene.map(|mut scene| {
+            accumulate(&mut scene, frame.frame);
+            expected_color(scene, &frame, args.pixel)
+        });
+        Ok(PassInput {
+            checked: &passes.checked[at],
+            trail,
+            expected,
+        })
+    }
+
+    /// The color of a scene or an image in the pixel.
+    fn expected(&self, pixel: [u32; 2]) -> Option<[f64; 3]> {
+        if let Some(image) = self.given.as_ref().and_then(GivenReference::image) {
+            let [r, g, b, _] = image.get(pixel[0], pixel[1]);
+            return Some([r, g, b].map(f64::from));
+        }
+        let scene = self.scene.clone();
+        scene.map(|scene| expected_color(scene, &self.frame, pixel))
+    }
+}
+
+/// The pixel that the arguments name for a debugger, and the warnings about its shader.
+pub(super) fn subject(
+    args: &Args,
+    terminal: &Terminal,
+) -> Result<(toyproof_dap::Subject, Vec<Diagnostic>), CliError> {
+    let read = PixelInput::read(args, terminal)?;
+    let (checked, frame, expected) = if let Some(pass) = read.pass(args, terminal)? {
+        (pass.checked.clone(), pass.trail.frame, pass.expected)
+    } else {
+        let expected = match read.given.as_ref().and_then(GivenReference::shader) {
+            Some(solution) => traced(args, solution, &read.frame, None, terminal)?.1,
+            None => read.expected(args.pixel),
+        };
+        (read.shader.require_image()?.clone(), read.frame.clone(), expected)
+    };
+    let subject = toyproof_dap::Subject {
+        name: read.shader.name,
+        files: read.shader.files,
+        checked,
+        frame,
+        pixel: args.pixel,
+        expected,
+        timeout: args.timeout,
+    };
+    Ok((subject, read.shader.lints.warnings))
 }
 
 /// The frame, in the size that the arguments give, else that of the reference image or of the scene; and the
@@ -190,7 +251,11 @@ fn frame_and_scene(
 }
 
 /// Checks that a pixel is inside what a pass renders, of this size in pixels.
-fn check_pixel([x, y]: [u32; 2], kind: PassKind, [width, height]: [u32; 2]) -> Result<(), CliError> {
+pub(super) fn check_pixel(
+    [x, y]: [u32; 2],
+    kind: PassKind,
+    [width, height]: [u32; 2],
+) -> Result<(), CliError> {
     if x < width && y < height {
         return Ok(());
     }
@@ -206,7 +271,7 @@ fn check_pixel([x, y]: [u32; 2], kind: PassKind, [width, height]: [u32; 2]) -> R
 }
 
 /// The color of the scene in a pixel, in double precision.
-fn expected_color(mut scene: Scene, frame: &Frame, [x, y]: [u32; 2]) -> [f64; 3] {
+pub(super) fn expected_color(mut scene: Scene, frame: &Frame, [x, y]: [u32; 2]) -> [f64; 3] {
     scene.film.size = frame.size;
     let time = FrameTime {
         frame: frame.frame,
@@ -216,20 +281,10 @@ fn expected_color(mut scene: Scene, frame: &Frame, [x, y]: [u32; 2]) -> [f64; 3]
 }
 
 /// Prints the trace of the pixel next to that of a reference shader.
-fn print_trace(
-    args: &Args,
-    shader: (&Shader, &Checked),
-    frame: &Frame,
-    reference: Reference,
-    terminal: &Terminal,
-) -> Result<Exit, CliError> {
-    let Reference { scene, given } = reference;
-    let [x, y] = args.pixel;
-    let mut expected = scene.map(|scene| expected_color(scene, frame, args.pixel));
-    if let Some(image) = given.as_ref().and_then(GivenReference::image) {
-        let [r, g, b, _] = image.get(x, y);
-        expected = Some([r, g, b].map(f64::from));
-    }
+fn print_trace(args: &Args, read: &PixelInput, terminal: &Terminal) -> Result<Exit, CliError> {
+    let (frame, given) = (&read.frame, &read.given);
+    let shader = (&read.shader, read.shader.require_image()?);
+    let mut expected = read.expected(args.pixel);
     let solution = given.as_ref().and_then(GivenReference::shader);
     let reference = match solution {
         None => None,
@@ -292,25 +347,37 @@ fn print(args: &Args, trace: &report::PixelTrace, terminal: &Terminal) -> Result
 /// The trace of the pixel in one shader, and its color in f64, unless it is discarded.
 fn traced(
     args: &Args,
-    (shader, checked): (&Shader, &Checked),
+    shader: (&Shader, &Checked),
     frame: &Frame,
     expected: Option<[f64; 3]>,
     terminal: &Terminal,
 ) -> Result<(report::PixelTrace, Option<[f64; 3]>), CliError> {
-    let spinner = terminal.spinner(&shader.name);
-    let deadline = Instant::now() + args.timeout;
-    let program = Program::within(checked, args.timeout).map_err(Failure::from);
+    let spinner = terminal.spinner(&shader.0.name);
+    let traced = trace_pixel(shader, frame, args.pixel, expected, args.timeout);
+    spinner.finish_and_clear();
+    traced
+}
+
+/// Traces a pixel of a shader; also returns its color in f64, unless it is discarded.
+pub(super) fn trace_pixel(
+    (shader, checked): (&Shader, &Checked),
+    frame: &Frame,
+    pixel: [u32; 2],
+    expected: Option<[f64; 3]>,
+    timeout: Duration,
+) -> Result<(report::PixelTrace, Option<[f64; 3]>), CliError> {
+    let deadline = Instant::now() + timeout;
+    let program = Program::within(checked, timeout).map_err(Failure::from);
     let traced = match &program {
-        Ok(program) => debug::explain(program, frame, args.pixel, Some(deadline)),
+        Ok(program) => debug::explain(program, frame, pixel, Some(deadline)),
         Err(failure) => Err(failure.clone()),
     };
-    spinner.finish_and_clear();
     let traced = traced.map_err(|failure| evaluation_error(&failure, shader))?;
     let subject = report::TracedPixel {
         shader: &shader.name,
         files: &shader.files,
         tree: &checked.tree,
-        pixel: args.pixel,
+        pixel,
         size: frame.size,
         expected,
     };

@@ -36,7 +36,7 @@ pub(crate) fn compile(
         } = build_function(checked, parameters, options, deadline)?;
         deadline.check()?;
         flush_operands(&mut function);
-        number_values(&mut function, fold, options.trace);
+        number_values(&mut function, fold, options.trace.is_traced());
         deadline.check()?;
         eliminate_dead_code(&mut function);
         let groups = AliasGroups::new(&function);
@@ -45,7 +45,7 @@ pub(crate) fn compile(
         fuse(&mut function, &divergence);
         pair(&mut function);
         deadline.check()?;
-        let linear = linearize(&function, &divergence, options.trace);
+        let linear = linearize(&function, &divergence, options.trace.is_traced());
         deadline.check()?;
         let locations = allocate_registers(&function, &linear, &divergence, &groups);
         let cells = (0..function.cells.len() as u32).map(Cell);

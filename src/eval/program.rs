@@ -6,7 +6,7 @@ use std::time::Duration;
 use toyproof_diagnostic::Deadline;
 use toyproof_glsl::Checked;
 
-use crate::build::{BuildOptions, Refusal, Substitute, UndefinedPolicy};
+use crate::build::{BuildOptions, Refusal, Substitute, TraceDetail, UndefinedPolicy};
 use crate::compile::compile;
 use crate::exec::native::{Executable, NativeCompiler};
 use crate::lower::LoweredCode;
@@ -24,6 +24,8 @@ pub struct Program {
     plain: OnceLock<Result<Executable, Refusal>>,
     /// The variant that records traces; compiled on first use.
     traced: OnceLock<Result<Executable, Refusal>>,
+    /// The variant that records traces with all steps, and undefined operations; compiled on first use.
+    stepping: OnceLock<Result<Executable, Refusal>>,
     /// The time limit for compiling the first variant. The others are about as large, and what they are
     /// compiled for must not depend on the load of the machine.
     limit: Option<Duration>,
@@ -56,6 +58,7 @@ impl Program {
             substituted: Default::default(),
             plain: OnceLock::new(),
             traced: OnceLock::new(),
+            stepping: OnceLock::new(),
             limit,
         };
         program.executable(variant)?;
@@ -95,10 +98,20 @@ impl Program {
     /// Returns the code that records traces.
     pub(crate) fn traced(&self) -> Result<&LoweredCode, Refusal> {
         let options = BuildOptions {
-            trace: true,
+            trace: TraceDetail::Values,
             ..BuildOptions::default()
         };
         Ok(&self.variant(&self.traced, options)?.lowered)
+    }
+
+    /// Returns the code that records traces with all steps.
+    pub(crate) fn stepping(&self) -> Result<&LoweredCode, Refusal> {
+        let options = BuildOptions {
+            undefined: UndefinedPolicy::Observed,
+            trace: TraceDetail::Steps,
+            ..BuildOptions::default()
+        };
+        Ok(&self.variant(&self.stepping, options)?.lowered)
     }
 
     /// Returns the checked shader.

@@ -30,17 +30,33 @@ impl Program {
         frame: &'a Frame,
         settings: Settings<'a, N>,
     ) -> Result<PixelDebugger<'a, N>, Failure> {
-        let lowered = self.traced()?;
-        Ok(PixelDebugger {
-            lowered,
-            code: N::select(lowered, frame),
-            frame,
-            settings,
-        })
+        Ok(PixelDebugger::new(self.traced()?, frame, settings))
+    }
+
+    /// Prepares to trace the pixels of a frame with all steps: where statements and functions begin, which
+    /// variables are written, and which operations are undefined.
+    ///
+    /// # Errors
+    /// If the shader is too large.
+    pub fn step_debugger<'a, N: Number>(
+        &'a self,
+        frame: &'a Frame,
+        settings: Settings<'a, N>,
+    ) -> Result<PixelDebugger<'a, N>, Failure> {
+        Ok(PixelDebugger::new(self.stepping()?, frame, settings))
     }
 }
 
 impl<'a, N: Number> PixelDebugger<'a, N> {
+    fn new(lowered: &'a LoweredCode, frame: &'a Frame, settings: Settings<'a, N>) -> Self {
+        Self {
+            lowered,
+            code: N::select(lowered, frame),
+            frame,
+            settings,
+        }
+    }
+
     /// Returns all events that may occur.
     #[must_use]
     pub fn schema(&self) -> &'a TraceSchema {

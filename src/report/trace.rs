@@ -64,6 +64,9 @@ struct TrailStep {
 struct TraceStep {
     /// `assignment`, `subexpression`, `branch`, `iteration`, `return` or `statement`.
     kind: &'static str,
+    /// The name of the file, if the shader has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
     line: usize,
     column: usize,
     /// The whole line.
@@ -205,8 +208,11 @@ impl TraceStep {
                 EventKind::Branch => "branch",
                 EventKind::LoopHeader => "iteration",
                 EventKind::Return => "return",
-                EventKind::Statement => "statement",
+                EventKind::Statement | EventKind::Step | EventKind::Entry | EventKind::Store(_) => {
+                    "statement"
+                }
             },
+            file: files.is_several().then(|| files.name(event.at.span).to_owned()),
             line: at.line,
             column: at.column,
             source: source_line(files, event.at.span),

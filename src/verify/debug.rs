@@ -1,10 +1,11 @@
 //! Executes one pixel in f32 and in f64, side by side, and finds where the two diverge.
 
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use toyproof_eval::{
-    EventId, EventKind, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Settings, TraceEvent,
-    TraceSchema, TraceValue,
+    EventId, EventKind, ExecutionTrace, Failure, ForcedPrefix, Number, PixelDebugger, Settings, Site,
+    TraceEvent, TraceSchema, TraceValue,
 };
 use toyproof_eval_native::Program;
 use toyproof_image::Frame;
@@ -32,6 +33,8 @@ pub struct Explanation<'a> {
     pub not_finite: Option<usize>,
     /// Whether the traces were too long and are truncated.
     pub is_cut: bool,
+    /// The faults of operations in f32, each with the number of steps before it; only found by [`record`].
+    pub faults: Vec<(usize, Site)>,
 }
 
 /// Executes a pixel of a frame, y upwards from the bottom, in f32 and in f64.
@@ -66,11 +69,42 @@ pub fn explain_within<'a>(
 ) -> Result<Explanation<'a>, Failure> {
     let singles = program.pixel_debugger(frame, settings::<f32>(max_iterations, deadline))?;
     let doubles = program.pixel_debugger(frame, settings::<f64>(max_iterations, deadline))?;
-    let schema = doubles.schema();
     let single = singles.trace(pixel, None)?;
     let double = doubles.trace(pixel, None)?;
     let cause = find_cause(&doubles, pixel, &single, &double)?;
-    let steps = merge(schema, &single, &double);
+    Ok(explained(doubles.schema(), &single, &double, cause.as_ref()))
+}
+
+/// Like [`explain`], but records all steps: where statements and functions begin, which variables are
+/// written, and which operations are undefined. Other threads may interrupt it. The cause of a visible
+/// difference of the colors is left out if the deadline expires during its search.
+///
+/// # Errors
+/// Fails if the shader is too large, exceeds the deadline, or is interrupted.
+pub fn record<'a>(
+    program: &'a Program,
+    frame: &'a Frame,
+    pixel: [u32; 2],
+    deadline: Instant,
+    interrupt: &'a AtomicBool,
+) -> Result<Explanation<'a>, Failure> {
+    let settings = (Some(deadline), Some(interrupt));
+    let singles = program.step_debugger(frame, interruptible::<f32>(settings))?;
+    let doubles = program.step_debugger(frame, interruptible::<f64>(settings))?;
+    let single = singles.trace(pixel, None)?;
+    let double = doubles.trace(pixel, None)?;
+    let cause = find_cause(&doubles, pixel, &single, &double).ok().flatten();
+    Ok(explained(doubles.schema(), &single, &double, cause.as_ref()))
+}
+
+/// Aligns two traces, and finds the steps that matter; `cause` is that of a visible difference.
+fn explained<'a>(
+    schema: &'a TraceSchema,
+    single: &ExecutionTrace,
+    double: &ExecutionTrace,
+    cause: Option<&TracePosition>,
+) -> Explanation<'a> {
+    let steps = merge(schema, single, double);
     let infinite = single
         .color
         .is_some_and(|color| color.iter().any(|part| part.is_infinite()));
@@ -81,16 +115,33 @@ pub fn explain_within<'a>(
             .any(|value| matches!(value, TraceValue::Float(value) if is_bad(*value)))
     };
     let first = |is_bad| steps.iter().position(|step| has_value(step, is_bad));
-    Ok(Explanation {
+    let in_single = steps.iter().enumerate().filter(|(_, step)| step.single.is_some());
+    let in_single: Vec<usize> = in_single.map(|(at, _)| at).collect();
+    let faults = single.faults.iter().map(|fault| {
+        let before = fault.at.checked_sub(1).and_then(|at| in_single.get(at));
+        (before.map_or(0, |at| at + 1), fault.site)
+    });
+    Explanation {
         schema,
         single: single.color,
         double: double.color,
         divergence: first_divergence(schema, &steps, false),
-        cause: cause.and_then(|position| steps.iter().position(|step| step.position == position)),
+        cause: cause.and_then(|position| steps.iter().position(|step| step.position == *position)),
         not_finite: first(f64::is_nan).or_else(|| first(f64::is_infinite).filter(|_| infinite)),
         is_cut: single.is_cut || double.is_cut,
+        faults: faults.collect(),
         steps,
-    })
+    }
+}
+
+fn interruptible<N: Number>(
+    (deadline, interrupt): (Option<Instant>, Option<&AtomicBool>),
+) -> Settings<'_, N> {
+    Settings {
+        deadline,
+        interrupt,
+        ..Settings::default()
+    }
 }
 
 fn settings<'a, N: Number>(max_iterations: u32, deadline: Option<Instant>) -> Settings<'a, N> {
@@ -276,15 +327,17 @@ fn with_positions<'a>(
 /// the 24 bits of an f32 are left.
 pub const BOUND: f64 = 1e-3;
 
-/// Returns the first step where f32 and f64 diverge. `includes_flushed` is whether differences count that
-/// arise because f32 flushes tiny numbers to zero, which hardly ever matters.
+/// Returns the first step where f32 and f64 diverge.
 fn first_divergence(schema: &TraceSchema, steps: &[Step], includes_flushed: bool) -> Option<usize> {
     steps
         .iter()
         .position(|step| diverges(schema, step, includes_flushed))
 }
 
-fn diverges(schema: &TraceSchema, step: &Step, includes_flushed: bool) -> bool {
+/// Whether the values of a step diverge, or only one of the two reaches it. `includes_flushed` is whether
+/// differences count that arise because f32 flushes tiny numbers to zero, which hardly ever matters.
+#[must_use]
+pub fn diverges(schema: &TraceSchema, step: &Step, includes_flushed: bool) -> bool {
     if step.single.is_none() || step.double.is_none() {
         return true;
     }

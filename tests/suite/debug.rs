@@ -34,6 +34,11 @@ fn assert_trace_ends_with_color<N: Number>(exercise: &Exercise) {
         let reported = trace.color.unwrap().map(f64::to_bits);
         assert_eq!(reported, rendered, "{} at {pixel:?}", exercise.name);
         assert!(trace.is_cut || !trace.events.is_empty());
+        let with_steps = program.step_debugger::<N>(&frame, Settings::default()).unwrap();
+        let with_steps = with_steps.trace(pixel, None).unwrap();
+        let stepped = with_steps.color.unwrap().map(f64::to_bits);
+        assert_eq!(stepped, rendered, "{} at {pixel:?} with all steps", exercise.name);
+        assert!(with_steps.events.len() > trace.events.len() || with_steps.is_cut);
     }
 }
 

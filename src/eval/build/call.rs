@@ -24,10 +24,10 @@ impl Builder<'_> {
         &mut self,
         function: FunctionId,
         arguments: &[ExprId],
-        at: Place,
+        at_call: Place,
     ) -> Result<Vec<Value>> {
         let tree = self.tree;
-        let call = self.name_call(function, at);
+        let call = self.name_call(function, at_call);
         let parameters = &tree[function].parameters;
         let mut passed = Vec::with_capacity(arguments.len());
         let last_acting = arguments
@@ -57,14 +57,18 @@ impl Builder<'_> {
             {
                 if direction(tree[parameter].kind) == Direction::Out {
                     self.store_all(cells, &passed.values);
+                    self.trace_variable(cells, at_call, None);
                     self.begin_out_parameter(parameter, cells);
                 }
+                self.bind(call, parameter, cells);
                 self.locations.insert(parameter, Location::Cells(cells));
                 continue;
             }
             let cells = self.allocate_type(tree[parameter].ty)?;
             self.store_all(cells, &passed.values);
             let with_value = direction(tree[parameter].kind) != Direction::Out;
+            self.bind(call, parameter, cells);
+            self.trace_variable(cells, at_call, with_value.then_some(&passed.values));
             self.begin_variable(parameter, cells, with_value);
             self.locations.insert(parameter, Location::Cells(cells));
             copy_outs.extend(passed.copy_out.map(|copy_out| (cells, copy_out)));
@@ -75,6 +79,7 @@ impl Builder<'_> {
         for (cells, copy_out) in copy_outs {
             let values = self.load_all(cells);
             self.write(&copy_out, &values);
+            self.trace_write(&copy_out, at_call, &values);
         }
         Ok(value)
     }
@@ -152,6 +157,7 @@ impl Builder<'_> {
         let scope = self.scope();
         let body = self.inner(|builder| {
             builder.call_stack.push(InlinedCall { scope, result, call });
+            builder.trace_entry(function);
             builder.trace_parameters(function);
             let (breaks, continues) = (
                 std::mem::take(&mut builder.breaks),
@@ -175,10 +181,13 @@ impl Builder<'_> {
         let coordinates = self.frag_coord();
         if let &[out, position] = tree[function].parameters.as_slice() {
             self.locations.insert(out, Location::Cells(color));
+            self.bind_here(out, color);
             self.begin_variable(out, color, true);
             let cells = self.allocate_type(tree[position].ty)?;
             self.store_all(cells, &coordinates);
             self.locations.insert(position, Location::Cells(cells));
+            self.bind_here(position, cells);
+            self.trace_variable(cells, tree[function].at, coordinates.get(..cells.count as usize));
             self.begin_variable(position, cells, true);
         }
         self.inline(function, None).map(drop)

@@ -242,6 +242,7 @@ impl Builder<'_> {
         let kind = EventKind::Assignment(self.at(target));
         self.trace_event(kind, self.at(whole), types.0, &values);
         self.write(&place, &values);
+        self.trace_write(&place, self.at(whole), &values);
         Ok(values)
     }
 
@@ -263,6 +264,7 @@ impl Builder<'_> {
         let at = self.at(target);
         self.trace_event(EventKind::Assignment(at), at, ty, &new);
         self.write(&place, &new);
+        self.trace_write(&place, at, &new);
         Ok(if postfix { old } else { new })
     }
 

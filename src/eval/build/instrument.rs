@@ -5,11 +5,11 @@ use std::collections::{HashMap, HashSet};
 use toyproof_glsl::tree::{Direction, ExprId, ExprKind, FunctionId, Place, Tree, Type, VariableId};
 
 use super::call::direction;
-use super::lvalue::{Location, component_count};
-use super::{Builder, InlinedCall, Substitute, UndefinedPolicy};
+use super::lvalue::{LValue, Location, component_count};
+use super::{Builder, InlinedCall, Substitute, TraceDetail, UndefinedPolicy};
 use crate::ir::{
     Call, CallId, Cell, Cells, Event, EventId, EventKind, Fault, Kind, NONE, Node, Operation, Predicate,
-    Site, SiteId, Value, ValueDef,
+    Site, SiteId, Store, StoreId, Value, ValueDef,
 };
 
 /// The number substituted for undefined results: in range of every index, and rarely a genuine result.
@@ -302,7 +302,13 @@ const MAX_TRACED_COMPONENTS: usize = 16;
 impl Builder<'_> {
     /// Emits an event with a value.
     pub(super) fn trace_event(&mut self, kind: EventKind, at: Place, ty: Type, values: &[Value]) {
-        if !self.options.trace {
+        let is_large = values.len() > MAX_TRACED_COMPONENTS;
+        self.trace_values(kind, at, ty, if is_large { &[] } else { values });
+    }
+
+    /// Emits an event with all of its values.
+    fn trace_values(&mut self, kind: EventKind, at: Place, ty: Type, traced: &[Value]) {
+        if !self.options.trace.is_traced() {
             return;
         }
         let id = self.schema.events.len() as u32;
@@ -310,14 +316,9 @@ impl Builder<'_> {
             kind,
             at,
             ty,
-            call: self.call_stack.last().and_then(|frame| frame.call),
+            call: self.current_call(),
             round: self.loop_headers.last().copied(),
         });
-        let traced = if values.len() > MAX_TRACED_COMPONENTS {
-            &[]
-        } else {
-            values
-        };
         if traced.is_empty() {
             self.push(Node::Trace {
                 event: id,
@@ -351,7 +352,7 @@ impl Builder<'_> {
 
     /// Begins a loop iteration; the events up to [`Builder::end_loop`] belong to it.
     pub(super) fn begin_iteration(&mut self, at: Place) {
-        if self.options.trace {
+        if self.options.trace.is_traced() {
             let id = EventId(self.schema.events.len() as u32);
             self.trace_event(EventKind::LoopHeader, at, Type::Void, &[]);
             self.loop_headers.push(id);
@@ -364,7 +365,7 @@ impl Builder<'_> {
 
     /// Emits events for the parameters of a function.
     pub(super) fn trace_parameters(&mut self, function: FunctionId) {
-        if !self.options.trace {
+        if !self.options.trace.is_traced() {
             return;
         }
         for &parameter in &self.tree[function].parameters {
@@ -381,10 +382,80 @@ impl Builder<'_> {
 
     /// Registers a call inside of the function that is being written.
     pub(super) fn name_call(&mut self, function: FunctionId, at: Place) -> Option<CallId> {
-        let parent = self.call_stack.last().and_then(|frame: &InlinedCall| frame.call);
-        self.options.trace.then(|| {
+        let parent = self.current_call();
+        self.options.trace.is_traced().then(|| {
             self.schema.calls.push(Call { function, at, parent });
             CallId(self.schema.calls.len() as u32 - 1)
         })
+    }
+
+    /// The call that is being written; none at global scope and in `mainImage`.
+    fn current_call(&self) -> Option<CallId> {
+        self.call_stack.last().and_then(|frame: &InlinedCall| frame.call)
+    }
+
+    /// Whether the steps of the program are recorded.
+    fn records_steps(&self) -> bool {
+        self.options.trace == TraceDetail::Steps
+    }
+
+    /// Emits the event of a statement that begins, or of a condition on a line of its own.
+    pub(super) fn trace_step(&mut self, at: Place) {
+        if self.records_steps() {
+            self.trace_values(EventKind::Step, at, Type::Void, &[]);
+        }
+    }
+
+    /// Emits the event of a function whose body begins.
+    pub(super) fn trace_entry(&mut self, function: FunctionId) {
+        if self.records_steps() {
+            self.trace_values(EventKind::Entry, self.tree[function].at, Type::Void, &[]);
+        }
+    }
+
+    /// Notes the cells of a variable of a call, or of one at global scope or in `mainImage`.
+    pub(super) fn bind(&mut self, call: Option<CallId>, variable: VariableId, cells: Cells) {
+        if self.records_steps() {
+            let range = cells.first..cells.first + cells.count;
+            self.schema.variables.insert((call, variable), range);
+        }
+    }
+
+    /// Notes the cells of a variable of the function that is being written.
+    pub(super) fn bind_here(&mut self, variable: VariableId, cells: Cells) {
+        self.bind(self.current_call(), variable, cells);
+    }
+
+    /// Emits the event of a part of a variable that is written.
+    pub(super) fn trace_write(&mut self, target: &LValue, at: Place, values: &[Value]) {
+        if !self.records_steps() {
+            return;
+        }
+        let store = Store {
+            cells: self.cells_of(target),
+            is_indexed: target.index.is_some(),
+            is_zero: false,
+        };
+        let index = target.index.map(|(index, _)| index);
+        let all: Vec<Value> = index.into_iter().chain(values.iter().copied()).collect();
+        self.trace_store(store, at, &all);
+    }
+
+    /// Emits the event of a variable that is written as a whole; without values, it becomes zero.
+    pub(super) fn trace_variable(&mut self, cells: Cells, at: Place, values: Option<&[Value]>) {
+        if self.records_steps() && cells.count > 0 {
+            let store = Store {
+                cells: (cells.first..cells.first + cells.count).collect(),
+                is_indexed: false,
+                is_zero: values.is_none(),
+            };
+            self.trace_store(store, at, values.unwrap_or_default());
+        }
+    }
+
+    fn trace_store(&mut self, store: Store, at: Place, values: &[Value]) {
+        let id = StoreId(self.schema.stores.len() as u32);
+        self.schema.stores.push(store);
+        self.trace_values(EventKind::Store(id), at, Type::Void, values);
     }
 }

@@ -27,7 +27,7 @@ pub(super) struct LValue {
     /// The offsets of the components from the first cell, if the components are not contiguous.
     swizzle: Option<Vec<u32>>,
     /// The dynamic index that is added to each component's cell, and the cells that the index may select.
-    index: Option<(Value, Cells)>,
+    pub(super) index: Option<(Value, Cells)>,
 }
 
 impl Builder<'_> {
@@ -228,7 +228,7 @@ impl Builder<'_> {
     }
 
     /// Returns the cells of a part, before the dynamic index is added.
-    fn cells_of(&self, target: &LValue) -> Vec<u32> {
+    pub(super) fn cells_of(&self, target: &LValue) -> Vec<u32> {
         match &target.swizzle {
             Some(swizzle) => swizzle.iter().map(|&at| target.first + at).collect(),
             None => (target.first..)

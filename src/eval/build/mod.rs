@@ -63,8 +63,8 @@ pub enum Refusal {
 pub(crate) struct BuildOptions {
     /// The treatment of operations that GLSL leaves undefined.
     pub(crate) undefined: UndefinedPolicy,
-    /// Whether traces are recorded.
-    pub(crate) trace: bool,
+    /// What traces record.
+    pub(crate) trace: TraceDetail,
     /// The maximum number of values.
     pub(crate) max_values: usize,
 }
@@ -73,9 +73,27 @@ impl Default for BuildOptions {
     fn default() -> Self {
         Self {
             undefined: UndefinedPolicy::Plain,
-            trace: false,
+            trace: TraceDetail::Nothing,
             max_values: MAX_VALUES,
         }
+    }
+}
+
+/// What is recorded of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum TraceDetail {
+    /// Nothing: the program renders images.
+    Nothing,
+    /// What is computed, assigned and decided.
+    Values,
+    /// Also where statements and functions begin, and which cells are written.
+    Steps,
+}
+
+impl TraceDetail {
+    /// Whether anything is recorded.
+    pub(crate) fn is_traced(self) -> bool {
+        self != Self::Nothing
     }
 }
 

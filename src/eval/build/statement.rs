@@ -22,6 +22,9 @@ impl Builder<'_> {
     }
 
     fn statement(&mut self, statement: &Statement) -> Result<()> {
+        if self.begins_step(&statement.kind) {
+            self.trace_step(statement.at);
+        }
         match &statement.kind {
             StatementKind::Expression(expr) => {
                 self.expression(*expr)?;
@@ -76,6 +79,19 @@ impl Builder<'_> {
         Ok(())
     }
 
+    /// Whether a statement itself computes or decides something, before statements in it do.
+    fn begins_step(&self, kind: &StatementKind) -> bool {
+        match *kind {
+            StatementKind::Declare(variable) => self.tree[variable].initializer.is_some(),
+            StatementKind::Struct(_)
+            | StatementKind::Block(_)
+            | StatementKind::For { .. }
+            | StatementKind::While { .. }
+            | StatementKind::DoWhile { .. } => false,
+            _ => true,
+        }
+    }
+
     fn trace_statement(&mut self, at: Place) {
         self.trace_event(EventKind::Statement, at, Type::Void, &[]);
     }
@@ -101,6 +117,7 @@ impl Builder<'_> {
             _ => self.allocate_type(ty)?,
         };
         self.locations.insert(variable, Location::Cells(cells));
+        self.bind_here(variable, cells);
         if let (Some(initializer), Some(at)) = (initializer, self.tree[variable].at)
             && self.tree[variable].value.is_none()
         {
@@ -108,6 +125,9 @@ impl Builder<'_> {
             self.trace_event(EventKind::Assignment(at), whole, ty, &values);
         }
         self.store_all(cells, &values);
+        if let Some(at) = self.tree[variable].at {
+            self.trace_variable(cells, at, initializer.map(|_| &values[..]));
+        }
         let local = self.tree[variable].kind == VariableKind::Local;
         if local && !self.shared.contains(&variable) {
             self.begin_variable(variable, cells, initializer.is_some());
@@ -121,7 +141,12 @@ impl Builder<'_> {
         };
         let condition = self.condition(arm.condition)?;
         let yes = self.inner(|builder| builder.block(&arm.body))?;
-        let no = self.inner(|builder| builder.arms(others, otherwise))?;
+        let no = self.inner(|builder| {
+            if let Some(next) = others.first() {
+                builder.trace_step(builder.at(next.condition));
+            }
+            builder.arms(others, otherwise)
+        })?;
         self.push_if(condition, yes, no);
         Ok(())
     }
@@ -164,8 +189,12 @@ impl Builder<'_> {
             builder.begin_iteration(at);
             if let Some(condition) = condition {
                 let condition = match condition {
-                    Condition::Expression(expr) => builder.condition(expr)?,
+                    Condition::Expression(expr) => {
+                        builder.trace_step(builder.at(expr));
+                        builder.condition(expr)?
+                    }
                     Condition::Declare(variable) => {
+                        builder.trace_step(at);
                         builder.declare(variable)?;
                         match builder.location(variable) {
                             Location::Cells(cells) => builder.load(Cell(cells.first)),
@@ -187,9 +216,13 @@ impl Builder<'_> {
             builder.push_scope(on, nodes);
             if ends {
                 if let Some(step) = step {
+                    if condition.is_none() {
+                        builder.trace_step(builder.at(step));
+                    }
                     builder.expression(step)?;
                 }
                 if let Some(until) = until {
+                    builder.trace_step(builder.at(until));
                     let condition = builder.condition(until)?;
                     builder.break_unless(out, condition);
                 }

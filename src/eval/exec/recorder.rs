@@ -3,9 +3,9 @@
 
 use std::cell::{Cell, RefCell};
 
-use crate::exec::lanes::LANES;
+use crate::exec::lanes::{LANES, Lanes};
 use crate::exec::number::Arithmetic;
-use crate::ir::EventId;
+use crate::ir::{EventId, Site, SiteId};
 
 /// A dynamic event: one execution of a static one.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +34,17 @@ pub struct ExecutionTrace {
     pub color: Option<[f64; 3]>,
     /// Whether the trace was truncated because it was too long.
     pub is_cut: bool,
+    /// The faults of operations, in execution order; only recorded with all steps.
+    pub faults: Vec<TraceFault>,
+}
+
+/// A fault of an operation in a traced pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TraceFault {
+    /// The number of events before it.
+    pub at: usize,
+    /// The fault, and its source location.
+    pub site: Site,
 }
 
 /// The maximum number of components recorded in a trace.
@@ -56,6 +67,8 @@ pub(crate) struct Recorder<'a> {
     forced: &'a [TraceEvent],
     trace: RefCell<ExecutionTrace>,
     recorded: Cell<usize>,
+    /// The faults, each with the number of events before it.
+    faults: RefCell<Vec<(usize, SiteId)>>,
 }
 
 impl<'a> Recorder<'a> {
@@ -70,6 +83,7 @@ impl<'a> Recorder<'a> {
             }),
             trace: RefCell::default(),
             recorded: Cell::new(0),
+            faults: RefCell::default(),
         }
     }
 
@@ -126,8 +140,24 @@ impl<'a> Recorder<'a> {
         !is_cut
     }
 
-    pub(crate) fn finish(self) -> ExecutionTrace {
-        self.trace.into_inner()
+    /// Records the faults of a chunk if the traced pixel is among them: its lane is not zero.
+    pub(crate) fn record_fault(&self, site: SiteId, chunk: usize, hit: &Lanes<u32>) {
+        if chunk == self.chunk && hit[self.lane] != 0 && self.count() {
+            let before = self.trace.borrow().events.len();
+            self.faults.borrow_mut().push((before, site));
+        }
+    }
+
+    pub(crate) fn finish(self, sites: &[Site]) -> ExecutionTrace {
+        let faults = self.faults.into_inner().into_iter();
+        let faults = faults.map(|(at, SiteId(site))| TraceFault {
+            at,
+            site: sites[site as usize],
+        });
+        ExecutionTrace {
+            faults: faults.collect(),
+            ..self.trace.into_inner()
+        }
     }
 }
 

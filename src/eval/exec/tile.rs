@@ -197,7 +197,9 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
         let mut trace = batch
             .recorder
             .take()
-            .map_or_else(ExecutionTrace::default, Recorder::finish);
+            .map_or_else(ExecutionTrace::default, |recorder| {
+                recorder.finish(&self.lowered.sites)
+            });
         let (chunk, lane) = (position / LANES, position % LANES);
         let (color, discarded) = self.outputs(&batch, chunk);
         let [red, green, blue, _] = color;

@@ -16,5 +16,5 @@ pub(crate) use self::function::{Axis, Block, Cell, Cells, Function, LoopId, Node
 pub use self::function::{NONE, Value, ValueDef};
 pub(crate) use self::operation::for_each_operation;
 pub use self::operation::{Kind, Operation};
-pub use self::schema::{Call, CallId, Event, EventId, EventKind, TraceSchema};
+pub use self::schema::{Call, CallId, Event, EventId, EventKind, Store, StoreId, TraceSchema};
 pub use self::site::{Fault, Predicate, Site, SiteId};

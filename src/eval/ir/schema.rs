@@ -1,6 +1,9 @@
 //! The events that a traced run may record.
 
-use toyproof_glsl::tree::{FunctionId, Place, Type};
+use std::collections::HashMap;
+use std::ops::Range;
+
+use toyproof_glsl::tree::{FunctionId, Place, Type, VariableId};
 
 /// Identifies an event of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -9,6 +12,10 @@ pub struct EventId(pub(crate) u32);
 /// Identifies an inlined call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CallId(pub(crate) u32);
+
+/// Identifies what an event of the kind [`EventKind::Store`] writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct StoreId(pub(crate) u32);
 
 /// A static event of a program. A function that is inlined twice has its events twice.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +47,24 @@ pub enum EventKind {
     Return,
     /// A statement without a value is executed: `break`, `discard`.
     Statement,
+    /// A statement begins, or the condition of an `else if` or of a loop. Like the following kinds, only
+    /// recorded by [`Program::step_debugger`](crate::Program::step_debugger).
+    Step,
+    /// The body of a function begins.
+    Entry,
+    /// Cells of variables are written.
+    Store(StoreId),
+}
+
+/// What an event writes. Its values are those of the cells, in their order.
+#[derive(Debug, Clone)]
+pub struct Store {
+    /// The cells.
+    pub cells: Vec<u32>,
+    /// Whether the first value of the event is a number that is added to each cell.
+    pub is_indexed: bool,
+    /// Whether all values are zero, which the event does not repeat.
+    pub is_zero: bool,
 }
 
 /// An inlined function call.
@@ -58,6 +83,9 @@ pub struct Call {
 pub struct TraceSchema {
     pub(crate) events: Vec<Event>,
     pub(crate) calls: Vec<Call>,
+    pub(crate) stores: Vec<Store>,
+    /// The cells of each variable in each call, and of those at global scope and in `mainImage`.
+    pub(crate) variables: HashMap<(Option<CallId>, VariableId), Range<u32>>,
 }
 
 impl TraceSchema {
@@ -71,6 +99,19 @@ impl TraceSchema {
     #[must_use]
     pub fn call(&self, id: CallId) -> &Call {
         &self.calls[id.0 as usize]
+    }
+
+    /// Returns what an event of the kind [`EventKind::Store`] writes.
+    #[must_use]
+    pub fn store(&self, id: StoreId) -> &Store {
+        &self.stores[id.0 as usize]
+    }
+
+    /// Returns the cells of a variable in a call, or of one at global scope or in `mainImage`: one for each
+    /// component. `None` for variables that are not in cells, such as uniforms.
+    #[must_use]
+    pub fn cells(&self, call: Option<CallId>, variable: VariableId) -> Option<Range<u32>> {
+        self.variables.get(&(call, variable)).cloned()
     }
 
     /// Returns the headers of the enclosing loops, outermost first; a loop header is last in its own list.

@@ -131,7 +131,11 @@ impl<'a> Flow<'a> {
                 }
                 stored.map(|(_, origin)| origin)
             }
-            EventKind::LoopHeader | EventKind::Statement => None,
+            EventKind::LoopHeader
+            | EventKind::Statement
+            | EventKind::Step
+            | EventKind::Entry
+            | EventKind::Store(_) => None,
         };
         self.origins.extend(origin.map(|origin| (id, origin)));
     }

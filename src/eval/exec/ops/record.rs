@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use super::{Any, Component, Handler, Instruction, Level, Row, Run, Source, for_each_chunk, handler};
 use crate::exec::batch::Batch;
-use crate::exec::lanes::{LANES, any};
+use crate::exec::lanes::{LANES, Lanes, any};
 use crate::exec::number::Arithmetic;
 use crate::exec::recorder::{Recorder, TraceComponent};
 use crate::ir::{Kind, Predicate, SiteId};
@@ -62,10 +62,19 @@ impl<N: Arithmetic, P: Holds<N, T>, S: Source<N, T>, T: Component<N>> Run<N> for
                 hit[lane] = mask[lane] & u32::from(P::holds(a[lane], b[lane], instruction.to)).wrapping_neg();
             }
             if any(&hit) {
-                batch.notes.borrow_mut().add(SiteId(instruction.out), chunk, &hit);
+                note(batch, SiteId(instruction.out), chunk, &hit);
             }
         });
         at + 1
+    }
+}
+
+/// Notes the pixels of a chunk that are at fault.
+#[cold]
+fn note<N: Arithmetic>(batch: &Batch<'_, N>, site: SiteId, chunk: usize, hit: &Lanes<u32>) {
+    batch.notes.borrow_mut().add(site, chunk, hit);
+    if let Some(recorder) = &batch.recorder {
+        recorder.record_fault(site, chunk, hit);
     }
 }
 
@@ -89,7 +98,7 @@ impl<N: Arithmetic> Run<N> for PartialQuad {
                 }
             }
             if hit != [0; LANES] {
-                batch.notes.borrow_mut().add(SiteId(instruction.out), chunk, &hit);
+                note(batch, SiteId(instruction.out), chunk, &hit);
             }
         });
         at + 1
