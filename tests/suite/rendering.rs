@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use toyproof::image::{self, Image};
 
 #[cfg(unix)]
@@ -103,6 +103,77 @@ fn f64_is_double_precision_on_any_device() {
                 .all(|(red, expected)| (red - expected).abs() < 1e-6);
             assert!(is_close, "{device} {precision}: {red:?}");
         }
+    }
+}
+
+/// The errors that a run of the arguments reports in JSON.
+fn errors(folder: &Path, arguments: &[&str]) -> Value {
+    let common = ["run", "-o", "i.png", "--error-map", "e.png", "--format", "json"];
+    let run = toyproof(folder, &[&common, arguments].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let map = image::read(&folder.join("e.png")).unwrap();
+    assert!(map.size()[1] > 1, "the legend is below the map");
+    serde_json::from_str::<Value>(&run.stdout).unwrap()[0]["errors"].take()
+}
+
+#[test]
+fn the_error_of_float32_is_shown_in_each_pixel() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // In float32, 1 + 1e-9 is 1: the error in double precision is 0.05 for each pixel to the right.
+    let text = "void mainImage(out vec4 c, in vec2 p) { c = vec4((1.0 + p.x * 1e-9 - 1.0) * 1e8); }";
+    write(
+        folder,
+        &[
+            ("s.glsl", text),
+            ("p/image.glsl", SHOW),
+            ("p/buffer-a.glsl", text),
+        ],
+    );
+    let found = errors(folder, &["s.glsl", "--size", "3x1"]);
+    // 0.05, 0.15 and 0.25 of 255 levels.
+    assert!(
+        (found["largest"].as_f64().unwrap() - 63.75).abs() < 1e-3,
+        "{found}"
+    );
+    assert_eq!(found["at"], json!([2, 0]));
+    let count = |errors: &Value, name: &str| {
+        let bands = errors["histogram"].as_array().unwrap().iter();
+        let band = bands
+            .clone()
+            .find(|band| band[0] == name)
+            .unwrap_or_else(|| panic!("{name}: {errors}"));
+        band[1].as_u64().unwrap()
+    };
+    assert_eq!([count(&found, "<= 16"), count(&found, "> 16 levels")], [1, 2]);
+    let found = errors(folder, &["s.glsl", "--size", "3x1", "--error-unit", "ulps"]);
+    assert_eq!(count(&found, "> 2^20 ULPs"), 3, "{found}");
+    // The image only copies what the buffer rendered in float32.
+    let found = errors(folder, &["p", "--size", "3x1"]);
+    assert_eq!(count(&found, "0"), 3, "{found}");
+    let found = errors(folder, &["p", "--size", "3x1", "--pass", "buffer-a"]);
+    assert_eq!(count(&found, "> 16 levels"), 2, "{found}");
+    let arguments = [
+        "run",
+        "s.glsl",
+        "-o",
+        "i.png",
+        "--size",
+        "3x1",
+        "--error-map",
+        "e.png",
+    ];
+    let run = toyproof(folder, &arguments);
+    let last = "largest: 63.750 levels at (2, 0); toyproof debug s.glsl --pixel 2,0\n";
+    assert!(run.stdout.ends_with(last), "{}", run.stdout);
+    for (more, message) in [
+        (&["p"][..], "--error-map takes one shader"),
+        (&["--float", "fast"], "--error-map needs the evaluator"),
+        (&["--precision", "f64"], "cannot be used with"),
+    ] {
+        let run = toyproof(folder, &[&arguments, more].concat());
+        assert_eq!(run.code, 2, "{}", run.stdout);
+        assert!(run.stderr.contains(message), "{}", run.stderr);
     }
 }
 

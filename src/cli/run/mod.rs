@@ -1,6 +1,7 @@
 //! `toyproof run`
 
 mod banded;
+mod error_map;
 mod failure;
 mod project;
 mod sound;
@@ -13,7 +14,7 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
-pub(in crate::cli) use project::parse_pass;
+pub(in crate::cli) use project::{bound, parse_pass};
 use serde::Serialize;
 use toyproof_diagnostic::{Code, Deadline, grouped, path_name, plural};
 use toyproof_eval::{self as eval, Number, Settings, Supersampling, UndefinedPolicy};
@@ -29,6 +30,7 @@ use toyproof_report as report;
 use toyproof_translate::FloatMode;
 use toyproof_verify::unbound;
 
+use self::error_map::{ErrorMapArgs, WrittenErrors};
 use self::failure::{ImageFailure, draw_error, image_failure, is_too_large, shader_error};
 pub(in crate::cli) use self::failure::{evaluation_error, pass_error};
 use crate::cli::inputs::{
@@ -100,6 +102,8 @@ pub(in crate::cli) struct Args {
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     state: Option<PathBuf>,
     #[command(flatten)]
+    error_map: ErrorMapArgs,
+    #[command(flatten)]
     sequence: SequenceArgs,
     #[command(flatten)]
     frame: FrameArgs,
@@ -160,11 +164,15 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
         args.sequence.output(&output)?;
     }
     let supersampling = supersampling(args, &output)?;
+    let has_error_map = args.error_map.error_map.is_some();
+    if has_error_map {
+        error_map::check(args, one)?;
+    }
     let mut runner = Runner {
         args,
         terminal,
         output: &output,
-        worker: worker.filter(|_| args.precision == Precision::F32 && args.samples == 1),
+        worker: worker.filter(|_| args.precision == Precision::F32 && args.samples == 1 && !has_error_map),
         prefers_evaluator: args.driver.is_evaluator_equal(),
         supersampling,
         frame: &frame,
@@ -280,6 +288,9 @@ struct WrittenImage {
     /// rendered.
     #[serde(skip_serializing_if = "Option::is_none")]
     frames: Option<u64>,
+    /// How far float32 is from double precision, if that is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    errors: Option<WrittenErrors>,
 }
 
 /// An image, and what rendered it.
@@ -343,7 +354,10 @@ impl Runner<'_> {
             return self.banded_image(shader, frame, path);
         }
         match self.render(shader, frame, None) {
-            Ok(rendered) => self.write_confirmed(&rendered, frame, &shader.name, path),
+            Ok(rendered) => {
+                self.write_confirmed(&rendered, frame, &shader.name, path)?;
+                self.write_error_map(shader, shader.require_image()?, frame)
+            }
             Err(ImageFailure::Failed(error)) => Err(error),
             Err(ImageFailure::Interrupted) => Err(CliError::silent()),
         }
@@ -390,6 +404,7 @@ impl Runner<'_> {
             device: String::new(),
             seconds: 0.0,
             frames: Some(frames.count()),
+            errors: None,
         })
     }
 
@@ -615,6 +630,7 @@ impl Runner<'_> {
             device: by.device.to_owned(),
             seconds: by.seconds,
             frames: None,
+            errors: None,
         });
     }
 }

@@ -10,7 +10,7 @@ use indicatif::ProgressBar;
 use toyproof_diagnostic::{grouped, path_name};
 use toyproof_eval::{self as eval, Number, PassFailure, Settings, Supersampling};
 use toyproof_eval_native::Program;
-use toyproof_glsl as glsl;
+use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{Failure, Worker};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Channel, Clock, Graph, Source, State, Target};
@@ -150,7 +150,7 @@ struct Run<'a> {
     playback: Playback<'a>,
     /// The samples of the image, if each pixel has several.
     samples: Option<ImageSamples<'a>>,
-    graph: &'a Graph,
+    passes: &'a PassShader<'a>,
     clock: Clock,
     target: Target,
     /// The next frame to render.
@@ -164,7 +164,19 @@ impl Run<'_> {
     /// A frame as the shown pass renders it.
     fn shown_frame(&self, number: i32) -> Frame {
         let frame = self.clock.frame(number);
-        self.graph.frame(self.target, &frame).into_owned()
+        self.passes.graph.frame(self.target, &frame).into_owned()
+    }
+
+    /// The shown pass, and a frame, which was rendered last, with the channels that it read; `None` if a driver
+    /// rendered it or if it is in double precision.
+    fn shown_pass(&self, number: i32) -> Option<(&Checked, Frame)> {
+        let Playback::Single(playback) = &self.playback else {
+            return None;
+        };
+        let passes = self.passes.graph.passes();
+        let pass = passes.iter().position(|pass| pass.target == self.target)?;
+        let frame = playback.bound(pass, &self.clock.frame(number));
+        Some((self.passes.checked[pass], frame))
     }
 
     /// Renders the frames up to this one, and returns the image of the shown pass in it.
@@ -219,7 +231,7 @@ impl Run<'_> {
     fn supersampled(&self, samples: &ImageSamples<'_>, number: i32) -> Result<Image, FrameFailure> {
         let frame = self.clock.frame(number);
         // The image is the last pass.
-        let pass = self.graph.passes().len() - 1;
+        let pass = self.passes.graph.passes().len() - 1;
         let rendered = match &self.playback {
             Playback::Single(playback) => samples.render::<f32>(&playback.bound(pass, &frame)),
             Playback::Double(playback) => samples.render::<f64>(&playback.bound(pass, &frame)),
@@ -234,7 +246,7 @@ impl Run<'_> {
 
 /// The frame of a project whose image reads no other pass, with the sources of its channels; `None` if there
 /// are other passes.
-pub(super) fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
+pub(in crate::cli) fn bound(rendering: &Rendering, frame: &Frame) -> Option<Frame> {
     let [image] = rendering.graph.passes() else {
         return None;
     };
@@ -397,7 +409,7 @@ impl Runner<'_> {
         let mut run = Run {
             playback,
             samples,
-            graph: &rendering.graph,
+            passes: &scheduled,
             clock,
             target: kind.target(),
             next,
@@ -567,8 +579,12 @@ impl Runner<'_> {
         interrupted: &AtomicBool,
     ) -> Result<(), CliError> {
         let rendered = run.show(number, interrupted);
-        let rendered = rendered.map_err(|failure| frame_error(failure, run.graph, number, shader))?;
-        self.write_confirmed(&rendered, &run.shown_frame(number), &shader.name, path)
+        let rendered = rendered.map_err(|failure| frame_error(failure, run.passes.graph, number, shader))?;
+        self.write_confirmed(&rendered, &run.shown_frame(number), &shader.name, path)?;
+        match run.shown_pass(number) {
+            Some((checked, frame)) => self.write_error_map(shader, checked, &frame),
+            None => Ok(()),
+        }
     }
 
     fn all_frames(
@@ -579,7 +595,7 @@ impl Runner<'_> {
     ) -> Result<(), CliError> {
         let mut film = self.written_film(output, &run.clock, &shader.name, path);
         if let Some(film) = &mut film {
-            film.size = run.graph.size(run.target, film.size);
+            film.size = run.passes.graph.size(run.target, film.size);
         }
         sequence.render(self.terminal, |number, destination, interrupted| {
             match run.show(number, interrupted) {
@@ -588,7 +604,7 @@ impl Runner<'_> {
                     self.put(&rendered, &frame, &shader.name, destination, film.as_mut())?;
                 }
                 Err(FrameFailure::Interrupted(_)) => return Ok(FrameEnd::Interrupted),
-                Err(failure) => return Err(frame_error(failure, run.graph, number, shader)),
+                Err(failure) => return Err(frame_error(failure, run.passes.graph, number, shader)),
             }
             Ok(FrameEnd::Written)
         })?;

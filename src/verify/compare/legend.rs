@@ -67,25 +67,31 @@ pub const IN_BITS: Legend = Legend { tolerance: 1e-6 };
 /// strip below it. The image is at least as wide as the legend requires.
 #[must_use]
 pub fn difference(size: [u32; 2], levels: &[DiffLevel], legend: Legend) -> Rgb8Image {
-    let entries = legend.entries();
+    let colors: [_; 256] = std::array::from_fn(|byte| legend.color(DiffLevel(byte as u8)).map(quantize));
+    let pixels = levels.iter().map(|level| colors[usize::from(level.0)]);
+    map_above(size, pixels, &legend.entries())
+}
+
+/// A map of `size` from the color of each pixel (bottom row first), with a legend in a strip below it.
+pub(super) fn map_above(
+    [width, height]: [u32; 2],
+    pixels: impl Iterator<Item = [u8; 3]>,
+    entries: &[(String, [f32; 3])],
+) -> Rgb8Image {
     let columns = entries
         .iter()
         .map(|(text, _)| text.len() as u32 + 3)
         .max()
         .unwrap_or(0);
     let entry_width = columns * GLYPH_SIZE;
-    let [width, height] = size;
     let total_width = width.max(entry_width);
     let per_row = (total_width / entry_width).max(1);
     let rows = (entries.len() as u32).div_ceil(per_row);
     let line_height = GLYPH_SIZE + 4;
     let strip = rows * line_height + 4;
     let mut canvas = Canvas::new(total_width, height + strip);
-    let colors: [_; 256] = std::array::from_fn(|byte| legend.color(DiffLevel(byte as u8)).map(quantize));
-    for (row, y) in levels.chunks(width as usize).zip(strip..) {
-        for (level, x) in row.iter().zip(0..) {
-            canvas.set(x, y, colors[usize::from(level.0)]);
-        }
+    for (at, color) in (0..).zip(pixels) {
+        canvas.set(at % width, strip + at / width, color);
     }
     for (index, (text, color)) in entries.iter().enumerate() {
         let index = index as u32;

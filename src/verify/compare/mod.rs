@@ -12,6 +12,7 @@ mod check;
 mod images;
 mod legend;
 mod pair;
+mod precision_map;
 mod region;
 mod result;
 
@@ -26,6 +27,7 @@ pub use check::{
 pub use images::{Comparison, Pixel, compare, compare_within};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
 pub use pair::{Criteria, MaxDiffering, PairDifference, PairError, Rectangle, compare_pair};
+pub use precision_map::{ErrorUnit, PrecisionMap};
 pub use region::{Region, Regions};
 pub use result::CheckResult;
 pub(crate) use result::spread;
