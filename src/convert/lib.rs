@@ -36,7 +36,7 @@ pub use project::{HostFile, PassFile, ProjectConversion, ProjectError, ProjectSo
 pub use proof::{
     FRAMES, Proof, ProofReference, Rgb8Comparison, Runner, TestFrame, compare_with_original, frames,
 };
-pub use prover::{ProofError, Prover, Reader, Readers, ShaderProof};
+pub use prover::{ProofError, Prover, Reader, Readers, ShaderProof, browser_text};
 use thiserror::Error;
 pub use tool::ToolError;
 use toyproof_diagnostic::{Code, Deadline, FileId, Files, Overdue};

@@ -522,7 +522,10 @@ pub(super) fn shown(
 }
 
 /// The original as a complete shader for WebGL 2.
-pub(super) fn browser_text(source: Source) -> Result<String, ProofError> {
+///
+/// # Errors
+/// It is written for a host whose inputs ShaderToy does not have.
+pub fn browser_text(source: Source) -> Result<String, ProofError> {
     let channels = source.checked.channels;
     if source.checked.dialect.calls_main_image() {
         let is_buffer = source.checked.stage == Stage::Buffer;

@@ -16,7 +16,9 @@ use std::{fs, thread};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-pub use played::{BrowserPass, BrowserRead, THREE_VARIABLE, ThreeLibrary, ThreeModule};
+pub use played::{
+    BrowserPass, BrowserRead, THREE_VARIABLE, ThreeLibrary, ThreeModule, passes_job, uniform_values,
+};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use thiserror::Error;
@@ -71,8 +73,16 @@ const START_TIMEOUT: Duration = Duration::from_secs(60);
 /// Largest call: Chromium reads no messages above 100 MiB, and ends the connection.
 const MAX_CALL_BYTES: usize = 96 << 20;
 
+/// The script of a page that renders shaders. `toyproof(job)` renders frames; `openPasses` opens a player of
+/// the passes of a [`passes_job`], which renders one frame after the other.
+pub const SCRIPT: &str = include_str!("browser.js");
+
 /// The page that renders shaders.
-const PAGE_HTML: &str = include_str!("browser.html");
+fn page_html() -> String {
+    format!(
+        "<!doctype html>\n<meta charset=\"utf-8\">\n<title>toyproof</title>\n<script>\n{SCRIPT}</script>\n"
+    )
+}
 
 /// Finds an installed browser.
 pub fn find() -> Option<PathBuf> {
@@ -174,7 +184,7 @@ impl Chromium {
     fn call_page(&mut self, job: &Value, frames: &[&Frame]) -> Result<Vec<Image>, BrowserFailure> {
         let mut connection = match self.live.take() {
             Some(connection) => connection,
-            None => BrowserConnection::launch(&self.program, PAGE_HTML, Instant::now() + START_TIMEOUT)?,
+            None => BrowserConnection::launch(&self.program, &page_html(), Instant::now() + START_TIMEOUT)?,
         };
         let call = format!("toyproof({job})");
         if call.len() > MAX_CALL_BYTES {

@@ -1,8 +1,33 @@
 //! Opening of files that other users may have created.
 
+use std::cell::RefCell;
 use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+thread_local! {
+    /// The files that [`recorded`] work has opened in this thread.
+    static OPENED: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
+}
+
+/// Does some work; returns its result, and the files that it opened in this thread or tried to open, each once.
+/// Recorded work in it is not counted.
+pub fn recorded<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
+    let outer = OPENED.replace(Some(Vec::new()));
+    let result = work();
+    let opened = OPENED.replace(outer);
+    (result, opened.unwrap_or_default())
+}
+
+fn record(path: &Path) {
+    OPENED.with_borrow_mut(|opened| {
+        if let Some(opened) = opened
+            && !opened.iter().any(|known| known == path)
+        {
+            opened.push(path.to_owned());
+        }
+    });
+}
 
 /// Opens a regular file for reading. It is opened without blocking and then examined, so that it does not
 /// wait for a named pipe without a writer, or for one that replaces a file at the wrong moment.
@@ -10,6 +35,7 @@ use std::path::Path;
 /// # Errors
 /// The system's error, or the kind of a file that is not a regular one.
 pub fn open(path: &Path) -> io::Result<File> {
+    record(path);
     let mut options = OpenOptions::new();
     options.read(true);
     #[cfg(unix)]
@@ -86,6 +112,23 @@ mod tests {
         );
         let error = read(&folder.path().join("b")).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn opened_files_are_recorded() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
+        std::fs::write(&a, "text").unwrap();
+        let ((), files) = recorded(|| {
+            let _ = (read(&a), read(&b), read(&a));
+            assert_eq!(
+                recorded(|| read(&a).unwrap()),
+                (b"text".to_vec(), vec![a.clone()])
+            );
+        });
+        assert_eq!(files, [a.clone(), b]);
+        let _ = read(&a);
+        assert_eq!(recorded(|| ()).1, [""; 0].map(PathBuf::from));
     }
 
     /// Without a writer, a blocking open of the pipe never returns.

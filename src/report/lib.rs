@@ -54,7 +54,7 @@ pub use growth::{CauseName, GrowthFrame, GrowthRecord};
 pub use hints::Hints;
 pub use html::{
     Exhibit, Gallery, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, PARTS, html, html_index, html_part, part_name,
-    subsample,
+    parts as page, subsample,
 };
 pub use junit::{TestCase, TestStatus, junit, test_suite};
 pub use reason::{Statement, failure_position, loop_truncated, state};

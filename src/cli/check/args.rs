@@ -143,7 +143,7 @@ pub(in crate::cli) struct Args {
 
 /// What reports show of the mistake in a wrong shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum HintLevel {
+pub(in crate::cli) enum HintLevel {
     /// Nothing
     None,
     /// The likely mistake, and the line of the fix or the suspect lines

@@ -26,12 +26,13 @@ mod work;
 
 use toyproof_diagnostic::{grouped, plural};
 
-pub(super) use self::args::Args;
+pub(super) use self::args::{Args, HintLevel};
 use self::earlier::earlier;
 pub(super) use self::merge::{MergeArgs, merge};
 pub(super) use self::plan::{PlannedFrame, assignment_beside, read_assignment};
 pub(super) use self::reference::{Scenes, expected_in, expected_of_scene};
 use self::results::{RESULTS_NAME, Results, read_lines};
+pub(super) use self::shader_check::image;
 use self::work::Work;
 use super::{CliError, Exit, Terminal};
 

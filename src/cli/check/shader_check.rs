@@ -363,7 +363,7 @@ impl<'a> ShaderCheck<'a> {
 }
 
 /// The tree of the image, with whatever it reads.
-pub(super) fn image(shader: &Shader) -> Result<&Checked, Failure> {
+pub(in crate::cli) fn image(shader: &Shader) -> Result<&Checked, Failure> {
     shader.image().map_err(|unusable| match unusable {
         Unusable::Unreadable(error) if shader.is_missing => Failure::Missing(error.reason.clone()),
         Unusable::Unreadable(error) => Failure::Unreadable(error.reason.clone()),

@@ -1,6 +1,6 @@
 //! Modules for three.js in Chromium, beside the original with WebGL 2 there.
 
-use toyproof_gpu::browser::{BrowserPass, BrowserRead, Chromium, Text, ThreeModule};
+use toyproof_gpu::browser::{BrowserPass, BrowserRead, Chromium, Text, ThreeModule, uniform_values};
 use toyproof_image::{Frame, Image, Texture};
 use toyproof_player::{Source as Read, Target};
 
@@ -95,6 +95,7 @@ pub(super) fn passes(
             mipmaps: matches!(pass.target, Target::Buffer(buffer) if passes.graph.has_mipmaps(buffer)),
             reads,
             sampling: source.checked.sampling,
+            uniforms: uniform_values(source.checked),
         });
     }
     let images = browser

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use toyproof_glsl::Sampling;
-use toyproof_image::{Frame, Image, Input, Texture, input};
+use toyproof_glsl::{Checked, Sampling};
+use toyproof_image::{Frame, Image, Input, Texture, UniformValue, input};
 use toyproof_player::Target;
 
 use super::{BrowserFailure, Chromium, TextureTable, black, frame_json, input_json, sampling_json};
@@ -22,6 +22,8 @@ pub struct BrowserPass<'a> {
     pub reads: [BrowserRead<'a>; 4],
     /// How they are sampled.
     pub sampling: [Sampling; 4],
+    /// The values of uniforms that the author declares.
+    pub uniforms: Vec<UniformValue>,
 }
 
 /// What a channel reads.
@@ -33,6 +35,8 @@ pub enum BrowserRead<'a> {
     Buffer(usize),
     /// A texture.
     Texture(&'a Texture),
+    /// The keyboard, whose texels each frame has.
+    Keyboard,
 }
 
 /// An ES module for three.js, and the textures that it is given.
@@ -94,6 +98,49 @@ fn name(target: Target) -> String {
     }
 }
 
+/// The values of the uniforms that the author of a shader declares, for its pass.
+#[must_use]
+pub fn uniform_values(checked: &Checked) -> Vec<UniformValue> {
+    let declared = checked.declared_uniforms();
+    let valued = declared.filter_map(|(name, _, value)| {
+        let components = value.filter(|components| !components.is_empty())?;
+        Some(UniformValue {
+            name: name.to_owned(),
+            components: components.to_vec(),
+        })
+    });
+    valued.collect()
+}
+
+/// The inputs of a shader, as the page sets them.
+fn inputs_json() -> Value {
+    Input::ALL.map(input_json).to_vec().into()
+}
+
+/// The job of playing passes, without frames: in [`SCRIPT`](super::SCRIPT), what `toyproof` and `openPasses`
+/// take.
+#[must_use]
+pub fn passes_job(passes: &[BrowserPass]) -> Value {
+    let black = black();
+    let mut textures = TextureTable::default();
+    let passes: Vec<Value> = passes
+        .iter()
+        .map(|pass| {
+            let reads = pass.reads.map(|read| match read {
+                BrowserRead::Nothing => json!({"texture": textures.number_of(&black), "isEmpty": true}),
+                BrowserRead::Buffer(number) => json!({"buffer": name(Target::Buffer(number))}),
+                BrowserRead::Texture(texture) => json!({"texture": textures.number_of(texture)}),
+                BrowserRead::Keyboard => json!({"keyboard": true}),
+            });
+            json!({
+                "text": pass.text, "target": name(pass.target), "mipmaps": pass.mipmaps, "reads": reads,
+                "sampling": pass.sampling.map(sampling_json), "uniforms": pass.uniforms,
+            })
+        })
+        .collect();
+    json!({"language": "passes", "inputs": inputs_json(), "passes": passes, "textures": textures.json()})
+}
+
 impl Chromium {
     /// Gives the browser three.js, for modules that import it.
     #[must_use]
@@ -120,24 +167,7 @@ impl Chromium {
         passes: &[BrowserPass],
         frames: &[(Frame, bool)],
     ) -> Result<Vec<Image>, BrowserFailure> {
-        let black = black();
-        let mut textures = TextureTable::default();
-        let passes: Vec<Value> = passes
-            .iter()
-            .map(|pass| {
-                let reads = pass.reads.map(|read| match read {
-                    BrowserRead::Nothing => json!({"texture": textures.number_of(&black), "isEmpty": true}),
-                    BrowserRead::Buffer(number) => json!({"buffer": name(Target::Buffer(number))}),
-                    BrowserRead::Texture(texture) => json!({"texture": textures.number_of(texture)}),
-                });
-                json!({
-                    "text": pass.text, "target": name(pass.target), "mipmaps": pass.mipmaps, "reads": reads,
-                    "sampling": pass.sampling.map(sampling_json),
-                })
-            })
-            .collect();
-        let job = json!({"language": "passes", "passes": passes, "textures": textures.json()});
-        self.run(job, frames)
+        self.run(passes_job(passes), frames)
     }
 
     /// Renders the frames of a module for three.js. Frames start from the beginning where it is said.
@@ -162,7 +192,7 @@ impl Chromium {
         }
         let job = json!({
             "language": "three", "text": module.text, "library": library, "names": names,
-            "textures": textures.json(),
+            "textures": textures.json(), "inputs": inputs_json(),
         });
         self.run(job, frames)
     }
@@ -175,7 +205,6 @@ impl Chromium {
             json
         });
         job["frames"] = frames_json.collect();
-        job["inputs"] = Input::ALL.map(input_json).to_vec().into();
         let frames: Vec<&Frame> = frames.iter().map(|(frame, _)| frame).collect();
         self.call_page(&job, &frames)
     }

@@ -12,6 +12,7 @@ mod index;
 mod markdown;
 mod names;
 mod overview;
+pub mod parts;
 mod source;
 
 use std::fmt::{self, Display, Formatter, Write};
@@ -21,8 +22,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 use toyproof_diagnostic::{Date, grouped, plural, printable};
-use toyproof_image::quantize;
-use toyproof_verify::compare::{IN_BITS, Legend, SEEN_BY_EYE};
 
 use self::article::Article;
 pub use self::gallery::{Exhibit, Gallery, MAX_IMAGE_BYTES, subsample};
@@ -30,15 +29,13 @@ use self::glossary::Glossary;
 pub use self::index::{MAX_PAGE_SHADERS, PARTS, html_index, html_part, part_name};
 use self::names::Names;
 use self::overview::Overview;
+use self::parts::{STYLE, VIEWER};
 use self::source::SourceLimit;
 use super::{Record, Report, Rubrics};
 
-const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+const SCRIPT: &str = concat!(include_str!("components.js"), include_str!("page.js"));
 /// Runs before layout, so that the hidden articles are never laid out.
 const HEAD_SCRIPT: &str = "document.documentElement.classList.add('script')";
-/// The template that the script inserts into the open article.
-const VIEWER: &str = include_str!("viewer.html");
 
 /// Formats the page. The gallery has one exhibit per record, in the same order; `date` is when the run ended.
 #[must_use]
@@ -235,17 +232,7 @@ fn subsampling_note(step: u32) -> String {
 
 /// The images and the legends, as data for the script: a browser decodes only the images that are viewed.
 fn images(gallery: &Gallery) -> String {
-    let entries = |legend: Legend| -> Vec<_> {
-        let entries = legend.entries().into_iter();
-        entries
-            .map(|(label, color)| (label, color.map(quantize)))
-            .collect()
-    };
-    let settings = serde_json::json!({
-        "step": gallery.step(),
-        "eye": entries(SEEN_BY_EYE),
-        "bits": entries(IN_BITS),
-    });
+    let settings = parts::settings(gallery.step());
     let images = gallery.images().iter().enumerate();
     let images: Vec<_> = images
         .map(|(index, png)| {

@@ -1,14 +1,7 @@
-// The behavior of the page where scripts run. Shader texts are only ever inserted as text nodes.
-'use strict';
+// The behavior of the report's page where scripts run, besides the components that it shares with others.
 (() => {
-  const $ = (selector, within = document) => within.querySelector(selector);
-  const $$ = (selector, within = document) => [...within.querySelectorAll(selector)];
-  const make = (name, properties = {}, ...children) => {
-    const element = Object.assign(document.createElement(name), properties);
-    element.append(...children);
-    return element;
-  };
-  const button = (text, onclick, properties = {}) => make('button', { type: 'button', textContent: text, onclick, ...properties });
+  'use strict';
+  const { $, $$, make, button, addThemeButton, numberLines, copyButton, hideTip, isTipShown, openViewer, CHECKS, VALUES } = components;
   const settings = JSON.parse($('#settings').textContent);
   const STEP = settings.step;
   const own = document.currentScript;
@@ -30,62 +23,8 @@
     time.title = time.textContent;
     time.textContent = date.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' });
   }
-  const stored = (theme) => {
-    // A browser may refuse storage to a page that is a file.
-    try {
-      if (theme) localStorage.setItem('toyproof-theme', theme);
-      return localStorage.getItem('toyproof-theme');
-    } catch {
-      return null;
-    }
-  };
-  const root = document.documentElement;
-  const prefersDark = matchMedia('(prefers-color-scheme: dark)');
-  const isDark = () => (root.dataset.theme ? root.dataset.theme === 'dark' : prefersDark.matches);
-  const themeButton = button('Dark theme', () => setTheme(isDark() ? 'light' : 'dark'));
-  const setTheme = (theme) => {
-    if (theme === 'dark' || theme === 'light') root.dataset.theme = theme;
-    themeButton.ariaPressed = String(isDark());
-    stored(theme);
-  };
-  setTheme(stored());
-  prefersDark.addEventListener('change', () => setTheme());
-  $('.tools').append(themeButton, button('Print', () => print()));
-
-  // Terms: a tooltip with the definition, on hover and on focus. It stays while the pointer is on it.
-
-  const tip = make('div', { id: 'tip', role: 'tooltip', hidden: true });
-  document.body.append(tip);
-  const hideTip = () => {
-    tip.hidden = true;
-  };
-  const showTip = (element) => {
-    const definition = document.getElementById(`${element.dataset.term}-text`);
-    if (!definition) return;
-    tip.textContent = definition.textContent;
-    tip.hidden = false;
-    const [at, size] = [element.getBoundingClientRect(), tip.getBoundingClientRect()];
-    const below = at.bottom + size.height < innerHeight || at.top < size.height;
-    tip.style.left = `${Math.max(8, Math.min(at.left, innerWidth - size.width - 8))}px`;
-    tip.style.top = `${below ? at.bottom : at.top - size.height}px`;
-  };
-  document.addEventListener('pointerover', ({ target, pointerType }) => {
-    const term = target.closest('[data-term]');
-    if (term && pointerType !== 'touch') showTip(term);
-    else if (!tip.contains(target)) hideTip();
-  });
-  document.addEventListener('focusin', ({ target }) => {
-    const term = target.closest('[data-term]');
-    if (term && target.matches(':focus-visible')) showTip(term);
-    else hideTip();
-  });
-  const moveTip = () => {
-    // Focus may scroll the page to the term, whose definition then moves along.
-    const focused = document.activeElement?.closest('[data-term]');
-    if (!tip.hidden && focused?.matches(':focus-visible')) showTip(focused);
-    else hideTip();
-  };
-  document.addEventListener('scroll', moveTip, { capture: true, passive: true });
+  addThemeButton($('.tools'));
+  $('.tools').append(button('Print', () => print()));
 
   // The table: sorted by a click on a column header, filtered by text and verdicts.
 
@@ -207,7 +146,7 @@
     if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey || event.shiftKey) return;
     const vertical = { ArrowUp: -1, ArrowDown: 1 }[key];
     const horizontal = { ArrowLeft: -1, ArrowRight: 1 }[key];
-    if (key === 'Escape' && !tip.hidden) {
+    if (key === 'Escape' && isTipShown()) {
       hideTip();
     } else if (key === 'Escape' && open && !isSingle) {
       close();
@@ -219,49 +158,12 @@
     }
   });
 
-  /** Numbers the lines of the source. */
-  const numberLines = (article) => {
-    for (const block of $$('pre[data-first]', article)) {
-      const first = Number(block.dataset.first);
-      const lines = block.textContent.split('\n');
-      const spans = lines.map((text, index) => {
-        const line = make('span', { className: 'line', textContent: text });
-        line.dataset.line = first + index;
-        return line;
-      });
-      block.firstElementChild.replaceChildren(...spans);
-      delete block.dataset.first;
-    }
-  };
-  const copy = async (text, done) => {
-    try {
-      await navigator.clipboard.writeText(text);
-    } catch {
-      const field = make('textarea', { value: text });
-      document.body.append(field);
-      field.select();
-      document.execCommand('copy');
-      field.remove();
-    }
-    done();
-  };
   /** Prepares an article when it is shown first. */
   const prepare = (article) => {
     if (originals.has(article)) return;
     originals.set(article, article.cloneNode(true));
     numberLines(article);
-    for (const command of $$('.command', article)) {
-      const status = make('span', { role: 'status' });
-      const copier = button('Copy', () =>
-        copy($('code', command).textContent, () => {
-          status.textContent = 'copied';
-          setTimeout(() => status.replaceChildren(), 2000);
-          copier.focus();
-        }),
-      );
-      copier.ariaLabel = 'Copy the command';
-      command.append(copier, status);
-    }
+    $$('.command', article).forEach(copyButton);
   };
 
   /** The entries of the glossary that articles refer to. */
@@ -319,169 +221,20 @@
     return context.getImageData(0, 0, width, height);
   };
 
-  const colorOf = (image, at) => [...image.data.subarray(4 * at, 4 * at + 3)];
-  const differenceOf = (a, b) => Math.max(...a.map((value, part) => Math.abs(value - b[part])));
-  const isBand = ([name]) => name.startsWith('>');
-  /** The legend's colors for magnitudes, the largest first. */
-  const bands = settings.eye.filter(isBand).reverse();
-  /** The color of a difference in 8-bit levels. */
-  const heat = Array.from({ length: 256 }, (_, levels) => {
-    const band = bands.find(([name]) => levels / 255 > Number(name.slice(2)));
-    return [...(band ? band[1] : [0, 0, 0]), 255];
-  });
-  const heatMap = (reference, actual) => {
-    const [map, a, b] = [new ImageData(actual.width, actual.height), reference.data, actual.data];
-    for (let at = 0; at < a.length; at += 4) {
-      const parts = [0, 1, 2].map((part) => Math.abs(a[at + part] - b[at + part]));
-      map.data.set(heat[Math.max(...parts)], at);
-    }
-    return map;
-  };
-  const swatch = (color) => {
-    const box = make('span', { className: 'swatch', ariaHidden: 'true' });
-    box.style.backgroundColor = `rgb(${color})`;
-    return box;
-  };
-
-  const CHECKS = ['algorithm', 'precision', 'toolchain'];
-  const VALUES = ['value', 'referenceValue'];
-  const HEAT_MAPS = ['difference', ...CHECKS];
-  const legendOf = (name) => (name === 'toolchain' ? settings.bits : settings.eye);
-  const BLINK_MS = 800;
-
   async function view(article) {
-    const root = $('#viewer').content.cloneNode(true).firstElementChild;
     const data = article.dataset;
     const images = { actual: await pixels(data.actual) };
     const { width, height } = images.actual;
     for (const name of ['reference', 'fixed', ...CHECKS, ...VALUES]) {
       if (data[name] !== undefined) images[name] = await pixels(data[name], [width, height]);
     }
-    if (images.reference) images.difference = heatMap(images.reference, images.actual);
     // The user may have moved on in the meantime.
     if (open !== article) return;
     $('.viewer', article)?.remove();
-
-    const canvas = $('canvas', root);
-    canvas.ariaLabel = `Image of ${data.name}; the arrow keys select a pixel`;
-    Object.assign(canvas, { width, height });
-    const context = canvas.getContext('2d');
-    const slider = $('[type=range]', root);
-    const [cross, edge] = [$('.cross', root), $('.edge', root)];
-    const [xField, yField] = [$('[name=x]', root), $('[name=y]', root)];
-    xField.max = (width - 1) * STEP;
-    yField.max = (height - 1) * STEP;
-    for (const field of [xField, yField]) field.step = STEP;
-    const views = { slider: images.actual, blink: images.reference, ...images };
-    let current = 'slider';
-    let blinking = 0;
-    let [column, row] = [width >> 1, height >> 1];
-    let exact = null;
-
-    const render = () => {
-      context.putImageData(views[current], 0, 0);
-      $('.shown', root).textContent = '';
-      if (current === 'slider' && images.reference) {
-        context.putImageData(images.reference, 0, 0, 0, 0, Math.round((width * slider.value) / slider.max), height);
-      }
-      const percent = (100 * slider.value) / slider.max;
-      edge.style.left = `${percent}%`;
-      slider.ariaValueText = `${Math.round(percent)} % reference`;
-      const legend = $('ul.legend', root);
-      const entries = HEAT_MAPS.includes(current) ? legendOf(current) : [];
-      const used = entries.filter((entry) => current !== 'difference' || isBand(entry));
-      legend.replaceChildren(...used.map(([name, color]) => make('li', {}, swatch(color), name)));
-      $('.slide', root).hidden = current !== 'slider' || !images.reference;
-      edge.hidden = $('.slide', root).hidden;
-    };
-    const blink = () => {
-      const name = $('.shown', root).textContent === 'reference' ? 'actual' : 'reference';
-      context.putImageData(images[name], 0, 0);
-      $('.shown', root).textContent = name;
-    };
-    const select = (name) => {
-      clearInterval(blinking);
-      current = name;
-      render();
-      if (current === 'blink') {
-        blink();
-        blinking = setInterval(blink, BLINK_MS);
-      }
-    };
-    root.addEventListener('close', () => clearInterval(blinking));
-
-    const describe = (name, at) => {
-      const hasRun = $(`tr[data-check="${name}"] .number`, article) !== null;
-      if (!hasRun) return ['not run'];
-      if (!images[name]) return ['within the tolerance in every pixel'];
-      const color = colorOf(images[name], at);
-      const entry = legendOf(name).find(([, own]) => own.every((part, index) => part === color[index]));
-      if (!entry) return ['equal'];
-      return [swatch(color), isBand(entry) ? `differs by ${entry[0]}` : entry[0]];
-    };
-    const colorText = (color) => [swatch(color), `${color.join(', ')} of 255`];
-    const inspect = () => {
-      const at = row * width + column;
-      const [x, y] = [column * STEP, (height - 1 - row) * STEP];
-      xField.value = x;
-      yField.value = y;
-      const actual = colorOf(images.actual, at);
-      const lines = [];
-      if (images.reference) {
-        const reference = colorOf(images.reference, at);
-        const levels = differenceOf(reference, actual);
-        lines.push(['expected', colorText(reference)], ['actual', colorText(actual)]);
-        lines.push(['difference', [`${levels} of 255 levels`]]);
-      } else {
-        lines.push(['actual', colorText(actual)]);
-      }
-      if (images.fixed) lines.push(['after the fix', colorText(colorOf(images.fixed, at))]);
-      for (const name of CHECKS) lines.push([`${name} check`, describe(name, at)]);
-      if (exact) {
-        lines.push([`${exact.check}: expected`, [exact.expected]], [`${exact.check}: actual`, [exact.actual]]);
-      }
-      $('dl', root).replaceChildren(...lines.flatMap(([name, parts]) => [make('dt', { textContent: name }), make('dd', {}, ...parts)]));
-      Object.assign(cross.style, {
-        left: `${(100 * (column + 0.5)) / width}%`,
-        top: `${(100 * (row + 0.5)) / height}%`,
-        width: `${100 / width}%`,
-        height: `${100 / height}%`,
-      });
-    };
-    const choose = (toColumn, toRow, floats = null) => {
-      column = Math.min(Math.max(toColumn, 0), width - 1);
-      row = Math.min(Math.max(toRow, 0), height - 1);
-      exact = floats;
-      inspect();
-    };
-
-    const point = (event) => {
-      if (event.buttons !== 1) return;
-      const box = canvas.getBoundingClientRect();
-      choose(
-        Math.floor(((event.clientX - box.left) / box.width) * width),
-        Math.floor(((event.clientY - box.top) / box.height) * height),
-      );
-    };
-    canvas.addEventListener('pointerdown', point);
-    canvas.addEventListener('pointermove', point);
-    canvas.addEventListener('keydown', (event) => {
-      const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-      const step = steps[event.key];
-      if (!step) return;
-      event.preventDefault();
-      const by = event.shiftKey ? 10 : 1;
-      choose(column + by * step[0], row + by * step[1]);
-    });
-    const typed = () => choose(Math.floor(Number(xField.value) / STEP), height - 1 - Math.floor(Number(yField.value) / STEP));
-    for (const field of [xField, yField]) field.addEventListener('change', typed);
-    slider.addEventListener('input', render);
-    for (const radio of $$('[name=view]', root)) {
-      const { value } = radio;
-      radio.closest('label').hidden = !views[value];
-      radio.checked = value === current;
-      radio.addEventListener('change', () => select(value));
-    }
+    const hasRun = (name) => $(`tr[data-check="${name}"] .number`, article) !== null;
+    const viewer = openViewer({ name: data.name, settings, hasRun });
+    viewer.root.addEventListener('close', viewer.close);
+    viewer.setImages(images);
     // The pixels that the checks name become buttons, once.
     for (const span of $$('span.pixel', article)) {
       const named = button(span.textContent, null, { className: 'pixel' });
@@ -490,18 +243,15 @@
     }
     const named = $$('button.pixel', article);
     const visit = ({ dataset, parentElement }) => {
-      choose(Math.floor(dataset.x / STEP), height - 1 - Math.floor(dataset.y / STEP), {
+      viewer.choose(Math.floor(dataset.x / STEP), height - 1 - Math.floor(dataset.y / STEP), {
         check: parentElement.closest('tr').dataset.check,
         expected: dataset.expected,
         actual: dataset.actual,
       });
     };
     for (const pixel of named) pixel.onclick = () => visit(pixel);
-
-    $('.images', article).append(root);
-    render();
+    $('.images', article).append(viewer.root);
     if (named.length > 0) visit(named[0]);
-    else inspect();
   }
 
   // Paper: the shaders that the table shows, or the open one. The images are side by side.

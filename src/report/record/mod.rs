@@ -196,7 +196,8 @@ impl DialectRecord {
     }
 
     /// The dialect for people: `The Book of Shaders, GLSL ES 1.00`.
-    pub(super) fn title(&self) -> String {
+    #[must_use]
+    pub fn title(&self) -> String {
         let host = Dialect::named(&self.host).map(Dialect::title);
         format!("{}, {}", host.unwrap_or(&self.host), self.version)
     }
