@@ -1,6 +1,6 @@
 # Start with `make demo`, then `make test`.
 
-.PHONY: demo test setup check msrv lint bench fuzz accuracy platforms semver
+.PHONY: demo test setup check msrv lint bench fuzz accuracy platforms semver vscode
 .DEFAULT_GOAL := demo
 
 # Builds, checks the course's shaders and writes images and reports to out/. Of the whole workspace the program alone is
@@ -57,3 +57,9 @@ platforms:
 BASE ?= HEAD~1
 semver:
 	cargo semver-checks --workspace --exclude toyproof-testkit --exclude xtask --baseline-rev $(BASE)
+
+# Checks, tests and builds the extension for Visual Studio Code: editors/vscode/toyproof.vsix. Needs Node.js 20 or later, and
+# only npm's registry. The date of the files in it is the commit's, so that building it again gives the same bytes.
+vscode:
+	cd editors/vscode && npm ci --ignore-scripts --no-audit --no-fund && npm run lint && npm test
+	cd editors/vscode && SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) npm run package

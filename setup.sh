@@ -134,6 +134,7 @@ install_programs() {
     has povray || missing="$missing povray"
     has clang++ || missing="$missing clang"
     has ffmpeg || missing="$missing ${ffmpeg:-ffmpeg}"
+    has nvim || missing="$missing neovim"
     has script || missing="$missing ${script:-util-linux}"
     [ -z "$missing" ] || install "what tests use" "${missing# }"
 }
