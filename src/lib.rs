@@ -39,8 +39,11 @@
 //! | `stress` | numerical stability of ray–surface intersection, and tests of an author's own function |
 //! | `lab` | measurements of accuracy against time, and charts |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
+//! | `lsp` | the language server of editors |
 //! | `reduce` | the smallest shader that still shows a fault |
 //! | `film` | films of frames: GIF, APNG, and MP4 and `WebM` by an installed ffmpeg |
+//! | `format` | the formatter |
+//! | `dap` | the debug adapter |
 //! | `report` | reports: JSON, HTML, `JUnit`, SARIF, CSV, autograders; with `classroom`, assignments |
 //! | `cli` | the command line |
 //!
@@ -86,11 +89,15 @@ pub mod eval {
 pub use toyproof_classroom as classroom;
 #[cfg(feature = "convert")]
 pub use toyproof_convert as convert;
+#[cfg(feature = "dap")]
+pub use toyproof_dap as dap;
 pub use toyproof_diagnostic as diagnostic;
 #[cfg(feature = "explain")]
 pub use toyproof_explain as explain;
 #[cfg(feature = "film")]
 pub use toyproof_film as film;
+#[cfg(feature = "format")]
+pub use toyproof_format as format;
 pub use toyproof_glsl as glsl;
 #[cfg(feature = "gpu")]
 pub use toyproof_gpu as gpu;
@@ -105,6 +112,8 @@ pub use toyproof_image as image;
 #[cfg(feature = "lab")]
 pub use toyproof_lab as lab;
 pub use toyproof_lint as lint;
+#[cfg(feature = "lsp")]
+pub use toyproof_lsp as lsp;
 pub use toyproof_math as math;
 #[cfg(feature = "media")]
 pub use toyproof_media as media;
@@ -128,3 +137,5 @@ pub use toyproof_tracer as tracer;
 pub use toyproof_translate as translate;
 #[cfg(feature = "verify")]
 pub use toyproof_verify as verify;
+#[cfg(feature = "watch")]
+pub use toyproof_watch as watch;

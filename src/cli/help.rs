@@ -7,7 +7,7 @@ use clap::error::{ContextKind, ContextValue, Error};
 use toyproof_diagnostic::nearest;
 
 /// The commands, each in one group.
-const GROUPS: [(&str, &[&str]); 6] = [
+const GROUPS: [(&str, &[&str]); 7] = [
     (
         "Shaders",
         &["check", "test", "run", "debug", "convert", "compare", "reduce"],
@@ -19,6 +19,7 @@ const GROUPS: [(&str, &[&str]); 6] = [
     ),
     ("Projects", &["import", "export"]),
     ("Measurements", &["trade", "stress"]),
+    ("Editing", &["watch", "fmt", "lsp", "dap"]),
     ("Help", &["explain", "doctor", "completions", "man"]),
 ];
 

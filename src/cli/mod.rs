@@ -8,6 +8,8 @@
 //!   `merge` repeats the command of the shards with their results.
 //! - `shader`: finds and reads the shaders that arguments name.
 //! - `terminal`: all output to the terminal.
+//! - `watch`: `studio` reads the shader that the page of `toyproof_watch` shows, `watched` renders it, and
+//!   `verdict` checks it with this program.
 //! - `error`: the error that ends a command, which is printed here.
 
 mod autograder;
@@ -15,13 +17,16 @@ mod check;
 mod collect;
 mod compare;
 mod convert;
+mod dap;
 mod debug;
 mod doctor;
 mod error;
 mod explain;
+mod fmt;
 mod gradebook;
 mod help;
 mod inputs;
+mod lsp;
 mod names;
 mod new;
 mod pool;
@@ -39,6 +44,7 @@ mod stress;
 mod terminal;
 mod test;
 mod trade;
+mod watch;
 
 use std::ffi::OsString;
 use std::io;
@@ -110,7 +116,10 @@ enum Command {
     Run(run::Args),
     Convert(convert::Args),
     Debug(debug::Args),
+    Dap(dap::Args),
+    Watch(watch::Args),
     Explain(explain::Args),
+    Fmt(fmt::Args),
     Compare(compare::Args),
     Reduce(Box<reduce::Args>),
     Trade(trade::Args),
@@ -123,6 +132,7 @@ enum Command {
     Similar(similar::Args),
     Scenes(scenes::Args),
     Doctor(doctor::Args),
+    Lsp(lsp::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
 }
@@ -213,7 +223,10 @@ impl Command {
             Self::Run(args) => run::run(args, terminal),
             Self::Convert(args) => convert::run(args, terminal),
             Self::Debug(args) => debug::run(args, terminal),
+            Self::Dap(dap::Args {}) => dap::run(terminal),
+            Self::Watch(args) => watch::run(args, terminal),
             Self::Explain(args) => Ok(explain::run(args, terminal)),
+            Self::Fmt(args) => Ok(fmt::run(args, terminal)),
             Self::Compare(args) => compare::run(args, terminal),
             Self::Reduce(args) => reduce::run(args, terminal),
             Self::Trade(args) => trade::run(args, terminal),
@@ -226,6 +239,7 @@ impl Command {
             Self::Similar(args) => Ok(similar::run(args, terminal)),
             Self::Scenes(args) => scenes::run(args, terminal),
             Self::Doctor(args) => doctor::run(args, terminal),
+            Self::Lsp(args) => lsp::run(args),
             Self::Completions(args) => shell::completions(args, terminal),
             Self::Man(args) => shell::man(args, terminal),
         }

@@ -14,13 +14,15 @@ fn root() -> &'static Path {
 }
 
 /// All commands.
-pub(crate) const COMMANDS: [&str; 15] = [
+pub(crate) const COMMANDS: [&str; 19] = [
     "check",
     "render",
     "run",
     "convert",
     "debug",
+    "dap",
     "explain",
+    "fmt",
     "compare",
     "trade",
     "stress",
@@ -28,6 +30,8 @@ pub(crate) const COMMANDS: [&str; 15] = [
     "new",
     "scenes",
     "doctor",
+    "lsp",
+    "watch",
     "completions",
     "man",
 ];

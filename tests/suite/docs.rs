@@ -70,7 +70,7 @@ fn blocks(page: &str) -> Vec<Block> {
 }
 
 /// The block of a page whose text contains some text.
-fn block(page: &str, text: &str) -> String {
+pub(crate) fn block(page: &str, text: &str) -> String {
     let blocks = blocks(&read(page)).into_iter();
     let mut found = blocks.filter(|block| block.text.contains(text));
     found

@@ -20,11 +20,13 @@ pub mod faults;
 pub mod generate;
 pub mod interpreter;
 pub mod judge;
+pub mod lsp;
 pub mod pages;
 pub mod rewrites;
 pub mod textures;
 pub mod toolchain;
 pub mod wait;
+pub mod watching;
 
 use std::env;
 use std::ops::Range;

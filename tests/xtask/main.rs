@@ -5,6 +5,7 @@
 mod corpus;
 mod devices;
 mod dist;
+mod editor;
 mod faults;
 mod front_end;
 mod page;
@@ -13,6 +14,7 @@ mod projects;
 mod references;
 mod repairs;
 mod sensitivity;
+mod watch;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -63,6 +65,8 @@ enum Task {
     Devices(devices::Arguments),
     /// Build the files of a release: archives, and packages for Debian and Python, with their checksums
     Dist(dist::Arguments),
+    /// Measure how long the language server takes from a keystroke to the diagnostics
+    Editor(editor::Arguments),
     /// Compare our GLSL front end for naga with naga's own, the tables of docs/evidence/front-end.md
     FrontEnd {
         /// A folder of shaders, or the git directory of a repository with ShaderToy's JSON files
@@ -129,6 +133,8 @@ enum Task {
         #[arg(long)]
         reseed: bool,
     },
+    /// Measure the time from a save to the new image of `toyproof watch`, the table of docs/evidence/performance.md
+    Watch(watch::Arguments),
     /// Run shaders: the process that other tasks start
     #[command(name = toyproof::cli::WORKER, hide = true)]
     Worker,
@@ -154,6 +160,7 @@ fn main() -> ExitCode {
                 return ExitCode::FAILURE;
             }
         }
+        Task::Editor(arguments) => editor::measure(&arguments),
         Task::FrontEnd { input, limit, seed } => front_end::compare(&input, limit, seed),
         Task::Page { file, screenshots } => page::measure(&file, screenshots.as_deref()),
         Task::Player(arguments) => player::play(&arguments),
@@ -175,6 +182,7 @@ fn main() -> ExitCode {
             tolerance,
             reseed,
         } => references::print_disagreements(&exercise, tolerance, reseed),
+        Task::Watch(arguments) => watch::measure(&arguments),
         Task::Worker => {
             toyproof::gpu::serve(io::stdin(), io::stdout()).expect("the parent listens");
         }
