@@ -13,8 +13,8 @@
 //! # Ok::<(), toyproof_format::Error>(())
 //! ```
 //!
-//! A comment `// toyproof: no-format` keeps the statement or declaration after it as it is, and the whole text if
-//! only comments precede it.
+//! A comment `// toyproof: no-format` keeps the statement or declaration after it as it is, and the whole text
+//! if only comments precede it.
 //!
 //! # Parts
 //!

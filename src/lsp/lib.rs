@@ -15,9 +15,11 @@
 //!   as it is now, which each feature reads.
 //! - `encoding`, `location`: positions and URIs of the protocol; `settings`: those of the editor.
 //! - `diagnostics`, `explain`: messages, and the explanations of their codes.
-//! - `tokens`: the text as it is written; `scope`: what is visible; `describe`, `doc_comment`: what names mean.
+//! - `tokens`: the text as it is written; `scope`: what is visible; `describe`, `doc_comment`: what names
+//!   mean.
 //! - `symbol`: entities that are the same in all texts; `edits`: edits of files.
-//! - `hover`, `completion`, `navigation`, `rename`, `code_actions` and the other features: a file and a function for each.
+//! - `hover`, `completion`, `navigation`, `rename`, `code_actions` and the other features: a file and a
+//!   function for each.
 //! - `background`: the verdict after a save and the values of a pixel, which the program finds itself.
 //! - `server`: the loop over messages.
 

@@ -100,6 +100,10 @@ fn the_trees_of_other_shaders_stay() {
         }
         let name = entry.path().display().to_string();
         let text = String::from_utf8_lossy(&fs::read(entry.path()).unwrap()).into_owned();
+        if text.contains("__LINE__") {
+            eprintln!("{name}: its meaning depends on its lines");
+            continue;
+        }
         let formatted = assert_formatted(&name, &text);
         count += 1;
         compile += usize::from(tree(&text).is_some());

@@ -166,9 +166,16 @@ fn the_error_of_float32_is_shown_in_each_pixel() {
     let run = toyproof(folder, &arguments);
     let last = "largest: 63.750 levels at (2, 0); toyproof debug s.glsl --pixel 2,0\n";
     assert!(run.stdout.ends_with(last), "{}", run.stdout);
-    let run = toyproof(folder, &["run", "s.glsl", "p", "-o", "images", "--error-map", "e.png"]);
+    let run = toyproof(
+        folder,
+        &["run", "s.glsl", "p", "-o", "images", "--error-map", "e.png"],
+    );
     assert_eq!(run.code, 2, "{}", run.stdout);
-    assert!(run.stderr.contains("--error-map takes one shader"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains("--error-map takes one shader"),
+        "{}",
+        run.stderr
+    );
     for (more, message) in [
         (&["--float", "fast"][..], "--error-map needs the evaluator"),
         (&["--precision", "f64"], "cannot be used with"),
