@@ -12,12 +12,12 @@ use super::{CliError, Exit, Terminal};
 
 /// Format shaders
 ///
-/// Each statement gets a line of its own, blocks are indented by 4 columns, and lines of code are broken at 100
-/// columns. Comments, directives, blank lines and the author's line breaks inside of statements are kept, and
-/// so is the meaning: only blanks between tokens change. Shaders with errors are formatted, too.
+/// Each statement gets a line of its own, blocks are indented by 4 columns, and lines of code are broken at
+/// 100 columns. Comments, directives, blank lines and the author's line breaks inside of statements are kept,
+/// and so is the meaning: only blanks between tokens change. Shaders with errors are formatted, too.
 ///
-/// A comment `// toyproof: no-format` keeps the statement or declaration after it as it is, and the whole file if
-/// it is at its top.
+/// A comment `// toyproof: no-format` keeps the statement or declaration after it as it is, and the whole file
+/// if it is at its top.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -34,7 +34,7 @@ pub struct Build {
     pub shader: Option<Box<dyn WatchedShader>>,
     /// What the page shows of it besides images.
     pub status: Value,
-    /// The files that were read, or sought in vain.
+    /// The files that were read, and those that were looked for and do not exist.
     pub files: Vec<PathBuf>,
 }
 
