@@ -33,6 +33,7 @@ pub(crate) fn compile(
             mut function,
             sites,
             schema,
+            profile,
         } = build_function(checked, parameters, options, deadline)?;
         deadline.check()?;
         flush_operands(&mut function);
@@ -59,6 +60,7 @@ pub(crate) fn compile(
             shapes: checked.channels,
             sites,
             schema,
+            profile,
         })
     })?
 }

@@ -29,7 +29,7 @@
 //!
 //! | part | contents |
 //! |---|---|
-//! | `program`, `render`, `trace`, `passes`, `parametric` | what callers use; `compile`: the pipeline |
+//! | `program`, `render`, `trace`, `profile`, `passes`, `parametric` | what callers use; `compile`: the pipeline |
 //! | `exec` | number types, batches, the function of each kind of instruction, tiles of an image |
 //! | `lower` | linear code with jumps and masks, registers |
 //! | `opt` | passes on the function |
@@ -87,6 +87,7 @@ mod lower;
 mod opt;
 mod parametric;
 mod passes;
+mod profile;
 mod program;
 mod render;
 mod sound;
@@ -105,8 +106,10 @@ pub use exec::places::Places;
 pub use exec::recorder::{ExecutionTrace, ForcedPrefix, TraceEvent, TraceFault, TraceValue};
 pub use exec::settings::{Engine, Settings};
 pub use ir::{Call, CallId, Event, EventId, EventKind, Fault, Site, Store, StoreId, TraceSchema};
+pub use ir::{Origin, Part, PartId, PartKind};
 pub use parametric::{ParametricProgram, Point, PointEvaluator};
 pub use passes::{PassFailure, PassRenderer, bound};
+pub use profile::Profile;
 pub use program::Program;
 pub use render::{Rendered, RenderedF32};
 pub use sound::SOUND_COLUMNS;

@@ -26,6 +26,8 @@ pub struct Program {
     traced: OnceLock<Result<Executable, Refusal>>,
     /// The variant that records traces with all steps, and undefined operations; compiled on first use.
     stepping: OnceLock<Result<Executable, Refusal>>,
+    /// The variant that counts operations; compiled on first use.
+    counting: OnceLock<Result<Executable, Refusal>>,
     /// The time limit for compiling the first variant. The others are about as large, and what they are
     /// compiled for must not depend on the load of the machine.
     limit: Option<Duration>,
@@ -59,6 +61,7 @@ impl Program {
             plain: OnceLock::new(),
             traced: OnceLock::new(),
             stepping: OnceLock::new(),
+            counting: OnceLock::new(),
             limit,
         };
         program.executable(variant)?;
@@ -112,6 +115,15 @@ impl Program {
             ..BuildOptions::default()
         };
         Ok(&self.variant(&self.stepping, options)?.lowered)
+    }
+
+    /// Returns the code that counts operations.
+    pub(crate) fn counting(&self) -> Result<&LoweredCode, Refusal> {
+        let options = BuildOptions {
+            trace: TraceDetail::Counts,
+            ..BuildOptions::default()
+        };
+        Ok(&self.variant(&self.counting, options)?.lowered)
     }
 
     /// Returns the checked shader.

@@ -105,6 +105,13 @@ impl ExprGraph {
         self.steps.borrow().all[id]
     }
 
+    /// The number of steps that are operations, not arguments or constants.
+    pub fn operations(&self) -> usize {
+        let steps = self.steps.borrow();
+        let is_operation = |(step, _): &&(Step, Kind)| step.operands().next().is_some();
+        steps.all.iter().filter(is_operation).count()
+    }
+
     /// Computes steps in 32-bit floats. Denormal arguments and results become zeros.
     ///
     /// # Panics

@@ -181,7 +181,7 @@ fn classify(step: &Step, stored: &[bool], lowered: &LoweredCode) -> Option<Class
         | Step::Remove { .. }
         | Step::JumpIfEmpty(_) => Class::Vector,
         Step::Jump(_) | Step::JumpIf { .. } | Step::Iterate(_) => Class::Control,
-        Step::Trace { .. } => return None,
+        Step::Trace { .. } | Step::Count(_) => return None,
     })
 }
 

@@ -6,7 +6,7 @@ use toyproof_glsl::tree::{
 
 use super::lvalue::{LValue, Location};
 use super::{Builder, InlinedCall, Result};
-use crate::ir::{CallId, Cells, Node, Value};
+use crate::ir::{CallId, Cells, Node, PartKind, Value};
 
 /// An evaluated argument.
 struct Argument {
@@ -164,7 +164,8 @@ impl Builder<'_> {
                 std::mem::take(&mut builder.continues),
             );
             if let Some(body) = &tree[function].body {
-                builder.block(body)?;
+                let kind = PartKind::Function(function);
+                builder.part(kind, tree[function].at, |builder| builder.block(body))?;
             }
             builder.breaks = breaks;
             builder.continues = continues;

@@ -5,7 +5,7 @@ use toyproof_glsl::tree::{BinaryOp, ExprId, ExprKind, Scalar, StepOp, Type};
 use super::lvalue::Location;
 use super::lvalue::{component_count, indexed_element, member_offset, scalar_kind};
 use super::{Builder, Result};
-use crate::ir::{EventKind, NONE, Node, Operation, Value};
+use crate::ir::{EventKind, NONE, Node, Operation, PartKind, Value};
 
 /// The maximum number of nodes of an operand of `?:`, `&&` or `||` that is computed for all pixels instead of
 /// being branched over.
@@ -19,6 +19,7 @@ impl Builder<'_> {
 
     fn chain(&mut self, root: ExprId) -> Result<Vec<Value>> {
         self.bounded()?;
+        let outer = self.origin();
         // The first operands, down to a leaf.
         let mut chain = vec![root];
         while let Some(first) = chain.last().and_then(|&last| self.first_operand(last)) {
@@ -36,6 +37,7 @@ impl Builder<'_> {
             values = self.continue_with(expr, values)?;
             self.trace_part(expr, &values);
         }
+        self.set_origin(outer);
         Ok(values)
     }
 
@@ -75,6 +77,7 @@ impl Builder<'_> {
 
     fn leaf(&mut self, expr: ExprId) -> Result<Vec<Value>> {
         let tree = self.tree;
+        self.begin_origin(tree[expr].at);
         Ok(match &tree[expr].kind {
             ExprKind::Literal(literal) => vec![self.literal(literal.value)],
             ExprKind::Variable(variable) => match self.location(*variable) {
@@ -104,8 +107,8 @@ impl Builder<'_> {
                 self.choose(
                     condition,
                     ty,
-                    |builder| builder.expression(yes),
-                    |builder| builder.expression(no),
+                    |builder| builder.part(PartKind::Yes, builder.at(yes), |builder| builder.expression(yes)),
+                    |builder| builder.part(PartKind::No, builder.at(no), |builder| builder.expression(no)),
                 )?
             }
             ExprKind::Call { function, arguments } => self.call(*function, arguments, tree[expr].at)?,
@@ -130,24 +133,21 @@ impl Builder<'_> {
             ExprKind::Binary { op, right, .. } if matches!(op, BinaryOp::And | BinaryOp::Or) => {
                 let left = first.first().copied().unwrap_or(NONE);
                 let (yes, no) = (self.bool_value(true), self.bool_value(false));
+                let evaluate = |builder: &mut Self| {
+                    builder.part(PartKind::Right, builder.at(right), |builder| {
+                        builder.expression(right)
+                    })
+                };
                 if op == BinaryOp::And {
-                    self.choose(
-                        left,
-                        Type::BOOL,
-                        |builder| builder.expression(right),
-                        |_| Ok(vec![no]),
-                    )
+                    self.choose(left, Type::BOOL, evaluate, |_| Ok(vec![no]))
                 } else {
-                    self.choose(
-                        left,
-                        Type::BOOL,
-                        |_| Ok(vec![yes]),
-                        |builder| builder.expression(right),
-                    )
+                    self.choose(left, Type::BOOL, |_| Ok(vec![yes]), evaluate)
                 }
             }
             ExprKind::Binary { op, left, right } => {
                 let second = self.expression(right)?;
+                // The operator of a long expression is on the line of its right operand, or above.
+                self.begin_origin(tree[right].at);
                 let types = (tree[left].ty, tree[right].ty);
                 Ok(self.binary_operator(op, types, &first, &second, tree[expr].at))
             }

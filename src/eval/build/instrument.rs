@@ -383,14 +383,14 @@ impl Builder<'_> {
     /// Registers a call inside of the function that is being written.
     pub(super) fn name_call(&mut self, function: FunctionId, at: Place) -> Option<CallId> {
         let parent = self.current_call();
-        self.options.trace.is_traced().then(|| {
+        (self.options.trace != TraceDetail::Nothing).then(|| {
             self.schema.calls.push(Call { function, at, parent });
             CallId(self.schema.calls.len() as u32 - 1)
         })
     }
 
     /// The call that is being written; none at global scope and in `mainImage`.
-    fn current_call(&self) -> Option<CallId> {
+    pub(super) fn current_call(&self) -> Option<CallId> {
         self.call_stack.last().and_then(|frame: &InlinedCall| frame.call)
     }
 
@@ -399,11 +399,12 @@ impl Builder<'_> {
         self.options.trace == TraceDetail::Steps
     }
 
-    /// Emits the event of a statement that begins, or of a condition on a line of its own.
+    /// Emits the event of a statement that begins, or of a condition on a line of its own, or counts it.
     pub(super) fn trace_step(&mut self, at: Place) {
         if self.records_steps() {
             self.trace_values(EventKind::Step, at, Type::Void, &[]);
         }
+        self.count_statement(at);
     }
 
     /// Emits the event of a function whose body begins.

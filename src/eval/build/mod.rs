@@ -6,6 +6,7 @@ mod expression;
 mod instrument;
 mod lvalue;
 mod operator;
+mod profile;
 mod statement;
 mod texture;
 mod undefined;
@@ -25,8 +26,8 @@ use self::lvalue::{Location, component_count, scalar_kind};
 use self::operator::Term;
 pub use self::undefined::{Substitute, UndefinedPolicy};
 use crate::ir::{
-    Block, CallId, Cell, Cells, EventId, Function, Kind, LoopId, NONE, Node, Operation, Predicate, Scope,
-    Site, SiteId, TraceSchema, Value, ValueDef,
+    Block, CallId, Cell, Cells, EventId, Function, Kind, LoopId, NONE, Node, Operation, Origin, Part, PartId,
+    Predicate, ProfileSchema, Scope, Site, SiteId, TraceSchema, Value, ValueDef,
 };
 
 /// The maximum number of values of a program; larger programs are refused before memory runs out.
@@ -88,12 +89,14 @@ pub(crate) enum TraceDetail {
     Values,
     /// Also where statements and functions begin, and which cells are written.
     Steps,
+    /// No trace; the operations are counted.
+    Counts,
 }
 
 impl TraceDetail {
-    /// Whether anything is recorded.
+    /// Whether values are recorded.
     pub(crate) fn is_traced(self) -> bool {
-        self != Self::Nothing
+        matches!(self, Self::Values | Self::Steps)
     }
 }
 
@@ -115,6 +118,8 @@ pub(crate) struct InstrumentedFunction {
     pub(crate) sites: Vec<Site>,
     /// The events of traces.
     pub(crate) schema: TraceSchema,
+    /// What a profile counts.
+    pub(crate) profile: ProfileSchema,
 }
 
 /// Builds the function of a shader. Uniforms that are among the `parameters` get their
@@ -151,11 +156,20 @@ pub(crate) fn build_function(
             _ => HashSet::new(),
         },
         schema: TraceSchema::default(),
+        parts: Vec::new(),
+        open_parts: Vec::new(),
         loop_headers: Vec::new(),
         depth: 0,
         discarded: Cell(0),
     };
     builder.program(checked.main_image)?;
+    let mut profile = ProfileSchema::default();
+    let writer = builder.writer.get_mut();
+    if options.trace == TraceDetail::Counts {
+        profile.blocks = profile::basic_blocks(writer);
+        profile.parts = builder.parts;
+        profile.calls = std::mem::take(&mut builder.schema.calls);
+    }
     let writer = builder.writer.into_inner();
     let function = Function {
         defs: writer.defs,
@@ -169,6 +183,7 @@ pub(crate) fn build_function(
         function,
         sites: builder.sites,
         schema: builder.schema,
+        profile,
     })
 }
 
@@ -179,6 +194,10 @@ struct IrWriter {
     block: Block,
     /// Constants and inputs, which have no node.
     known: HashMap<ValueDef, Value>,
+    /// Where the values that are written next come from; none at the beginning of the program.
+    origin: Option<Origin>,
+    /// The first value from each origin, in ascending order.
+    origins: Vec<(u32, Origin)>,
     output: [Value; 5],
 }
 
@@ -188,6 +207,8 @@ impl Default for IrWriter {
             defs: Vec::new(),
             block: Block::new(),
             known: HashMap::new(),
+            origin: None,
+            origins: Vec::new(),
             output: [NONE; 5],
         }
     }
@@ -208,6 +229,11 @@ impl IrWriter {
             return value;
         }
         let value = Value(self.defs.len() as u32);
+        if let Some(origin) = self.origin
+            && self.origins.last().is_none_or(|&(_, last)| last != origin)
+        {
+            self.origins.push((value.0, origin));
+        }
         self.defs.push(def);
         if constant {
             self.known.insert(def, value);
@@ -259,6 +285,10 @@ struct Builder<'a> {
     /// The variables that are passed to `out` parameters, which makes them uninitialized.
     out_arguments: HashSet<VariableId>,
     schema: TraceSchema,
+    /// The parts of the program, if they are counted.
+    parts: Vec<Part>,
+    /// The parts that are being written.
+    open_parts: Vec<PartId>,
     /// The header events of the loops that are being written.
     loop_headers: Vec<EventId>,
     depth: usize,

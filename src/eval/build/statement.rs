@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{
 
 use super::lvalue::Location;
 use super::{Builder, Result};
-use crate::ir::{Block as Nodes, Cell, EventKind, Node, Operation, Scope, Value, ValueDef};
+use crate::ir::{Block as Nodes, Cell, EventKind, Node, Operation, PartKind, Scope, Value, ValueDef};
 
 impl Builder<'_> {
     pub(super) fn block(&mut self, block: &Block) -> Result<()> {
@@ -22,6 +22,7 @@ impl Builder<'_> {
     }
 
     fn statement(&mut self, statement: &Statement) -> Result<()> {
+        self.begin_origin(statement.at);
         if self.begins_step(&statement.kind) {
             self.trace_step(statement.at);
         }
@@ -137,10 +138,14 @@ impl Builder<'_> {
 
     fn arms(&mut self, arms: &[Arm], otherwise: Option<&Block>) -> Result<()> {
         let Some((arm, others)) = arms.split_first() else {
-            return otherwise.map_or(Ok(()), |block| self.block(block));
+            let Some((block, first)) = otherwise.and_then(|block| Some((block, block.first()?))) else {
+                return Ok(());
+            };
+            return self.part(PartKind::Else, first.at, |builder| builder.block(block));
         };
         let condition = self.condition(arm.condition)?;
-        let yes = self.inner(|builder| builder.block(&arm.body))?;
+        let at = self.at(arm.condition);
+        let yes = self.inner(|builder| builder.part(PartKind::If, at, |builder| builder.block(&arm.body)))?;
         let no = self.inner(|builder| {
             if let Some(next) = others.first() {
                 builder.trace_step(builder.at(next.condition));
@@ -207,7 +212,7 @@ impl Builder<'_> {
             let nodes = builder.inner(|builder| {
                 builder.breaks.push(out);
                 builder.continues.push(on);
-                builder.block(body)?;
+                builder.part(PartKind::Loop, at, |builder| builder.block(body))?;
                 builder.breaks.pop();
                 builder.continues.pop();
                 Ok(())
@@ -249,6 +254,7 @@ impl Builder<'_> {
     /// Emits a `switch`: each case runs for the pixels whose selector matches it, or that fall through from
     /// the case before.
     fn switch(&mut self, selector: ExprId, cases: &[Case]) -> Result<()> {
+        let selector_at = self.at(selector);
         let selector = self.scalar(selector)?;
         self.declare_switch_variables(cases)?;
         let out = self.scope();
@@ -271,7 +277,8 @@ impl Builder<'_> {
                 let condition = matches.unwrap_or_else(|| builder.bool_value(false));
                 let mut body = builder.inner(|builder| {
                     builder.breaks.push(out);
-                    builder.block(&case.body)?;
+                    let at = case.body.first().map_or(selector_at, |first| first.at);
+                    builder.part(PartKind::Case, at, |builder| builder.block(&case.body))?;
                     builder.breaks.pop();
                     Ok(())
                 })?;

@@ -1,11 +1,11 @@
 //! The execution state of a batch of pixels: rows of components, scalars, and masks.
 
 use std::cell::{Cell, RefCell};
-use std::iter::repeat_with;
 
 use toyproof_image::Texture;
 
-use crate::exec::lanes::{Chunk, LANES, Lanes, any};
+use crate::exec::counter::Counter;
+use crate::exec::lanes::{Chunk, LANES, Lanes, any, chunks};
 use crate::exec::number::Arithmetic;
 use crate::exec::observe::Notes;
 use crate::exec::recorder::Recorder;
@@ -49,6 +49,8 @@ pub(crate) struct Batch<'a, N: Arithmetic> {
     pub(crate) notes: RefCell<Notes>,
     /// The recorder of one pixel's execution, if a trace was requested.
     pub(crate) recorder: Option<Recorder<'a>>,
+    /// What counts the executions of basic blocks, if a profile was requested.
+    pub(crate) counter: Option<Counter<'a>>,
 }
 
 /// The reason why a batch ended early.
@@ -97,6 +99,7 @@ impl<'a, N: Arithmetic> Batch<'a, N> {
             own_iterations: chunks([0; LANES], width),
             notes: RefCell::default(),
             recorder: None,
+            counter: None,
         }
     }
 
@@ -140,9 +143,4 @@ impl<'a, N: Arithmetic> Batch<'a, N> {
             all: false,
         });
     }
-}
-
-/// Returns chunks with the same lanes.
-pub(crate) fn chunks<T: Copy>(lanes: Lanes<T>, count: usize) -> Vec<Chunk<T>> {
-    repeat_with(|| Chunk::new(lanes)).take(count).collect()
 }

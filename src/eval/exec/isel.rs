@@ -328,6 +328,7 @@ impl<N: Arithmetic> Writer<'_, N> {
                 let run = ops::record(self.lowered.function.kind(value), row);
                 self.push(run, event, [from, 0, 0], component);
             }
+            Step::Count(block) => self.push(ops::count(self.level), block, [0; 3], 0),
         }
     }
 

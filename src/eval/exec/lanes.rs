@@ -1,6 +1,7 @@
 //! Lanes: the pixels that are computed together, and where they lie in a tile.
 
 use std::cell::Cell;
+use std::iter::repeat_with;
 
 /// The number of pixels of a row that are computed together: four quads.
 pub const LANES: usize = 16;
@@ -34,6 +35,11 @@ impl<T: Copy> Chunk<T> {
         let lanes: &Cell<[T]> = &self.0;
         lanes.as_slice_of_cells()
     }
+}
+
+/// Returns chunks with the same lanes.
+pub(crate) fn chunks<T: Copy>(lanes: Lanes<T>, count: usize) -> Vec<Chunk<T>> {
+    repeat_with(|| Chunk::new(lanes)).take(count).collect()
 }
 
 /// Whether any bit is set.

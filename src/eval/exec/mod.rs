@@ -2,6 +2,7 @@
 //! an image.
 
 pub(crate) mod batch;
+pub(crate) mod counter;
 pub(crate) mod evaluate;
 pub(crate) mod frame;
 pub(crate) mod isel;

@@ -7,10 +7,10 @@ use std::ops::Range;
 
 use toyproof_image::Texture;
 
-use crate::exec::batch::{Active, Batch, Cancellation, chunks};
+use crate::exec::batch::{Active, Batch, Cancellation};
 use crate::exec::frame::{DISCARDED, UNDEFINED};
 use crate::exec::isel::FrameCode;
-use crate::exec::lanes::{LANES, Lanes, TILE_COLUMNS, lane_at, lane_position};
+use crate::exec::lanes::{LANES, Lanes, TILE_COLUMNS, chunks, lane_at, lane_position};
 use crate::exec::limits::{BandError, Limits};
 use crate::exec::native::{BatchTables, NativeBatch, NativeFrame, NativeInput, NativeProgram};
 use crate::exec::number::Arithmetic;
@@ -99,6 +99,16 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
                 program.frame(input, engine)
             });
         Self { native, ..self }
+    }
+
+    /// Returns the size of the image in pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Returns the size of a tile in pixels.
+    pub(crate) fn tile(&self) -> [usize; 2] {
+        [TILE_COLUMNS, self.rows()]
     }
 
     /// Returns the height of a tile in pixels.
@@ -206,6 +216,39 @@ impl<'a, N: Arithmetic> FrameJob<'a, N> {
         trace.color =
             (discarded[lane] == 0).then(|| [red, green, blue].map(|component| component[lane].to_f64()));
         Ok(trace)
+    }
+
+    /// Runs a tile of a batch with a counter; `visit` is called with the operations of each pixel that lies in
+    /// the image, and its position.
+    pub(crate) fn count(
+        &self,
+        batch: &Batch<'_, N>,
+        corner: [u32; 2],
+        mut visit: impl FnMut(u64, [u32; 2]),
+    ) -> Result<(), BandError> {
+        if self.limits.is_cancelled() {
+            return Err(BandError::Cancelled);
+        }
+        let counter = batch.counter.as_ref().expect("a profile has a counter");
+        let pixel = |chunk: usize, lane: usize| {
+            let place = lane_position(chunk * LANES + lane);
+            [0, 1].map(|axis| corner[axis] + place[axis] as u32)
+        };
+        let is_inside = |[x, y]: [u32; 2]| x < self.size[0] && y < self.size[1];
+        counter.begin_tile(|chunk, lane| is_inside(pixel(chunk, lane)));
+        self.begin_tile(batch, corner);
+        run(batch, &self.code.instructions);
+        if let Some(stop) = batch.stopped.take() {
+            return Err(BandError::LoopStopped(stop));
+        }
+        for chunk in 0..batch.width {
+            for (lane, operations) in counter.operations(chunk).into_iter().enumerate() {
+                if is_inside(pixel(chunk, lane)) {
+                    visit(operations, pixel(chunk, lane));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Initializes the coordinates and iteration counts of a tile.

@@ -134,6 +134,8 @@ pub(crate) enum Node {
         component: u32,
         value: Value,
     },
+    /// Counts the pixels that come here: of a part while the function is built, of a basic block afterwards.
+    Count(u32),
 }
 
 /// A whole shader.
@@ -240,6 +242,7 @@ macro_rules! for_each_value {
                 Self::Check { values, .. } => values.$iter().filter(|value| **value != NONE).for_each(visit),
                 Self::Trace { value, .. } if *value != NONE => visit(value),
                 Self::Trace { .. }
+                | Self::Count(_)
                 | Self::Let(_)
                 | Self::Scope { .. }
                 | Self::Loop { .. }

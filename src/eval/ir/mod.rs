@@ -8,6 +8,7 @@
 mod alias;
 mod function;
 mod operation;
+mod profile;
 mod schema;
 mod site;
 
@@ -16,5 +17,7 @@ pub(crate) use self::function::{Axis, Block, Cell, Cells, Function, LoopId, Node
 pub use self::function::{NONE, Value, ValueDef};
 pub(crate) use self::operation::for_each_operation;
 pub use self::operation::{Kind, Operation};
+pub(crate) use self::profile::{BasicBlock, ProfileSchema, cost};
+pub use self::profile::{Origin, Part, PartId, PartKind};
 pub use self::schema::{Call, CallId, Event, EventId, EventKind, Store, StoreId, TraceSchema};
 pub use self::site::{Fault, Predicate, Site, SiteId};

@@ -70,6 +70,8 @@ pub enum Step {
         component: u32,
         value: Value,
     },
+    /// Counts the active pixels of a basic block.
+    Count(u32),
 }
 
 /// A linearized program.
@@ -282,6 +284,7 @@ impl Linearizer<'_> {
                 component,
                 value,
             }),
+            Node::Count(block) => self.push(Step::Count(block)),
         }
     }
 

@@ -7,7 +7,7 @@ use toyproof_glsl::tree::{Place, SamplerShape};
 
 use self::linearize::LinearCode;
 use self::regalloc::Allocation;
-use crate::ir::{Function, Site, TraceSchema};
+use crate::ir::{Function, ProfileSchema, Site, TraceSchema};
 
 /// A lowered program, for any number type, frame and size.
 #[derive(Debug)]
@@ -24,6 +24,7 @@ pub struct LoweredCode {
     pub shapes: [SamplerShape; 4],
     pub(crate) sites: Vec<Site>,
     pub(crate) schema: TraceSchema,
+    pub(crate) profile: ProfileSchema,
 }
 
 impl LoweredCode {

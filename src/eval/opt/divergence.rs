@@ -143,7 +143,7 @@ impl<'a> CodeMap<'a> {
                 Node::Loop { body, .. } => self.enter(body, PlaceKind::Loop),
                 Node::Break(scope) => self.leaves.push((*scope, here, None)),
                 Node::BreakIf { scope, condition, .. } => self.leaves.push((*scope, here, Some(*condition))),
-                Node::LoopHeader(_) | Node::Check { .. } | Node::Trace { .. } => {}
+                Node::LoopHeader(_) | Node::Check { .. } | Node::Trace { .. } | Node::Count(_) => {}
             }
         }
     }

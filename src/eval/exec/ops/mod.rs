@@ -17,7 +17,7 @@ pub(crate) use apply::fold;
 pub(crate) use compute::{compute, compute_scalar, sine_and_cosine};
 pub(crate) use control::{choose, copy_mask, iterate, jump, jump_if, jump_if_empty, refuel, remove, split};
 pub(crate) use memory::{copy, load_at, store, store_at, texel};
-pub(crate) use record::{check, record, record_event};
+pub(crate) use record::{check, count, record, record_event};
 
 use crate::exec::batch::Batch;
 use crate::exec::lanes::{Chunk, LANES, Lanes};

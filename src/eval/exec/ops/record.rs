@@ -211,3 +211,24 @@ pub(crate) fn record<N: Arithmetic>(kind: Kind, row: bool) -> Handler<N> {
 pub(crate) fn record_event<N: Arithmetic>() -> Handler<N> {
     handler::<N, RecordEvent>(Level::Base)
 }
+
+/// Counts a basic block for the active pixels. `out` is the block.
+struct Count;
+
+impl<N: Arithmetic> Run<N> for Count {
+    #[inline(always)]
+    fn run(batch: &Batch<'_, N>, instruction: &Instruction<N>, at: usize) -> usize {
+        if let Some(counter) = &batch.counter {
+            let mask = batch.mask_row(instruction.mask);
+            for_each_chunk!(batch, instruction.mask, chunk => {
+                counter.count(instruction.out, chunk, &mask[chunk].get());
+            });
+        }
+        at + 1
+    }
+}
+
+/// Returns the handler that counts a basic block.
+pub(crate) fn count<N: Arithmetic>(level: Level) -> Handler<N> {
+    handler::<N, Count>(level)
+}
