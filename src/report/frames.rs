@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 use toyproof_diagnostic::{all_of, grouped, path_name, plural};
 use toyproof_image::{Channel, FrameInputs, UniformValue};
-use toyproof_verify::Verdict;
 use toyproof_verify::compare::{CheckSummary, Comparison};
+use toyproof_verify::{MAX_UNSTABLE, Share, Verdict};
 
 use super::Record;
+use super::share::imprecision;
 
 /// The largest number of frames that a record's details name, so that they stay short sentences.
 const MAX_NAMED: usize = 5;
@@ -195,8 +196,15 @@ impl Record {
         if self.verdict.is_good() {
             let at = |frame: &FrameRecord| format!("at {}: {}", frame.label(), frame.reason);
             self.details = frames.iter().map(at).collect();
-            self.reason = match self.verdict {
-                Verdict::Ok => {
+            let mut imprecise = frames.iter().filter_map(|frame| {
+                let share = Share::differing(frame.precision.as_ref()?);
+                (share.ratio() > MAX_UNSTABLE).then(|| (frame.label(), imprecision(share)))
+            });
+            self.reason = match (self.verdict, imprecise.next()) {
+                (Verdict::Ok, Some((label, pixels))) => {
+                    format!("the shader renders in {all}, but at {label}, {pixels}; there is no reference")
+                }
+                (Verdict::Ok, None) => {
                     format!("the shader renders in {all}; there is no reference to compare it with")
                 }
                 _ => format!("{all} agree with the reference"),

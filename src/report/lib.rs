@@ -26,12 +26,14 @@ mod hints;
 mod html;
 mod junit;
 pub mod platform;
+mod profile;
 mod reason;
 mod record;
 mod repair;
 mod rubric;
 mod rubrics;
 mod sarif;
+mod share;
 mod submitted;
 mod terminal;
 mod thumbnails;
@@ -52,11 +54,13 @@ pub use explanation::{Explanation, explain, explanations};
 pub use frames::{CheckedFrame, FrameRecord};
 pub use growth::{CauseName, GrowthFrame, GrowthRecord};
 pub use hints::Hints;
+pub use html::profile::profile_html;
 pub use html::{
     Exhibit, Gallery, MAX_IMAGE_BYTES, MAX_PAGE_SHADERS, PARTS, html, html_index, html_part, part_name,
     parts as page, subsample,
 };
 pub use junit::{TestCase, TestStatus, junit, test_suite};
+pub use profile::{ProfiledPass, profile_csv};
 pub use reason::{Statement, failure_position, loop_truncated, state};
 pub use record::{
     Alternative, DialectRecord, FrameResult, Mistake, Position, Record, Report, SCHEMA, Seconds,

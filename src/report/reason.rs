@@ -8,11 +8,10 @@ use toyproof_player::{DriverFailure, Target};
 use toyproof_scene::Sampler;
 use toyproof_verify::Difference;
 use toyproof_verify::compare::Region;
-use toyproof_verify::{
-    Failure, MAX_DIFFERING, MAX_UNDEFINED, MAX_UNSTABLE, Means, Reason, ReferenceKind, Share, Verdict,
-};
+use toyproof_verify::{Failure, MAX_DIFFERING, MAX_UNSTABLE, Means, Reason, ReferenceKind, Share, Verdict};
 
 use super::Mistake;
+use super::share::{count_with_verb, imprecision, percentage, pixels};
 
 /// The reason of a verdict.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -47,9 +46,8 @@ pub fn state(findings: &Findings, files: &Files) -> Statement {
     let mut statement = state_reason(&findings.reason, files);
     if let (Reason::NoReference, Some(imprecise)) = (&findings.reason, imprecise(findings)) {
         statement.reason = format!(
-            "the shader renders, but {} visibly between float32 and double precision {}; there is no reference",
-            count_with_verb(imprecise, ["differs", "differ"]),
-            percentage(imprecise)
+            "the shader renders, but {}; there is no reference",
+            imprecision(imprecise)
         );
     }
     if let Some(PassDeparture { pass, frame }) = findings.pass_departure {
@@ -198,12 +196,13 @@ pub(super) fn state_reason(reason: &Reason, files: &Files) -> Statement {
             undefined,
             undefined_region,
             tied,
-            imprecise_reference,
+            imprecise,
         } => agrees(
             differing,
             [ill_conditioned, undefined],
             undefined_region,
-            [tied, imprecise_reference],
+            tied,
+            imprecise,
         ),
         Reason::Permitted {
             difference,
@@ -222,7 +221,8 @@ fn agrees(
     differing: Share,
     [ill_conditioned, undefined]: [u64; 2],
     undefined_region: Option<Region>,
-    [tied, imprecise]: [u64; 2],
+    tied: u64,
+    imprecise: Option<Share>,
 ) -> Statement {
     let Share { count, of } = differing;
     let reason = match (count, ill_conditioned + undefined) {
@@ -252,14 +252,11 @@ fn agrees(
             grouped(region.pixels)
         )
     });
-    let mut statement = Statement::new(reason + &left_out);
+    let precision = imprecise.map_or_else(String::new, |imprecise| {
+        format!("; {}, and so does the reference", imprecision(imprecise))
+    });
+    let mut statement = Statement::new(reason + &left_out + &precision);
     let pixels = |count| format!("in {} {}", grouped(count), plural(count, "pixel", "pixels"));
-    if imprecise > 0 {
-        statement = statement.detail(format!(
-            "{}, float32 is not precise enough, neither for the shader nor for the reference",
-            pixels(imprecise)
-        ));
-    }
     if tied > 0 {
         statement = statement.detail(format!(
             "{}, rounding decides the color of the reference itself, as where an edge passes exactly through the \
@@ -466,52 +463,5 @@ fn differing(share: Share) -> String {
             count_with_verb(share, ["differs", "differ"]),
             percentage(share)
         )
-    }
-}
-
-/// Formats a subject and its verb: “1 of 230,400 pixels differs”.
-fn count_with_verb(share: Share, [one, many]: [&str; 2]) -> String {
-    format!("{} {}", pixels(share), plural(share.count, one, many))
-}
-
-fn pixels(share: Share) -> String {
-    format!("{} of {} pixels", grouped(share.count), grouped(share.of))
-}
-
-/// The shares that decide a verdict.
-const LIMITS: [f64; 3] = [MAX_DIFFERING, MAX_UNSTABLE, MAX_UNDEFINED];
-
-/// Formats a share in parentheses, with one decimal, and more if it would look like a limit that it is not.
-fn percentage(share: Share) -> String {
-    let ratio = share.ratio();
-    if ratio < 0.001 && share.count > 0 {
-        return "(under 0.1 %)".to_owned();
-    }
-    let text = |ratio: f64, decimals: usize| format!("({:.decimals$} %)", 100.0 * ratio);
-    let is_clear = |&decimals: &usize| {
-        let mut limits = LIMITS.iter();
-        limits.all(|&limit| ratio == limit || text(ratio, decimals) != text(limit, decimals))
-    };
-    text(ratio, (1..6).find(is_clear).unwrap_or(1))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_share_beside_a_limit_does_not_look_like_the_limit() {
-        for (count, of, text) in [
-            (0, 57_600, "(0.0 %)"),
-            (57, 57_600, "(under 0.1 %)"),
-            (70, 57_600, "(0.12 %)"),
-            (1, 1_000, "(0.1 %)"),
-            (1_001, 1_000_000, "(0.1001 %)"),
-            (31, 10_000, "(0.31 %)"),
-            (49_999, 1_000_000, "(4.9999 %)"),
-            (1, 2, "(50.0 %)"),
-        ] {
-            assert_eq!(percentage(Share { count, of }), text, "{count} of {of}");
-        }
     }
 }

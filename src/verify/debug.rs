@@ -8,6 +8,7 @@ use toyproof_eval::{
     TraceEvent, TraceSchema, TraceValue,
 };
 use toyproof_eval_native::Program;
+use toyproof_glsl::tree::Place;
 use toyproof_image::Frame;
 
 use crate::compare::SEEN;
@@ -378,6 +379,22 @@ fn find_cause(
     if whole <= SEEN {
         return Ok(None);
     }
+    let (differs, steps) = after_last_effective(doubles, pixel, single, whole.min(1.0) / 2.0)?;
+    let divergence = first_divergence(doubles.schema(), &steps, true);
+    let step = divergence.map(|at| &steps[at]);
+    // Without a diverging value, the event that made the difference itself.
+    let step = step.or_else(|| steps.iter().filter(|step| step.single.is_some()).nth(differs));
+    Ok(step.map(|step| step.position.clone()))
+}
+
+/// Finds the last event up to which f64 may follow f32, and the color still differs by at least `distance`.
+/// Returns the number of events before it, and the steps if f64 follows f32 up to there.
+fn after_last_effective(
+    doubles: &PixelDebugger<'_, f64>,
+    pixel: [u32; 2],
+    single: &ExecutionTrace,
+    distance: f64,
+) -> Result<(usize, Vec<Step>), Failure> {
     let forced = |length| {
         doubles.trace(
             pixel,
@@ -387,22 +404,83 @@ fn find_cause(
             }),
         )
     };
-    // With `differs` forced events, the color still differs by half as much; with `agrees`, it does not.
+    // With `differs` forced events, the color still differs; with `agrees`, it does not.
     let (mut differs, mut agrees) = (0, single.events.len());
     while agrees - differs > 1 {
         let middle = usize::midpoint(differs, agrees);
-        if color_distance(single, &forced(middle)?) >= whole.min(1.0) / 2.0 {
+        if color_distance(single, &forced(middle)?) >= distance {
             differs = middle;
         } else {
             agrees = middle;
         }
     }
-    let steps = merge(doubles.schema(), single, &forced(differs)?);
-    let divergence = first_divergence(doubles.schema(), &steps, true);
-    let step = divergence.map(|at| &steps[at]);
-    // Without a diverging value, the event that made the difference itself.
-    let step = step.or_else(|| steps.iter().filter(|step| step.single.is_some()).nth(differs));
-    Ok(step.map(|step| step.position.clone()))
+    Ok((differs, merge(doubles.schema(), single, &forced(differs)?)))
+}
+
+/// The operation at which a value loses its digits in f32.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DigitLoss {
+    /// The operation.
+    pub at: Place,
+    /// Its result in f32, and in f64 from the operands that f32 has before the first harmful rounding; `None`
+    /// if it is not a float, or only one of the two gets there.
+    pub values: Option<[f64; 2]>,
+}
+
+/// The share of a color's error, in ULPs, from which on a value counts as the one that loses the digits.
+const LOSS_SHARE: f64 = 0.25;
+
+/// Finds the operation at which the red component of a pixel loses the digits that it lacks in f32, or, if it
+/// is NaN or infinite in f32 alone, the first with such a result. Operations at or after the byte `end` of
+/// the text do not count. `None` if no single operation does it.
+///
+/// # Errors
+/// Fails if the shader is too large, or exceeds the deadline.
+pub fn digit_loss(
+    program: &Program,
+    frame: &Frame,
+    pixel: [u32; 2],
+    end: u32,
+    deadline: Option<Instant>,
+) -> Result<Option<DigitLoss>, Failure> {
+    let iterations = Settings::<f64>::default().max_iterations;
+    let singles = program.pixel_debugger(frame, settings::<f32>(iterations, deadline))?;
+    let doubles = program.pixel_debugger(frame, settings::<f64>(iterations, deadline))?;
+    let (single, double) = (singles.trace(pixel, None)?, doubles.trace(pixel, None)?);
+    let schema = doubles.schema();
+    let (Some([red, ..]), Some([expected, ..])) = (single.color, double.color) else {
+        return Ok(None);
+    };
+    let is_counted = |step: &&Step| schema.event(step.event).at.span.end <= end;
+    let floats = |step: &Step| {
+        let pairs = step.pairs();
+        let floats = pairs.filter_map(|pair| match pair {
+            (TraceValue::Float(single), TraceValue::Float(double)) => Some([single, double]),
+            _ => None,
+        });
+        floats.max_by(|a, b| ulps(a[0], a[1]).total_cmp(&ulps(b[0], b[1])))
+    };
+    let loss = |step: &Step| DigitLoss {
+        at: schema.event(step.event).at,
+        values: floats(step),
+    };
+    if !red.is_finite() {
+        let steps = merge(schema, &single, &double);
+        let is_first = |step: &&Step| {
+            floats(step).is_some_and(|[single, double]| !single.is_finite() && double.is_finite())
+        };
+        return Ok(steps.iter().filter(is_counted).find(is_first).map(loss));
+    }
+    let error = ulps(red, expected);
+    let (_, steps) = after_last_effective(&doubles, pixel, &single, color_distance(&single, &double) / 2.0)?;
+    let is_lost = |step: &&Step| {
+        let is_branch = schema.event(step.event).kind == EventKind::Branch;
+        let parts = step.single.is_none() || step.double.is_none();
+        parts
+            || (is_branch && step.pairs().any(|(single, double)| single != double))
+            || step.ulps().is_some_and(|lost| lost >= LOSS_SHARE * error)
+    };
+    Ok(steps.iter().filter(is_counted).find(is_lost).map(loss))
 }
 
 /// The distance of two colors, in the largest component; infinite if exactly one is NaN or discarded.

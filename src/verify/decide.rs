@@ -136,9 +136,9 @@ pub enum Reason {
         /// The number of pixels in which rounding decides the color of the reference itself, such as where an
         /// edge of a scene passes through the sample.
         tied: u64,
-        /// The number of pixels in which float32 is precise enough for neither the shader nor the reference
-        /// shader, if they are many.
-        imprecise_reference: u64,
+        /// The pixels that visibly differ between float32 and double precision, if they are many and float32 is
+        /// not precise enough for the reference shader either.
+        imprecise: Option<Share>,
     },
     /// Without a difference that is permitted, the shader agrees with its reference: `correct`.
     Permitted {
@@ -252,7 +252,7 @@ pub fn decide(evidence: impl Into<Evidence>) -> Ruling {
         Evidence::Checked(evidence) => {
             let (verdict, reason) = match &evidence.random_numbers {
                 Some(random_numbers) => by_means(random_numbers, &evidence.checks),
-                None => by_checks(&evidence.checks, evidence.growth, evidence.is_reference_shader),
+                None => by_checks(&evidence.checks, evidence.growth, evidence.imprecise_reference),
             };
             match (evidence.self_intersection, verdict) {
                 (Some(cause), _) if cause.in_double => (Verdict::Wrong, Reason::SelfIntersection(cause)),
@@ -291,8 +291,9 @@ fn without_image(failure: &Failure) -> Verdict {
     }
 }
 
-/// The verdict by the three checks, pixel by pixel, and by the growth of errors over frames.
-fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>, is_reference_shader: bool) -> (Verdict, Reason) {
+/// The verdict by the three checks, pixel by pixel, and by the growth of errors over frames. The precision check
+/// leaves out the pixels in which the reference is imprecise too.
+fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>, imprecise_reference: u64) -> (Verdict, Reason) {
     let Some(algorithm) = &checks.algorithm else {
         // Without a reference, the subject is the toolchain.
         let fault = checks
@@ -342,20 +343,19 @@ fn by_checks(checks: &Checks, growth: Option<VisibleGrowth>, is_reference_shader
         };
         return (verdict, Reason::Growth(growth));
     }
-    let tied = checks
-        .precision
-        .as_ref()
-        .map_or(Share { count: 0, of: 0 }, |precision| {
-            Share::new(precision, precision.tied)
-        });
-    let is_imprecise = is_reference_shader && tied.ratio() > MAX_UNSTABLE;
+    let precision = checks.precision.as_ref();
+    let tied = precision.map_or(0, |precision| precision.tied.saturating_sub(imprecise_reference));
+    // With those that only the shader renders imprecisely: without a reference, all of them count.
+    let imprecise =
+        precision.map(|precision| Share::new(precision, precision.differing + imprecise_reference));
+    let imprecise = imprecise.filter(|imprecise| imprecise_reference > 0 && imprecise.ratio() > MAX_UNSTABLE);
     let reason = Reason::Agrees {
         differing,
         ill_conditioned: algorithm.ill_conditioned,
         undefined: algorithm.undefined,
         undefined_region: algorithm.undefined_region,
-        tied: algorithm.tied.max(if is_imprecise { 0 } else { tied.count }),
-        imprecise_reference: if is_imprecise { tied.count } else { 0 },
+        tied: algorithm.tied.max(tied),
+        imprecise,
     };
     (Verdict::Correct, reason)
 }
@@ -389,7 +389,7 @@ fn by_means(random: &OtherRandomNumbers, checks: &Checks) -> (Verdict, Reason) {
     };
     if verdict == Verdict::Correct {
         // Other random numbers in float32 are not a growth of errors.
-        let others = by_checks(&random.other_pixels, None, false);
+        let others = by_checks(&random.other_pixels, None, 0);
         if others.0 != Verdict::Correct {
             return others;
         }
@@ -559,6 +559,30 @@ mod tests {
         let algorithm = checks.algorithm.as_mut().unwrap();
         (algorithm.ill_conditioned, algorithm.tied) = (501, 501);
         assert_eq!(verdict(checks), Verdict::Inconclusive, "too few pixels are left");
+    }
+
+    #[test]
+    fn a_reference_that_is_as_imprecise_hides_no_loss_of_precision() {
+        // 20 pixels of the shader alone, 15 of the reference too, and 5 on an edge that passes exactly.
+        let mut checks = checks([0; 3], 20, SAME);
+        let precision = checks.precision.as_mut().unwrap();
+        (precision.ill_conditioned, precision.tied) = (20, 20);
+        let imprecise = |imprecise_reference: u64| {
+            let evidence = CheckEvidence {
+                checks: checks.clone(),
+                imprecise_reference,
+                ..CheckEvidence::default()
+            };
+            match decided(evidence) {
+                (Verdict::Correct, Reason::Agrees { tied, imprecise, .. }) => {
+                    (tied, imprecise.map(|share| share.count))
+                }
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(imprecise(15), (5, Some(35)));
+        assert_eq!(imprecise(10), (10, None), "no more than may be imprecise");
+        assert_eq!(imprecise(0), (20, None));
     }
 
     #[test]

@@ -54,8 +54,9 @@ pub struct CheckEvidence {
     /// The pixels in which rounding decides whether a ray hits the surface that it starts from, where there
     /// are enough of them to explain the difference.
     pub self_intersection: Option<SelfIntersection>,
-    /// Whether the reference is a shader, whose formulas may lose precision too.
-    pub is_reference_shader: bool,
+    /// The number of pixels in which float32 is precise enough for neither the shader nor the reference shader,
+    /// and double precision is.
+    pub imprecise_reference: u64,
 }
 
 /// Pixels in which rounding decides whether a ray hits the surface that it starts from.

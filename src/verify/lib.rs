@@ -35,6 +35,7 @@
 //! - [`project`]: shaders with several passes over frames
 //! - `decide`: the verdict and its reason, a pure function of the evidence; `settle`: the evidence that a fault
 //!   calls for, and all places where a verdict may change
+//! - [`profile`]: where the operations of a shader are executed
 //! - [`debug`], `loss`, `notes`: one pixel in both precisions, and the diagnostics about a run
 //!
 //! `toyproof_explain` searches for the mistake that explains a wrong image, and for its repair;
@@ -84,6 +85,7 @@ mod limits;
 mod loss;
 mod notes;
 mod pool;
+pub mod profile;
 pub mod project;
 pub mod random;
 mod self_intersection;

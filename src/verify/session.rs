@@ -18,7 +18,7 @@ use crate::compare::{self, CheckResult, Comparison, DiffLevel, EpsilonSearch, Re
 use crate::contain::{Part, contain};
 use crate::driver::GpuRun;
 use crate::evaluator::{Band, DoubleBand, Evaluator};
-use crate::expected::{Expected, NumberType, ReferenceBand};
+use crate::expected::{Expected, NumberType, ReferenceBand, ReferenceKind};
 use crate::failure::Failure;
 use crate::loss::NotFinite;
 use crate::notes;
@@ -46,6 +46,7 @@ pub(super) struct VerifySession<'a, 'e> {
     algorithm: CheckResult,
     mixed: EpsilonSearch,
     precision: CheckResult,
+    imprecise_reference: u64,
     toolchain: Option<CheckResult>,
     comparison: Option<(Comparison, Vec<DiffLevel>)>,
     actual: Rgb8Image,
@@ -81,6 +82,7 @@ impl<'a, 'e> VerifySession<'a, 'e> {
             algorithm: CheckResult::with_capacity(pixels),
             mixed: EpsilonSearch::new(pixels as u64),
             precision: CheckResult::with_capacity(pixels),
+            imprecise_reference: 0,
             toolchain: None,
             comparison: None,
             actual: empty(),
@@ -293,6 +295,12 @@ impl<'a, 'e> VerifySession<'a, 'e> {
             compare::exclude_tied(&mut statuses, |wanted| {
                 expected.tied(rows, wanted, NumberType::Single)
             });
+            if expected.kind() == ReferenceKind::Shader {
+                self.imprecise_reference += compare::count_tied(&statuses, |tied| {
+                    let in_double = expected.tied(rows, tied, NumberType::Double);
+                    in_double.into_iter().map(|tied| !tied).collect()
+                });
+            }
         }
         self.precision.extend(precise, actual, &statuses, rows.start);
     }
@@ -340,6 +348,7 @@ impl<'a, 'e> VerifySession<'a, 'e> {
         let results = CheckResults {
             algorithm,
             precision,
+            imprecise_reference: self.imprecise_reference,
             toolchain,
             comparison: self.comparison,
             reference: self.reference,

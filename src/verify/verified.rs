@@ -27,6 +27,9 @@ pub struct CheckResults {
     pub algorithm: Option<CheckResult>,
     /// The precision check.
     pub precision: Option<CheckResult>,
+    /// The number of pixels in which float32 is precise enough for neither the shader nor the reference shader,
+    /// and double precision is.
+    pub imprecise_reference: u64,
     /// The toolchain check; only for strict runs on a GPU.
     pub toolchain: Option<CheckResult>,
     /// The comparison of the shader's image with the reference.
@@ -146,7 +149,7 @@ impl Subject<'_> {
         CheckEvidence {
             checks: self.results.checks(),
             growth: self.case.from_start.and_then(|from_start| from_start.growth),
-            is_reference_shader: self.results.reference_kind == Some(ReferenceKind::Shader),
+            imprecise_reference: self.results.imprecise_reference,
             ..CheckEvidence::default()
         }
     }

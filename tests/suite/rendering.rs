@@ -186,6 +186,98 @@ fn the_error_of_float32_is_shown_in_each_pixel() {
     }
 }
 
+/// In each pixel, four comparisons, three increments, and three times two operations and a sum; one comparison.
+const COUNTED: &str = "float f(float x) { return x * x + 1.0; }
+float g(float x) { return -x; }
+void mainImage(out vec4 c, in vec2 p) {
+    float s = 0.0;
+    for (int i = 0; i < 3; i++)
+        s += f(p.x);
+    if (p.x > 99.0)
+        s = g(s);
+    c = vec4(s);
+}
+";
+
+#[test]
+fn a_profile_counts_operations_and_lists_what_is_unused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, &[("s.glsl", COUNTED)]);
+    let run = toyproof(folder, &["run", "s.glsl", "--size", "19x7", "--profile=p.csv"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let lines: Vec<_> = run.stdout.lines().map(words).collect();
+    for line in [
+        "17.0 operations per pixel, at most 17 at (0, 0)",
+        "mainImage 100.0 % 64.7 % 1.0",
+        "f 35.3 % 35.3 % 3.0",
+        "5 41.2 % 7.0 4.0× for (int i = 0; i < 3; i++)",
+        "line 7: the condition of `if` is never true",
+        "never called in this frame: g",
+    ] {
+        assert!(lines.iter().any(|other| other == line), "{line}: {}", run.stdout);
+    }
+    let csv = fs::read_to_string(folder.join("p.csv")).unwrap();
+    let row = format!("\r\n,s.glsl,1,{},{},6,3,", 19 * 7 * 6, 6.0 / 17.0);
+    assert!(csv.contains(&row), "{row}: {csv}");
+    let page = toyproof(
+        folder,
+        &[
+            "run",
+            "s.glsl",
+            "--size",
+            "19x7",
+            "--profile=p.html",
+            "--format",
+            "json",
+        ],
+    );
+    assert_eq!(page.code, 0, "{}", page.stderr);
+    let images: Value = serde_json::from_str(&page.stdout).unwrap();
+    let pass = &images[0]["profile"]["passes"][0];
+    assert_eq!(pass["operations"], 17 * 19 * 7, "{pass}");
+    assert_eq!(pass["never_called"], json!(["g"]));
+    let html = fs::read_to_string(folder.join("p.html")).unwrap();
+    assert!(html.contains("for (int i = 0; i &lt; 3; i++)"), "{html}");
+    for (arguments, message) in [
+        (&["--profile=p.txt"][..], "a profile cannot be written as p.txt"),
+        (&["--profile", "-o", "-"], "standard output takes an image"),
+        (&["--profile", "--frames", "0..1"], "cannot be used with"),
+        (&["--profile", "--float", "fast"], "--profile needs the evaluator"),
+    ] {
+        let run = toyproof(folder, &[&["run", "s.glsl"], arguments].concat());
+        assert_eq!(run.code, 2, "{}", run.stdout);
+        assert!(run.stderr.contains(message), "{}", run.stderr);
+    }
+}
+
+#[test]
+fn the_profile_of_a_project_has_each_pass_and_names_those_that_are_not_needed() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(
+        folder,
+        &[
+            ("p/image.glsl", SHOW),
+            ("p/buffer-a.glsl", COUNTED),
+            ("p/buffer-b.glsl", GRADIENT),
+        ],
+    );
+    let run = toyproof(
+        folder,
+        &["run", "p", "-o", "p.png", "--size", "16x8", "--profile"],
+    );
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for text in [
+        "Buffer A: 17.0 operations per pixel",
+        "Image: ",
+        "never read by another pass in this frame: Buffer B\n",
+    ] {
+        assert!(run.stdout.contains(text), "{text}: {}", run.stdout);
+    }
+}
+
 #[test]
 fn an_explicit_time_limit_ends_a_run() {
     let folder = tempfile::tempdir().unwrap();

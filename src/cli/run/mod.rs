@@ -3,6 +3,7 @@
 mod banded;
 mod error_map;
 mod failure;
+mod profile;
 mod project;
 mod sound;
 mod state;
@@ -23,7 +24,7 @@ use toyproof_film::FilmSettings;
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_gpu::{DrawOutput, Failure, Worker};
 use toyproof_image::{self as image, Frame, Image, ImageError, check_size};
-use toyproof_player::Clock;
+use toyproof_player::{Clock, Target};
 use toyproof_project::PassKind;
 use toyproof_project::files;
 use toyproof_report as report;
@@ -33,6 +34,7 @@ use toyproof_verify::unbound;
 use self::error_map::{ErrorMapArgs, WrittenErrors};
 use self::failure::{ImageFailure, draw_error, image_failure, is_too_large, shader_error};
 pub(in crate::cli) use self::failure::{evaluation_error, pass_error};
+use self::profile::{Pass, ProfileArgs, WrittenProfile};
 use crate::cli::inputs::{
     DriverArgs, Format, FrameArgs, LanguageArgs, check_output, shell_word, short_device,
 };
@@ -53,6 +55,7 @@ Examples:
   toyproof run mine.glsl -o mine.mp4 --duration 8 --size 1280x720
   toyproof run mine.glsl -o mine.gif --duration 2 --fps 25 --loop forever
   toyproof run mine.glsl -o frames/mine.png --frames 0..479
+  toyproof run mine.glsl --profile=profile.html
   toyproof run shaders -o images")]
 pub(in crate::cli) struct Args {
     /// Shaders: files, folders, or - for standard input
@@ -103,6 +106,8 @@ pub(in crate::cli) struct Args {
     state: Option<PathBuf>,
     #[command(flatten)]
     error_map: ErrorMapArgs,
+    #[command(flatten)]
+    profile: ProfileArgs,
     #[command(flatten)]
     sequence: SequenceArgs,
     #[command(flatten)]
@@ -168,11 +173,16 @@ pub(in crate::cli) fn run(args: &Args, terminal: &Terminal) -> Result<Exit, CliE
     if has_error_map {
         error_map::check(args, one)?;
     }
+    let has_profile = args.profile.profile.is_some();
+    if has_profile {
+        profile::check(args, one, &output)?;
+    }
+    let is_evaluated = args.precision != Precision::F32 || args.samples > 1 || has_error_map || has_profile;
     let mut runner = Runner {
         args,
         terminal,
         output: &output,
-        worker: worker.filter(|_| args.precision == Precision::F32 && args.samples == 1 && !has_error_map),
+        worker: worker.filter(|_| !is_evaluated),
         prefers_evaluator: args.driver.is_evaluator_equal(),
         supersampling,
         frame: &frame,
@@ -291,6 +301,9 @@ struct WrittenImage {
     /// How far float32 is from double precision, if that is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     errors: Option<WrittenErrors>,
+    /// The profile, if it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    profile: Option<WrittenProfile>,
 }
 
 /// An image, and what rendered it.
@@ -356,7 +369,15 @@ impl Runner<'_> {
         match self.render(shader, frame, None) {
             Ok(rendered) => {
                 self.write_confirmed(&rendered, frame, &shader.name, path)?;
-                self.write_error_map(shader, shader.require_image()?, frame)
+                let checked = shader.require_image()?;
+                self.write_error_map(shader, checked, frame)?;
+                let pass = Pass {
+                    target: Target::Image,
+                    checked,
+                    frame: frame.clone(),
+                    inputs: [None; 4],
+                };
+                self.write_profile(shader, &[pass])
             }
             Err(ImageFailure::Failed(error)) => Err(error),
             Err(ImageFailure::Interrupted) => Err(CliError::silent()),
@@ -405,6 +426,7 @@ impl Runner<'_> {
             seconds: 0.0,
             frames: Some(frames.count()),
             errors: None,
+            profile: None,
         })
     }
 
@@ -631,6 +653,7 @@ impl Runner<'_> {
             seconds: by.seconds,
             frames: None,
             errors: None,
+            profile: None,
         });
     }
 }

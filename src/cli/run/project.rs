@@ -18,6 +18,7 @@ use toyproof_project::{Buffer, CompiledProject, PassKind, Rendering, Tab};
 use toyproof_verify::project::playback::{CpuPlayback, DevicePlayback, PassShader, PlaybackFailure};
 
 use super::failure::{FrameFailure, draw_error, frame_error, target_of};
+use super::profile::Pass;
 use super::state::{self, Owner};
 use super::{Precision, RenderedImage, Runner, is_too_large, pass_error, shader_error};
 use crate::cli::inputs::short_device;
@@ -177,6 +178,23 @@ impl Run<'_> {
         let pass = passes.iter().position(|pass| pass.target == self.target)?;
         let frame = playback.bound(pass, &self.clock.frame(number));
         Some((self.passes.checked[pass], frame))
+    }
+
+    /// All passes, and a frame, which was rendered last, with the channels that each read.
+    fn profiled_passes(&self, number: i32) -> Vec<Pass<'_>> {
+        let Playback::Single(playback) = &self.playback else {
+            return Vec::new();
+        };
+        let passes = self.passes.graph.passes();
+        let frame = self.clock.frame(number);
+        let passes = passes.iter().zip(&self.passes.checked).enumerate();
+        let passes = passes.map(|(at, (pass, checked))| Pass {
+            target: pass.target,
+            checked,
+            frame: playback.bound(at, &frame),
+            inputs: pass.inputs,
+        });
+        passes.collect()
     }
 
     /// Renders the frames up to this one, and returns the image of the shown pass in it.
@@ -581,10 +599,13 @@ impl Runner<'_> {
         let rendered = run.show(number, interrupted);
         let rendered = rendered.map_err(|failure| frame_error(failure, run.passes.graph, number, shader))?;
         self.write_confirmed(&rendered, &run.shown_frame(number), &shader.name, path)?;
-        match run.shown_pass(number) {
-            Some((checked, frame)) => self.write_error_map(shader, checked, &frame),
-            None => Ok(()),
+        if let Some((checked, frame)) = run.shown_pass(number) {
+            self.write_error_map(shader, checked, &frame)?;
         }
+        if self.args.profile.profile.is_some() {
+            self.write_profile(shader, &run.profiled_passes(number))?;
+        }
+        Ok(())
     }
 
     fn all_frames(

@@ -13,6 +13,7 @@ mod markdown;
 mod names;
 mod overview;
 pub mod parts;
+pub(super) mod profile;
 mod source;
 
 use std::fmt::{self, Display, Formatter, Write};

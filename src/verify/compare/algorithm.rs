@@ -176,6 +176,19 @@ pub(crate) fn exclude_tied(statuses: &mut [PixelStatus], tied: impl FnOnce(&[boo
     replace(statuses, &tied, PixelStatus::Tied);
 }
 
+/// Counts the tied pixels for which `is_counted` returns true.
+pub(crate) fn count_tied(statuses: &[PixelStatus], is_counted: impl FnOnce(&[bool]) -> Vec<bool>) -> u64 {
+    let tied: Vec<bool> = statuses
+        .iter()
+        .map(|&status| status == PixelStatus::Tied)
+        .collect();
+    if !tied.contains(&true) {
+        return 0;
+    }
+    let counted = is_counted(&tied).into_iter().zip(tied);
+    counted.filter(|&(counted, tied)| counted && tied).count() as u64
+}
+
 /// Returns those of the `wanted` pixels of an image whose color changes by more than the tolerance in one of
 /// the images of `perturbed`, which evaluates the same shader with every operation perturbed, given a seed
 /// and the wanted pixels (Vignes, "A stochastic arithmetic for reliable scientific computation", 1993). It is

@@ -20,7 +20,7 @@ pub use agreement::{Agreement, Quantization};
 pub use algorithm::{
     Band, EpsilonColors, EpsilonSearch, PERTURBATIONS, Reference, Undefined, accept_epsilons, algorithm,
 };
-pub(crate) use algorithm::{changed_by_rounding, exclude_tied};
+pub(crate) use algorithm::{changed_by_rounding, count_tied, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, Share, TOLERANCE, diff_levels, precision, toolchain,
 };
