@@ -376,7 +376,8 @@ fn trace<T: Backend>(
 
 /// Write the ShaderToy shader that renders a scene, or a project as ShaderToy's JSON
 ///
-/// The text is written to standard output unless -o is given.
+/// The text is written to standard output unless -o is given. The shader has only what the scene requires;
+/// --verbose lists what that is, and what was left out.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -403,9 +404,13 @@ pub(super) fn export(args: &ExportArgs, terminal: &Terminal) -> Result<Exit, Cli
         return project::export(&args.input, &args.output, terminal);
     }
     check_output(&args.output, &iter::once(&*args.input).collect())?;
-    let text = scene::export::shader(&load_scene(&args.input)?);
+    let scene = load_scene(&args.input)?;
+    let requirements = Requirements::new(&scene);
+    let text = scene::export::shader(&scene);
     let text = text.map_err(|error| format!("{}: {error}", path_name(&args.input)))?;
     terminal.write(&args.output, text.as_bytes())?;
     terminal.confirm(&args.output, &file_size(text.len()));
+    terminal.detail(&format!("the scene requires {requirements}"));
+    terminal.detail(&format!("left out: {}", requirements.left_out().join(", ")));
     Ok(Exit::Success)
 }

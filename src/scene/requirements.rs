@@ -78,28 +78,68 @@ impl Requirements {
     }
 }
 
+/// A feature that a scene uses or not.
+struct Feature {
+    is_used: bool,
+    name: &'static str,
+    /// Why a scene does not use it.
+    absence: &'static str,
+}
+
+impl Requirements {
+    fn features(&self) -> [Feature; 13] {
+        let feature = |is_used, name, absence| Feature {
+            is_used,
+            name,
+            absence,
+        };
+        let shapes = if self.surfaces {
+            "all surfaces are spheres"
+        } else {
+            "there is no surface"
+        };
+        [
+            feature(self.figures, "figures", "nothing is drawn on the screen"),
+            feature(self.shapes, "planes, quadrics or boxes", shapes),
+            feature(self.patterns, "patterns", "no surface has one"),
+            feature(self.turned_camera, "a turned camera", "it looks along -z"),
+            feature(self.many_spheres, "many spheres", "they are few"),
+            feature(
+                self.secondary_rays,
+                "secondary rays",
+                "no ray goes on from a surface",
+            ),
+            feature(self.branches, "ray splitting at glass", "no surface is glass"),
+            feature(self.shadows, "shadows", "no light casts any"),
+            feature(self.soft_shadows, "soft shadows", "no light has a radius"),
+            feature(self.path_tracing, "path tracing", "no direction is sampled"),
+            feature(self.samples, "multiple samples", "one at the center of a pixel"),
+            feature(
+                self.transfer,
+                "tone mapping or gamma",
+                "colors are shown as they are",
+            ),
+            feature(self.motion, "motion", "nothing moves"),
+        ]
+    }
+
+    /// Returns the features that the scene does not use, each with the reason: `shadows (no light casts any)`.
+    #[must_use]
+    pub fn left_out(&self) -> Vec<String> {
+        let unused = self.features().into_iter().filter(|feature| !feature.is_used);
+        unused
+            .map(|feature| format!("{} ({})", feature.name, feature.absence))
+            .collect()
+    }
+}
+
 impl fmt::Display for Requirements {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let labels = [
-            (self.figures, "figures"),
-            (self.surfaces && !self.shapes, "spheres only"),
-            (self.shapes, "planes, quadrics or boxes"),
-            (self.patterns, "patterns"),
-            (self.turned_camera, "a turned camera"),
-            (self.many_spheres, "many spheres"),
-            (self.secondary_rays, "secondary rays"),
-            (self.branches, "ray splitting at glass"),
-            (self.shadows, "shadows"),
-            (self.soft_shadows, "soft shadows"),
-            (self.path_tracing, "path tracing"),
-            (self.samples, "multiple samples"),
-            (self.transfer, "tone mapping or gamma"),
-            (self.motion, "motion"),
-        ];
-        let used: Vec<_> = labels
-            .iter()
-            .filter(|(uses, _)| *uses)
-            .map(|(_, label)| *label)
+        let only_spheres = (self.surfaces && !self.shapes).then_some("spheres only");
+        let used = self.features().into_iter().filter(|feature| feature.is_used);
+        let used: Vec<_> = only_spheres
+            .into_iter()
+            .chain(used.map(|feature| feature.name))
             .collect();
         if used.is_empty() {
             f.write_str("only a background")

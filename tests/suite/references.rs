@@ -170,6 +170,53 @@ fn pixels_that_rounding_decides_do_not_count() {
 }
 
 #[test]
+fn a_reference_does_not_hide_the_precision_that_it_loses_too() {
+    // A small sphere far away: b² and c agree in almost all digits.
+    let far = |b: &str, h: &str, root: &str| {
+        format!(
+            "void mainImage(out vec4 color, in vec2 p) {{
+    vec3 d = normalize(vec3((p - 0.5 * iResolution.xy) / iResolution.y, -300.0)), center = vec3(0, 0, -5000);
+    float b = {b} * dot(-center, d), c = dot(center, center) - 25.0, h = {h};
+    color = vec4(0.1, 0.1, 0.2, 1.0);
+    if (h > 0.0) {{
+        vec3 n = ({root} * d - center) / 5.0;
+        color.rgb = vec3(0.9, 0.5, 0.2) * max(dot(n, normalize(vec3(1))), 0.0);
+    }}
+}}"
+        )
+    };
+    let folder = folder(&[
+        (
+            "solution.glsl",
+            &far("2.0", "b * b - 4.0 * c", "0.5 * (-b - sqrt(h))"),
+        ),
+        ("far.glsl", &far("1.0", "b * b - c", "(-b - sqrt(h))")),
+    ]);
+    let compared = check(
+        folder.path(),
+        &["far.glsl", "--reference", "solution.glsl", "--format", "json"],
+    );
+    let found = record(&compared);
+    assert_eq!(found["verdict"], "correct", "{found}");
+    let reason = found["reason"].as_str().unwrap();
+    assert!(reason.ends_with(", and so does the reference"), "{reason}");
+    let text = found.to_string();
+    for text_part in ["W0602", "the reference loses precision at the same place"] {
+        assert!(text.contains(text_part), "{text}");
+    }
+    assert!(
+        !text.contains("rounding decides the color of the reference"),
+        "{text}"
+    );
+    let alone = check(folder.path(), &["far.glsl", "--format", "json"]);
+    let reason = record(&alone)["reason"].to_string();
+    assert!(
+        reason.contains("visibly between float32 and double precision"),
+        "{reason}"
+    );
+}
+
+#[test]
 fn a_reference_that_cannot_be_used_is_reported_before_any_shader_is_checked() {
     let broken = DISK.replace("1.0);\n}", "1.0)\n}");
     let endless = "void mainImage(out vec4 c, in vec2 p) { float x = p.x; while (x > -1.0) x = abs(sin(x)); c = vec4(x); }";

@@ -48,6 +48,33 @@ fn built_in_scenes_are_accepted_by_name_and_files_come_first() {
     assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
     let run = toyproof(folder.path(), &["export", "06-reflections", "-o", "mirrors.glsl"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(!run.stderr.contains("left out"), "{}", run.stderr);
+}
+
+#[test]
+fn export_lists_what_a_scene_requires_and_what_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = toyproof(
+        folder.path(),
+        &["export", "06-reflections", "-o", "mirrors.glsl", "-v"],
+    );
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    // Lines may be wrapped.
+    let words = run.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+    for text in [
+        "the scene requires spheres only, ",
+        "secondary rays",
+        "left out: ",
+        "ray splitting at glass (no surface is glass)",
+        "motion (nothing moves)",
+    ] {
+        assert!(words.contains(text), "{text}: {words}");
+    }
+    let (required, left_out) = words.split_once("left out: ").unwrap();
+    assert!(
+        !required.contains("glass") && !left_out.contains("secondary rays"),
+        "{words}"
+    );
 }
 
 #[test]
