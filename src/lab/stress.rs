@@ -198,7 +198,7 @@ fn shares() -> Vec<Band> {
     ])
 }
 
-fn errors() -> Vec<Band> {
+pub(crate) fn errors() -> Vec<Band> {
     bands([
         (0.0, "up to 4", [38, 70, 112]),
         (4.0, "4–32", [120, 165, 205]),

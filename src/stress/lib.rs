@@ -1,5 +1,5 @@
 //! Numerical stability of ray–surface intersection at extreme arguments: finds where formulas, and authors'
-//! own functions, stop being right.
+//! own functions, stop being right. And the accuracy of any function of a shader.
 //!
 //! A subject is a shader that reads rays and surfaces from its channels and returns its results, one pixel
 //! per case. It runs in f32 and f64 on the evaluator, and on a GPU; [`exact`] computes the reference from the
@@ -18,10 +18,13 @@
 //! - [`axis`]: the quantities that are taken to their extremes, and [`case`], the rays and surfaces.
 //! - [`formula`]: the built-in subjects.
 //! - [`function`]: an author's own function as a subject: its signature, and the mistake that it makes.
+//! - [`accuracy`]: the errors of any other function, its worst inputs, and its properties.
 //! - [`study`]: tests subjects on all axes, and counts failures; its report has a summary as text.
 //! - [`ShaderRunner`]: runs a shader on the evaluator.
 
+pub mod accuracy;
 pub mod axis;
+mod body;
 pub mod case;
 mod case_sampler;
 mod cells;

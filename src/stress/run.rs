@@ -40,8 +40,8 @@ fn first_message(diagnostics: &[Diagnostic]) -> &str {
 #[derive(Debug)]
 pub struct ShaderRunner {
     pub(crate) checked: Checked,
-    program: Program,
-    deadline: Option<Instant>,
+    pub(crate) program: Program,
+    pub(crate) deadline: Option<Instant>,
 }
 
 impl ShaderRunner {
@@ -69,8 +69,18 @@ impl ShaderRunner {
     ///
     /// If the evaluator fails, or the time is up.
     pub fn colors<N: Number>(&self, frame: &Frame) -> Result<Vec<[f64; 3]>, RunError> {
+        self.colors_with::<N>(frame, N::Noise::default())
+    }
+
+    /// The same with a seed of random rounding, which other number types ignore.
+    pub(crate) fn colors_with<N: Number>(
+        &self,
+        frame: &Frame,
+        noise: N::Noise,
+    ) -> Result<Vec<[f64; 3]>, RunError> {
         let settings = eval::Settings::<N> {
             undefined: UndefinedPolicy::Plain,
+            noise,
             deadline: self.deadline,
             ..eval::Settings::default()
         };

@@ -443,19 +443,126 @@ fn the_command_writes_its_files_and_names_the_columns() {
     }
 }
 
+/// Functions that do not intersect a ray with a sphere.
+const ANY: &str = "float root(float x) {
+    float s = sqrt(1.0 + x);
+    return s - 1.0;
+}
+void nothing(float x) {}
+float box(vec3 p, vec3 b) {
+    vec3 q = abs(p) - b;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
+}
+void mainImage(out vec4 c, in vec2 p) {
+    vec2 uv = p / iResolution.xy;
+    c = vec4(root(uv.x * 0.001), box(vec3(uv * 4.0 - 2.0, 0.5), vec3(1.0)), 0.0, 1.0);
+}
+";
+
+#[test]
+fn any_function_is_examined_in_the_ranges_that_the_shader_passes() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("any.glsl"), ANY).unwrap();
+    let stress = |arguments: &[&str]| {
+        let all = [&["stress", "any.glsl", "--cases", "2000"], arguments].concat();
+        toyproof(folder.path(), &all)
+    };
+    let run = stress(&["--function", "root", "-o", "out"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for part in [
+        "float root(float x): 2,000 random inputs",
+        "observed",
+        "result: the formula loses digits",
+        "    root(",
+        "digits are lost at line 3: `s - 1.0`",
+    ] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+    let out = folder.path().join("out");
+    let csv = fs::read_to_string(out.join("stress.csv")).unwrap();
+    assert!(csv.starts_with("function,output,case,"), "{csv}");
+    let json: Value = serde_json::from_str(&fs::read_to_string(out.join("stress.json")).unwrap()).unwrap();
+    let input = &json["inputs"][0];
+    assert_eq!(
+        (input["path"].as_str(), input["source"].as_str()),
+        (Some("x"), Some("observed"))
+    );
+    assert!(
+        input["high"]
+            .as_f64()
+            .is_some_and(|high| (0.0009..0.001).contains(&high)),
+        "{input}"
+    );
+    // A function of one input has no pairs.
+    assert!(!out.join("stress-pairs.svg").exists());
+
+    let holding = ["--property", "symmetric p", "--property", "range -10..10"];
+    let run = stress(&[&["--function", "box", "-o", "box"][..], &holding].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("result is accurate"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("property `symmetric p` holds"),
+        "{}",
+        run.stdout
+    );
+    assert!(folder.path().join("box/stress-pairs.png").is_file());
+
+    let run = stress(&[
+        "--function",
+        "box",
+        "--range",
+        "b=0..1",
+        "--property",
+        "monotone p.x",
+    ]);
+    assert_eq!(run.code, 1, "{}", run.stderr);
+    assert!(
+        run.stdout.contains("property `monotone p.x` is violated by"),
+        "{}",
+        run.stdout
+    );
+}
+
 #[test]
 fn bad_input_is_reported_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glsl");
     fs::write(&path, "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }").unwrap();
     fs::write(folder.path().join("textbook.glsl"), TEXTBOOK).unwrap();
+    fs::write(folder.path().join("any.glsl"), ANY).unwrap();
     let stress = |arguments: &[&str]| {
         let all = [&["stress", "-o", "out", "--device", "cpu"], arguments].concat();
         toyproof(folder.path(), &all)
     };
     for (arguments, message) in [
         (&["a.glsl", "--function", "f"][..], "there is no function `f`"),
-        (&["a.glsl"], "no function intersects a ray with a sphere"),
+        (&["a.glsl"], "the shader has no function to examine"),
+        (&["any.glsl"], "choose a function with --function: root, box"),
+        (
+            &["any.glsl", "--function", "nothing"],
+            "nothing returns nothing, and has no `out` parameter",
+        ),
+        (
+            &["any.glsl", "--function", "bxo"],
+            "there is no function `bxo`; did you mean `box`?",
+        ),
+        (
+            &["any.glsl", "--function", "box", "--range", "q=0..1"],
+            "box has no input `q`; it has p, b",
+        ),
+        (
+            &["any.glsl", "--function", "box", "--range", "p=1..0"],
+            "expected NAME=LOW..HIGH",
+        ),
+        (
+            &["any.glsl", "--function", "box", "--property", "odd p"],
+            "expected `unit`",
+        ),
+        (
+            &["any.glsl", "--function", "box", "--property", "monotone p"],
+            "needs a single number, such as `p.x`",
+        ),
+        (&["any.glsl", "--range", "p=0..1"], "--function"),
         (&["none.glsl"], "none.glsl"),
         (&["--function", "f"], "SHADER"),
         (&["a.glsl", "--map", "x=nonsense"], "expected PATH=ROLE"),
@@ -488,6 +595,7 @@ fn bad_input_is_reported_and_leaves_nothing() {
             "hitSphere has no parameter `q`",
         ),
         (&["--cases", "0"], "--cases"),
+        (&["--cases", "1000000"], "at most 100,000 cases"),
     ] {
         let run = stress(arguments);
         assert_eq!(run.code, 2, "{arguments:?}: {}", run.stderr);

@@ -95,10 +95,10 @@ macro_rules! mistakes {
 mistakes! {
     "roots-not-halved": "does not divide the roots by 2a", { two: 1.0 };
     "roots-halved-twice": "divides by 2a, but its b is half of the textbook's b", { two: 4.0 };
-    "larger-root": "returns the larger root, where the ray leaves the sphere", { choice: Choice::Farther };
-    "behind-origin": "does not check t > 0: hits behind the ray's origin count", { choice: Choice::Anywhere };
-    "behind-origin": "does not check t > 0: hits behind the ray's origin count", { choice: Choice::FartherAnywhere };
-    "not-from-inside": "ignores the second root: a ray that starts inside hits nothing", { choice: Choice::NearerAlone };
+    LARGER_ROOT: "returns the larger root, where the ray leaves the sphere", { choice: Choice::Farther };
+    "behind-origin": "does not check t > 0: callers must, or hits behind the ray's origin count", { choice: Choice::Anywhere };
+    "behind-origin": "does not check t > 0: callers must, or hits behind the ray's origin count", { choice: Choice::FartherAnywhere };
+    "not-from-inside": "returns only the nearer root: its results are right only for rays that start outside", { choice: Choice::NearerAlone };
     "closest-point": "returns the t of the point nearest to the center, not that of the hit", { choice: Choice::Middle };
     "radius-not-squared": "does not square the radius", { square: |r| r };
     RADIUS_ADDED: "adds r² instead of subtracting it", { square: |r| -r * r };
@@ -111,6 +111,11 @@ mistakes! {
     "discriminant-not-tested": "does not check for a negative discriminant", { tests_discriminant: false };
     "center-ignored": "does not subtract the center from the origin", { subtracts_center: false };
 }
+
+const LARGER_ROOT: &str = "larger-root";
+
+/// What the name of a function contains whose result is where the ray leaves the sphere.
+const EXITS: [&str; 4] = ["exit", "far", "leave", "back"];
 
 /// The name of the mistake whose formula never hits anything from outside.
 const RADIUS_ADDED: &str = "radius-added";
@@ -218,8 +223,18 @@ pub(super) fn recognize(
             .find(|(_, model)| fits(model, other))
             .map(|(mistake, _)| mistake);
     }
-    let is_written = |mistake: &Mistake| signature.adds_squared_radius || mistake.name != RADIUS_ADDED;
+    let name = signature.name.to_lowercase();
+    let is_exit = EXITS.iter().any(|word| name.contains(word));
+    let is_written = |mistake: &Mistake| match mistake.name {
+        RADIUS_ADDED => signature.adds_squared_radius,
+        LARGER_ROOT => !is_exit,
+        _ => true,
+    };
     let mut found = MISTAKES.iter().filter(|(mistake, _)| is_written(mistake));
     let found = found.find(|(_, model)| fits(model, unit));
-    found.map(|&(mistake, _)| mistake)
+    found.map(|&(mistake, _)| Mistake {
+        // Callers may test t, or start outside.
+        recoverable: matches!(mistake.name, "behind-origin" | "not-from-inside"),
+        ..mistake
+    })
 }

@@ -1,6 +1,8 @@
 //! An author's function that intersects a ray with a sphere: its signature, how it reports a miss, where it
 //! fails first, and which mistake explains the failure.
 
+#[cfg(test)]
+mod conventions;
 mod example;
 mod findings;
 mod miss;

@@ -8,6 +8,7 @@ use toyproof_glsl::{self as glsl, Checked};
 use super::role::Output;
 use super::typical::DirectionLength;
 use super::{FunctionRunner, MissConvention, Role, RoleMap, Signature};
+use crate::body::body;
 use crate::case::RaySphere;
 use crate::formula::{FORMULAS, Formula, RECENTERED};
 use crate::run::RunError;
@@ -29,7 +30,7 @@ pub fn replacements(
     let Some(signature) = all.iter().find(of_spheres).or(all.first()) else {
         return Ok(Vec::new());
     };
-    let Some(body) = body(text, checked, &signature.name) else {
+    let Some(body) = only_body(text, checked, &signature.name) else {
         return Ok(Vec::new());
     };
     let runner = FunctionRunner::new(text, signature, options, options.deadline.left())?;
@@ -190,42 +191,14 @@ fn number(value: f64) -> String {
     format!("{:?}", value as f32)
 }
 
-/// The byte range of a function's body, including its braces.
-fn body(text: &str, checked: &Checked, name: &str) -> Option<Range<usize>> {
+/// The byte range of the body of the only function with that name, including its braces.
+fn only_body(text: &str, checked: &Checked, name: &str) -> Option<Range<usize>> {
     let functions = checked.tree.functions.iter();
     let mut named = functions.filter(|(_, function)| function.name == name && function.body.is_some());
-    let (Some((_, function)), None) = (named.next(), named.next()) else {
-        return None;
-    };
-    let start = function.at.span.start as usize;
-    let (mut depth, mut begin) = (0usize, None);
-    let mut rest = text.get(start..)?.char_indices();
-    while let Some((at, letter)) = rest.next() {
-        let after = &text[start + at..];
-        let comment = ["//", "/*"].into_iter().zip(["\n", "*/"]);
-        if let Some((_, end)) = comment.into_iter().find(|(begin, _)| after.starts_with(begin)) {
-            let length = after[2..].find(end)? + 2 + end.len();
-            let next = start + at + length;
-            while rest.clone().next().is_some_and(|(at, _)| start + at < next) {
-                rest.next();
-            }
-            continue;
-        }
-        match letter {
-            '{' => {
-                begin.get_or_insert(start + at);
-                depth += 1;
-            }
-            '}' => {
-                depth = depth.checked_sub(1)?;
-                if depth == 0 {
-                    return Some(begin?..start + at + 1);
-                }
-            }
-            _ => {}
-        }
+    match (named.next(), named.next()) {
+        (Some((_, function)), None) => body(text, function.at.span.start as usize),
+        _ => None,
     }
-    None
 }
 
 #[cfg(test)]
@@ -320,13 +293,5 @@ mod tests {
         );
         let made = replacements(&text, &checked(&text), &glsl::Options::default()).unwrap();
         assert_eq!(made, []);
-    }
-
-    #[test]
-    fn body_ends_at_its_closing_brace() {
-        let text = "float f(float x) { // }\n if (x > 0.) { return 1.; } /* } */ return 2.; }\n\
-                    void mainImage(out vec4 c, in vec2 p) { c = vec4(f(p.x)); }";
-        let body = body(text, &checked(text), "f").unwrap();
-        assert!(text[body].ends_with("return 2.; }"));
     }
 }

@@ -145,7 +145,7 @@ impl Role {
     }
 
     /// Whether a name, in lowercase without underscores, is common for the role.
-    pub(super) fn has_name(self, name: &str) -> bool {
+    pub(crate) fn has_name(self, name: &str) -> bool {
         let names = NAMES.iter().find(|(role, _)| *role == self);
         names.is_some_and(|(_, names)| names.split(' ').any(|one| one == name))
     }
