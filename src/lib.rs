@@ -38,6 +38,7 @@
 //! | `convert` | conversions, and their proofs |
 //! | `stress` | numerical stability of ray–surface intersection, and tests of an author's own function |
 //! | `lab` | measurements of accuracy against time, and charts |
+//! | `numerics` | rewrites of expressions that lose fewer digits |
 //! | `project` | projects of several tabs, as folders and as the site's JSON |
 //! | `lsp` | the language server of editors |
 //! | `reduce` | the smallest shader that still shows a fault |
@@ -119,6 +120,8 @@ pub use toyproof_math as math;
 pub use toyproof_media as media;
 #[cfg(feature = "verify")]
 pub use toyproof_metrics as metrics;
+#[cfg(feature = "numerics")]
+pub use toyproof_numerics as numerics;
 #[cfg(feature = "eval")]
 pub use toyproof_player as player;
 #[cfg(feature = "project")]

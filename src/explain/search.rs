@@ -1,9 +1,12 @@
 //! The order in which explanations of a difference are searched for, and the verdict that follows.
 
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use toyproof_diagnostic::Diagnostic;
 use toyproof_eval::Places;
+use toyproof_image::Frame;
+use toyproof_numerics::rewrite::{self, rewrite};
 use toyproof_verify::bounds::explanation_deadline;
 use toyproof_verify::compare::CheckResult;
 use toyproof_verify::contain::{Panic, Part, contain};
@@ -22,6 +25,10 @@ use crate::{Explanation, Options};
 
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
 const MAX_PAIRS: usize = 512;
+
+/// The size of the images on which other forms of expressions are tried, and the number of such forms.
+const MAX_REWRITTEN_PIXELS: f64 = 320.0 * 180.0;
+const MAX_REWRITES: usize = 64;
 
 /// The largest numbers of columns and of rows of pixels with which repairs of a stochastic shader are tried.
 const NOISY_SIDE: u32 = 24;
@@ -293,10 +300,7 @@ impl<'a> Search<'a> {
         let results = subject.results;
         let differs_often = |check: &CheckResult| Share::differing(&check.summary).ratio() > MAX_UNSTABLE;
         let loses_precision = match &ruling.reason {
-            // The reference loses it at the same place.
-            Reason::Agrees {
-                imprecise_reference, ..
-            } => *imprecise_reference > 0,
+            Reason::Agrees { imprecise, .. } => imprecise.is_some(),
             Reason::NoReference => results.precision.as_ref().is_some_and(differs_often),
             _ => false,
         };
@@ -305,8 +309,42 @@ impl<'a> Search<'a> {
         }
         self.contained(Part::Cause, || {
             let mut checks = [&results.precision, &results.algorithm].into_iter().flatten();
-            checks.find_map(|check| cause(subject.program, subject.case.frame, deadline, check))
+            let found = checks.find_map(|check| cause(subject.program, subject.case.frame, deadline, check));
+            found.map(|cause| match ruling.verdict {
+                Verdict::Correct => cause.note("the reference loses precision at the same place"),
+                _ => cause,
+            })
         })
+        .map(|cause| self.with_rewrite(cause))
+    }
+
+    /// Adds a form of the expressions near a loss of precision that loses fewer digits, if there is one.
+    fn with_rewrite(&mut self, cause: Diagnostic) -> Diagnostic {
+        let (subject, deadline) = (self.subject, self.deadline);
+        let Some(search) = self.options.search.filter(|search| search.pass.is_none()) else {
+            return cause;
+        };
+        let frame = subject.case.frame;
+        let pixels = f64::from(frame.size[0]) * f64::from(frame.size[1]);
+        let scale = (MAX_REWRITTEN_PIXELS / pixels).sqrt().min(1.0);
+        let frame = Frame {
+            size: frame.size.map(|side| (f64::from(side) * scale).ceil() as u32),
+            ..frame.clone()
+        };
+        let rewritten = rewrite::Subject {
+            checked: subject.case.checked,
+            text: search.source,
+            frame: &frame,
+            near: cause.span,
+            max_candidates: MAX_REWRITES,
+        };
+        let found = self.contained(Part::Repair, || {
+            rewrite(rewritten, deadline, &AtomicBool::new(false))
+        });
+        match found.and_then(|found| found.fix) {
+            Some(fix) => cause.fix(fix),
+            None => cause,
+        }
     }
 
     /// Returns a part's result, or the default if it panicked, which is recorded.

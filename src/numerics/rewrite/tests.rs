@@ -1,0 +1,158 @@
+use toyproof_diagnostic::{File, Files};
+
+use super::*;
+
+/// Rewrites a shader whose gray is an expression of x in [0, 1), which `definitions` may precede.
+fn rewritten(definitions: &str, gray: &str) -> Rewrites {
+    let text = format!(
+        "void mainImage(out vec4 c, in vec2 p) {{ float x = p.x / iResolution.x; {definitions} c = vec4(vec3({gray}), 1.0); }}"
+    );
+    let mut files = Files::default();
+    let file = files.add(File::new("a.glsl", text.as_str()));
+    let checked = glsl::check(&files, file, &glsl::Options::default()).unwrap();
+    let frame = Frame {
+        size: [64, 4],
+        ..Frame::default()
+    };
+    let subject = Subject {
+        checked: &checked,
+        text: &text,
+        frame: &frame,
+        near: None,
+        max_candidates: 400,
+    };
+    let deadline = Instant::now() + std::time::Duration::from_secs(60);
+    rewrite(subject, deadline, &AtomicBool::new(false)).unwrap()
+}
+
+/// An expression that loses digits, for each identity.
+const LOSSES: &[(&str, &str, &str)] = &[
+    ("terms that cancel exactly", "float a = 3.0e7;", "(a + x) - a"),
+    (
+        "a difference of squares as a product",
+        "float a = 1.0e4, b = a + 1.0e-3 * x;",
+        "0.04 * (b * b - a * a)",
+    ),
+    (
+        "the distance of the center from the ray as a vector",
+        "vec3 f = vec3(x, 0.0, 5.0e3), d = vec3(0.0, 0.0, -1.0); float b = dot(f, d);",
+        "b * b - (dot(f, f) - 1.0)",
+    ),
+    (
+        "the root that cancels from the one that does not",
+        "float b = -3.0e5, k = 6.0e5 * x;",
+        "-b - sqrt(b * b - k)",
+    ),
+    (
+        "the conjugate of a difference of roots",
+        "float a = 1.0e-6 * x;",
+        "1.0e6 * (sqrt(1.0 + a) - 1.0)",
+    ),
+    ("half angles", "float a = 1.0e-3 * x;", "1.0e6 * (1.0 - cos(a))"),
+    (
+        "a difference of sines and cosines as a product",
+        "float a = 1.0 + x, e = 1.0e-6;",
+        "1.0e6 * (sin(a + e) - sin(a))",
+    ),
+    (
+        "differences before sums",
+        "vec3 o = vec3(1.0e7), q = vec3(1.0e7); float a = (o + x).y; vec3 r = o + x;",
+        "(r - q).x",
+    ),
+    (
+        "the difference of the arguments of dot products",
+        "vec3 n = vec3(0.6, 0.8, 0.0), q = vec3(3.0e6), r = q + vec3(0.0, floor(8.0 * x), 0.0);",
+        "0.1 * (dot(n, r) - dot(n, q))",
+    ),
+    (
+        "the distance from a far center by its squares",
+        "vec3 v = vec3(x, x, 0.0);",
+        "length(v + vec3(0.0, 1.0e6, 0.0)) - 1.0e6",
+    ),
+    (
+        "the haversine of an angle on a sphere",
+        "float a = 0.7, b = 0.7 + 1.0e-5 * x, l = 1.0e-5 * x;",
+        "5.0e4 * acos(sin(a) * sin(b) + cos(a) * cos(b) * cos(l))",
+    ),
+    (
+        "an angle from both of its sides",
+        "vec2 a = vec2(1.0, 0.0), b = normalize(vec2(1.0, 1.0e-3 * x));",
+        "1.0e3 * acos(dot(a, b))",
+    ),
+    (
+        "a difference of reciprocals over their product",
+        "float a = 1.0e6 + 1.0e6 * x;",
+        "1.0e12 * (1.0 / a - 1.0 / (a + 1.0))",
+    ),
+    (
+        "exp(x) - 1 by its series near 0",
+        "float a = 1.0e-6 * x;",
+        "1.0e6 * (exp(a) - 1.0)",
+    ),
+    (
+        "log(1 + x) as Kahan computes it",
+        "float a = 1.0e-6 * x;",
+        "1.0e6 * log(1.0 + a)",
+    ),
+    (
+        "one exponential instead of several",
+        "float a = 80.0 + 40.0 * x;",
+        "exp(a) / (1.0 + exp(a)) - 0.5",
+    ),
+    (
+        "a weighted mean of both ends",
+        "float a = 1.0e8, t = 1.0;",
+        "a + (x - a) * t",
+    ),
+    (
+        "scaled by the largest component",
+        "vec2 v = vec2(1.0e25, 1.0e25 * x);",
+        "1.0e-26 * length(v)",
+    ),
+    (
+        "powers of the ratio of two numbers",
+        "float a = 0.2 * x, b = 0.1;",
+        "pow(pow(a, 50.0) + pow(b, 50.0), 1.0 / 50.0)",
+    ),
+    (
+        "a larger step of a difference quotient",
+        "float e = 1.0e-6;",
+        "0.3 * (exp(x + e) - exp(x)) / e",
+    ),
+];
+
+#[test]
+fn every_identity_makes_a_shader_more_precise() {
+    for &(identity, definitions, gray) in LOSSES {
+        let found = rewritten(definitions, gray);
+        let message = found.fix.as_ref().map_or("nothing", |fix| &fix.message);
+        assert!(
+            message.contains(identity),
+            "{identity}: {message}, {:?}",
+            found.before
+        );
+        assert!(
+            found.after.imprecise < found.before.imprecise,
+            "{identity}: {message}"
+        );
+    }
+    let untested = RULES
+        .iter()
+        .filter(|rule| LOSSES.iter().all(|(name, ..)| *name != rule.name));
+    assert_eq!(
+        untested.map(|rule| rule.name).collect::<Vec<_>>(),
+        [] as [&str; 0]
+    );
+}
+
+#[test]
+fn precise_shaders_stay_as_they_are() {
+    let found = rewritten("float a = 2.0 * x;", "sqrt(1.0 + a) - 1.0");
+    assert!(found.fix.is_none() && found.before.imprecise == 0, "{found:?}");
+}
+
+#[test]
+fn rounding_that_no_identity_avoids_is_left() {
+    let found = rewritten("", "fract(sin(x * 1000.0) * 4375800.5453)");
+    assert!(found.fix.is_none() && found.before.imprecise > 0, "{found:?}");
+}
