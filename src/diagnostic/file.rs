@@ -132,6 +132,12 @@ impl Files {
         FileId(id)
     }
 
+    /// Replaces the text of a file. Files that were joined from it before keep the old one.
+    pub fn replace(&mut self, id: FileId, text: impl Into<String>) {
+        let file = &mut self.files[usize::from(id.0)];
+        *file = File::new(&file.name, text);
+    }
+
     /// Whether there is more than one file.
     pub fn is_several(&self) -> bool {
         self.files.len() > 1

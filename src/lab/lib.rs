@@ -18,10 +18,12 @@
 //!
 //! # Parts
 //!
-//! - [`stress`]: tables and heat maps of the failures of formulas.
+//! - [`stress`]: tables and heat maps of the failures of formulas; [`accuracy`]: those of the errors of a
+//!   function.
 //! - [`trade`]: accuracy against time of all methods to render an image, within a budget.
 //! - [`chart`]: scatter plots and heat maps.
 
+pub mod accuracy;
 pub mod chart;
 pub mod stress;
 pub mod trade;

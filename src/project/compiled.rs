@@ -43,6 +43,20 @@ impl CompiledProject {
         Ok(Self::of_checked(project, checked))
     }
 
+    /// The same project after the texts of its tabs changed in `files`.
+    ///
+    /// # Errors
+    /// An included file cannot be read, or one of the tabs is invalid.
+    pub fn recompile(
+        &self,
+        includes: Option<&IncludeFolders>,
+        files: &mut Files,
+        options: &Options,
+    ) -> Result<Self, Diagnostics> {
+        let checked = check_with_includes(&self.project, includes, files, options)?;
+        Ok(Self::of_checked(self.project.clone(), checked).0)
+    }
+
     /// A project with the trees of its passes. The lints are those of the image, with the warnings about all
     /// tabs.
     #[must_use]

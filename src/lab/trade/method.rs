@@ -4,20 +4,19 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use toyproof_diagnostic::{File, Files, plural};
-use toyproof_eval::{self as eval, Number, Settings, UndefinedPolicy};
-use toyproof_eval_native::Program;
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_diagnostic::plural;
 use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::{Film, FrameTime, Requirements, Sampler, Scene};
 use toyproof_tracer::{self as tracer, Tracer};
 use toyproof_translate::FloatMode;
 
-use crate::trade::schedule::Cost;
+use super::parameter::Setting;
+use super::schedule::Cost;
+use super::source::Shader;
 
 /// The settings of a rendering method, shown to users.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Configuration {
     /// The tracer, the evaluator, or a GPU with its float mode.
     pub renderer: String,
@@ -31,6 +30,8 @@ pub struct Configuration {
     pub max_depth: Option<u32>,
     /// The formula that replaces the shader's own ray–sphere intersection.
     pub sphere_formula: Option<&'static str>,
+    /// The parameters of the shader that have another value.
+    pub settings: Vec<Setting>,
 }
 
 impl fmt::Display for Configuration {
@@ -47,7 +48,10 @@ impl fmt::Display for Configuration {
             write!(f, ", depth {depth}")?;
         }
         if let Some(formula) = self.sphere_formula {
-            write!(f, ", {formula}")?;
+            write!(f, ", {formula} formula")?;
+        }
+        for setting in &self.settings {
+            write!(f, ", {setting}")?;
         }
         Ok(())
     }
@@ -71,34 +75,33 @@ pub(super) struct Method {
 impl Method {
     pub(super) fn scheduled_cost(&self) -> Cost {
         Cost {
-            kind: self.group as usize,
+            kind: self.group.index(),
             size: self.cost,
         }
     }
 }
 
 /// The renderer and precision of a method.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Group {
     Tracer32,
     Tracer64,
     Evaluator32,
     Evaluator64,
-    Strict,
-    Fast,
-    OtherDevice,
+    /// A GPU, by its index.
+    Device(usize, FloatMode),
 }
 
 impl Group {
-    pub(super) const ALL: [(Self, &str); 7] = [
-        (Self::Tracer32, "tracer, f32"),
-        (Self::Tracer64, "tracer, f64"),
-        (Self::Evaluator32, "evaluator, f32"),
-        (Self::Evaluator64, "evaluator, f64"),
-        (Self::Strict, "GPU, strict f32"),
-        (Self::Fast, "GPU, fast f32"),
-        (Self::OtherDevice, "other GPUs, f32"),
-    ];
+    fn index(self) -> usize {
+        match self {
+            Self::Tracer32 => 0,
+            Self::Tracer64 => 1,
+            Self::Evaluator32 => 2,
+            Self::Evaluator64 => 3,
+            Self::Device(at, float) => 4 + 2 * at + usize::from(float == FloatMode::Fast),
+        }
+    }
 }
 
 /// The renderer of a method, with its settings.
@@ -114,46 +117,6 @@ pub(super) enum Backend {
         worker: usize,
         float: FloatMode,
     },
-}
-
-/// A shader prepared for the evaluator and for GPUs.
-#[derive(Debug)]
-pub(super) struct Shader {
-    /// The formula that replaces the shader's ray–sphere intersection; `None` for the shader's own.
-    pub(super) formula: Option<&'static str>,
-    checked: Checked,
-    program: Program,
-}
-
-impl Shader {
-    /// Prepares a shader; `None` if the text is invalid or the program too large.
-    pub(super) fn new(formula: Option<&'static str>, text: &str, options: &glsl::Options) -> Option<Self> {
-        let mut files = Files::default();
-        let file = files.add(File::new("<trade>", text));
-        let checked = glsl::check(&files, file, options).ok()?;
-        let limit = options.deadline.left();
-        let program = Program::prepared_within(&checked, UndefinedPolicy::Plain, limit).ok()?;
-        Some(Self {
-            formula,
-            checked,
-            program,
-        })
-    }
-
-    pub(super) fn render<N: Number>(
-        &self,
-        frame: &Frame,
-        noise: N::Noise,
-        deadline: Instant,
-    ) -> Result<Image, eval::Failure> {
-        let settings = Settings::<N> {
-            undefined: UndefinedPolicy::Plain,
-            deadline: Some(deadline),
-            noise,
-            ..Settings::default()
-        };
-        Ok(self.program.render(frame, &settings)?.framebuffer.image())
-    }
 }
 
 /// The inputs and devices that methods share.
@@ -184,72 +147,84 @@ impl RenderContext<'_> {
             }),
             Backend::Evaluator { shader, double } => {
                 let shader = &self.shaders[*shader];
-                let start = Instant::now();
-                let image = if *double {
-                    shader.render::<f64>(self.frame, (), deadline)
+                let rendered = if *double {
+                    shader.evaluate::<f64>(self.frame, (), deadline)
                 } else {
-                    shader.render::<f32>(self.frame, (), deadline)
+                    shader.evaluate::<f32>(self.frame, (), deadline)
                 };
-                Some((image.ok()?, start.elapsed()))
+                rendered.ok()
             }
             Backend::Gpu {
                 shader,
                 worker,
                 float,
             } => {
-                let lowered = float.lower(&self.shaders[*shader].checked);
                 let worker = &mut self.workers[*worker].1;
-                let rendered = worker.draw_unwatched(lowered, self.frame.clone(), *float);
-                let rendered = rendered.ok()?;
-                let render_time = rendered.draw;
-                Some((rendered.image(), render_time))
+                self.shaders[*shader].draw(worker, self.frame, *float, self.frame_timeout)
             }
         }
     }
 
-    /// All methods that run the shaders.
+    /// All methods that run the shaders. Other settings than the user's are measured in f32, and by drivers
+    /// with their fast arithmetic, which hosts have.
     pub(super) fn shader_methods(&self, samples: f64) -> Vec<Method> {
         let mut methods = Vec::new();
         for (index, shader) in self.shaders.iter().enumerate() {
-            let configuration = |renderer: &str, precision| Configuration {
-                renderer: renderer.to_owned(),
-                precision,
-                sphere_formula: shader.formula,
-                ..Configuration::default()
+            let is_own = shader.settings.is_empty();
+            let mut add = |renderer: &str, precision, group, cost, backend| {
+                methods.push(Method {
+                    configuration: Configuration {
+                        renderer: renderer.to_owned(),
+                        precision,
+                        sphere_formula: shader.formula,
+                        settings: shader.settings.clone(),
+                        ..Configuration::default()
+                    },
+                    group,
+                    cost,
+                    backend,
+                });
             };
             for (double, group, precision) in [
                 (false, Group::Evaluator32, "f32"),
                 (true, Group::Evaluator64, "f64"),
             ] {
-                methods.push(Method {
-                    configuration: configuration("evaluator", precision),
-                    group,
-                    cost: samples * if double { DOUBLE_COST } else { 1.0 },
-                    backend: Backend::Evaluator {
-                        shader: index,
-                        double,
-                    },
-                });
+                let cost = samples * if double { DOUBLE_COST } else { 1.0 };
+                let backend = Backend::Evaluator {
+                    shader: index,
+                    double,
+                };
+                if is_own || !double {
+                    add("evaluator", precision, group, cost, backend);
+                }
             }
             for (at, (device, _)) in self.workers.iter().enumerate() {
-                for (float, group, name) in [
-                    (FloatMode::Strict, Group::Strict, "strict"),
-                    (FloatMode::Fast, Group::Fast, "fast"),
-                ] {
-                    methods.push(Method {
-                        configuration: configuration(&format!("{device} {name}"), "f32"),
-                        group: if at == 0 { group } else { Group::OtherDevice },
-                        cost: samples,
-                        backend: Backend::Gpu {
-                            shader: index,
-                            worker: at,
-                            float,
-                        },
-                    });
+                for (float, name) in [(FloatMode::Strict, "strict"), (FloatMode::Fast, "fast")] {
+                    let backend = Backend::Gpu {
+                        shader: index,
+                        worker: at,
+                        float,
+                    };
+                    if is_own || float == FloatMode::Fast {
+                        let group = Group::Device(at, float);
+                        add(&format!("{device} {name}"), "f32", group, samples, backend);
+                    }
                 }
             }
         }
         methods
+    }
+
+    /// The name of a group in charts.
+    pub(super) fn group_name(&self, group: Group) -> String {
+        match group {
+            Group::Tracer32 => "tracer, f32".to_owned(),
+            Group::Tracer64 => "tracer, f64".to_owned(),
+            Group::Evaluator32 => "evaluator, f32".to_owned(),
+            Group::Evaluator64 => "evaluator, f64".to_owned(),
+            Group::Device(at, FloatMode::Strict) => format!("{}, strict f32", self.workers[at].0),
+            Group::Device(at, FloatMode::Fast) => format!("{}, fast f32", self.workers[at].0),
+        }
     }
 }
 

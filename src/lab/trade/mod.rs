@@ -1,23 +1,34 @@
 //! Accuracy against time: measures the cost and the error of every rendering method that a scene or a shader
-//! allows, relative to a reference image.
+//! allows, and of other values of the shader's parameters, relative to a reference image.
 
+mod advice;
+mod features;
 mod method;
+mod parameter;
 mod reference;
 mod schedule;
+mod screening;
+mod source;
 mod table;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+pub use features::{FeatureReport, FeatureSubject, features};
 pub use method::Configuration;
-use method::{Group, Method, RenderContext, Shader};
+use method::{Backend, Group, Method, RenderContext};
+pub use parameter::{Setting, Vary, VaryError, VaryParseError};
 pub use reference::ErrorStatistics;
-use reference::Reference;
+use reference::{Reference, visible_pixels};
 use schedule::{Cost, RunKind, Runner};
 pub use schedule::{TimeStatistics, median};
+pub use screening::Tried;
+use screening::{Screened, screen};
 use serde::Serialize;
+use source::Shader;
+pub use source::Source;
 use toyproof_eval as eval;
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl as glsl;
 use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::Scene;
@@ -30,8 +41,14 @@ pub struct Subject<'a> {
     pub name: String,
     /// The scene, at the frame's size; `None` for a shader alone.
     pub scene: Option<&'a Scene>,
-    /// The shader that renders it: its text and its tree.
-    pub shader: Option<(&'a str, &'a Checked)>,
+    /// The shader that renders it.
+    pub shader: Option<Source<'a>>,
+    /// Whether to look for parameters of the shader that make it faster.
+    pub proposes_settings: bool,
+    /// The parameters of the shader to vary, instead of those.
+    pub vary: Vec<Vary>,
+    /// A shader whose image in double precision is the reference, instead of the scene's or the shader's own.
+    pub reference: Option<Source<'a>>,
     /// The options of the shader's language.
     pub options: glsl::Options,
     /// The frame.
@@ -53,6 +70,12 @@ pub enum TradeError {
     /// The shader's ray–sphere function cannot be evaluated.
     #[error(transparent)]
     Function(#[from] stress::RunError),
+    /// A parameter cannot be varied.
+    #[error(transparent)]
+    Vary(#[from] VaryError),
+    /// The shader of the reference cannot be compiled for the evaluator.
+    #[error("the shader of the reference is too large")]
+    LargeReference,
     /// The user interrupted the study.
     #[error("interrupted")]
     Interrupted,
@@ -65,11 +88,14 @@ pub struct MethodResult {
     #[serde(flatten)]
     pub configuration: Configuration,
     /// The group in charts: the renderer and precision.
-    pub group: &'static str,
+    pub group: String,
     /// The time of a frame.
     pub seconds_per_frame: TimeStatistics,
     /// The error relative to the reference.
     pub error: ErrorStatistics,
+    /// The number of pixels that look different from the shader's own settings on the same renderer; `None`
+    /// for these.
+    pub changed_pixels: Option<u64>,
     /// Whether the method is on the Pareto front: no other is both faster and more accurate.
     pub on_pareto_front: bool,
 }
@@ -89,6 +115,10 @@ pub struct Report {
     pub reference_error_estimate: &'static str,
     /// The time that the whole study took, in seconds.
     pub seconds: f64,
+    /// What is to be said about the values of parameters.
+    pub notes: Vec<String>,
+    /// The settings that were tried on small images, from which those to measure were chosen.
+    pub tried: Vec<Tried>,
     /// Methods that failed or exceeded the time budget.
     pub skipped: Vec<String>,
     /// The methods, fastest first.
@@ -98,6 +128,9 @@ pub struct Report {
 
 /// The share of the time budget for the reference image, in [0, 1].
 const REFERENCE_BUDGET_SHARE: f64 = 0.35;
+
+/// The share of the time budget for trying settings on small images.
+const SCREENING_BUDGET_SHARE: f64 = 0.3;
 
 /// Measures all methods within the time budget; calls `progress` with the share of the budget that has
 /// elapsed.
@@ -110,6 +143,9 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
         name,
         scene,
         shader,
+        proposes_settings,
+        vary,
+        reference,
         options,
         frame,
         workers,
@@ -118,29 +154,38 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     } = subject;
     // The reserve is for drawing charts and writing files.
     let budget = budget.mul_f64(0.97).saturating_sub(Duration::from_millis(100));
-    let mut shaders = Vec::new();
-    if let Some((text, checked)) = shader {
-        shaders.extend(Shader::new(None, text, &options));
-        let replacements = match stress::function::replacements(text, checked, &options) {
-            // The scene's own methods need no shader.
-            Err(_) if options.deadline.check().is_err() => Vec::new(),
-            replacements => replacements?,
-        };
-        for (formula, text) in replacements {
-            shaders.extend(Shader::new(Some(formula), &text, &options));
+    let screened = match shader {
+        Some(source) if proposes_settings || !vary.is_empty() => {
+            let until = start + budget.mul_f64(SCREENING_BUDGET_SHARE);
+            screen(source, (frame, &options), &vary, until, interrupt)?
         }
-    }
-    let context = RenderContext {
+        _ => Screened::default(),
+    };
+    let shaders = match shader {
+        Some(source) => shaders(source, &screened.settings, &options)?,
+        None => Vec::new(),
+    };
+    let mut context = RenderContext {
         frame,
         shaders,
         workers,
         frame_timeout: budget,
     };
     let reference_time = budget.mul_f64(REFERENCE_BUDGET_SHARE);
-    let reference = match (scene, context.shaders.first()) {
-        (Some(scene), _) => Reference::from_scene(scene, frame, reference_time),
-        (None, Some(shader)) => Reference::from_shader(shader, frame, reference_time)?,
-        (None, None) => return Err(eval::Failure::TimeUp.into()),
+    let own = context.shaders.first();
+    let reference = match (reference, scene, shader.zip(own)) {
+        (Some(source), ..) => {
+            let shader = source.compile(&[], &options).ok_or(TradeError::LargeReference)?;
+            Reference::from_shader(&shader, frame, reference_time)?
+        }
+        (_, Some(scene), _) => Reference::from_scene(scene, frame, reference_time),
+        (_, _, Some((source, own))) => {
+            let generous =
+                (!screened.generous.is_empty()).then(|| source.compile(&screened.generous, &options));
+            let generous = generous.flatten();
+            Reference::from_shader(generous.as_ref().unwrap_or(own), frame, reference_time)?
+        }
+        (None, None, None) => return Err(eval::Failure::TimeUp.into()),
     };
     let background = scene.map(background);
     let background = background.map(|scene| {
@@ -150,38 +195,26 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
     let samples = scene.map_or(1.0, |scene| f64::from(scene.film.samples));
     let mut methods = scene.map_or_else(Vec::new, method::scene_methods);
     methods.extend(context.shader_methods(samples));
+    let own_images = if screened.settings.is_empty() {
+        Vec::new()
+    } else {
+        own_images(&mut context, &methods)
+    };
     let costs: Vec<Cost> = methods.iter().map(Method::scheduled_cost).collect();
     let mut bench = Bench {
         start,
         budget,
         context,
-        errors: vec![None; methods.len()],
+        measured: vec![None; methods.len()],
         methods,
         reference: &reference.image,
         background,
+        own_images,
         interrupt,
         progress,
     };
     let seconds = schedule::measure(&mut bench, &costs, budget.as_secs_f64())?;
-    let mut measured = Vec::new();
-    let mut skipped = Vec::new();
-    for ((method, error), seconds) in bench.methods.iter().zip(&bench.errors).zip(seconds) {
-        match error {
-            Some(error) if !seconds.is_empty() => measured.push(MethodResult {
-                configuration: method.configuration.clone(),
-                group: group_name(method.group),
-                seconds_per_frame: TimeStatistics::new(&seconds),
-                error: *error,
-                on_pareto_front: false,
-            }),
-            _ => skipped.push(method.configuration.to_string()),
-        }
-    }
-    measured.sort_by(|a, b| {
-        let [a, b] = [a, b].map(|result| result.seconds_per_frame.median);
-        a.total_cmp(&b)
-    });
-    mark_pareto_front(&mut measured);
+    let (results, skipped) = bench.results(&seconds);
     Ok(Report {
         subject: name,
         size: frame.size,
@@ -189,14 +222,80 @@ pub fn study(subject: Subject, interrupt: &AtomicBool, progress: impl Fn(f64)) -
         reference_error: reference.error,
         reference_error_estimate: reference.error_estimate,
         seconds: start.elapsed().as_secs_f64(),
+        notes: screened.notes,
+        tried: screened.tried,
         skipped,
-        results: measured,
+        results,
     })
 }
 
-fn group_name(group: Group) -> &'static str {
-    let found = Group::ALL.iter().find(|(other, _)| *other == group);
-    found.map_or("", |(_, name)| name)
+impl<P> Bench<'_, P> {
+    /// The measured methods, fastest first, and the names of the others.
+    fn results(&self, seconds: &[Vec<f64>]) -> (Vec<MethodResult>, Vec<String>) {
+        let mut results = Vec::new();
+        let mut skipped = Vec::new();
+        for ((method, measured), seconds) in self.methods.iter().zip(&self.measured).zip(seconds) {
+            match measured {
+                &Some((error, changed_pixels)) if !seconds.is_empty() => results.push(MethodResult {
+                    configuration: method.configuration.clone(),
+                    group: self.context.group_name(method.group),
+                    seconds_per_frame: TimeStatistics::new(seconds),
+                    error,
+                    changed_pixels,
+                    on_pareto_front: false,
+                }),
+                _ => skipped.push(method.configuration.to_string()),
+            }
+        }
+        results.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|result| result.seconds_per_frame.median);
+            a.total_cmp(&b)
+        });
+        mark_pareto_front(&mut results);
+        (results, skipped)
+    }
+}
+
+/// The shader, also with each formula of ray–sphere intersection, and with each of the settings.
+fn shaders(
+    source: Source<'_>,
+    settings: &[Vec<Setting>],
+    options: &glsl::Options,
+) -> Result<Vec<Shader>, TradeError> {
+    let mut shaders: Vec<Shader> = source.compile(&[], options).into_iter().collect();
+    if let Some((text, checked)) = source.single() {
+        let replacements = match stress::function::replacements(text, checked, options) {
+            // The scene's own methods need no shader.
+            Err(_) if options.deadline.check().is_err() => Vec::new(),
+            replacements => replacements?,
+        };
+        let replaced = replacements.iter();
+        shaders.extend(replaced.filter_map(|(formula, text)| Shader::new(Some(formula), text, options)));
+    }
+    shaders.extend(
+        settings
+            .iter()
+            .filter_map(|settings| source.compile(settings, options)),
+    );
+    Ok(shaders)
+}
+
+/// The images of the shader with its own settings, by each renderer that other settings have.
+fn own_images(context: &mut RenderContext<'_>, methods: &[Method]) -> Vec<(Group, Image)> {
+    let has_settings = |group| {
+        let mut of_group = methods.iter().filter(|method| method.group == group);
+        of_group.any(|method| !method.configuration.settings.is_empty())
+    };
+    let is_own = |method: &&Method| match method.backend {
+        Backend::Tracer { .. } => false,
+        Backend::Evaluator { shader, .. } | Backend::Gpu { shader, .. } => shader == 0,
+    };
+    let own = methods
+        .iter()
+        .filter(is_own)
+        .filter(|method| has_settings(method.group));
+    let images = own.filter_map(|method| Some((method.group, context.render(&method.backend)?.0)));
+    images.collect()
 }
 
 /// The scene without objects.
@@ -230,9 +329,11 @@ struct Bench<'a, P> {
     budget: Duration,
     context: RenderContext<'a>,
     methods: Vec<Method>,
-    errors: Vec<Option<ErrorStatistics>>,
+    /// The error of each method, and the pixels that its settings change.
+    measured: Vec<Option<(ErrorStatistics, Option<u64>)>>,
     reference: &'a Image,
     background: Option<Image>,
+    own_images: Vec<(Group, Image)>,
     interrupt: &'a AtomicBool,
     progress: P,
 }
@@ -252,11 +353,14 @@ impl<P: Fn(f64)> Runner for Bench<'_, P> {
             return Ok(None);
         };
         if kind == RunKind::WarmUp {
-            self.errors[method] = Some(ErrorStatistics::new(
-                self.reference,
-                &image,
-                self.background.as_ref(),
-            ));
+            let Method {
+                configuration, group, ..
+            } = &self.methods[method];
+            let own = self.own_images.iter().find(|(own, _)| own == group);
+            let own = own.filter(|_| !configuration.settings.is_empty());
+            let changed = own.map(|(_, own)| visible_pixels(own, &image));
+            let error = ErrorStatistics::new(self.reference, &image, self.background.as_ref());
+            self.measured[method] = Some((error, changed));
         }
         Ok(Some(took.as_secs_f64()))
     }
@@ -278,14 +382,14 @@ impl Report {
 mod tests {
     use super::*;
 
-    fn result(renderer: &str, median: f64, rmse: f64) -> MethodResult {
+    pub(super) fn result(renderer: &str, median: f64, rmse: f64) -> MethodResult {
         MethodResult {
             configuration: Configuration {
                 renderer: renderer.to_owned(),
                 precision: "f32",
                 ..Configuration::default()
             },
-            group: "",
+            group: String::new(),
             seconds_per_frame: TimeStatistics {
                 median,
                 ..TimeStatistics::default()
@@ -294,13 +398,16 @@ mod tests {
                 rmse,
                 max: 0.0,
                 differing_pixels_8bit: 0,
+                visible_pixels: 0,
+                flip: None,
                 silhouette_flips: None,
             },
+            changed_pixels: None,
             on_pareto_front: false,
         }
     }
 
-    fn report(mut results: Vec<MethodResult>) -> Report {
+    pub(super) fn report(mut results: Vec<MethodResult>) -> Report {
         mark_pareto_front(&mut results);
         Report {
             subject: "s".to_owned(),
@@ -309,6 +416,8 @@ mod tests {
             reference_error: 0.0,
             reference_error_estimate: "",
             seconds: 1.0,
+            notes: Vec::new(),
+            tried: Vec::new(),
             skipped: Vec::new(),
             results,
         }

@@ -6,11 +6,13 @@ use serde::Serialize;
 use toyproof_diagnostic::grouped;
 use toyproof_eval::{self as eval, RandomRounding, Seed};
 use toyproof_image::{Frame, Image};
+use toyproof_metrics::{Metric, measure};
 use toyproof_scene::{Requirements, Sampler, Scene};
 use toyproof_tracer::Tracer;
-use toyproof_verify::compare::{self, TOLERANCE};
+use toyproof_verify::compare::{self, PixelStatus, TOLERANCE};
 
-use super::method::{RenderContext, Shader};
+use super::method::RenderContext;
+use super::source::Shader;
 
 /// An image that others are compared with.
 #[derive(Debug)]
@@ -86,18 +88,78 @@ impl Reference {
         })
     }
 
-    /// Renders the reference of a shader alone, in f64.
+    /// Renders the reference of a shader alone, in f64; in f32 if rounding changes what the shader shows, as
+    /// in one that takes random numbers from the last digits of a sine.
     pub(super) fn from_shader(shader: &Shader, frame: &Frame, time: Duration) -> Result<Self, eval::Failure> {
-        let deadline = Instant::now() + time;
-        let image = shader.render::<f64>(frame, (), deadline)?;
-        let perturbed = shader.render::<RandomRounding>(frame, Seed::double(1), deadline)?;
-        Ok(Self {
-            error: rmse(&image, &perturbed),
+        let start = Instant::now();
+        let deadline = start + time;
+        let (single, took) = shader.evaluate::<f32>(frame, (), deadline)?;
+        let settings: Vec<String> = shader.settings.iter().map(ToString::to_string).collect();
+        let with = if settings.is_empty() {
+            String::new()
+        } else {
+            format!(" with {}", settings.join(", "))
+        };
+        let too_slow = |image| Self {
             image,
-            description: "the shader in f64".to_owned(),
-            error_estimate: "difference after random rounding of every operation",
+            error: 0.0,
+            description: format!(
+                "the shader in f32{with}, since f64 takes longer than a part of the time budget"
+            ),
+            error_estimate: "none",
+        };
+        if took.mul_f64(DOUBLE_COST) > time {
+            return Ok(too_slow(single));
+        }
+        let Ok((double, took)) = shader.evaluate::<f64>(frame, (), deadline) else {
+            return Ok(too_slow(single));
+        };
+        let share = visible_pixels(&double, &single) as f64 / double.pixels().len() as f64;
+        if share > MAX_ROUNDED_SHARE {
+            return Ok(Self {
+                error: rmse(&double, &single),
+                image: single,
+                description: format!(
+                    "the shader in f32{with}: f64 has other colors in {:.1} % of the pixels",
+                    100.0 * share
+                ),
+                error_estimate: "difference from f64",
+            });
+        }
+        let is_in_time = start.elapsed() + took.mul_f64(ROUNDING_COST) < time;
+        let perturbed =
+            is_in_time.then(|| shader.evaluate::<RandomRounding>(frame, Seed::double(1), deadline));
+        let (error, error_estimate) = match perturbed {
+            Some(Ok((perturbed, _))) => (
+                rmse(&double, &perturbed),
+                "difference after random rounding of every operation",
+            ),
+            _ => (rmse(&double, &single), "difference from f32, for lack of time"),
+        };
+        Ok(Self {
+            image: double,
+            error,
+            description: format!("the shader in f64{with}"),
+            error_estimate,
         })
     }
+}
+
+/// The times of a frame in f64 relative to f32, and with random rounding relative to f64: rather too long.
+const DOUBLE_COST: f64 = 2.5;
+const ROUNDING_COST: f64 = 3.0;
+
+/// The share of visible pixels between f32 and f64 from which f64 is not what a shader is to show.
+const MAX_ROUNDED_SHARE: f64 = 0.01;
+
+/// The number of pixels of two images whose difference is visible.
+pub(super) fn visible_pixels(one: &Image, other: &Image) -> u64 {
+    let undefined = vec![false; one.pixels().len()];
+    let statuses = compare::precision(one, other, &undefined);
+    statuses
+        .iter()
+        .filter(|status| **status == PixelStatus::Differs)
+        .count() as u64
 }
 
 // Errors of images relative to the reference.
@@ -111,6 +173,10 @@ pub struct ErrorStatistics {
     pub max: f64,
     /// The number of pixels whose 8-bit values differ.
     pub differing_pixels_8bit: u64,
+    /// The number of pixels whose difference is visible: more than two 8-bit levels.
+    pub visible_pixels: u64,
+    /// The mean of FLIP, the difference that people perceive, in [0, 1]; `None` for large images.
+    pub flip: Option<f64>,
     /// The number of pixels that show the background in only one of the images; `None` if the background is
     /// unknown.
     pub silhouette_flips: Option<u64>,
@@ -124,6 +190,8 @@ impl ErrorStatistics {
             rmse: rmse(reference, image),
             max: comparison.max_abs,
             differing_pixels_8bit: comparison.differing_8bit,
+            visible_pixels: visible_pixels(reference, image),
+            flip: flip(reference, image),
             silhouette_flips: background.map(|background| {
                 let empty = |image: &Image, at: usize| {
                     let pairs = image.pixels()[at].iter().zip(background.pixels()[at]).take(3);
@@ -138,6 +206,16 @@ impl ErrorStatistics {
             }),
         }
     }
+}
+
+/// The number of pixels of an image up to which FLIP takes a fraction of a second.
+const MAX_FLIP_PIXELS: usize = 640 * 360;
+
+/// The mean of FLIP of two images, clamped to [0, 1].
+fn flip(reference: &Image, image: &Image) -> Option<f64> {
+    let is_small = reference.pixels().len() <= MAX_FLIP_PIXELS;
+    let measured = is_small.then(|| measure(Metric::Flip, reference, image))?;
+    Some(measured.ok()?.value)
 }
 
 /// The root mean square difference of components clamped to [0, 1]; NaN in one image counts as 1.

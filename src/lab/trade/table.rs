@@ -1,20 +1,20 @@
 //! Results of a study as CSV, JSON, a chart, and text.
 
 use toyproof_diagnostic::{all_of, columns, grouped, magnitude, plural, spreadsheet_text};
-use toyproof_stress::formula::RECENTERED;
+use toyproof_stress::formula::{FORMULAS, Formula, RECENTERED};
 
 use super::{Configuration, MethodResult, Report, median};
 use crate::chart::{Point, Scatter};
-use crate::trade::method::Group;
 use crate::{csv_table, json_file};
 
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 20] = [
     "renderer",
     "precision",
     "sampler",
     "samples_per_pixel",
     "max_depth",
     "sphere_formula",
+    "settings",
     "group",
     "runs",
     "outliers",
@@ -23,6 +23,9 @@ const COLUMNS: [&str; 16] = [
     "rmse",
     "max_error",
     "differing_pixels_8bit",
+    "visible_pixels",
+    "flip",
+    "changed_pixels",
     "silhouette_flips",
     "on_pareto_front",
 ];
@@ -46,11 +49,9 @@ impl Report {
     /// A chart of error against time.
     #[must_use]
     pub fn chart(&self) -> Scatter {
-        let used: Vec<_> = Group::ALL
-            .iter()
-            .map(|(_, name)| *name)
-            .filter(|name| self.results.iter().any(|result| result.group == *name))
-            .collect();
+        let mut used: Vec<&str> = self.results.iter().map(|result| &*result.group).collect();
+        used.sort_unstable();
+        used.dedup();
         let points = self.results.iter().map(|result| Point {
             x: 1e3 * result.seconds_per_frame.median.max(1e-9),
             y: result.error.rmse,
@@ -105,6 +106,7 @@ impl Report {
         lines.extend(self.role_table());
         lines.push(String::new());
         lines.extend(self.double_precision_cost());
+        lines.extend(self.advice());
         if !self.skipped.is_empty() {
             lines.push(self.skipped_line());
         }
@@ -194,6 +196,9 @@ impl Report {
             lines.push(format!("not measured: {}", self.skipped.join("; ")));
         }
         lines.extend(self.stable_formula_cost());
+        lines.extend(self.formula_descriptions());
+        lines.extend(self.notes.iter().cloned());
+        lines.extend(self.tried_table());
         lines
     }
 
@@ -265,6 +270,40 @@ impl Report {
         ))
     }
 
+    /// The settings that were tried on small images.
+    fn tried_table(&self) -> Vec<String> {
+        if self.tried.is_empty() {
+            return Vec::new();
+        }
+        let head = ["tried on a small image", "time", "visible pixels"].map(str::to_owned);
+        let rows = self.tried.iter().map(|tried| {
+            vec![
+                tried.setting.to_string(),
+                format!("{:.2}", tried.time),
+                format!("{:.2} %", 100.0 * tried.changed_share),
+            ]
+        });
+        let rows: Vec<_> = [head.to_vec()].into_iter().chain(rows).collect();
+        columns("  ", &rows, &[1, 2])
+    }
+
+    /// What the formulas of the configurations are.
+    fn formula_descriptions(&self) -> impl Iterator<Item = String> {
+        let is_used = |formula: &&Formula| {
+            let mut results = self.results.iter();
+            results.any(|result| result.configuration.sphere_formula == Some(formula.name))
+        };
+        // The text of each begins with a comment that describes it.
+        FORMULAS.iter().filter(is_used).map(|formula| {
+            let description = formula.text.lines().next().unwrap_or_default();
+            format!(
+                "{} formula: {}",
+                formula.name,
+                description.trim_start_matches("// ")
+            )
+        })
+    }
+
     /// The fastest configuration within an error limit.
     #[must_use]
     pub fn fastest_line(&self, error: f64) -> String {
@@ -309,9 +348,11 @@ impl MethodResult {
             group,
             seconds_per_frame: seconds,
             error,
+            changed_pixels,
             on_pareto_front,
         } = self;
         let number = |value: Option<u64>| value.map_or_else(String::new, |value| value.to_string());
+        let settings: Vec<String> = configuration.settings.iter().map(ToString::to_string).collect();
         vec![
             spreadsheet_text(&configuration.renderer),
             configuration.precision.to_owned(),
@@ -319,6 +360,7 @@ impl MethodResult {
             number(configuration.samples_per_pixel.map(u64::from)),
             number(configuration.max_depth.map(u64::from)),
             configuration.sphere_formula.unwrap_or_default().to_owned(),
+            spreadsheet_text(&settings.join("; ")),
             spreadsheet_text(group),
             seconds.runs.to_string(),
             seconds.outliers.to_string(),
@@ -327,6 +369,9 @@ impl MethodResult {
             format!("{:e}", error.rmse),
             format!("{:e}", error.max),
             error.differing_pixels_8bit.to_string(),
+            error.visible_pixels.to_string(),
+            error.flip.map_or_else(String::new, |flip| format!("{flip:e}")),
+            number(*changed_pixels),
             number(error.silhouette_flips),
             on_pareto_front.to_string(),
         ]
