@@ -8,6 +8,7 @@ use serde::Serialize;
 use toyproof_glsl as glsl;
 use toyproof_image::{Frame, Image};
 
+use super::advice::INVISIBLE_SHARE;
 use super::parameter::{Parameter, Setting, Vary, VaryError, proposals, shown};
 use super::reference::visible_pixels;
 use super::source::{Shader, Source};
@@ -20,7 +21,7 @@ const MAX_TIME: f64 = 0.93;
 
 /// The shares of visible pixels up to which the fastest setting of each parameter is measured, in ascending
 /// order. Settings up to the first one are combined.
-const SHARES: [f64; 3] = [0.001, 0.01, 0.05];
+const SHARES: [f64; 3] = [INVISIBLE_SHARE, 0.01, 0.05];
 
 /// The share of pixels up to which a more accurate value is taken for more accurate; one that changes more is
 /// another image, such as a fractal of more iterations.
@@ -134,7 +135,7 @@ pub(super) fn screen(
     Ok(screened)
 }
 
-/// One setting of one parameter at a time; of several parameters also all their cheapest values together.
+/// Each value of each parameter alone; of two parameters also all pairs of values.
 fn every_value(named: &[(Parameter, Vec<f64>)]) -> Vec<Vec<Setting>> {
     let each = named
         .iter()

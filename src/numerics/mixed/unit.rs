@@ -112,8 +112,8 @@ pub(super) fn is_float(ty: Type) -> bool {
     matches!(ty, Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _))
 }
 
-/// Variables that are written in ways that the emulation does not follow: by a function, by `++`, by an index, or
-/// in the middle of an expression.
+/// Variables that are written in ways that the emulation does not follow: by a function, by `++`, by an index,
+/// or in the middle of an expression.
 fn refused(tree: &Tree) -> HashSet<VariableId> {
     let statements = assignments(tree);
     let mut refused = HashSet::new();

@@ -247,7 +247,7 @@ impl<'a> Definitions<'a> {
         factors
     }
 
-    /// The x of `x * x`, `pow(x, 2.0)`, and the v of `dot(v, v)` if `dot` is true.
+    /// The x of `x * x` and of `pow(x, 2.0)`.
     pub(super) fn square(&self, expr: ExprId) -> Option<ExprId> {
         if let Some((left, right)) = self.binary(expr, BinaryOp::Multiply) {
             return self.same(left, right).then_some(left);

@@ -32,7 +32,7 @@ pub(crate) fn proposals(scopes: &[Scope<'_>]) -> Vec<Parameter> {
             }
         }
     }
-    // Without a name of their own, numbers of one line are told apart by what they do.
+    // Several unnamed numbers may stand in one line: their names say what each does.
     for parameter in &mut found {
         let what = match parameter.role {
             Role::Step => "step",
