@@ -129,15 +129,21 @@ fn mediump(
     let MixedPrecision {
         names,
         tried,
-        operations: [medium, all],
+        operations,
         changed_pixels,
         is_complete,
         text,
         ..
     } = mixed.ok_or_else(|| too_slow(shader))?;
     let count = names.len();
+    let share = operations.map_or_else(String::new, |share| {
+        format!(
+            "{:.0} % of the executed operations have 16 bits then; ",
+            100.0 * share
+        )
+    });
     let mut lines = vec![format!(
-        "{count} of {tried} variables and results may be mediump: {medium} of {all} operations on floats have 16 bits then; {} visible {}",
+        "{count} of {tried} variables and results may be mediump: {share}{} visible {}",
         grouped(changed_pixels),
         plural(changed_pixels, "pixel", "pixels")
     )];

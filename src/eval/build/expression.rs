@@ -77,7 +77,7 @@ impl Builder<'_> {
 
     fn leaf(&mut self, expr: ExprId) -> Result<Vec<Value>> {
         let tree = self.tree;
-        self.begin_origin(tree[expr].at);
+        self.begin_origin(tree[expr].at, Some(expr));
         Ok(match &tree[expr].kind {
             ExprKind::Literal(literal) => vec![self.literal(literal.value)],
             ExprKind::Variable(variable) => match self.location(*variable) {
@@ -147,7 +147,7 @@ impl Builder<'_> {
             ExprKind::Binary { op, left, right } => {
                 let second = self.expression(right)?;
                 // The operator of a long expression is on the line of its right operand, or above.
-                self.begin_origin(tree[right].at);
+                self.begin_origin(tree[right].at, Some(expr));
                 let types = (tree[left].ty, tree[right].ty);
                 Ok(self.binary_operator(op, types, &first, &second, tree[expr].at))
             }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use toyproof_glsl::tree::Place;
+use toyproof_glsl::tree::{ExprId, Place};
 
 use super::{Builder, IrWriter, Result, TraceDetail};
 use crate::ir::{BasicBlock, Block, Node, Operation, Origin, Part, PartId, PartKind, Value, ValueDef, cost};
@@ -13,10 +13,10 @@ impl Builder<'_> {
     }
 
     /// Begins the operations of an expression or a statement at this place.
-    pub(super) fn begin_origin(&self, at: Place) {
+    pub(super) fn begin_origin(&self, at: Place, expr: Option<ExprId>) {
         if self.counts() {
             let call = self.current_call();
-            self.writer.borrow_mut().origin = Some(Origin { call, at });
+            self.writer.borrow_mut().origin = Some(Origin { call, at, expr });
         }
     }
 

@@ -22,7 +22,7 @@ impl Builder<'_> {
     }
 
     fn statement(&mut self, statement: &Statement) -> Result<()> {
-        self.begin_origin(statement.at);
+        self.begin_origin(statement.at, None);
         if self.begins_step(&statement.kind) {
             self.trace_step(statement.at);
         }

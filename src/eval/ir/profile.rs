@@ -1,6 +1,6 @@
 //! What a profiled program counts: the operations as they are written, before any optimization.
 
-use toyproof_glsl::tree::{FunctionId, Place};
+use toyproof_glsl::tree::{ExprId, FunctionId, Place};
 
 use super::operation::Operation;
 use super::schema::{Call, CallId};
@@ -10,8 +10,11 @@ use super::schema::{Call, CallId};
 pub struct Origin {
     /// The call that contains it; none in `mainImage` and at global scope.
     pub call: Option<CallId>,
-    /// The source location of the expression.
+    /// The source location: of an operator that of its right operand, whose line it is on in a long
+    /// expression.
     pub at: Place,
+    /// The expression; none of what a statement does itself.
+    pub expr: Option<ExprId>,
 }
 
 /// A part of a program whose executions are counted. A function that is inlined twice has its parts twice.

@@ -1,8 +1,9 @@
 //! The text of a shader that rounds to 16 bits what `mediump` may compute in 16 bits, to the bit: results of
 //! operations whose operands are all `mediump` or constants (GLSL ES 3.00.6 §4.5.2), and values of variables.
 //!
-//! An operation on numbers of 11 bits in f32, rounded to 16 bits afterwards, has the result of the operation in
-//! 16 bits: 24 bits are at least twice 11 and two more (Figueroa, “When is Double Rounding Innocuous?”, 1995).
+//! An operation on numbers of 11 bits in f32, rounded to 16 bits afterwards, has the result of the operation
+//! in 16 bits: 24 bits are at least twice 11 and two more (Figueroa, “When is Double Rounding Innocuous?”,
+//! 1995).
 
 use std::collections::{HashMap, HashSet};
 
@@ -28,8 +29,8 @@ pub(super) struct Emulation<'a> {
     results: HashSet<FunctionId>,
     /// Texts to insert, with their places.
     insertions: Vec<(u32, Part, String)>,
-    /// The number of operations in 16 bits, and of all on floats, in the text.
-    pub(super) operations: [u64; 2],
+    /// The operations in 16 bits.
+    pub(super) operations: HashSet<ExprId>,
 }
 
 /// What is inserted, in the order at one place.
@@ -81,7 +82,7 @@ impl<'a> Emulation<'a> {
             variables,
             results,
             insertions: Vec::new(),
-            operations: [0; 2],
+            operations: HashSet::new(),
         };
         emulation.rounds_everything();
         emulation
@@ -176,10 +177,10 @@ impl<'a> Emulation<'a> {
                 expr.kind,
                 ExprKind::Binary { .. } | ExprKind::BuiltIn { .. } | ExprKind::Unary { .. }
             );
-            if is_operation && is_float(expr.ty) {
-                self.operations[1] += 1;
-                if precision == Precision::Medium {
-                    self.operations[0] += 1;
+            let is_compound = matches!(expr.kind, ExprKind::Assign { op: Some(_), .. });
+            if (is_operation || is_compound) && is_float(expr.ty) && precision == Precision::Medium {
+                self.operations.insert(id);
+                if is_operation {
                     self.round(id);
                 }
             }
@@ -215,7 +216,8 @@ impl<'a> Emulation<'a> {
     }
 }
 
-/// Built-in functions whose results have another precision than their arguments: those of textures, and of bits.
+/// Built-in functions whose results have another precision than their arguments: those of textures, and of
+/// bits.
 fn is_of_high_precision(function: BuiltIn) -> bool {
     use BuiltIn::{IntBitsToFloat, UintBitsToFloat, UnpackHalf2x16, UnpackSnorm2x16, UnpackUnorm2x16};
     function.is_texture()

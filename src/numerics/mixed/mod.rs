@@ -1,6 +1,6 @@
 //! Which variables of a shader may be `mediump`: numbers of 16 bits, as GPUs of phones have them, before its
-//! image visibly changes. Found by bisection on its declarations, as Precimonious does for C (Rubio-González et
-//! al., SC 2013), on images in which 16 bits are emulated to the bit.
+//! image visibly changes. Found by bisection on its declarations, as Precimonious does for C (Rubio-González
+//! et al., SC 2013), on images in which 16 bits are emulated to the bit.
 
 mod emulation;
 mod unit;
@@ -29,8 +29,9 @@ pub struct MixedPrecision {
     pub names: Vec<String>,
     /// The number of variables and results that were tried.
     pub tried: usize,
-    /// The number of operations on floats in the text that have 16 bits then, and of all.
-    pub operations: [u64; 2],
+    /// The share of the operations that the pixels execute which have 16 bits then; `None` if they cannot be
+    /// counted in time.
+    pub operations: Option<f64>,
     /// The number of pixels that visibly change.
     pub changed_pixels: u64,
     /// Whether the time was enough to try everything.
@@ -51,7 +52,8 @@ struct Trials<'a> {
     is_over: bool,
 }
 
-/// Finds what may be `mediump` in a frame, until the deadline; `None` if the shader cannot be rendered in time.
+/// Finds what may be `mediump` in a frame, until the deadline; `None` if the shader cannot be rendered in
+/// time.
 #[must_use]
 pub fn mixed_precision(
     checked: &Checked,
@@ -80,7 +82,7 @@ pub fn mixed_precision(
     Some(MixedPrecision {
         names,
         tried: units.iter().map(|unit| unit.names.len()).sum(),
-        operations: Emulation::new(checked, text, accepted.iter().copied()).operations,
+        operations: trials.executed(&accepted),
         changed_pixels,
         is_complete: !trials.is_over,
         text: qualified(text, &accepted),
@@ -99,7 +101,8 @@ fn render(checked: &Checked, frame: &Frame, deadline: Instant) -> Option<Image> 
 }
 
 impl<'a> Trials<'a> {
-    /// The number of pixels that visibly change; `None` if the time is over, or if the emulation does not compile.
+    /// The number of pixels that visibly change; `None` if the time is over, or if the emulation does not
+    /// compile.
     fn changed(&self, units: &[&Unit]) -> Option<u64> {
         let text = Emulation::new(self.checked, self.text, units.iter().copied()).text();
         let mut files = Files::default();
@@ -118,6 +121,23 @@ impl<'a> Trials<'a> {
                 .filter(|status| **status == PixelStatus::Differs)
                 .count() as u64,
         )
+    }
+
+    /// The share of the executed operations that have 16 bits; `None` if they cannot be counted in time.
+    fn executed(&self, units: &[&Unit]) -> Option<f64> {
+        let medium = Emulation::new(self.checked, self.text, units.iter().copied()).operations;
+        let limit = self.deadline.saturating_duration_since(Instant::now());
+        let program = Program::within(self.checked, limit).ok()?;
+        let settings = Settings {
+            deadline: Some(self.deadline),
+            ..Settings::plain()
+        };
+        let profile = program.profile(self.frame, &settings).ok()?;
+        let counts = profile
+            .origins()
+            .filter(|(origin, _)| origin.expr.is_some_and(|expr| medium.contains(&expr)));
+        let count: u64 = counts.map(|(_, count)| count).sum();
+        Some(count as f64 / profile.operations().max(1) as f64)
     }
 
     /// Adds the units that may have 16 bits beside those that are accepted: all, or those of each half.
@@ -190,8 +210,8 @@ mod tests {
 
     #[test]
     fn operations_have_the_results_of_sixteen_bits() {
-        // IEEE 754 binary16: 0.1 is 0x2E66, 0.0999755859375; its square 0.009995117… is nearest to 0x211E; and
-        // 2049 is between 2048 and 2050.
+        // IEEE 754 binary16: 0.1 is 0x2E66, 0.0999755859375; its square 0.009995117… is nearest to 0x211E;
+        // and 2049 is between 2048 and 2050.
         assert_eq!(
             emulated("float x = 0.1; c = vec4(x, square(x), x * x, 1.0);"),
             [0.099_975_586, 0.009_994_507, 0.009_994_507]
@@ -214,7 +234,7 @@ mod tests {
     fn only_what_stays_invisible_gets_mediump() {
         let text = "void mainImage(out vec4 c, in vec2 p) {
     float fine = p.x / 64.0;
-    float coarse = 0.25;
+    float coarse = step(32.0, p.x);
     c = vec4(fract(fine * 1000.0), coarse, coarse * 0.5, 1.0);
 }";
         let (checked, _) = check(text);
@@ -233,6 +253,8 @@ mod tests {
             "{}",
             found.text
         );
-        assert_eq!(found.operations, [1, 4]);
+        // `coarse * 0.5` is one of `p.x / 64.0`, `fine * 1000.0`, it, and `step` and `fract`, which count as
+        // two.
+        assert_eq!(found.operations, Some(1.0 / 7.0));
     }
 }

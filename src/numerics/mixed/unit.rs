@@ -28,8 +28,8 @@ pub(super) struct Unit {
     pub(super) at: Span,
 }
 
-/// The declarations whose values the emulation can round: of floats and vectors of floats, which are written as
-/// wholes or by components, outside of macros.
+/// The declarations whose values the emulation can round: of floats and vectors of floats, which are written
+/// as wholes or by components, outside of macros.
 pub(super) fn units(checked: &Checked, text: &str) -> Vec<Unit> {
     let tree = &checked.tree;
     let refused = refused(tree);
@@ -112,8 +112,8 @@ pub(super) fn is_float(ty: Type) -> bool {
     matches!(ty, Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _))
 }
 
-/// Variables that are written in ways that the emulation does not follow: by a function, by `++`, by an index,
-/// or in the middle of an expression.
+/// Variables that are written in ways that the emulation does not follow: by a function, by `++`, by an
+/// index, or in the middle of an expression.
 fn refused(tree: &Tree) -> HashSet<VariableId> {
     let statements = assignments(tree);
     let mut refused = HashSet::new();
@@ -150,8 +150,8 @@ fn assignments(tree: &Tree) -> HashSet<ExprId> {
     found
 }
 
-/// The place of a precision qualifier in front of the type of a name: `vec3 name`, `highp vec3 name`. `None` for
-/// `float a, name`.
+/// The place of a precision qualifier in front of the type of a name: `vec3 name`, `highp vec3 name`. `None`
+/// for `float a, name`.
 fn type_before(text: &str, name: Span) -> Option<Span> {
     let word_before = |end: usize| {
         let end = text[..end].trim_end().len();
