@@ -26,9 +26,10 @@ use crate::{Explanation, Options};
 /// The largest number of pairs of mistakes that are searched for in a wrong image: a few seconds' work.
 const MAX_PAIRS: usize = 512;
 
-/// The size of the images on which other forms of expressions are tried, and the number of such forms.
-const MAX_REWRITTEN_PIXELS: f64 = 320.0 * 180.0;
-const MAX_REWRITES: usize = 64;
+/// The size of the images on which other forms of expressions are tried, and the number of such forms, those
+/// next to the cause first: all of them together are few pixels beside the image itself.
+const MAX_REWRITTEN_PIXELS: f64 = 128.0 * 72.0;
+const MAX_REWRITES: usize = 16;
 
 /// The largest numbers of columns and of rows of pixels with which repairs of a stochastic shader are tried.
 const NOISY_SIDE: u32 = 24;
@@ -160,8 +161,8 @@ impl<'a> Search<'a> {
             Basis::Means(reseeding) => self.of_noisy_pixels(ruling, reseeding),
             Basis::SelfIntersection => Some(Diagnosis::single(known::self_intersection())),
         });
-        // Pairs are searched for only if the comparison of random pixels reaches no verdict: with other random
-        // numbers, two mistakes do not render the image of the pair.
+        // Pairs are searched for only if the comparison of random pixels reaches no verdict: with other
+        // random numbers, two mistakes do not render the image of the pair.
         if subject.may_be_stochastic() && !settlement.compares_means && settlement.mistake.is_none() {
             settlement.mistake = self.of_scene(&settlement.ruling, Stage::Pair(MAX_PAIRS));
         }

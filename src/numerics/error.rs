@@ -1,5 +1,6 @@
 //! How precise the images of variants of a shader are, against the shader in double precision.
 
+use std::cell::OnceCell;
 use std::time::Instant;
 
 use toyproof_eval::{Number, RandomRounding, Seed, Settings, UndefinedPolicy};
@@ -76,6 +77,9 @@ pub(crate) fn relative_time(
     Some(ratios[FRAMES / 2])
 }
 
+/// Fewer pixels become precise by chance, as other roundings make them.
+const MIN_PIXELS: u64 = 16;
+
 /// How far an image in f32 is from the one in f64.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Precision {
@@ -95,7 +99,12 @@ impl PartialOrd for Precision {
 impl Precision {
     /// How many times fewer imprecise pixels there are, or how many times smaller the largest error is.
     pub(crate) fn gain(self, after: Self) -> f64 {
-        let pixels = self.imprecise as f64 / (after.imprecise as f64).max(0.5);
+        let fewer = self.imprecise.saturating_sub(after.imprecise);
+        let pixels = if after.imprecise == 0 || fewer >= MIN_PIXELS {
+            self.imprecise as f64 / (after.imprecise as f64).max(0.5)
+        } else {
+            1.0
+        };
         pixels.max(self.largest / after.largest.max(f64::MIN_POSITIVE))
     }
 
@@ -110,45 +119,61 @@ impl Precision {
 
 /// The shader itself, with which variants are compared.
 #[derive(Debug)]
-pub(crate) struct Judge {
-    double: Image,
-    /// The pixels that other roundings in f32 change visibly.
-    unstable: Vec<bool>,
+pub(crate) struct Judge<'a> {
+    shader: &'a Rendered,
+    frame: &'a Frame,
+    deadline: Instant,
+    /// The pixels that other roundings in f32 change visibly; unknown until a variant needs them.
+    unstable: OnceCell<Vec<bool>>,
     own: Precision,
 }
 
 /// The numbers of random roundings by which unstable pixels are found.
 const SEEDS: std::ops::Range<u64> = 1..5;
 
-impl Judge {
-    /// `own` has both images.
-    pub(crate) fn new(own: &Rendered, frame: &Frame, deadline: Instant) -> Self {
-        let double = own.double.clone().unwrap_or_else(|| own.single.clone());
-        let mut unstable = vec![false; double.pixels().len()];
-        let rounded = |seed| render::<RandomRounding>(&own.program, frame, Seed::single(seed), deadline);
-        for image in SEEDS.filter_map(rounded) {
-            for (at, pixel) in image.pixels().iter().enumerate() {
-                unstable[at] |= difference(pixel, &double.pixels()[at]) > SEEN;
-            }
-        }
+impl<'a> Judge<'a> {
+    /// `shader` has both images.
+    pub(crate) fn new(shader: &'a Rendered, frame: &'a Frame, deadline: Instant) -> Self {
         let mut judge = Self {
-            double,
-            unstable,
+            shader,
+            frame,
+            deadline,
+            unstable: OnceCell::new(),
             own: Precision {
                 imprecise: 0,
                 largest: 0.0,
             },
         };
-        judge.own = judge.precision(own);
+        judge.own = judge.precision(shader);
         judge
     }
 
+    fn double(&self) -> &Image {
+        self.shader.double.as_ref().unwrap_or(&self.shader.single)
+    }
+
+    fn unstable(&self) -> &[bool] {
+        self.unstable.get_or_init(|| {
+            let double = self.double().pixels();
+            let mut unstable = vec![false; double.len()];
+            let program = &self.shader.program;
+            let rounded =
+                |seed| render::<RandomRounding>(program, self.frame, Seed::single(seed), self.deadline);
+            for image in SEEDS.filter_map(rounded) {
+                for (at, pixel) in image.pixels().iter().enumerate() {
+                    unstable[at] |= difference(pixel, &double[at]) > SEEN;
+                }
+            }
+            unstable
+        })
+    }
+
     /// The error of each pixel: of its worst component.
-    fn errors<'a>(&'a self, image: &'a Image) -> impl Iterator<Item = f64> + 'a {
+    fn errors<'b>(&'b self, image: &'b Image) -> impl Iterator<Item = f64> + 'b {
         image
             .pixels()
             .iter()
-            .zip(self.double.pixels())
+            .zip(self.double().pixels())
             .map(|(a, b)| difference(a, b))
     }
 
@@ -170,24 +195,24 @@ impl Judge {
         double.is_some_and(|double| self.errors(double).all(|error| error <= LEVEL))
     }
 
-    /// Whether a pixel is worse by more than one 8-bit level than before. On a silhouette or another edge, where
-    /// rounding decides, a pixel may take the color of the other side.
+    /// Whether a pixel is worse by more than one 8-bit level than before. On a silhouette or another edge,
+    /// where rounding decides, a pixel may take the color of the other side.
     pub(crate) fn is_worse(&self, before: &Rendered, after: &Rendered) -> bool {
         let pairs = self.errors(&before.single).zip(self.errors(&after.single));
         let mut worse = pairs
             .enumerate()
             .filter(|(_, (before, after))| *after > before + LEVEL);
-        worse.any(|(at, _)| !(self.unstable[at] && self.is_between_neighbors(at, &after.single)))
+        worse.any(|(at, _)| !(self.unstable()[at] && self.is_between_neighbors(at, &after.single)))
     }
 
     /// Whether the color of a pixel lies between those of the pixel and its neighbors in double precision.
     fn is_between_neighbors(&self, at: usize, image: &Image) -> bool {
-        let [width, height] = self.double.size().map(|side| side as usize);
+        let [width, height] = self.double().size().map(|side| side as usize);
         let (x, y) = (at % width, at / width);
         let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
         let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
         let neighbors = rows.flat_map(|y| columns.clone().map(move |x| y * width + x));
-        let neighbors: Vec<[f32; 4]> = neighbors.map(|at| self.double.pixels()[at]).collect();
+        let neighbors: Vec<[f32; 4]> = neighbors.map(|at| self.double().pixels()[at]).collect();
         let color = image.pixels()[at];
         (0..3).all(|component| {
             let values = neighbors.iter().map(|pixel| pixel[component]);

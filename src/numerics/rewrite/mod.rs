@@ -13,7 +13,7 @@ use toyproof_diagnostic::{Deadline, Edit, File, Files, Fix, Span};
 use toyproof_glsl::{self as glsl, Checked};
 use toyproof_image::Frame;
 
-use self::catalogue::RULES;
+use self::catalogue::{RULES, shifted_variance};
 use self::site::Definitions;
 use crate::error::{Judge, Precision, Rendered, relative_time};
 
@@ -51,16 +51,16 @@ pub struct Subject<'a> {
     pub max_candidates: usize,
 }
 
-/// An expression with another form.
+/// An expression with another form, and what else changes with it.
 #[derive(Debug, Clone)]
 struct Candidate {
-    edit: Edit,
+    edits: Vec<Edit>,
     identity: &'static str,
     is_exact: bool,
 }
 
-/// Finds rewrites that make a shader more precise, until the deadline; `None` if it cannot be rendered in time.
-/// No pixel becomes worse by more than one 8-bit level, except on edges, where rounding decides anyway.
+/// Finds rewrites that make a shader more precise, until the deadline; `None` if it cannot be rendered in
+/// time. No pixel becomes worse by more than one 8-bit level, except on edges, where rounding decides anyway.
 #[must_use]
 pub fn rewrite(subject: Subject<'_>, deadline: Instant, interrupt: &AtomicBool) -> Option<Rewrites> {
     let options = glsl::Options {
@@ -90,17 +90,12 @@ pub fn rewrite(subject: Subject<'_>, deadline: Instant, interrupt: &AtomicBool) 
             if interrupt.load(Ordering::Relaxed) || Instant::now() > deadline {
                 break;
             }
-            let is_free = chosen
-                .iter()
-                .all(|other| !other.edit.span.touches(candidate.edit.span));
-            if !is_free {
+            let edits: Vec<&Edit> = chosen.iter().flat_map(|one| &one.edits).collect();
+            let touches = |edit: &Edit| edits.iter().any(|other| other.span.touches(edit.span));
+            if candidate.edits.iter().any(touches) {
                 continue;
             }
-            let edits: Vec<&Edit> = chosen
-                .iter()
-                .map(|one| &one.edit)
-                .chain([&candidate.edit])
-                .collect();
+            let edits: Vec<&Edit> = edits.into_iter().chain(&candidate.edits).collect();
             let Some(rendered) = render(&edited(subject.text, &edits), Some(&judge)) else {
                 continue;
             };
@@ -124,16 +119,16 @@ pub fn rewrite(subject: Subject<'_>, deadline: Instant, interrupt: &AtomicBool) 
     let mut identities: Vec<_> = chosen.iter().map(|one| one.identity).collect();
     identities.dedup();
     let time = best.and_then(|best| relative_time(&own, &best, subject.frame, deadline));
-    let advice = match &chosen[..] {
-        [one] => format!("write `{}`, {}", one.edit.replacement, one.identity),
-        _ => format!("write {} other forms: {}", chosen.len(), identities.join("; ")),
+    let edits: Vec<Edit> = chosen.into_iter().flat_map(|one| one.edits).collect();
+    let advice = match &edits[..] {
+        [edit] => format!("write `{}`, {}", edit.replacement, identities.join("; ")),
+        _ => format!("write {} other forms: {}", edits.len(), identities.join("; ")),
     };
     let message = format!(
         "{advice}: {}{}",
         before.change(error),
         time.map_or_else(String::new, slower)
     );
-    let edits: Vec<Edit> = chosen.into_iter().map(|one| one.edit).collect();
     Some(Rewrites {
         text: edited(subject.text, &edits.iter().collect::<Vec<_>>()),
         fix: (!edits.is_empty()).then_some(Fix { message, edits }),
@@ -149,14 +144,21 @@ fn candidates(subject: &Subject<'_>) -> Vec<Candidate> {
     let mut found = Vec::new();
     for site in definitions.sites() {
         let at = definitions.tree[site].at;
+        if let Some(edits) = shifted_variance(&definitions, site) {
+            found.push(Candidate {
+                edits,
+                identity: "the variance of differences from the first sample",
+                is_exact: true,
+            });
+        }
         for rule in RULES {
             for form in (rule.forms)(&definitions, site).into_iter().flatten() {
                 if seen.insert((at.spelling, form.clone())) {
                     found.push(Candidate {
-                        edit: Edit {
+                        edits: vec![Edit {
                             span: at.spelling,
                             replacement: form,
-                        },
+                        }],
                         identity: rule.name,
                         is_exact: rule.is_exact,
                     });
@@ -165,7 +167,7 @@ fn candidates(subject: &Subject<'_>) -> Vec<Candidate> {
         }
     }
     if let Some(near) = subject.near {
-        let distance = |candidate: &Candidate| candidate.edit.span.start.abs_diff(near.start);
+        let distance = |candidate: &Candidate| candidate.edits[0].span.start.abs_diff(near.start);
         found.sort_by_key(distance);
     }
     // Exact identities before approximations.

@@ -1,6 +1,6 @@
 //! What a rewriting rule sees of a shader: an expression, its parts, and the definitions of its variables.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use toyproof_glsl::Checked;
 use toyproof_glsl::tree::{
@@ -10,6 +10,9 @@ use toyproof_glsl::tree::{
 /// The most definitions of variables that are followed from an expression.
 const MAX_DEFINITIONS: usize = 4;
 
+/// The most products in each other of which the factors are one product.
+const MAX_DEPTH: usize = 8;
+
 /// A shader with the definitions of its variables.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
@@ -17,6 +20,13 @@ pub(super) struct Definitions<'a> {
     text: &'a str,
     /// The only value of each variable that is never assigned again.
     values: HashMap<VariableId, ExprId>,
+    /// The only assignment to each variable that has one, and its operator is `+=`.
+    added: HashMap<VariableId, ExprId>,
+    /// The variables of which an expression is the initializer.
+    initialized: HashMap<ExprId, VariableId>,
+    /// Where each variable is read or written.
+    uses: HashMap<VariableId, Vec<ExprId>>,
+    parents: HashMap<ExprId, ExprId>,
 }
 
 /// A term of a sum.
@@ -31,10 +41,26 @@ impl<'a> Definitions<'a> {
         let tree = &checked.tree;
         let mut writes: HashMap<VariableId, usize> = HashMap::new();
         let mut assigned: HashMap<VariableId, ExprId> = HashMap::new();
+        let mut added: HashMap<VariableId, ExprId> = HashMap::new();
+        let mut uses: HashMap<VariableId, Vec<ExprId>> = HashMap::new();
+        let mut parents = HashMap::new();
         for id in tree.exprs.ids() {
+            if let ExprKind::Variable(variable) = tree[id].kind {
+                uses.entry(variable).or_default().push(id);
+            }
+            tree[id].kind.for_each_operand(|operand| {
+                parents.insert(operand, id);
+            });
             tree.each_write(id, |target, value| {
                 if let Some(variable) = tree.root_variable(target) {
                     *writes.entry(variable).or_default() += 1;
+                    if let ExprKind::Assign {
+                        op: Some(BinaryOp::Add),
+                        ..
+                    } = tree[id].kind
+                    {
+                        added.insert(variable, id);
+                    }
                     let is_whole = matches!(tree[target].kind, ExprKind::Variable(_));
                     if let Some(value) = value.filter(|_| is_whole) {
                         assigned.insert(variable, value);
@@ -58,6 +84,17 @@ impl<'a> Definitions<'a> {
             tree,
             text,
             values: values.collect(),
+            initialized: tree
+                .variables
+                .iter()
+                .filter_map(|(id, variable)| Some((variable.initializer?, id)))
+                .collect(),
+            uses,
+            parents,
+            added: added
+                .into_iter()
+                .filter(|(variable, _)| writes.get(variable) == Some(&1))
+                .collect(),
         }
     }
 
@@ -150,6 +187,11 @@ impl<'a> Definitions<'a> {
         expr
     }
 
+    /// The only assignment to a variable, whose operator is `+=`.
+    pub(super) fn added(&self, variable: VariableId) -> Option<ExprId> {
+        self.added.get(&variable).copied()
+    }
+
     pub(super) fn binary(&self, expr: ExprId, wanted: BinaryOp) -> Option<(ExprId, ExprId)> {
         match self.tree[expr].kind {
             ExprKind::Binary { op, left, right } if op == wanted => Some((left, right)),
@@ -181,6 +223,18 @@ impl<'a> Definitions<'a> {
             &[argument] => Some(argument),
             _ => None,
         }
+    }
+
+    /// What `clamp`, `min` and `max` with numbers limit; any other expression itself.
+    pub(super) fn unclamped(&self, expr: ExprId) -> ExprId {
+        let value = self.resolve(expr);
+        let functions = [BuiltIn::Clamp, BuiltIn::Min, BuiltIn::Max];
+        let arguments = functions
+            .into_iter()
+            .find_map(|function| self.call(value, function));
+        let inner = arguments
+            .and_then(|arguments| arguments.iter().copied().find(|&one| self.literal(one).is_none()));
+        inner.unwrap_or(expr)
     }
 
     /// The value of a literal, also converted to a float or in all components.
@@ -247,6 +301,99 @@ impl<'a> Definitions<'a> {
         factors
     }
 
+    /// The factors of a product, also those of the variables in it.
+    pub(super) fn all_factors(&self, expr: ExprId) -> Vec<ExprId> {
+        let mut factors = Vec::new();
+        let mut pending = vec![(expr, 0)];
+        while let Some((expr, depth)) = pending.pop() {
+            match self.binary(self.resolve(expr), BinaryOp::Multiply) {
+                Some((left, right)) if depth < MAX_DEPTH => {
+                    pending.extend([(right, depth + 1), (left, depth + 1)]);
+                }
+                _ => factors.push(expr),
+            }
+        }
+        factors
+    }
+
+    /// The terms of a sum, also those of the variables in it.
+    pub(super) fn all_terms(&self, expr: ExprId) -> Vec<Term> {
+        let whole = self.terms(expr);
+        let resolved = whole.into_iter().flat_map(|term| {
+            let inner = self.terms(self.resolve(term.expr));
+            inner.into_iter().map(move |one| Term {
+                is_negative: one.is_negative != term.is_negative,
+                ..one
+            })
+        });
+        resolved.collect()
+    }
+
+    /// Whether a number is added to what is not a constant, as the step of a difference quotient is: by
+    /// itself, as a part of a vector, times a constant or a vector, or as a variable or a parameter.
+    pub(super) fn is_step(&self, literal: ExprId) -> bool {
+        let mut pending = vec![literal];
+        let mut seen = HashSet::new();
+        while let Some(carrier) = pending.pop() {
+            if !seen.insert(carrier) {
+                continue;
+            }
+            let uses = |variable| self.uses.get(&variable).into_iter().flatten().copied();
+            if let Some(&variable) = self.initialized.get(&carrier) {
+                pending.extend(uses(variable));
+            }
+            let Some(&parent) = self.parents.get(&carrier) else {
+                continue;
+            };
+            match &self.tree[parent].kind {
+                &ExprKind::Binary { op, left, right } => {
+                    let other = if left == carrier { right } else { left };
+                    match op {
+                        BinaryOp::Add | BinaryOp::Subtract if !self.is_constant(other) => return true,
+                        BinaryOp::Add | BinaryOp::Subtract => pending.push(parent),
+                        BinaryOp::Multiply | BinaryOp::Divide
+                            if self.is_constant(other)
+                                || self.components(other).is_some_and(|size| size > 1) =>
+                        {
+                            pending.push(parent);
+                        }
+                        _ => {}
+                    }
+                }
+                ExprKind::Unary { .. } | ExprKind::Construct { .. } | ExprKind::Swizzle { .. } => {
+                    pending.push(parent);
+                }
+                ExprKind::Call { function, arguments } => {
+                    let parameters = self.tree[*function].parameters.iter().zip(arguments);
+                    let own = parameters.filter(|&(_, &argument)| argument == carrier);
+                    pending.extend(own.flat_map(|(&parameter, _)| uses(parameter)));
+                }
+                _ => {}
+            }
+        }
+        false
+    }
+
+    /// Whether an expression consists of numbers, and variables with such values.
+    fn is_constant(&self, expr: ExprId) -> bool {
+        self.tree
+            .postorder(expr)
+            .into_iter()
+            .all(|part| match self.tree[part].kind {
+                ExprKind::Variable(variable) => self.values.get(&variable).is_some_and(|&value| {
+                    let parts = self.tree.postorder(value);
+                    parts.into_iter().all(|part| {
+                        !matches!(
+                            self.tree[part].kind,
+                            ExprKind::Variable(_) | ExprKind::Call { .. }
+                        )
+                    })
+                }),
+                ExprKind::Call { .. } => false,
+                _ => true,
+            })
+    }
+
     /// The x of `x * x` and of `pow(x, 2.0)`.
     pub(super) fn square(&self, expr: ExprId) -> Option<ExprId> {
         if let Some((left, right)) = self.binary(expr, BinaryOp::Multiply) {
@@ -283,9 +430,27 @@ impl<'a> Definitions<'a> {
         (!text.is_empty()).then(|| format!("({text})"))
     }
 
+    /// The text of `one - other`, in which equal terms cancel as in [`Self::difference`], or do not.
+    pub(super) fn minus(&self, one: ExprId, other: ExprId) -> Option<String> {
+        let plain = || Some(format!("({} - {})", self.text(one)?, self.text(other)?));
+        self.difference(one, other).or_else(plain)
+    }
+
     /// The text of `one - other`, in which equal terms, also of the definition of a variable, cancel; `None`
     /// if none do.
     pub(super) fn difference(&self, one: ExprId, other: ExprId) -> Option<String> {
+        if let (
+            ExprKind::Swizzle { vector, components },
+            ExprKind::Swizzle {
+                vector: other,
+                components: of_other,
+            },
+        ) = (&self.tree[one].kind, &self.tree[other].kind)
+            && components == of_other
+        {
+            let vectors = self.difference(*vector, *other)?;
+            return Some(format!("{vectors}.{}", components.name()));
+        }
         let variants = [
             (one, other),
             (self.resolve(one), other),

@@ -50,7 +50,7 @@ const LOSSES: &[(&str, &str, &str)] = &[
     ),
     ("half angles", "float a = 1.0e-3 * x;", "1.0e6 * (1.0 - cos(a))"),
     (
-        "a difference of sines and cosines as a product",
+        "a difference of two values of a function as a product",
         "float a = 1.0 + x, e = 1.0e-6;",
         "1.0e6 * (sin(a + e) - sin(a))",
     ),
@@ -63,6 +63,56 @@ const LOSSES: &[(&str, &str, &str)] = &[
         "the difference of the arguments of dot products",
         "vec3 n = vec3(0.6, 0.8, 0.0), q = vec3(3.0e6), r = q + vec3(0.0, floor(8.0 * x), 0.0);",
         "0.1 * (dot(n, r) - dot(n, q))",
+    ),
+    (
+        "the conjugate of a difference of roots",
+        "float r = 1.0e6, d = 1.0e3 * x;",
+        "sqrt(d * d + (r + x) * (r + x)) - r",
+    ),
+    (
+        "a difference of two values of a function as a product",
+        "float a = 1.0 + x, e = 1.0e-6 * x, b = a + e;",
+        "1.0e6 * (sin(b) * cos(a) - cos(b) * sin(a))",
+    ),
+    (
+        "log(1 + x) as Kahan computes it",
+        "float n = 1.0e6;",
+        "0.3 * pow(1.0 + x / n, n)",
+    ),
+    (
+        "distances and cross products of unit vectors",
+        "vec3 n = vec3(0.0, 0.0, 1.0), h = normalize(vec3(1.0e-4 * x, 0.0, 1.0)); float d = dot(n, h), k = 1.0e-9;",
+        "1.0e8 * (d * d * (k - 1.0) + 1.0)",
+    ),
+    (
+        "distances and cross products of unit vectors",
+        "vec3 d = vec3(0.6, 0.8, 0.0), v = vec3(540.0, 720.0, x); float t = dot(v, d);",
+        "dot(v, v) - t * t",
+    ),
+    (
+        "exp(x) - 1 by its series near 0",
+        "vec3 s = vec3(1.0, 0.5, x); float k = 1.0e-6;",
+        "((s - s * exp(-0.5 * k)) / k).y",
+    ),
+    (
+        "one exponential instead of several",
+        "vec2 e = exp(vec2(90.0 + x, 90.0));",
+        "(e / (e.x + e.y)).x",
+    ),
+    (
+        "the difference of the eigenvalues of a symmetric matrix",
+        "float a = 1.0 + 1.0e-3 * x, b = 1.0, k = 1.0e-4, trace = a + b, det = a * b - k * k;",
+        "1.0e3 * sqrt(trace * trace - 4.0 * det)",
+    ),
+    (
+        "the dot products of parts of a far point",
+        "vec3 n = vec3(0.5, 0.25, 0.0), q = vec3(3.0e6, 2.0e5, 0.0), r = q + vec3(x, 0.0, 0.0); float w = 1.55e6;",
+        "dot(n, r) - w",
+    ),
+    (
+        "the area of a triangle from two of its sides",
+        "vec2 a = vec2(4.0e3), b = vec2(4.0e3, 4001.0), t = vec2(4.0e3 + floor(8.0 * x) / 8.0, 4.0e3);",
+        "-(a.x * b.y - a.y * b.x + b.x * t.y - b.y * t.x + t.x * a.y - t.y * a.x)",
     ),
     (
         "the distance from a far center by its squares",
@@ -110,6 +160,26 @@ const LOSSES: &[(&str, &str, &str)] = &[
         "1.0e-26 * length(v)",
     ),
     (
+        "distances and cross products of unit vectors",
+        "vec3 a = vec3(1.0, 0.0, 0.0), b = normalize(vec3(1.0, 1.0e-4 * x, 0.0)); float d = dot(a, b);",
+        "1.0e4 * sqrt(1.0 - d * d)",
+    ),
+    (
+        "the difference of nearly parallel vectors in a product",
+        "vec2 a = vec2(3.0e3, 2.0e3), e = 1.0e-4 * vec2(x, 1.0); vec2 b = a + e;",
+        "a.x * b.y - a.y * b.x",
+    ),
+    (
+        "the area of a triangle from its sorted sides",
+        "float a = 200.0, b = 200.0, e = 1.0e-3 * x, s = 0.5 * (a + b + e);",
+        "10.0 * sqrt(s * (s - a) * (s - b) * (s - e))",
+    ),
+    (
+        "x - sin(x) by its series near 0",
+        "float a = 1.0e-3 * x;",
+        "6.0e9 * (a - sin(a))",
+    ),
+    (
         "powers of the ratio of two numbers",
         "float a = 0.2 * x, b = 0.1;",
         "pow(pow(a, 50.0) + pow(b, 50.0), 1.0 / 50.0)",
@@ -117,7 +187,7 @@ const LOSSES: &[(&str, &str, &str)] = &[
     (
         "a larger step of a difference quotient",
         "float e = 1.0e-6;",
-        "0.3 * (exp(x + e) - exp(x)) / e",
+        "0.5 * (asin(0.5 * (x + e)) - asin(0.5 * x)) / e",
     ),
 ];
 
@@ -146,9 +216,44 @@ fn every_identity_makes_a_shader_more_precise() {
 }
 
 #[test]
+fn the_variance_of_a_loop_is_that_of_differences() {
+    let found = rewritten(
+        "float sum = 0.0, squares = 0.0; \
+         for (int i = 0; i < 8; i++) { float v = 300.0 + x * sin(float(i)); sum += v; squares += v * v; } \
+         float mean = sum / 8.0;",
+        "squares / 8.0 - mean * mean",
+    );
+    let fix = found.fix.unwrap();
+    assert!(
+        found.before.imprecise > 0 && found.after.imprecise == 0,
+        "{fix:?}"
+    );
+    assert!(
+        fix.message
+            .starts_with("write 3 other forms: the variance of differences from the first sample"),
+        "{}",
+        fix.message
+    );
+}
+
+#[test]
 fn precise_shaders_stay_as_they_are() {
     let found = rewritten("float a = 2.0 * x;", "sqrt(1.0 + a) - 1.0");
     assert!(found.fix.is_none() && found.before.imprecise == 0, "{found:?}");
+}
+
+#[test]
+fn only_steps_are_made_larger() {
+    // The error is that of `1.0 + x * k`, of which k is a factor.
+    let found = rewritten(
+        "float k = 1.0e-5;",
+        "(sqrt(abs(sin(1.0 + x * k) - sin(1.0))) / sqrt(k))",
+    );
+    let message = found.fix.map(|fix| fix.message).unwrap_or_default();
+    assert!(
+        found.before.imprecise > 0 && !message.contains("step"),
+        "{message}"
+    );
 }
 
 #[test]
